@@ -1,0 +1,1 @@
+"""Floor 0: errors, axes, units, symbols, provenance, citations, registry."""

@@ -1,0 +1,34 @@
+"""Works that formulas and data come from; reports print those that were used."""
+
+from __future__ import annotations
+
+WORKS: dict[str, str] = {
+    "sname1950": "SNAME, Nomenclature for Treating the Motion of a Submerged Body Through a Fluid, "
+    "Technical and Research Bulletin 1-5, 1950.",
+    "gertler1967": "M. Gertler, G. R. Hagen, Standard Equations of Motion for Submarine Simulation, NSRDC 2510, 1967.",
+    "feldman1979": "J. Feldman, DTNSRDC Revised Standard Submarine Equations of Motion, DTNSRDC/SPD-0393-09, 1979.",
+    "roddy1990": "R. F. Roddy, Investigation of the Stability and Control Characteristics of Several Configurations of "
+    "the DARPA SUBOFF Model (DTRC Model 5470) from Captive-Model Experiments, DTRC/SHD-1298-08, 1990.",
+    "groves1989": "N. C. Groves, T. T. Huang, M. S. Chang, Geometric Characteristics of DARPA SUBOFF Models, "
+    "DTRC/SHD-1298-01, 1989.",
+    "steady_cfd": "Calculation of Linear Damping Coefficients by Numerical Simulation of Steady State Experiments, "
+    "Table 4 (steady CFD, PMM CFD 2012, experiment 1990).",
+    "coeflab_cfd": "Steady RANS of the SUBOFF bare hull made for this project with OpenFOAM 1912.",
+    "fossen2011": "T. I. Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, Wiley, 2011.",
+    "mackinnon1985": "J. G. MacKinnon, H. White, Some heteroskedasticity-consistent covariance matrix estimators with "
+    "improved finite sample properties, J. Econometrics 29, 1985.",
+    "bell2002": "R. M. Bell, D. F. McCaffrey, Bias reduction in standard errors for linear regression with multi-stage "
+    "samples, Survey Methodology 28(2), 2002.",
+    "imbens2016": "G. W. Imbens, M. Kolesar, Robust standard errors in small samples: some practical advice, "
+    "Rev. Economics and Statistics 98(4), 2016.",
+    "davidson2008": "R. Davidson, E. Flachaire, The wild bootstrap, tamed at last, J. Econometrics 146, 2008.",
+    "hurvich1989": "C. M. Hurvich, C.-L. Tsai, Regression and time series model selection in small samples, "
+    "Biometrika 76, 1989.",
+    "ittc_uncertainty": "ITTC, Uncertainty Analysis in CFD, Verification and Validation, 7.5-03-01-01, and "
+    "Uncertainty Analysis for Manoeuvring Predictions based on Captive Manoeuvring Tests, 7.5-02-06-04.",
+}
+
+
+def work(key: str) -> str:
+    """Full reference of a key; a text that is no key is returned as it is."""
+    return WORKS.get(key, key)

@@ -1,0 +1,90 @@
+"""The error tree.
+
+::
+
+    CoeflabError                 everything that coeflab raises on purpose
+    ├── InputError               a file or value that a person wrote (file, line, column, found, expected)
+    │   ├── UnitsError           a unit that is missing, unknown or of the wrong dimension
+    │   └── AxesError            axes that are undeclared, unknown or left-handed
+    ├── ScalingMismatchError     numbers made dimensionless in different ways were about to be mixed
+    ├── PluginError              a plugin that is unknown or does not keep its contract
+    └── OutputError              a place that cannot be written
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+SHOWN = 60
+
+
+def shown(text: object) -> str:
+    """Quote a found value, on one line and cut to a readable length."""
+    flat = str(text).encode("unicode_escape").decode("ascii") if not str(text).isprintable() else str(text)
+    return f'"{flat if len(flat) <= SHOWN else flat[:SHOWN] + "..."}"'
+
+
+class CoeflabError(Exception):
+    """Base of all errors raised on purpose; the command line turns it into exit code 2."""
+
+
+class InputError(CoeflabError):
+    """Input that cannot be used.
+
+    Parameters
+    ----------
+    found, expected : str
+        What stands there and what should; both are printed.
+    file : path, optional
+        The file at fault.
+    line : int, optional
+        Line number in that file, from 1.
+    column : str, optional
+        Column header or TOML key.
+    advice : str, optional
+        What to do about it.
+    """
+
+    def __init__(
+        self,
+        found: str,
+        expected: str,
+        *,
+        file: str | Path | None = None,
+        line: int | None = None,
+        column: str | None = None,
+        advice: str = "",
+    ) -> None:
+        self.found, self.expected = found, expected
+        self.file, self.line, self.column, self.advice = file, line, column, advice
+        super().__init__(str(self))
+
+    def __str__(self) -> str:
+        place = [str(self.file)] if self.file is not None else []
+        if self.line is not None:
+            place.append(f"line {self.line}")
+        if self.column is not None:
+            place.append(f"column {shown(self.column)}" if self.line else f"{shown(self.column)}")
+        head = ", ".join(place)
+        text = f"found {self.found}; expected {self.expected}."
+        return (f"{head}: " if head else "") + text + (f" {self.advice}" if self.advice else "")
+
+
+class UnitsError(InputError):
+    """A unit that is missing, unknown or of the wrong dimension."""
+
+
+class AxesError(InputError):
+    """Axes that are undeclared, unknown or left-handed, or an angle without a declared sign."""
+
+
+class ScalingMismatchError(CoeflabError):
+    """Coefficients of different lengths, reference points or bodies were about to be mixed."""
+
+
+class PluginError(CoeflabError):
+    """A plugin that is unknown or does not keep its contract."""
+
+
+class OutputError(CoeflabError):
+    """A place that cannot be written."""

@@ -1,0 +1,118 @@
+"""SNAME symbols: what a derivative's name means and what its dimension is.
+
+Sources: SNAME Technical and Research Bulletin 1-5 (1950); Gertler & Hagen, NSRDC 2510 (1967);
+Feldman, DTNSRDC/SPD-0393-09 (1979).
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from dataclasses import dataclass
+
+from coeflab.core.errors import InputError, shown
+
+FORCES = ("X", "Y", "Z")
+MOMENTS = ("K", "M", "N")
+COMPONENTS = FORCES + MOMENTS
+LINEAR = ("u", "v", "w")
+ANGULAR = ("p", "q", "r")
+MOTIONS = LINEAR + ANGULAR
+CONTROLS = ("dr", "ds", "db")
+CONTROL_COLUMNS = {"delta_r": "dr", "delta_s": "ds", "delta_b": "db"}
+PORT_STARBOARD = frozenset("YKNvpr") | {"dr"}
+
+_TOKEN = re.compile(r"(\|?)(dr|ds|db|[uvwpqr]dot|[uvwpqr])(\|?)")
+
+
+@dataclass(frozen=True, slots=True)
+class Derivative:
+    """A force component differentiated by motion variables, such as ``Yv``, ``Xvv``, ``Nrdot``, ``Y|v|v``, ``X0``.
+
+    Attributes
+    ----------
+    component : str
+        One of X Y Z K M N.
+    factors : tuple of str
+        The variables, in order; empty for a force at rest angle (``X0``).
+    text : str
+        The symbol as written, without prime.
+    """
+
+    component: str
+    factors: tuple[str, ...]
+    text: str
+
+    @property
+    def powers(self) -> tuple[int, int, int]:
+        """Powers (of U, of L, of 1/2 rho) that make one primed unit of this derivative dimensional."""
+        speed, length = 2, 3 if self.component in MOMENTS else 2
+        for factor in self.factors:
+            if factor in LINEAR:
+                speed -= 1
+            elif factor in ANGULAR:
+                speed, length = speed - 1, length + 1
+            elif factor.endswith("dot"):
+                speed -= 2
+                length += 1 if factor[0] in LINEAR else 2
+        return speed, length, 1
+
+    @property
+    def unit(self) -> str:
+        """SI unit, for example ``N/(m/s)`` for Yv or ``N*m/(rad/s)`` for Nr."""
+        names = {**dict.fromkeys(LINEAR, "m/s"), **dict.fromkeys(ANGULAR, "rad/s"), **dict.fromkeys(CONTROLS, "rad")}
+        top = "N*m" if self.component in MOMENTS else "N"
+        bottom: dict[str, int] = {}
+        for factor in self.factors:
+            base = names[factor.removesuffix("dot")] + ("^2" if factor.endswith("dot") else "")
+            bottom[base] = bottom.get(base, 0) + 1
+        for base, power in bottom.items():
+            top += f"/({base})" + (f"^{power}" if power > 1 else "")
+        return top
+
+    @property
+    def odd_in_port_starboard(self) -> bool:
+        """True when a body symmetric port to starboard must have zero for this derivative."""
+        flips = [self.component, *(f.removesuffix("dot") for f in self.factors)]
+        return sum(name in PORT_STARBOARD for name in flips) % 2 == 1
+
+
+def derivative(symbol: str) -> Derivative:
+    """Read a SNAME symbol, with or without its prime.
+
+    Parameters
+    ----------
+    symbol : str
+        For example ``Yv``, ``Nr'``, ``X0``, ``Xvv``, ``Y|v|v``, ``Ydr``, ``Mqdot``.
+
+    Raises
+    ------
+    InputError
+        The text is not a SNAME derivative; names the nearest ones.
+    """
+    text = symbol.removesuffix("'")
+    component, rest = text[:1], text[1:]
+    factors: list[str] = []
+    valid = component in COMPONENTS and bool(rest)
+    if valid and rest != "0":
+        at = 0
+        while at < len(rest) and valid:
+            match = _TOKEN.match(rest, at)
+            valid = match is not None and bool(match.group(1)) == bool(match.group(3))
+            if match is not None:
+                factors.append(match.group(2))
+                at = match.end()
+    if not valid or len(factors) > 5:
+        known = [c + f for c in COMPONENTS for f in ("v", "w", "r", "q", "p", "vv", "ww", "rr", "dr", "ds", "0")]
+        near = difflib.get_close_matches(text[:12], known, n=3, cutoff=0.4)
+        raise InputError(
+            shown(symbol),
+            "a SNAME derivative such as Yv', Nr', Xvv', X0' or Ydr'",
+            advice=f"Did you mean {', '.join(n + chr(39) for n in near)}?" if near else "",
+        )
+    return Derivative(component, tuple(factors), text)
+
+
+def primed(symbol: str) -> str:
+    """Printed form of a nondimensional derivative: ``Yv`` -> ``Yv'``."""
+    return symbol.removesuffix("'") + "'"

@@ -1,0 +1,173 @@
+"""Reading the TOML files that people write: every complaint names file and key, unknown keys are errors."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.units import quantity
+
+LARGEST = 1 << 20
+
+
+class Section:
+    """One table of a TOML file, read key by key.
+
+    Parameters
+    ----------
+    content : dict
+    file : path
+    name : str
+        Dotted name of the table, for messages.
+    """
+
+    def __init__(self, content: dict[str, Any], file: Path, name: str = "") -> None:
+        self.content, self.file, self.name = content, file, name
+        self._read: set[str] = set()
+
+    def key(self, key: str) -> str:
+        """Dotted name of a key."""
+        return f"{self.name}.{key}" if self.name else key
+
+    def fail(self, key: str, found: str, expected: str, advice: str = "") -> InputError:
+        """An error about one key, to be raised by the caller."""
+        return InputError(found, expected, file=self.file, column=self.key(key), advice=advice)
+
+    def has(self, key: str) -> bool:
+        """Whether the key is there."""
+        return key in self.content
+
+    def raw(self, key: str, default: Any = None) -> Any:
+        """The value as TOML gives it."""
+        self._read.add(key)
+        return self.content.get(key, default)
+
+    def _required(self, key: str, kind: str) -> Any:
+        if key not in self.content:
+            raise self.fail(key, "nothing", kind, f"Add {self.key(key)}.")
+        return self.raw(key)
+
+    def text(self, key: str, default: str | None = None, choices: tuple[str, ...] = ()) -> str:
+        """A text, optionally one of several."""
+        value = self._required(key, "a text") if default is None else self.raw(key, default)
+        if not isinstance(value, str) or (default is None and not value.strip()):
+            raise self.fail(key, shown(value), "a text")
+        if choices and value not in choices:
+            raise self.fail(key, shown(value), " or ".join(f'"{c}"' for c in choices))
+        return value
+
+    def flag(self, key: str, default: bool | None = None) -> bool:
+        """True or false."""
+        value = self._required(key, "true or false") if default is None else self.raw(key, default)
+        if not isinstance(value, bool):
+            raise self.fail(key, shown(value), "true or false")
+        return value
+
+    def integer(self, key: str, default: int, low: int, high: int) -> int:
+        """A whole number within bounds."""
+        value = self.raw(key, default)
+        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+            raise self.fail(key, shown(value), f"a whole number from {low} to {high}")
+        return value
+
+    def quantity(self, key: str, dimension: str) -> float:
+        """A number in SI or a text with its unit; required."""
+        value = self._required(key, f"a {dimension}")
+        return quantity(value, dimension, file=self.file, key=self.key(key))
+
+    def optional_quantity(self, key: str, dimension: str) -> float | None:
+        """A number in SI or a text with its unit, if given."""
+        return self.quantity(key, dimension) if self.has(key) else None
+
+    def point(self, key: str) -> NDArray[np.float64]:
+        """A point or triple of lengths, m."""
+        value = self._required(key, "a point [x, y, z] in metres, FRD, from the datum")
+        if not isinstance(value, list) or len(value) != 3:
+            raise self.fail(key, shown(value), "a point [x, y, z] in metres, FRD, from the datum")
+        return np.array([quantity(v, "length", file=self.file, key=self.key(key)) for v in value])
+
+    def texts(self, key: str) -> tuple[str, ...]:
+        """A list of texts, empty by default."""
+        value = self.raw(key, [])
+        if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
+            raise self.fail(key, shown(value), "a list of texts")
+        return tuple(value)
+
+    def section(self, key: str, required: bool = True) -> Section:
+        """A sub-table; an empty one where it is absent and not required."""
+        value = self._required(key, "a table") if required else self.raw(key, {})
+        if not isinstance(value, dict):
+            raise self.fail(key, shown(value), f"a table [{self.key(key)}]")
+        return Section(value, self.file, self.key(key))
+
+    def sections(self, key: str) -> list[Section]:
+        """An array of tables, empty by default."""
+        value = self.raw(key, [])
+        if not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
+            raise self.fail(key, shown(value), f"tables [[{self.key(key)}]]")
+        return [Section(v, self.file, f"{self.key(key)}[{i}]") for i, v in enumerate(value)]
+
+    def finish(self) -> None:
+        """Refuse keys that nobody read."""
+        for key in self.content:
+            if key not in self._read:
+                near = difflib.get_close_matches(key, sorted(self._read), n=1)
+                raise self.fail(
+                    key,
+                    "an unknown key",
+                    "one of " + ", ".join(sorted(self._read)),
+                    f"Did you mean {self.key(near[0])}?" if near else "",
+                )
+
+
+def read_text(path: Path, largest: int = LARGEST) -> str:
+    """A small text file.
+
+    Raises
+    ------
+    InputError
+        Missing, a folder, empty, too large, or not UTF-8.
+    """
+    try:
+        if path.is_dir():
+            raise InputError("a folder", "a file", file=path)
+        if not path.exists():
+            raise InputError("no such file", "a file that exists", file=path)
+        if path.stat().st_size > largest:
+            raise InputError(f"{path.stat().st_size} bytes", f"at most {largest} bytes", file=path)
+        content = path.read_bytes()
+    except OSError as why:
+        raise InputError(str(why.strerror or why), "a readable file", file=path) from None
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as why:
+        line = content.count(b"\n", 0, why.start) + 1
+        raise InputError(
+            f"the byte 0x{content[why.start]:02x}", "UTF-8 text", file=path, line=line, advice="Save the file as UTF-8."
+        ) from None
+    if not text.strip():
+        raise InputError("an empty file", "content", file=path)
+    return text
+
+
+def read_toml(path: Path) -> Section:
+    """Parse a TOML file.
+
+    Raises
+    ------
+    InputError
+        Not readable, or not TOML; the parser's line and column are passed on.
+    """
+    text = read_text(path)
+    try:
+        return Section(tomllib.loads(text), path)
+    except tomllib.TOMLDecodeError as why:
+        raise InputError(f"a TOML error ({why})", "valid TOML", file=path) from None
+    except RecursionError:
+        raise InputError("too deep nesting", "valid TOML", file=path) from None

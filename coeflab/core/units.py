@@ -1,0 +1,123 @@
+"""Units: read at the door, never seen further in. The units library is imported on first use."""
+
+from __future__ import annotations
+
+import functools
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from coeflab.core.errors import InputError, UnitsError, shown
+
+SI = {
+    "length": "m",
+    "speed": "m/s",
+    "rate": "rad/s",
+    "angle": "rad",
+    "force": "N",
+    "moment": "N*m",
+    "density": "kg/m^3",
+    "viscosity": "m^2/s",
+    "mass": "kg",
+    "inertia": "kg*m^2",
+    "volume": "m^3",
+    "area": "m^2",
+    "none": "",
+}
+_MARINE = {"kn": "knot", "kt": "knot", "rpm": "revolution/minute"}
+_HEADER = re.compile(r"^(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]$")
+_NUMBER = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """A column header ``name [unit]``; ``unit`` is None where no bracket was written."""
+
+    text: str
+    name: str
+    unit: str | None
+
+
+@functools.cache
+def _registry() -> Any:
+    import pint
+
+    return pint.UnitRegistry(cache_folder=None)
+
+
+def parse_header(text: str) -> Header:
+    """Split ``"Y [N]"`` into name and unit."""
+    clean = " ".join(text.split())
+    match = _HEADER.match(clean)
+    return Header(clean, match["name"], match["unit"].strip()) if match else Header(clean, clean, None)
+
+
+@functools.cache
+def factor(unit: str, dimension: str) -> float:
+    """Factor that turns a number in ``unit`` into SI.
+
+    Parameters
+    ----------
+    unit : str
+        For example ``lbf``, ``ft*lbf``, ``kn``, ``deg/s``; ``-`` for a pure number.
+    dimension : str
+        A key of `SI`.
+
+    Raises
+    ------
+    UnitsError
+        The unit is unknown, or of another dimension (a pure number is not an angle).
+    """
+    expected = f"a unit of {dimension}, such as {SI[dimension] or '-'}" + (" or deg" if dimension == "angle" else "")
+    if unit == "-" or not unit:
+        if dimension == "none":
+            return 1.0
+        raise UnitsError(f"[{unit}]", expected)
+    if len(unit) > 40 or not re.fullmatch(r"[A-Za-zµμ°·0-9*/^().\s-]+", unit):
+        raise UnitsError(f"the unit {shown(unit)}", expected)
+    import pint
+
+    registry = _registry()
+    try:
+        quantity = registry.Quantity(1.0, registry.parse_units(_MARINE.get(unit, unit.replace("·", "*"))))
+        if dimension in ("angle", "none") and quantity.dimensionless:
+            angular = "radian" in str(quantity.to_root_units().units)
+            if angular != (dimension == "angle"):
+                raise UnitsError(f"[{unit}]", expected)
+        if dimension == "rate" and "radian" not in str(quantity.to_root_units().units):
+            raise UnitsError(f"[{unit}]", expected, advice="Write rad/s, deg/s or rpm.")
+        return float(quantity.to(SI[dimension] or "dimensionless").magnitude)
+    except pint.DimensionalityError:
+        raise UnitsError(f"[{unit}], a unit of another dimension", expected) from None
+    except pint.UndefinedUnitError:
+        raise UnitsError(f"the unknown unit {shown(unit)}", expected) from None
+    except (pint.PintError, ValueError, TypeError, AttributeError, SyntaxError, ArithmeticError, AssertionError) as why:
+        raise UnitsError(f"the unreadable unit {shown(unit)} ({type(why).__name__})", expected) from None
+
+
+def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key: str = "") -> float:
+    """A number of a TOML file in SI: a bare number is SI already, a text carries its unit (``"13.9792 ft"``).
+
+    Raises
+    ------
+    InputError
+        Not a finite number, or a unit that does not fit.
+    """
+    expected = f'a number in {SI[dimension] or "-"} or a text with its unit, such as "2.5 {SI[dimension] or "-"}"'
+    number: float
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise InputError(shown(value), expected, file=file, column=key)
+    if isinstance(value, str):
+        match = _NUMBER.match(value)
+        if not match:
+            raise InputError(shown(value), expected, file=file, column=key)
+        try:
+            number = float(match[1]) * factor(match[2], dimension)
+        except UnitsError as why:
+            raise UnitsError(why.found, why.expected, file=file, column=key, advice=why.advice) from None
+    else:
+        number = float(value)
+    if number != number or number in (float("inf"), float("-inf")):
+        raise InputError(shown(value), "a finite number", file=file, column=key)
+    return number

@@ -1,0 +1,93 @@
+"""Does the form fit, and does one point carry it? Lack of fit, replicates, leverage, outliers."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import chdtrc, fdtrc
+
+from coeflab.kernels.least_squares import Array, Factorised, Index
+from coeflab.kernels.robust import t_probability
+
+HIGH_LEVERAGE = 3.0
+
+
+def levels(x: Array, width: float = 0.02) -> Index:
+    """Group |x| into nominal levels: a level spans at most ``width`` of the largest |x|.
+
+    Returns
+    -------
+    (n,) integer array
+        Level of every point, 0 nearest the origin.
+    """
+    size = np.abs(x)
+    order = np.argsort(size, kind="stable")
+    step = width * float(size.max(initial=0.0)) or 1.0
+    level, start, out = -1, -np.inf, np.empty(len(x), dtype=np.int64)
+    for i in order:
+        if size[i] - start > step:
+            level, start = level + 1, size[i]
+        out[i] = level
+    return out
+
+
+def replicate_groups(x: Array, tolerance: float) -> list[Index]:
+    """Indices of points that repeat one setting: sorted neighbours within ``tolerance`` of the group's first."""
+    order = np.argsort(x, kind="stable")
+    groups: list[list[int]] = []
+    for i in order:
+        if groups and x[i] - x[groups[-1][0]] <= tolerance:
+            groups[-1].append(int(i))
+        else:
+            groups.append([int(i)])
+    return [np.array(g) for g in groups if len(g) > 1]
+
+
+def lack_of_fit(f: Factorised, residuals: Array, x: Array, tolerance: float, known_errors: bool) -> float:
+    """Probability that a right form would misfit more than this one does.
+
+    With standard errors in the table the residual sum is a chi-square; else replicates give the pure error and the
+    ratio is an F. NaN where neither exists.
+
+    Parameters
+    ----------
+    residuals : (n,) array
+        Weighted residuals; already divided by the standard errors when ``known_errors``.
+    """
+    freedom = f.freedom
+    if freedom < 1:
+        return float("nan")
+    total = float(np.sum(residuals**2))
+    if known_errors:
+        return float(chdtrc(freedom, total))
+    groups = replicate_groups(x, tolerance)
+    pure_freedom = sum(len(g) - 1 for g in groups)
+    if pure_freedom < 1 or freedom - pure_freedom < 1:
+        return float("nan")
+    pure = sum(float(np.sum((residuals[g] - residuals[g].mean()) ** 2)) for g in groups)
+    if pure <= 1e-24 * max(total, 1e-300):
+        return float("nan")
+    ratio = ((total - pure) / (freedom - pure_freedom)) / (pure / pure_freedom)
+    return float(fdtrc(freedom - pure_freedom, pure_freedom, max(ratio, 0.0)))
+
+
+def studentised(f: Factorised, residuals: Array) -> Array:
+    """Externally studentised residuals, shape (n,); NaN without degrees of freedom."""
+    freedom = f.freedom
+    if freedom < 2:
+        return np.full(len(residuals), np.nan)
+    room = np.where(f.leverage < 1 - 1e-9, 1 - f.leverage, np.nan)
+    total = np.sum(residuals**2)
+    left_out = np.maximum((total - residuals**2 / room) / (freedom - 1), np.finfo(float).tiny)
+    return np.asarray(residuals / np.sqrt(left_out * room))
+
+
+def outliers(f: Factorised, residuals: Array, level: float = 0.05) -> Array:
+    """Points whose studentised residual is improbable after Bonferroni's correction, boolean (n,)."""
+    t = studentised(f, residuals)
+    freedom = max(f.freedom - 1, 1)
+    return np.asarray(np.where(np.isfinite(t), t_probability(np.nan_to_num(t), freedom) * len(t) < level, False))
+
+
+def high_leverage(f: Factorised) -> Array:
+    """Points with more than three times the mean leverage, boolean (n,)."""
+    return np.asarray(f.leverage > min(HIGH_LEVERAGE * f.rank / len(f.leverage), 0.99))

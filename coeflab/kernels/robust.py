@@ -1,0 +1,48 @@
+"""Standard errors that stand unequal noise, with degrees of freedom that stand small samples.
+
+HC2 and HC3: MacKinnon & White (1985). Degrees of freedom: Bell & McCaffrey (2002) in the form of Imbens & Kolesar
+(2016), equation for one contrast under equal reference variances.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.special import stdtr, stdtrit
+
+from coeflab.kernels.least_squares import Array, Factorised
+
+FULL_LEVERAGE = 1.0 - 1e-9
+
+
+def _inflated(f: Factorised, residuals: Array, power: int) -> Array:
+    """Squared residuals over (1 - h)^power; a point of leverage 1 has no residual and says nothing."""
+    room = np.where(f.leverage < FULL_LEVERAGE, 1.0 - f.leverage, np.inf) ** power
+    return np.asarray(residuals**2 / (room if residuals.ndim == 1 else room[:, None]))
+
+
+def hc_variance(f: Factorised, residuals: Array, kind: int) -> Array:
+    """HC2 (``kind=2``) or HC3 (``kind=3``) variances of the coefficients, shape (p,) or (p, m)."""
+    return np.asarray(f.estimator**2 @ _inflated(f, residuals, kind - 1))
+
+
+def bell_mccaffrey(f: Factorised) -> Array:
+    """Degrees of freedom of the HC2 variance of every coefficient, shape (p,).
+
+    Satterthwaite's match of the first two moments; computed in O(n p^2) without the n x n residual maker.
+    """
+    room = np.where(f.leverage < FULL_LEVERAGE, 1.0 - f.leverage, np.inf)
+    weights = f.estimator**2 / room
+    first = np.sum(weights * np.where(np.isfinite(room), room, 0.0), axis=1)
+    gram = np.einsum("pn,ni,nj->pij", weights, f.basis, f.basis)
+    second = weights**2 @ (1.0 - 2.0 * f.leverage) + np.sum(gram**2, axis=(1, 2))
+    return np.asarray(np.where(second > 0, first**2 / np.where(second > 0, second, 1.0), 0.0))
+
+
+def t_factor(freedom: Array | float, level: float = 0.95) -> Array:
+    """Two-sided Student factor; NaN where the degrees of freedom vanish."""
+    return np.asarray(stdtrit(freedom, 0.5 + 0.5 * level))
+
+
+def t_probability(ratio: Array | float, freedom: Array | float) -> Array:
+    """Two-sided probability of a larger |t| by chance."""
+    return np.asarray(2.0 * stdtr(freedom, -np.abs(ratio)))

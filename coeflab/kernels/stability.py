@@ -1,0 +1,30 @@
+"""Directional stability indices of a submerged body, with their first-order uncertainty.
+
+Feldman (1979); Roddy (1990) Table 4: G = 1 - N_v (Y_r - m) / [Y_v (N_r - x_G m)], all primed; positive is stable.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coeflab.kernels.least_squares import Array
+
+
+def stability_index(
+    force_slope: float, moment_slope: float, force_rate: float, moment_rate: float, mass: float, mass_moment: float
+) -> float:
+    """G_h from (Yv', Nv', Yr', Nr', m', xG'm').
+
+    For G_v pass (Zw', Mw', Zq', Mq', -m', xG'm'): there the mass term changes its sign, G_v = 1 - Mw'(Zq' + m') /
+    [Zw'(Mq' - xG'm')], the limit of high speed without restoring moment.
+    """
+    return 1.0 - moment_slope * (force_rate - mass) / (force_slope * (moment_rate - mass_moment))
+
+
+def index_gradient(
+    force_slope: float, moment_slope: float, force_rate: float, moment_rate: float, mass: float, mass_moment: float
+) -> Array:
+    """Derivatives of the index by its first four arguments, shape (4,)."""
+    a, b = force_rate - mass, moment_rate - mass_moment
+    product = moment_slope * a / (force_slope * b)
+    return np.array([product / force_slope, -a / (force_slope * b), -moment_slope / (force_slope * b), product / b])

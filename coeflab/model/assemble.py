@@ -1,0 +1,205 @@
+"""From fits and literature to one parameter file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab import __version__
+from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.provenance import InputFile
+from coeflab.core.symbols import derivative, primed
+from coeflab.model.body import Body
+from coeflab.model.coefficient import Coefficient, Status
+from coeflab.model.fit_result import FitResult
+from coeflab.model.force_table import ForceTable
+from coeflab.model.parameter_file import (
+    CoveredRange,
+    InputRecord,
+    ParameterCoefficient,
+    ParameterConditions,
+    ParameterCovariance,
+    ParameterFile,
+    ParameterMass,
+    ParameterPoint,
+    ParameterScaling,
+    Provenance,
+    UncertaintyParts,
+)
+from coeflab.model.reference import Reference
+from coeflab.model.scaling import Conditions, Scaling
+from coeflab.model.study import PlannedParameterFile
+
+
+def _written(c: Coefficient, scaling: Scaling, conditions: Conditions) -> ParameterCoefficient:
+    factor = scaling.factor(c.symbol, conditions)
+    return ParameterCoefficient(
+        symbol=primed(c.symbol),
+        value=c.value,
+        u95=c.u95,
+        unit="1",
+        value_si=None if c.value is None else c.value * factor,
+        unit_si=derivative(c.symbol).unit,
+        status=c.status.value,
+        origin=c.origin,
+        parts=UncertaintyParts(
+            random=c.parts.random, model_form=c.parts.model_form, window=c.parts.window, input=c.parts.input
+        ),
+        table=c.table,
+        campaign=c.campaign,
+        estimator=c.estimator,
+        window=c.window,
+        n_points=c.n_points,
+        citation=c.citation,
+    )
+
+
+def _literature(
+    group: PlannedParameterFile, references: Sequence[Reference], scaling: Scaling, point: NDArray[np.float64]
+) -> list[Coefficient]:
+    """Literature coefficients of a group, rescaled to its length, labelled with method and source."""
+    out = []
+    known = {r.name: r for r in references}
+    for name in group.literature:
+        if name not in known:
+            raise InputError(
+                f"no reference {shown(name)}", f"one of {', '.join(known) or 'none'}",
+                column=f"parameter_file.{group.name}.literature",
+            )  # fmt: skip
+        reference = known[name]
+        if reference.reference_point is not None and not np.allclose(reference.reference_point, point, atol=1e-9):
+            raise ScalingMismatchError(
+                f"{name} is about {tuple(reference.reference_point)}, the parameter file about {tuple(point)}: "
+                "literature values are taken only about their own point."
+            )
+        for kind in reference.literature:
+            for v in kind.values:
+                value = None if v.value is None else v.value * reference.scaling.ratio(v.symbol, scaling)
+                what = f"{kind.method} {kind.kind}, {reference.place}"
+                out.append(
+                    Coefficient(
+                        symbol=v.symbol,
+                        value=value,
+                        u95=None if value is None else abs(value) * kind.uncertainty,
+                        status=Status.STATED if value is not None else Status.NOT_DETERMINED,
+                        body=reference.body,
+                        origin="literature",
+                        estimator=what if value is not None else f"{what}: printed {v.printed}, a digit is illegible",
+                        citation=reference.citation,
+                    )
+                )
+    return out
+
+
+def _covered(tables: Sequence[ForceTable], length: float) -> tuple[CoveredRange, ...]:
+    out = []
+    for t in tables:
+        for variable in t.varies:
+            x = t.primed_motion(variable, length)
+            angle = variable in ("v", "w")
+            low, high = float(np.min(x)), float(np.max(x))
+            if angle:
+                low, high = float(np.arcsin(low)), float(np.arcsin(high))
+            unit = "1" if variable in "pqr" else "rad"
+            name = {"v": "asin(v/U)", "w": "asin(w/U)"}.get(variable, variable + "'" if variable in "pqr" else variable)
+            out.append(CoveredRange(variable=name, low=low, high=high, unit=unit, campaign=t.campaign))
+    return tuple(out)
+
+
+def assemble(
+    group: PlannedParameterFile,
+    study: str,
+    fits: Sequence[FitResult],
+    tables: Sequence[ForceTable],
+    missing: Sequence[Coefficient],
+    references: Sequence[Reference],
+    body: Body | None,
+    conditions: Conditions,
+    inputs: Sequence[InputFile],
+) -> ParameterFile:
+    """Build the parameter file of a group of campaigns.
+
+    Where two campaigns give one coefficient the earlier in the plan counts, and a note says so; a fitted value comes
+    before literature, and a symbol that neither gives is written with its status.
+
+    Raises
+    ------
+    ScalingMismatchError
+        Campaigns of another body, scaling or reference point.
+    """
+    chosen = [f for name in group.campaigns for f in fits if f.campaign == name]
+    sets = [f.coefficients for f in chosen]
+    first = sets[0]
+    for s, f in zip(sets, chosen, strict=True):
+        first.scaling.require(s.scaling)
+        if f.body != group.body:
+            raise ScalingMismatchError(f"{f.campaign} is about {f.body}, the parameter file {group.name} {group.body}.")
+        if s.datum != first.datum or not np.allclose(s.reference_point, first.reference_point, atol=1e-9):
+            raise ScalingMismatchError(
+                f"{f.campaign} and {chosen[0].campaign} have other reference points; give the study a reference_point."
+            )
+    notes: list[str] = []
+    entries: dict[str, tuple[Coefficient, int, int]] = {}
+    for k, s in enumerate(sets):
+        for i, c in enumerate(s.coefficients):
+            if c.symbol in entries:
+                notes.append(
+                    f"{primed(c.symbol)} from {entries[c.symbol][0].campaign}; {c.campaign} gives {c.value:.6g}"
+                )
+            else:
+                entries[c.symbol] = (c, k, i)
+    extra = {c.symbol: c for c in _literature(group, references, first.scaling, first.reference_point)}
+    absent = [c for c in missing if c.campaign == ", ".join(group.campaigns) and c.body == group.body]
+    coefficients = [c for c, _, _ in entries.values()]
+    coefficients += [c for s, c in extra.items() if s not in entries]
+    coefficients += [c for c in absent if c.symbol not in entries and c.symbol not in extra]
+    covariance = np.zeros((len(coefficients), len(coefficients)))
+    for i, c in enumerate(coefficients):
+        if c.symbol in entries:
+            _, k, row = entries[c.symbol]
+            for j, d in enumerate(coefficients):
+                if d.symbol in entries and entries[d.symbol][1] == k:
+                    covariance[i, j] = sets[k].covariance[row, entries[d.symbol][2]]
+        elif c.u95 is not None:
+            covariance[i, i] = (c.u95 / 2.0) ** 2
+    void = np.array([c.u95 is None for c in coefficients])
+    covariance[void, :] = covariance[:, void] = np.nan
+    configuration = body.configuration(group.body) if body else None
+    mass = configuration.mass if configuration else None
+    if mass and body and not np.allclose(body.reference_point, first.reference_point, atol=1e-6):
+        notes.append("mass properties left out: the body states them about another point")
+        mass = None
+    prime = mass.primed(first.scaling, conditions.density) if mass else (1.0, 0.0)
+    return ParameterFile(
+        name=group.name,
+        body=group.body,
+        scaling=ParameterScaling(length=first.scaling.length, length_name=first.scaling.length_name),
+        reference_point=ParameterPoint(point=tuple(map(float, first.reference_point)), datum=first.datum),
+        conditions=ParameterConditions(
+            density=conditions.density, speed=conditions.speed, viscosity=conditions.viscosity
+        ),
+        mass=ParameterMass(
+            mass=mass.mass,
+            mass_moment=mass.mass_moment,
+            inertia=mass.inertia,
+            mass_prime=prime[0],
+            mass_moment_prime=prime[1],
+        )
+        if mass
+        else None,
+        coefficients=tuple(_written(c, first.scaling, conditions) for c in coefficients),
+        covariance=ParameterCovariance(
+            symbols=tuple(primed(c.symbol) for c in coefficients),
+            matrix=tuple(tuple(None if np.isnan(v) else float(v) for v in row) for row in covariance),
+        ),
+        covered=_covered([t for t in tables if t.campaign in group.campaigns], first.scaling.length),
+        provenance=Provenance(
+            coeflab_version=__version__,
+            study=study,
+            inputs=tuple(InputRecord(name=i.name, sha256=i.sha256) for i in inputs),
+            citations=tuple(dict.fromkeys([c.citation for c in coefficients if c.citation] + [*chosen[0].citations])),
+            notes=tuple(notes),
+        ),
+    )

@@ -1,0 +1,107 @@
+"""A body: its particulars and mass properties, one configuration of appendages at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.provenance import InputFile, Source
+from coeflab.model.frozen import locked
+from coeflab.model.scaling import Scaling
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MassProperties:
+    """Mass properties about the body's reference point.
+
+    Attributes
+    ----------
+    mass : float
+        kg.
+    mass_moment : float
+        x_G m about the reference point, kg m, positive forward.
+    inertia : float or None
+        About the transverse axes (Iy = Iz) through the reference point, kg m^2.
+    """
+
+    mass: float
+    mass_moment: float
+    inertia: float | None
+
+    def primed(self, scaling: Scaling, density: float) -> tuple[float, float]:
+        """(m', xG' m') with m' = m / (1/2 rho L^3)."""
+        unit = 0.5 * density * scaling.length**3
+        return self.mass / unit, self.mass_moment / (unit * scaling.length)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Configuration:
+    """One state of appendages."""
+
+    name: str
+    title: str
+    volume: float | None
+    wetted_surface: float | None
+    centre_of_buoyancy: NDArray[np.float64] | None
+    mass: MassProperties | None
+
+    def __post_init__(self) -> None:
+        if self.centre_of_buoyancy is not None:
+            object.__setattr__(self, "centre_of_buoyancy", locked(self.centre_of_buoyancy))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Body:
+    """A body with one or more configurations.
+
+    Attributes
+    ----------
+    name, title, datum : str
+    reference_point : (3,) array
+        Point of the mass properties, m, FRD, from the datum.
+    lengths : dict of str to float
+        Named particulars, m.
+    configurations : tuple of Configuration
+    source : Source
+    files : tuple of InputFile
+    """
+
+    name: str
+    title: str
+    datum: str
+    reference_point: NDArray[np.float64]
+    lengths: dict[str, float]
+    configurations: tuple[Configuration, ...]
+    source: Source
+    files: tuple[InputFile, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "reference_point", locked(self.reference_point))
+
+    def configuration(self, name: str) -> Configuration | None:
+        """The configuration of that name, if the body has it."""
+        return next((c for c in self.configurations if c.name == name), None)
+
+    def require(self, name: str) -> Configuration:
+        """The configuration of that name.
+
+        Raises
+        ------
+        InputError
+        """
+        found = self.configuration(name)
+        if found is None:
+            known = ", ".join(c.name for c in self.configurations)
+            raise InputError(f"no configuration {shown(name)} of {self.name}", f"one of {known}")
+        return found
+
+
+def mass_from_primes(mass: float, moment: float, inertia: float | None, by: Scaling, density: float) -> MassProperties:
+    """Dimensional mass properties from m', xG' m', I' (m' = m / (1/2 rho L^3))."""
+    unit = 0.5 * density * by.length**3
+    return MassProperties(
+        mass * unit, moment * unit * by.length, None if inertia is None else inertia * unit * by.length**2
+    )

@@ -1,0 +1,186 @@
+"""What a campaign.toml declares about its tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.axes import Axes, parse_axes
+from coeflab.core.errors import InputError, shown
+from coeflab.core.provenance import Source
+from coeflab.core.toml import Section, read_toml
+from coeflab.model.scaling import Conditions, Scaling
+
+FILE = "campaign.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class Inertia:
+    """Mass properties of the towed model, for forces that contain its inertia.
+
+    Attributes
+    ----------
+    mass : float
+        kg.
+    centre : tuple of 3 floats
+        Centre of gravity, m, FRD, from the datum.
+    tensor : tuple of 3 floats
+        Ix Iy Iz about the centre of gravity, kg m^2.
+    """
+
+    mass: float
+    centre: tuple[float, float, float]
+    tensor: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class TableDeclaration:
+    """One ``[[table]]`` of a campaign.
+
+    Attributes
+    ----------
+    file : str
+    sha256 : str
+        Expected hash, or empty.
+    contains_inertia : bool or None
+        None where it was not declared.
+    labels, ignore : tuple of str
+        Columns that name rows, and columns to skip.
+    select : dict of str to str
+        Only rows with this text in that label column enter fits.
+    select_reason : str
+    """
+
+    file: str
+    sha256: str
+    contains_inertia: bool | None
+    labels: tuple[str, ...]
+    ignore: tuple[str, ...]
+    select: dict[str, str]
+    select_reason: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Campaign:
+    """A folder of tables from one test or one set of computations."""
+
+    path: Path
+    name: str
+    title: str
+    body: str
+    importer: str
+    axes: Axes
+    signs: dict[str, str]
+    datum: str
+    reference_point: NDArray[np.float64]
+    scaling: Scaling
+    conditions: Conditions
+    half_model: bool
+    inertia: Inertia | None
+    source: Source
+    tables: tuple[TableDeclaration, ...]
+
+
+def _inertia(section: Section) -> Inertia | None:
+    if not section.content:
+        return None
+    tensor = section.raw("inertia", [0.0, 0.0, 0.0])
+    if not isinstance(tensor, list) or len(tensor) != 3:
+        raise section.fail("inertia", shown(tensor), "[Ix, Iy, Iz] about the centre of gravity, kg m^2")
+    centre = section.point("centre_of_gravity")
+    out = Inertia(
+        section.quantity("mass", "mass"),
+        (float(centre[0]), float(centre[1]), float(centre[2])),
+        (float(tensor[0]), float(tensor[1]), float(tensor[2])),
+    )
+    section.finish()
+    return out
+
+
+def _tables(root: Section) -> tuple[TableDeclaration, ...]:
+    out = []
+    for t in root.sections("table"):
+        select = t.section("select", required=False)
+        chosen = {k: str(select.raw(k)) for k in select.content if k != "reason"}
+        out.append(
+            TableDeclaration(
+                file=t.text("file"),
+                sha256=t.text("sha256", ""),
+                contains_inertia=t.flag("contains_inertia") if t.has("contains_inertia") else None,
+                labels=t.texts("labels"),
+                ignore=t.texts("ignore"),
+                select=chosen,
+                select_reason=select.text("reason", "not selected by the campaign"),
+            )
+        )
+        t.raw("source_sha256")
+        t.finish()
+    if not out:
+        raise root.fail("table", "no [[table]]", "at least one table", 'Add [[table]] with file = "table.csv".')
+    return tuple(out)
+
+
+def read_campaign(path: Path) -> Campaign:
+    """Read and check a campaign.toml.
+
+    Parameters
+    ----------
+    path : Path
+        The file itself.
+
+    Raises
+    ------
+    InputError
+        Anything missing, unknown or inconsistent, by file and key.
+    """
+    root = read_toml(path)
+    head = root.section("campaign")
+    axes = root.section("axes")
+    scaling = root.section("scaling")
+    conditions = root.section("conditions")
+    source = root.section("source")
+    campaign = Campaign(
+        path=path,
+        name=head.text("name", path.parent.name),
+        title=head.text("title"),
+        body=head.text("body"),
+        importer=head.text("importer", "csv"),
+        axes=parse_axes(axes.raw("frame"), path),
+        signs={k: str(axes.raw(k)) for k in ("alpha", "beta") if axes.has(k)},
+        datum=axes.text("datum"),
+        reference_point=axes.point("reference_point"),
+        scaling=Scaling(scaling.quantity("length", "length"), scaling.text("length_name")),
+        conditions=_conditions(conditions),
+        half_model=head.flag("half_model", False),
+        inertia=_inertia(root.section("inertia", required=False)),
+        source=Source(
+            citation=source.text("citation"),
+            place=source.text("place", ""),
+            how_obtained=source.text("how_obtained", ""),
+            kind=source.text("kind", choices=("experiment", "cfd", "literature", "synthetic")),
+            stated_uncertainty=source.text("stated_uncertainty", ""),
+        ),
+        tables=_tables(root),
+    )
+    for optional in ("appendages", "reynolds", "notes", "configuration", "date"):
+        head.raw(optional)
+        conditions.raw(optional)
+    source.raw("sha256")
+    source.raw("url")
+    for section in (head, axes, scaling, conditions, source, root):
+        section.finish()
+    return campaign
+
+
+def _conditions(section: Section) -> Conditions:
+    try:
+        return Conditions(
+            density=section.quantity("density", "density"),
+            speed=section.quantity("speed", "speed"),
+            viscosity=section.optional_quantity("viscosity", "viscosity"),
+        )
+    except InputError as why:
+        raise InputError(why.found, why.expected, file=section.file, column=why.column, advice=why.advice) from None

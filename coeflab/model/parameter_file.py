@@ -1,0 +1,238 @@
+"""The parameter file: JSON, one body, one scaling, one reference point. Version 1.
+
+The models below are the schema; ``parameter_file.schema.json`` beside them is generated from them.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from coeflab.core.errors import CoeflabError, InputError, shown
+from coeflab.core.symbols import derivative
+from coeflab.core.toml import read_text
+
+SCHEMA_VERSION = "1.0"
+LARGEST = 64 << 20
+SCHEMA_FILE = Path(__file__).with_name("parameter_file.schema.json")
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+Name = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class UncertaintyParts(_Model):
+    """95 % half-widths that make up U95; null where not assessed."""
+
+    random: NotNegative | None = None
+    model_form: NotNegative | None = None
+    window: NotNegative | None = None
+    input: NotNegative | None = None
+
+
+class ParameterCoefficient(_Model):
+    """One coefficient."""
+
+    symbol: Annotated[str, Field(description="SNAME symbol with prime, for example Yv'")]
+    value: Finite | None
+    u95: NotNegative | None = Field(description="95 % half-width")
+    unit: Literal["1"] = Field(description="1: nondimensional by the prime system of `scaling`")
+    value_si: Finite | None = Field(description="At the density and speed of `conditions`")
+    unit_si: str
+    status: Literal["ok", "no_table", "too_few_points", "single_estimator", "not_determined", "stated"]
+    origin: Literal["fit", "literature", "none"]
+    parts: UncertaintyParts
+    table: str | None = None
+    campaign: str | None = None
+    estimator: str = ""
+    window: tuple[Finite, Finite] | None = Field(default=None, description="radians; r' = r L/U for rates")
+    n_points: Annotated[int, Field(ge=0)] = 0
+    citation: str = ""
+
+    @model_validator(mode="after")
+    def _honest(self) -> ParameterCoefficient:
+        try:
+            derivative(self.symbol)
+        except InputError as why:
+            raise ValueError(str(why)) from None
+        if (self.value is None) != (self.status in ("no_table", "too_few_points", "not_determined")):
+            raise ValueError(f"{self.symbol}: value {self.value} does not go with status {self.status}")
+        if self.u95 is not None and self.value is None:
+            raise ValueError(f"{self.symbol}: an interval without a value")
+        return self
+
+
+class ParameterScaling(_Model):
+    """Length of the primes."""
+
+    length: Positive = Field(description="m")
+    length_name: Name
+
+
+class ParameterConditions(_Model):
+    """Conditions of the dimensional values."""
+
+    density: Positive = Field(description="kg/m^3")
+    speed: Positive = Field(description="m/s")
+    viscosity: Positive | None = Field(default=None, description="kinematic, m^2/s")
+
+
+class ParameterPoint(_Model):
+    """Point that moments, rates and mass moments refer to."""
+
+    point: tuple[Finite, Finite, Finite] = Field(description="m, from the datum, in `axes`")
+    datum: Name
+    axes: Literal["FRD"] = "FRD"
+
+
+class ParameterMass(_Model):
+    """Mass properties about the reference point."""
+
+    mass: Positive = Field(description="kg")
+    mass_moment: Finite = Field(description="x_G m, kg m, positive forward")
+    inertia: Positive | None = Field(default=None, description="transverse (Iy = Iz), kg m^2")
+    mass_prime: Positive
+    mass_moment_prime: Finite
+
+
+class ParameterCovariance(_Model):
+    """Covariance of standard uncertainties (U95 / 2), primed; rows of coefficients without U95 are null."""
+
+    symbols: tuple[str, ...]
+    matrix: tuple[tuple[Finite | None, ...], ...]
+
+    @model_validator(mode="after")
+    def _square(self) -> ParameterCovariance:
+        k = len(self.symbols)
+        if len(self.matrix) != k or any(len(row) != k for row in self.matrix):
+            raise ValueError(f"the covariance of {k} coefficients must be {k} x {k}")
+        for i, row in enumerate(self.matrix):
+            for j, value in enumerate(row):
+                other = self.matrix[j][i]
+                if (value is None) != (other is None):
+                    raise ValueError("the covariance is not symmetric")
+                if value is not None and other is not None and not math.isclose(value, other, rel_tol=1e-9):
+                    raise ValueError("the covariance is not symmetric")
+            diagonal = row[i]
+            if diagonal is not None and diagonal < 0.0:
+                raise ValueError(f"the variance of {self.symbols[i]} is negative")
+        return self
+
+
+class CoveredRange(_Model):
+    """Range of a motion variable that a campaign covers."""
+
+    variable: Name
+    low: Finite
+    high: Finite
+    unit: Literal["rad", "1"]
+    campaign: str
+
+
+class InputRecord(_Model):
+    """A file that went in."""
+
+    name: str
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+
+
+class Provenance(_Model):
+    """Where it all comes from."""
+
+    coeflab_version: str
+    study: str
+    inputs: tuple[InputRecord, ...]
+    citations: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+
+
+class ParameterFile(_Model):
+    """Hydrodynamic coefficients of one body with uncertainty and provenance."""
+
+    schema_version: Annotated[str, Field(pattern=r"^1\.\d+$")] = SCHEMA_VERSION
+    name: Name
+    body: Name
+    scaling: ParameterScaling
+    reference_point: ParameterPoint
+    conditions: ParameterConditions
+    mass: ParameterMass | None
+    coefficients: tuple[ParameterCoefficient, ...]
+    covariance: ParameterCovariance
+    covered: tuple[CoveredRange, ...]
+    provenance: Provenance
+
+    @model_validator(mode="after")
+    def _consistent(self) -> ParameterFile:
+        symbols = [c.symbol for c in self.coefficients]
+        twice = sorted({s for s in symbols if symbols.count(s) > 1})
+        if twice:
+            raise ValueError(f"{', '.join(twice)} stands more than once")
+        unknown = sorted(set(self.covariance.symbols) - set(symbols))
+        if unknown:
+            raise ValueError(f"the covariance names {', '.join(unknown)}, which are no coefficients")
+        return self
+
+    def coefficient(self, symbol: str) -> ParameterCoefficient | None:
+        """The coefficient of a symbol, with or without prime."""
+        wanted = symbol.removesuffix("'") + "'"
+        return next((c for c in self.coefficients if c.symbol == wanted), None)
+
+    def to_json(self) -> bytes:
+        """The file's bytes: sorted as declared, two blanks of indent, a closing newline, never NaN."""
+        text = json.dumps(self.model_dump(mode="json"), indent=2, ensure_ascii=False, allow_nan=False)
+        return (text + "\n").encode()
+
+
+def schema() -> bytes:
+    """The JSON Schema, as shipped."""
+    content: dict[str, Any] = ParameterFile.model_json_schema()
+    content["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    content["$id"] = f"coeflab-parameter-file-{SCHEMA_VERSION}"
+    return (json.dumps(content, indent=2) + "\n").encode()
+
+
+def read_parameter_file(path: Path) -> ParameterFile:
+    """Read and validate a parameter file.
+
+    Raises
+    ------
+    InputError
+        Not JSON (with line and column), or the first thing that breaks the schema.
+    """
+
+    def refuse(token: str) -> float:
+        raise ValueError(f"{token} is no JSON number")
+
+    text = read_text(path, LARGEST)
+    try:
+        content = json.loads(text, parse_constant=refuse)
+    except json.JSONDecodeError as why:
+        raise InputError(why.msg, "JSON", file=path, line=why.lineno, column=f"character {why.colno}") from None
+    except (ValueError, RecursionError) as why:
+        raise InputError(str(why), "a parameter file in JSON", file=path) from None
+    if isinstance(content, dict) and not str(content.get("schema_version", "")).startswith("1."):
+        raise InputError(
+            f"schema_version {shown(content.get('schema_version'))}",
+            f"1.x (this release writes {SCHEMA_VERSION})",
+            file=path,
+            column="schema_version",
+        )
+    try:
+        return ParameterFile.model_validate_json(text)
+    except ValidationError as why:
+        first = why.errors()[0]
+        place = ".".join(str(p) for p in first["loc"]) or "file"
+        more = f" ({why.error_count() - 1} more)" if why.error_count() > 1 else ""
+        found = shown(first["input"]) if first["type"] != "missing" else "nothing"
+        raise InputError(found, first["msg"] + more, file=path, column=place) from None
+    except CoeflabError as why:
+        raise InputError(str(why), "a valid parameter file", file=path) from None

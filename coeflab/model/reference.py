@@ -1,0 +1,196 @@
+"""Published values beside ours: what they are, and what a comparison may conclude."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.symbols import derivative
+from coeflab.core.toml import Section, read_toml
+from coeflab.model.coefficient import Coefficient
+from coeflab.model.scaling import Scaling
+
+
+class Relation(StrEnum):
+    """What a published value is to ours."""
+
+    RE_ANALYSIS = "re-analysis"
+    CROSS_BODY = "cross-body"
+    QUOTED = "quoted"
+
+    @property
+    def meaning(self) -> str:
+        """In words."""
+        return {
+            Relation.RE_ANALYSIS: "the same data evaluated by their authors; passes when the difference lies within "
+            "our U95 alone",
+            Relation.CROSS_BODY: "another body or another method: compared, no verdict",
+            Relation.QUOTED: "quoted from another column, no verdict of its own",
+        }[self]
+
+
+@dataclass(frozen=True, slots=True)
+class PublishedValue:
+    """A printed value; ``value`` is None where a digit is illegible."""
+
+    symbol: str
+    printed: str
+    value: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Literature:
+    """Published values that may enter a parameter file, with their stated relative uncertainty."""
+
+    kind: str
+    method: str
+    uncertainty: float
+    values: tuple[PublishedValue, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reference:
+    """One column of published derivatives."""
+
+    name: str
+    citation: str
+    place: str
+    body: str
+    relation: Relation
+    campaigns: tuple[str, ...]
+    scaling: Scaling
+    other_scaling: Scaling | None
+    note: str
+    values: tuple[PublishedValue, ...]
+    literature: tuple[Literature, ...]
+    reference_point: NDArray[np.float64] | None
+
+    def printed(self, symbol: str) -> PublishedValue | None:
+        """The published value of a symbol, if there is one."""
+        return next((v for v in self.values if v.symbol == symbol), None)
+
+    def readings(self, symbol: str, to: Scaling) -> tuple[tuple[str, float], ...]:
+        """The value primed by ``to``, once for each length that the source may have used."""
+        published = self.printed(symbol)
+        if published is None or published.value is None:
+            return ()
+        lengths = [self.scaling, *([self.other_scaling] if self.other_scaling else [])]
+        return tuple((s.length_name, published.value * s.ratio(symbol, to)) for s in lengths)
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Ours against one published value.
+
+    Attributes
+    ----------
+    coefficient : Coefficient
+    reference : str
+    relation : Relation
+    reading : str
+        Name of the length that the published value is read with.
+    published : float
+        Rescaled to our length.
+    difference : float or None
+        Ours minus published.
+    passed : bool or None
+        Only a re-analysis has a verdict.
+    """
+
+    coefficient: Coefficient
+    reference: str
+    relation: Relation
+    reading: str
+    published: float
+    difference: float | None
+    passed: bool | None
+
+
+def compare(
+    coefficients: tuple[Coefficient, ...], references: tuple[Reference, ...], scaling: Scaling
+) -> tuple[Comparison, ...]:
+    """Hold every coefficient against the published values that have its symbol and belong beside it.
+
+    A re-analysis belongs to its own campaigns; the other relations to a body of the same kind (fully appended), that
+    is to coefficients whose campaign a re-analysis of the same symbol names with the same body, or to any.
+    """
+    out = []
+    for c in coefficients:
+        for r in references:
+            if r.relation is Relation.RE_ANALYSIS and c.campaign not in r.campaigns:
+                continue
+            if r.relation is not Relation.RE_ANALYSIS and not _beside(c, r, references):
+                continue
+            for reading, published in r.readings(c.symbol, scaling):
+                difference = None if c.value is None else c.value - published
+                verdict = None
+                if r.relation is Relation.RE_ANALYSIS and difference is not None and c.u95 is not None:
+                    verdict = abs(difference) <= c.u95
+                out.append(Comparison(c, r.name, r.relation, reading, published, difference, verdict))
+    return tuple(out)
+
+
+def _beside(c: Coefficient, r: Reference, references: tuple[Reference, ...]) -> bool:
+    """A cross-body column stands beside the body that the quoted experiment column is about."""
+    quoted = {q.body for q in references if q.relation is Relation.QUOTED} or {r.body}
+    return c.body in quoted
+
+
+def _values(section: Section) -> tuple[PublishedValue, ...]:
+    out = []
+    for symbol in section.content:
+        printed = section.text(symbol)
+        derivative(symbol)
+        try:
+            value: float | None = float(printed)
+        except ValueError:
+            if not printed.endswith("?"):
+                raise section.fail(symbol, f'"{printed}"', 'a number, or one that ends in "?" if illegible') from None
+            value = None
+        out.append(PublishedValue(symbol, printed, value))
+    return tuple(out)
+
+
+def read_references(path: Path) -> tuple[Reference, ...]:
+    """Read a published.toml.
+
+    Raises
+    ------
+    InputError
+        By file and key.
+    """
+    root = read_toml(path)
+    out = []
+    for s in root.sections("reference"):
+        other = s.optional_quantity("other_length", "length")
+        kinds = s.section("literature", required=False)
+        literature = []
+        for kind in kinds.content:
+            k = kinds.section(kind)
+            literature.append(
+                Literature(kind, k.text("method"), k.quantity("uncertainty", "none"), _values(k.section("values")))
+            )
+            k.finish()
+        out.append(
+            Reference(
+                name=s.text("name"),
+                citation=s.text("citation"),
+                place=s.text("place", ""),
+                body=s.text("body"),
+                relation=Relation(s.text("relation", choices=tuple(r.value for r in Relation))),
+                campaigns=s.texts("campaigns"),
+                scaling=Scaling(s.quantity("length", "length"), s.text("length_name")),
+                other_scaling=None if other is None else Scaling(other, s.text("other_length_name")),
+                note=s.text("note", ""),
+                values=_values(s.section("values")),
+                literature=tuple(literature),
+                reference_point=s.point("reference_point") if s.has("reference_point") else None,
+            )
+        )
+        s.finish()
+    root.finish()
+    return tuple(out)

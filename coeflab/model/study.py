@@ -1,0 +1,120 @@
+"""A plan, and the study that it becomes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.provenance import InputFile
+from coeflab.model.body import Body
+from coeflab.model.check import Check, Severity
+from coeflab.model.coefficient import Coefficient
+from coeflab.model.fit_result import FitResult
+from coeflab.model.force_table import ForceTable
+from coeflab.model.frozen import locked
+from coeflab.model.reference import Comparison, Reference
+from coeflab.model.scaling import Conditions, Scaling
+
+if TYPE_CHECKING:
+    from coeflab.model.parameter_file import ParameterFile
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedTable:
+    """One ``[[table]]``: a campaign (a folder, a campaign.toml or one CSV of it), its fits and their options."""
+
+    campaign: Path
+    fits: tuple[str, ...]
+    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    only: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedParameterFile:
+    """One ``[[parameter_file]]``: which campaigns and which literature it holds."""
+
+    name: str
+    body: str
+    campaigns: tuple[str, ...]
+    literature: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """What to do, with paths resolved.
+
+    Attributes
+    ----------
+    name, title : str
+    reference_point : (3,) array or None
+        m, FRD, from the datum; None leaves every campaign where it is.
+    datum : str
+    scaling : Scaling or None
+        None keeps each campaign's own length.
+    conditions : Conditions or None
+        For dimensional values; None takes the first campaign's.
+    body : Path or None
+    tables : tuple of PlannedTable
+    references : tuple of Path
+    parameter_files : tuple of PlannedParameterFile
+    exports : tuple of str
+    wanted : tuple of str
+        Coefficients that must appear, with a status if no table gives them.
+    include_uncertain : bool
+        Use cells that their source marks as doubtful.
+    file : InputFile or None
+    """
+
+    name: str
+    title: str
+    tables: tuple[PlannedTable, ...]
+    reference_point: NDArray[np.float64] | None = None
+    datum: str = ""
+    scaling: Scaling | None = None
+    conditions: Conditions | None = None
+    body: Path | None = None
+    references: tuple[Path, ...] = ()
+    parameter_files: tuple[PlannedParameterFile, ...] = ()
+    exports: tuple[str, ...] = ()
+    wanted: tuple[str, ...] = ()
+    include_uncertain: bool = False
+    file: InputFile | None = None
+
+    def __post_init__(self) -> None:
+        if self.reference_point is not None:
+            object.__setattr__(self, "reference_point", locked(self.reference_point))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Study:
+    """Everything that a run found; export and report are two leaves of this one object."""
+
+    plan: Plan
+    tables: tuple[ForceTable, ...]
+    fits: tuple[FitResult, ...]
+    missing: tuple[Coefficient, ...]
+    body: Body | None
+    references: tuple[Reference, ...]
+    comparisons: tuple[Comparison, ...]
+    parameter_files: Mapping[str, ParameterFile]
+    inputs: tuple[InputFile, ...]
+    checks: tuple[Check, ...] = ()
+
+    @property
+    def coefficients(self) -> tuple[Coefficient, ...]:
+        """All fitted coefficients in the plan's order, then those that no table gives."""
+        return tuple(c for f in self.fits for c in f.coefficients.coefficients) + self.missing
+
+    @property
+    def failed(self) -> bool:
+        """Whether a finding or a comparison fails."""
+        return any(c.severity is Severity.FAIL for c in self.checks) or any(c.passed is False for c in self.comparisons)
+
+    def with_checks(self, checks: tuple[Check, ...]) -> Study:
+        """The study with its findings."""
+        return replace(self, checks=checks)

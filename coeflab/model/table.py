@@ -1,0 +1,63 @@
+"""A table to be shown: one per result feeds terminal, CSV and HTML alike."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isnan
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Text cells with a caption.
+
+    Attributes
+    ----------
+    title : str
+    headers : tuple of str
+    rows : tuple of tuple of str
+    notes : tuple of str
+    left : frozenset of int
+        Columns that are set flush left; the others are numbers.
+    """
+
+    title: str
+    headers: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    notes: tuple[str, ...] = ()
+    left: frozenset[int] = frozenset({0})
+
+
+ABSENT = "-"
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """A number to ``digits`` significant digits, or a dash."""
+    if value is None or isnan(value):
+        return ABSENT
+    if value in (float("inf"), float("-inf")):
+        return "inf" if value > 0 else "-inf"
+    text = f"{value:.{digits}g}"
+    if "e" in text:
+        return text
+    places = len(text.partition(".")[2])
+    shown = len(text.lstrip("-").lstrip("0.").replace(".", ""))
+    return f"{value:.{places + max(0, digits - shown)}f}" if value else "0"
+
+
+def coefficient(value: float | None) -> str:
+    """A primed coefficient as the field prints it: five decimals, more when it is small."""
+    if value is None or isnan(value):
+        return ABSENT
+    return f"{value:.5f}" if abs(value) >= 1e-3 else f"{value:.3e}" if 0 < abs(value) < 1e-5 else f"{value:.7f}"
+
+
+def percent(part: float | None, of: float | None) -> str:
+    """A half-width in per cent of its value."""
+    if part is None or not of or isnan(part):
+        return ABSENT
+    return f"{100.0 * abs(part / of):.1f} %"
+
+
+def probability(value: float) -> str:
+    """A probability; a dash where it could not be computed."""
+    return ABSENT if isnan(value) else "<0.001" if value < 1e-3 else f"{value:.3f}"

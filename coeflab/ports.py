@@ -1,0 +1,88 @@
+"""Floor 2: what a plugin of each room looks like. A plugin is a module with these names in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Protocol, runtime_checkable
+
+from coeflab.model.added_mass import AddedMass
+from coeflab.model.body import Body
+from coeflab.model.campaign import Campaign
+from coeflab.model.check import Check
+from coeflab.model.fit_result import FitResult
+from coeflab.model.force_table import ForceTable
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.scaling import Scaling
+from coeflab.model.study import Study
+
+
+@runtime_checkable
+class Plugin(Protocol):
+    """What every plugin has: one line about itself and the works that it rests on."""
+
+    summary: str
+    citations: tuple[str, ...]
+
+
+@runtime_checkable
+class Importer(Plugin, Protocol):
+    """Reads the tables of a campaign into SI and FRD."""
+
+    def read(self, campaign: Campaign, only: str | None = None) -> tuple[ForceTable, ...]: ...
+
+
+@runtime_checkable
+class BodyReader(Plugin, Protocol):
+    """Reads a body."""
+
+    def read(self, path: Path) -> Body: ...
+
+
+@runtime_checkable
+class Fit(Plugin, Protocol):
+    """Turns the tables of one campaign into coefficients."""
+
+    def fit(self, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult: ...
+
+
+@runtime_checkable
+class AddedMassMethod(Plugin, Protocol):
+    """Computes the added-mass matrix of a body."""
+
+    def added_mass(self, body: Body, density: float) -> AddedMass: ...
+
+
+@runtime_checkable
+class Simulator(Plugin, Protocol):
+    """Integrates the motion that a parameter file describes."""
+
+    def simulate(self, parameters: ParameterFile, options: Mapping[str, Any]) -> Any: ...
+
+
+@runtime_checkable
+class Exporter(Plugin, Protocol):
+    """Renders a parameter file for a target; pure, so that golden files hold it."""
+
+    def render(self, parameters: ParameterFile) -> Mapping[str, bytes]: ...
+
+
+@runtime_checkable
+class ParameterImporter(Plugin, Protocol):
+    """Reads somebody's model file."""
+
+    def read(self, path: Path) -> ParameterFile: ...
+
+
+@runtime_checkable
+class Checker(Plugin, Protocol):
+    """Looks at a whole study and says what stands out."""
+
+    def check(self, study: Study) -> Sequence[Check]: ...
+
+
+@runtime_checkable
+class Renderer(Plugin, Protocol):
+    """Renders a study as a report."""
+
+    def render(self, study: Study) -> Mapping[str, bytes]: ...

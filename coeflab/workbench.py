@@ -1,0 +1,151 @@
+"""The main path: tables -> fits -> comparisons -> parameter files -> checks, one study."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from coeflab.bodies import BODIES
+from coeflab.checks import CHECKS
+from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.toml import read_toml
+from coeflab.fits import FITS
+from coeflab.importers import IMPORTERS
+from coeflab.model.assemble import assemble
+from coeflab.model.body import Body
+from coeflab.model.campaign import FILE, read_campaign
+from coeflab.model.coefficient import Coefficient, Status
+from coeflab.model.fit_result import FitResult
+from coeflab.model.force_table import ForceTable
+from coeflab.model.reference import compare, read_references
+from coeflab.model.study import Plan, PlannedParameterFile, PlannedTable, Study
+
+Progress = Callable[[str], None]
+
+
+def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
+    """Carry out a plan.
+
+    Parameters
+    ----------
+    plan : Plan
+    progress : callable, optional
+        Told in words what happens.
+
+    Returns
+    -------
+    Study
+        Nothing has been written.
+
+    Raises
+    ------
+    CoeflabError
+        Input that cannot be used.
+    """
+    tables: list[ForceTable] = []
+    fits: list[FitResult] = []
+    for planned in plan.tables:
+        read = [_settled(t, plan) for t in read_tables(planned)]
+        progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
+        scaling = plan.scaling or read[0].scaling
+        for name in planned.fits:
+            fits.append(FITS.load(name).fit(read, scaling, planned.options.get(name, {})))
+            progress(f"fitted {read[0].campaign} by {name}")
+        tables += read
+    body = read_body(plan.body) if plan.body else None
+    references = tuple(r for path in plan.references for r in read_references(path))
+    groups = plan.parameter_files or _groups(fits)
+    missing = tuple(c for g in groups for c in _missing(g, fits, plan.wanted))
+    coefficients = tuple(c for f in fits for c in f.coefficients.coefficients)
+    first = plan.scaling or fits[0].coefficients.scaling
+    conditions = plan.conditions or tables[0].conditions
+    inputs = _inputs(plan, tables, body)
+    study = Study(
+        plan=plan,
+        tables=tuple(tables),
+        fits=tuple(fits),
+        missing=missing,
+        body=body,
+        references=references,
+        comparisons=compare(coefficients, references, first),
+        parameter_files={
+            g.name: assemble(g, plan.name, fits, tables, missing, references, body, conditions, inputs) for g in groups
+        },
+        inputs=inputs,
+    )
+    findings = [c for name in CHECKS.names() for c in CHECKS.load(name).check(study)]
+    progress(f"{len(findings)} checks")
+    return study.with_checks(tuple(findings))
+
+
+def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
+    """The tables of a planned campaign: a folder, its campaign.toml, or one CSV beside it."""
+    path = planned.campaign
+    declaration = path / FILE if path.is_dir() else path if path.suffix == ".toml" else path.parent / FILE
+    if not declaration.exists():
+        raise InputError(
+            f"no {FILE} in {declaration.parent}",
+            f"a {FILE} that declares axes, angle sign, reference point and scaling",
+            file=path,
+            advice="`coeflab new DIR` writes a commented one.",
+        )
+    campaign = read_campaign(declaration)
+    return IMPORTERS.load(campaign.importer).read(campaign, planned.only)
+
+
+def read_body(path: Path) -> Body:
+    """A body, by the reader that its body.toml names."""
+    head = read_toml(path).section("body")
+    return BODIES.load(head.text("reader", "particulars")).read(path)
+
+
+def _settled(table: ForceTable, plan: Plan) -> ForceTable:
+    """The table about the plan's reference point."""
+    if plan.include_uncertain:
+        table = table.with_uncertain_cells()
+    if plan.reference_point is None:
+        return table
+    if plan.datum and plan.datum != table.datum:
+        raise ScalingMismatchError(
+            f"the plan measures points from {shown(plan.datum)}, {table.campaign} from {shown(table.datum)}; "
+            "state the reference point from one datum."
+        )
+    return table.about(plan.reference_point)
+
+
+def _groups(fits: list[FitResult]) -> tuple[PlannedParameterFile, ...]:
+    """One parameter file per body when the plan names none."""
+    bodies: dict[str, list[str]] = {}
+    for f in fits:
+        bodies.setdefault(f.body, []).append(f.campaign)
+    return tuple(PlannedParameterFile(_file_name(b), b, tuple(dict.fromkeys(c)), ()) for b, c in bodies.items())
+
+
+def _file_name(body: str) -> str:
+    return "".join(ch if ch.isalnum() or ch in "-_" else "_" for ch in body)[:80]
+
+
+def _missing(group: PlannedParameterFile, fits: list[FitResult], wanted: tuple[str, ...]) -> list[Coefficient]:
+    """Wanted coefficients that no table of a group gives."""
+    names = {f.campaign for f in fits}
+    for campaign in group.campaigns:
+        if campaign not in names:
+            raise InputError(
+                f"no campaign {shown(campaign)} in the plan", f"one of {', '.join(sorted(names))}",
+                column=f"parameter_file.{group.name}",
+            )  # fmt: skip
+    have = {s for f in fits if f.campaign in group.campaigns for s in f.coefficients.symbols}
+    return [
+        Coefficient(s, None, None, Status.NO_TABLE, group.body, campaign=", ".join(group.campaigns))
+        for s in wanted
+        if s not in have
+    ]
+
+
+def _inputs(plan: Plan, tables: list[ForceTable], body: Body | None) -> tuple[InputFile, ...]:
+    files = [plan.file] if plan.file else []
+    files += [f for t in tables for f in t.files]
+    files += list(body.files) if body else []
+    files += [InputFile(p.name, sha256_of(p)) for p in plan.references]
+    return tuple(dict.fromkeys(files))
