@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -118,6 +119,6 @@ def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key:
             raise UnitsError(why.found, why.expected, file=file, column=key, advice=why.advice) from None
     else:
         number = float(value)
-    if number != number or number in (float("inf"), float("-inf")):
+    if not math.isfinite(number):
         raise InputError(shown(value), "a finite number", file=file, column=key)
     return number

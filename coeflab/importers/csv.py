@@ -198,7 +198,7 @@ def _turned(campaign: Campaign, columns: dict[str, Array], signed: bool) -> dict
     return out
 
 
-def _half_model(campaign: Campaign, cells: Cells, raw: _Raw, motion: dict[str, Array]) -> None:
+def _half_model(cells: Cells, raw: _Raw, motion: dict[str, Array]) -> None:
     """Refuse what a half model cannot measure."""
     odd = [c for c in raw.forces if c not in SYMMETRIC]
     moving = [m for m in ("v", "p", "r") if np.any(motion[m] != 0.0)]
@@ -288,7 +288,7 @@ def _read_table(campaign: Campaign, table: TableDeclaration) -> ForceTable:
     errors = _turned(campaign, raw.errors, signed=False)
     _check_errors(cells, errors)
     if campaign.half_model:
-        _half_model(campaign, cells, raw, motion)
+        _half_model(cells, raw, motion)
         forces, errors = ({c: 2.0 * v for c, v in x.items()} for x in (forces, errors))
         notes.append("half model: X, Z, M doubled")
     if any(np.any(motion[m] != 0.0) for m in ANGULAR):

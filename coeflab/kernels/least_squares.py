@@ -96,7 +96,8 @@ def solve(f: Factorised, response: Array) -> tuple[Array, Array]:
     weighted = response * (f.root_weights if response.ndim == 1 else f.root_weights[:, None])
     coefficients = f.estimator @ weighted
     coefficients = coefficients + f.estimator @ (weighted - f.design @ coefficients)
-    return coefficients, np.asarray(weighted - f.design @ coefficients)
+    residuals: Array = weighted - f.design @ coefficients
+    return coefficients, residuals
 
 
 def classical_variance(f: Factorised, residuals: Array) -> Array:

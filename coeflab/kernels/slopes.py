@@ -262,17 +262,13 @@ def recommend(
     panel: list[Estimate] = []
     kept: dict[str, Estimate] = {}
     for family in ODD if parity == "odd" else EVEN:
-        for e in sweep_family(family, target, x, y, se, smallest, largest):
-            role = e.role
-            if role == MEMBER:
-                if family.must_beat:
-                    rival = next(f for f in (ODD + EVEN) if f.name == family.must_beat)
-                    other = estimate(rival, rival.terms + e.terms[len(family.terms) :], target, x, y, se, e.rows)
-                    if other is not None and not e.aicc < other.aicc - AICC_MARGIN:
-                        role = "AICc does not prefer it"
-                kept[family.name] = e = replace(e, role=role)
-                if role != MEMBER:
-                    del kept[family.name]
+        for swept in sweep_family(family, target, x, y, se, smallest, largest):
+            e = swept
+            if e.role == MEMBER:
+                if family.must_beat and not _beats(e, target, x, y, se):
+                    e = replace(e, role="AICc does not prefer it")
+                else:
+                    kept[family.name] = e
             panel.append(e)
     finite = [e.half_hc2 for e in kept.values() if np.isfinite(e.half_hc2)]
     narrowest = min(finite) if finite else float("nan")
@@ -289,6 +285,13 @@ def recommend(
         return Recommendation(float(values[0]), random, None, None, members, shown)
     form = float(np.ptp(values) / np.sqrt(3.0))
     return Recommendation(float(np.median(values)), random, form, float(np.hypot(random, form)), members, shown)
+
+
+def _beats(e: Estimate, target: str, x: Array, y: Array, se: Array | None) -> bool:
+    """Whether an estimate has the lower AICc, by the margin, than its family's rival on the same rows."""
+    rival = next(f for f in (ODD + EVEN) if f.name == e.family.must_beat)
+    other = estimate(rival, rival.terms + e.terms[len(e.family.terms) :], target, x, y, se, e.rows)
+    return other is None or e.aicc < other.aicc - AICC_MARGIN
 
 
 def influence(members: tuple[Estimate, ...], n: int) -> Array:
