@@ -10,6 +10,7 @@ from coeflab.checks import CHECKS
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.toml import read_toml
+from coeflab.exporters import EXPORTERS
 from coeflab.fits import FITS
 from coeflab.importers import IMPORTERS
 from coeflab.model.assemble import assemble
@@ -20,6 +21,7 @@ from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
 from coeflab.model.reference import compare, read_references
 from coeflab.model.study import Plan, PlannedParameterFile, PlannedTable, Study
+from coeflab.reporting import REPORTERS
 
 Progress = Callable[[str], None]
 
@@ -68,7 +70,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         missing=missing,
         body=body,
         references=references,
-        comparisons=compare(coefficients, references, first),
+        comparisons=compare(coefficients + missing, references, first),
         parameter_files={
             g.name: assemble(g, plan.name, fits, tables, missing, references, body, conditions, inputs) for g in groups
         },
@@ -149,3 +151,15 @@ def _inputs(plan: Plan, tables: list[ForceTable], body: Body | None) -> tuple[In
     files += list(body.files) if body else []
     files += [InputFile(p.name, sha256_of(p)) for p in plan.references]
     return tuple(dict.fromkeys(files))
+
+
+def rendered(study: Study) -> dict[str, bytes]:
+    """Every file of a study: parameter files, exports and the report, by name. Nothing is written."""
+    files: dict[str, bytes] = {}
+    for name in REPORTERS.names():
+        files.update(REPORTERS.load(name).render(study))
+    for parameters in study.parameter_files.values():
+        files[f"{parameters.name}.parameters.json"] = parameters.to_json()
+        for target in dict.fromkeys(("csv", *study.plan.exports)):
+            files.update(EXPORTERS.load(target).render(parameters))
+    return files

@@ -1,1 +1,53 @@
-"""Floor 5: the command line."""
+"""Floor 5: the command line. Heavy imports wait until a command runs."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import typer
+
+from coeflab.cli import fit, formats, inspect, new, params, run, validate
+
+app = typer.Typer(
+    name="coeflab",
+    help="Hydrodynamic coefficients from force tables: slopes at the origin with honest uncertainty, parameter files "
+    "and reports.",
+    epilog="Example: coeflab validate suboff",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+for module in (validate, run, fit, inspect, new, formats):
+    app.command(name=module.__name__.rpartition(".")[2], epilog=f"Example: {module.EXAMPLE}")(module.command)
+app.add_typer(params.app, name="params")
+
+
+def _version(value: bool) -> None:
+    if value:
+        from coeflab import __version__
+
+        typer.echo(f"coeflab {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: bool = typer.Option(False, "--version", callback=_version, is_eager=True, help="Print the version."),
+) -> None:
+    pass
+
+
+def main() -> None:
+    """Run the command line: exit code 0 fine, 1 a check failed, 2 wrong input."""
+    from coeflab.core.errors import CoeflabError
+
+    try:
+        app()
+    except CoeflabError as why:
+        typer.echo(f"error: {why}", err=True)
+        sys.exit(2)
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(141)

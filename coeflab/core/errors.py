@@ -18,10 +18,10 @@ from pathlib import Path
 SHOWN = 60
 
 
-def shown(text: object) -> str:
+def shown(text: object, longest: int = SHOWN) -> str:
     """Quote a found value, on one line and cut to a readable length."""
     flat = str(text).encode("unicode_escape").decode("ascii") if not str(text).isprintable() else str(text)
-    return f'"{flat if len(flat) <= SHOWN else flat[:SHOWN] + "..."}"'
+    return f'"{flat if len(flat) <= longest else flat[:longest] + "..."}"'
 
 
 class CoeflabError(Exception):

@@ -38,7 +38,7 @@ def located(name: str | Path, kind: str, base: Path | None = None) -> Path:
         raise InputError(f"{shown(name)}, which is no usable path", "the path of a file or folder") from None
     known = ", ".join(sorted(p.name for p in shipped(kind).iterdir() if p.is_dir())) if shipped(kind).is_dir() else ""
     raise InputError(
-        f"no file or folder {shown(candidates[0])}",
+        f"no file or folder {shown(candidates[0], 300)}",
         "a path that exists" + (f", or a shipped name ({known})" if known else ""),
     )
 

@@ -6,6 +6,7 @@ growing windows; `coeflab.kernels.slopes.recommend` gives the rule.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -56,7 +57,7 @@ class Options:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Rows:
-    """Rows of one sweep, with a rest row of the same campaign appended where the sweep has none."""
+    """Rows of one sweep, with rest rows of the same campaign where a one-sided sweep has none of its own."""
 
     table: ForceTable
     x: Array
@@ -78,7 +79,7 @@ def _rows(table: ForceTable, variable: str, tables: Sequence[ForceTable], length
     keep = _others_at_rest(table, variable, length)
     x = table.primed_motion(variable, length)
     rest = None
-    if not np.any(keep & (np.abs(x) <= AT_REST)):
+    if slopes.is_one_sided(x[keep]) and not np.any(keep & (np.abs(x) <= AT_REST)):
         for other in tables:
             still = _others_at_rest(other, "", length)
             if other is not table and np.any(still) and np.allclose(other.speed[still], table.speed.mean(), rtol=0.01):
@@ -207,15 +208,35 @@ def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
     )
 
 
+def _row_keys(sweep: Sweep) -> list[tuple[str, int]]:
+    """What names a row across the sweeps of a table: its label and, where labels repeat, which of them it is."""
+    seen: Counter[str] = Counter()
+    keys = []
+    for label in sweep.labels:
+        keys.append((label, seen[label]))
+        seen[label] += 1
+    return keys
+
+
 def _covariance(sweeps: list[Sweep], coefficients: list[Coefficient]) -> Array:
-    """(U95/2)^2 on the diagonal; between coefficients of the same rows, the correlation of their random parts."""
+    """(U95/2)^2 on the diagonal; between coefficients of one table, the correlation of their random parts.
+
+    The correlation is that of the rows which both use, so a cell that only one of them leaves out does not undo it.
+    """
     k = len(sweeps)
     out = np.zeros((k, k))
-    moved = [slopes.influence(s.recommendation.members, len(s.x)) if s.recommendation.members else None for s in sweeps]
+    names = {key: n for n, key in enumerate(dict.fromkeys(key for s in sweeps for key in _row_keys(s)))}
+    moved: list[Array | None] = []
+    for s in sweeps:
+        on_all = None
+        if s.recommendation.members:
+            on_all = np.zeros(len(names))
+            on_all[[names[key] for key in _row_keys(s)]] = slopes.influence(s.recommendation.members, len(s.x))
+        moved.append(on_all)
     for i in range(k):
         for j in range(i + 1, k):
             a, b, ci, cj = moved[i], moved[j], coefficients[i], coefficients[j]
-            same = sweeps[i].labels == sweeps[j].labels and sweeps[i].table == sweeps[j].table
+            same = sweeps[i].table == sweeps[j].table
             if a is None or b is None or not same or ci.parts.random is None or cj.parts.random is None:
                 continue
             size = float(np.linalg.norm(a) * np.linalg.norm(b))

@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from coeflab.kernels.least_squares import Array, Factorised
-
-FEWEST_ROWS = 2
+from coeflab.kernels.robust import FULL_LEVERAGE, hangs_on_one_point
 
 
 def draw_counts(n: int, replicates: int, seed: int) -> Array:
@@ -74,10 +73,13 @@ def wild(f: Factorised, coefficients: Array, residuals: Array, replicates: int, 
     Returns
     -------
     (B, p) array
+        NaN for a coefficient that a point of leverage 1 moves.
     """
     signs = np.random.default_rng(seed).integers(0, 2, size=(replicates, len(residuals))) * 2.0 - 1.0
-    room = np.sqrt(np.where(f.leverage < 1.0 - 1e-9, 1.0 - f.leverage, np.inf))
-    return np.asarray(coefficients + (signs * (residuals / room)) @ f.estimator.T)
+    room = np.sqrt(np.where(f.leverage < FULL_LEVERAGE, 1.0 - f.leverage, np.inf))
+    moved = np.asarray(coefficients + (signs * (residuals / room)) @ f.estimator.T)
+    moved[:, hangs_on_one_point(f)] = np.nan
+    return moved
 
 
 def percentile_interval(replicates: Array, level: float = 0.95) -> tuple[float, float, float]:

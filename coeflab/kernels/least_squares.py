@@ -103,7 +103,7 @@ def solve(f: Factorised, response: Array) -> tuple[Array, Array]:
 def classical_variance(f: Factorised, residuals: Array) -> Array:
     """Variances of the coefficients under equal, independent errors, shape (p,) or (p, m)."""
     variance = np.sum(residuals**2, axis=0) / max(f.freedom, 1)
-    return np.multiply.outer(np.sum(f.estimator**2, axis=1), variance)
+    return np.asarray(np.multiply.outer(np.sum(f.estimator**2, axis=1), variance))
 
 
 def aicc(f: Factorised, residuals: Array) -> Array:

@@ -69,7 +69,11 @@ EVEN = (
 SIGNIFICANCE = 0.05
 AICC_MARGIN = 2.0
 WIDEST = 3.0
+SAME_LEVEL = 0.02
+ROUNDING = 1e-13
 MEMBER = "member"
+TOO_WIDE = "interval over three times the narrowest"
+NO_INTERVAL = "no interval: a single point carries it"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -178,7 +182,10 @@ def estimate(
 
 
 def next_term_probability(terms: tuple[str, ...], extra: str, x: Array, y: Array, se: Array | None) -> float:
-    """Probability, by the HC3 t-test with n - p degrees of freedom, of a larger next term; NaN if not testable."""
+    """Probability, by the HC3 t-test with n - p degrees of freedom, of a larger next term; NaN if not testable.
+
+    One where the narrower form leaves nothing but rounding, which would pass for a significant term by chance.
+    """
     wider = (*terms, extra)
     if len(x) < len(wider) + 2:
         return float("nan")
@@ -186,9 +193,12 @@ def next_term_probability(terms: tuple[str, ...], extra: str, x: Array, y: Array
     if f.rank < len(wider):
         return float("nan")
     coefficients, residuals = solve(f, y)
+    unexplained = np.hypot(np.linalg.norm(residuals), coefficients[-1] / np.linalg.norm(f.estimator[-1]))
+    if unexplained <= ROUNDING * np.linalg.norm(f.root_weights * y):
+        return 1.0
     error = float(np.sqrt(hc_variance(f, residuals, 3)[-1]))
-    if not error > 0.0:
-        return float("nan") if not np.any(residuals) else 1.0
+    if error == 0.0:
+        return 0.0
     return float(t_probability(coefficients[-1] / error, f.freedom))
 
 
@@ -200,13 +210,13 @@ def is_one_sided(x: Array) -> bool:
 def windows(x: Array, smallest: float, largest: float) -> list[tuple[float, Index]]:
     """Growing windows: (largest |x| of the level, row indices), from the first level at or beyond ``smallest``.
 
-    A level belongs to a window when its mean does within 2 %: nominal 4 degrees means 3.93 to 4.11.
+    A level belongs to a window when its mean does, within 2 % at either end: nominal 4 degrees means 3.93 to 4.11.
     """
     level, size = levels(x), np.abs(x)
     out = []
     for k in range(int(level.max(initial=-1)) + 1):
         middle = float(size[level == k].mean())
-        if middle == 0.0 or middle < smallest * 0.94 or middle > largest * 1.02:
+        if middle == 0.0 or middle < smallest * (1.0 - SAME_LEVEL) or middle > largest * (1.0 + SAME_LEVEL):
             continue
         rows = np.flatnonzero(level <= k)
         out.append((float(size[rows].max()), rows))
@@ -246,6 +256,9 @@ def recommend(
 ) -> Recommendation:
     """Recommended slope, curvature or intercept.
 
+    U95 = hypot(median of the members' half-widths, range of the members / sqrt 3). A lone member is compared with the
+    families that were dropped only for their width; without any there is no model-form part and no U95.
+
     Parameters
     ----------
     x, y : (n,) array
@@ -274,16 +287,19 @@ def recommend(
     narrowest = min(finite) if finite else float("nan")
     members = tuple(e for e in kept.values() if e.half_hc2 <= WIDEST * narrowest)
     shown = tuple(
-        replace(e, role="interval over three times the narrowest") if e.role == MEMBER and e not in members else e
+        replace(e, role=TOO_WIDE if np.isfinite(e.half_hc2) else NO_INTERVAL)
+        if e.role == MEMBER and e not in members
+        else e
         for e in panel
     )
     if not members:
         return Recommendation(None, None, None, None, (), shown)
     values = np.array([e.value for e in members])
     random = float(np.median([e.half_hc2 for e in members]))
-    if len(members) < 2:
+    compared = values if len(members) > 1 else np.array([e.value for e in kept.values()])
+    if len(compared) < 2:
         return Recommendation(float(values[0]), random, None, None, members, shown)
-    form = float(np.ptp(values) / np.sqrt(3.0))
+    form = float(np.ptp(compared) / np.sqrt(3.0))
     return Recommendation(float(np.median(values)), random, form, float(np.hypot(random, form)), members, shown)
 
 

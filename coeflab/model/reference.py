@@ -67,11 +67,16 @@ class Reference:
     note: str
     values: tuple[PublishedValue, ...]
     literature: tuple[Literature, ...]
+    uncertainties: dict[str, float]
     reference_point: NDArray[np.float64] | None
 
     def printed(self, symbol: str) -> PublishedValue | None:
         """The published value of a symbol, if there is one."""
         return next((v for v in self.values if v.symbol == symbol), None)
+
+    def stated(self, symbol: str) -> float | None:
+        """The relative uncertainty that the source states for a symbol, if it does."""
+        return self.uncertainties.get(symbol, self.uncertainties.get("default"))
 
     def readings(self, symbol: str, to: Scaling) -> tuple[tuple[str, float], ...]:
         """The value primed by ``to``, once for each length that the source may have used."""
@@ -97,6 +102,8 @@ class Comparison:
         Rescaled to our length.
     difference : float or None
         Ours minus published.
+    combined : float or None
+        Root of the squares of our U95 and of the uncertainty that the source states.
     passed : bool or None
         Only a re-analysis has a verdict.
     """
@@ -107,6 +114,7 @@ class Comparison:
     reading: str
     published: float
     difference: float | None
+    combined: float | None
     passed: bool | None
 
 
@@ -130,8 +138,13 @@ def compare(
                 verdict = None
                 if r.relation is Relation.RE_ANALYSIS and difference is not None and c.u95 is not None:
                     verdict = abs(difference) <= c.u95
-                out.append(Comparison(c, r.name, r.relation, reading, published, difference, verdict))
+                combined = None if c.u95 is None else _combined(c.u95, published, r.stated(c.symbol))
+                out.append(Comparison(c, r.name, r.relation, reading, published, difference, combined, verdict))
     return tuple(out)
+
+
+def _combined(u95: float, published: float, stated: float | None) -> float | None:
+    return None if stated is None else float(np.hypot(u95, stated * published))
 
 
 def _beside(c: Coefficient, r: Reference, references: tuple[Reference, ...]) -> bool:
@@ -153,6 +166,10 @@ def _values(section: Section) -> tuple[PublishedValue, ...]:
             value = None
         out.append(PublishedValue(symbol, printed, value))
     return tuple(out)
+
+
+def _uncertainties(section: Section) -> dict[str, float]:
+    return {name: section.quantity(name, "none") for name in section.content}
 
 
 def read_references(path: Path) -> tuple[Reference, ...]:
@@ -188,6 +205,7 @@ def read_references(path: Path) -> tuple[Reference, ...]:
                 note=s.text("note", ""),
                 values=_values(s.section("values")),
                 literature=tuple(literature),
+                uncertainties=_uncertainties(s.section("uncertainties", required=False)),
                 reference_point=s.point("reference_point") if s.has("reference_point") else None,
             )
         )

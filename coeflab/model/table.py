@@ -45,10 +45,10 @@ def number(value: float | None, digits: int = 4) -> str:
 
 
 def coefficient(value: float | None) -> str:
-    """A primed coefficient as the field prints it: five decimals, more when it is small."""
+    """A primed coefficient as the field prints it: six decimals, three digits when it is tiny."""
     if value is None or isnan(value):
         return ABSENT
-    return f"{value:.5f}" if abs(value) >= 1e-3 else f"{value:.3e}" if 0 < abs(value) < 1e-5 else f"{value:.7f}"
+    return f"{value:.2e}" if 0 < abs(value) < 5e-5 else f"{value:.6f}"
 
 
 def percent(part: float | None, of: float | None) -> str:

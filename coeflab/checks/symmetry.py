@@ -1,0 +1,45 @@
+"""Port-starboard symmetry: a symmetric body has no side force, roll or yaw at zero drift."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.core.symbols import primed
+from coeflab.kernels.robust import t_factor
+from coeflab.model.check import Check, Severity
+from coeflab.model.fit_result import Sweep
+from coeflab.model.study import Study
+
+summary = "intercepts of Y, K, N at zero drift and yaw rate against their own error"
+citations = ("bell2002",)
+
+
+def _intercept(sweep: Sweep) -> Check | None:
+    if sweep.component not in "YKN" or sweep.variable not in ("v", "r") or not sweep.recommendation.members:
+        return None
+    e = max(sweep.recommendation.members, key=lambda m: len(m.rows))
+    value = float(e.coefficients[e.terms.index("1")])
+    at = e.terms.index("1")
+    inflated = e.residuals**2 / (1.0 - e.factorised.leverage).clip(1e-9)
+    error = float((e.factorised.estimator[at] ** 2 @ inflated) ** 0.5) * float(t_factor(e.factorised.freedom))
+    reach = float(abs(sweep.y).max())
+    share = abs(value) / reach if reach else 0.0
+    if abs(value) <= error or share < 1e-3:
+        severity, comment = Severity.PASS, "The force at rest angle is within its error of zero."
+    elif share < 0.05:
+        severity, comment = Severity.NOTE, "Model or rig bias; the intercept takes it up."
+    else:
+        severity, comment = Severity.WARN, "A large bias: look for a misaligned model, tare or angle offset."
+    return Check(
+        "symmetry",
+        f"{sweep.campaign} {primed(sweep.symbol)}",
+        severity,
+        f"{sweep.component}'(0) = {value:.3g} +- {error:.2g}, {100 * share:.1f} % of the largest {sweep.component}'",
+        "zero within its 95 % interval; below 5 % of the range",
+        comment,
+    )
+
+
+def check(study: Study) -> Sequence[Check]:
+    """One finding per odd sweep of a port-starboard component."""
+    return [c for f in study.fits for s in f.sweeps if s.parity == "odd" and (c := _intercept(s)) is not None]

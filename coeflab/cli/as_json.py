@@ -1,0 +1,67 @@
+"""The JSON contract of the command line."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from coeflab.core.symbols import primed
+from coeflab.model.coefficient import Coefficient
+from coeflab.model.study import Study
+
+
+def coefficient(c: Coefficient, scaling: str) -> dict[str, Any]:
+    """One coefficient; absent values are null and carry a status."""
+    p = c.parts
+    return {
+        "symbol": primed(c.symbol),
+        "value": c.value,
+        "u95": c.u95,
+        "unit": c.unit,
+        "table": c.table,
+        "campaign": c.campaign,
+        "body": c.body,
+        "scaling": scaling,
+        "estimator": c.estimator or None,
+        "window": None if c.window is None else list(c.window),
+        "n_points": c.n_points,
+        "status": c.status.value,
+        "parts": {"random": p.random, "model_form": p.model_form, "window": p.window, "input": p.input},
+    }
+
+
+def study(s: Study, files: list[str]) -> dict[str, Any]:
+    """A whole study."""
+    scalings = {f.campaign: str(f.coefficients.scaling) for f in s.fits}
+    common = str(s.fits[0].coefficients.scaling)
+    return {
+        "study": s.plan.name,
+        "passed": not s.failed,
+        "coefficients": [coefficient(c, scalings.get(c.campaign or "", common)) for c in s.coefficients],
+        "comparisons": [
+            {
+                "symbol": primed(c.coefficient.symbol),
+                "campaign": c.coefficient.campaign,
+                "value": c.coefficient.value,
+                "u95": c.coefficient.u95,
+                "reference": c.reference,
+                "relation": c.relation.value,
+                "length_read_as": c.reading,
+                "published": c.published,
+                "difference": c.difference,
+                "passed": c.passed,
+            }
+            for c in s.comparisons
+        ],
+        "checks": [
+            {
+                "check": c.name,
+                "subject": c.subject,
+                "severity": c.severity.value,
+                "found": c.statistic,
+                "rule": c.rule,
+                "comment": c.comment,
+            }
+            for c in s.checks
+        ],
+        "files": files,
+    }

@@ -1,0 +1,68 @@
+"""Run a plan, write its files, print what a person wants to see first."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from coeflab.cli import show
+
+if TYPE_CHECKING:
+    from coeflab.model.study import Plan, Study
+
+REPORTS = "reports"
+
+
+def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
+    """Run, render everything, then write; exit code 1 when a check or a comparison fails."""
+    from coeflab.core.files import write_atomically
+    from coeflab.workbench import rendered, run
+
+    folder = out if out is not None else Path(REPORTS) / plan.name
+    with show.progress(as_json) as say:
+        study = run(plan, say)
+        say("drawing the report")
+        files = rendered(study)
+    changed = [name for name, content in sorted(files.items()) if write_atomically(folder / name, content)]
+    paths = [str(folder / name) for name in sorted(files)]
+    if as_json:
+        from coeflab.cli.as_json import study as study_json
+
+        show.json_object(study_json(study, paths))
+    else:
+        summarise(study)
+        show.text(f"Written to {folder} ({len(changed)} of {len(files)} files changed):")
+        for path in paths:
+            show.text(f"  {path}")
+    if study.failed:
+        raise typer.Exit(1)
+
+
+def summarise(study: Study) -> None:
+    """Comparison, coefficients and grave findings."""
+    from coeflab.presentation import tables
+
+    show.text(study.plan.title)
+    show.text()
+    show.table(tables.side_by_side(study))
+    verdicts = tables.verdicts(study)
+    show.table(verdicts)
+    if not verdicts.rows:
+        show.table(tables.coefficients(study))
+    findings(study)
+    judged = [c.passed for c in study.comparisons if c.passed is not None]
+    if judged:
+        show.text(f"Verdict: {sum(judged)} of {len(judged)} re-analysed coefficients agree within U95.")
+
+
+def findings(study: Study) -> None:
+    """Warnings and failures; the rest is counted."""
+    from coeflab.model.check import Severity
+    from coeflab.presentation import tables
+
+    grave = {Severity.FAIL, Severity.WARN}
+    show.table(tables.checks(study.with_checks(tuple(c for c in study.checks if c.severity in grave))))
+    counts = {s.value: sum(c.severity is s for c in study.checks) for s in Severity}
+    show.text("Checks: " + ", ".join(f"{n} {name}" for name, n in counts.items()) + ".")

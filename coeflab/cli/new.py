@@ -1,0 +1,27 @@
+"""``coeflab new``: a commented study that runs as it stands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import typer
+
+from coeflab.cli import show
+
+EXAMPLE = "coeflab new my_study"
+
+
+def command(folder: Path = typer.Argument(..., help="A folder that does not exist yet.")) -> None:
+    """Write a commented plan, campaign and table (synthetic numbers) to start from."""
+    from importlib.resources import files
+
+    from coeflab.core.errors import OutputError
+    from coeflab.core.files import write_atomically
+
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise OutputError(f"{folder} exists and is not empty. Name a new folder.")
+    template = files("coeflab.cli") / "template"
+    for name in ("plan.toml", "body.toml", "campaign/campaign.toml", "campaign/drift.csv", "campaign/rotating_arm.csv"):
+        write_atomically(folder / name, template.joinpath(*name.split("/")).read_bytes())
+        show.text(f"  {folder / name}")
+    show.text(f"Run it: coeflab run {folder / 'plan.toml'}")

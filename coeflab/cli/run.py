@@ -1,0 +1,21 @@
+"""``coeflab run``: a plan of the user's own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import typer
+
+EXAMPLE = "coeflab run my_study/plan.toml"
+
+
+def command(
+    plan: Path = typer.Argument(..., help="The plan.toml."),
+    out: Path | None = typer.Option(None, help="Folder for the files; default reports/STUDY."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Carry out a plan: fit its tables, check them, write report, parameter files and tables."""
+    from coeflab.cli.carry_out import carry_out
+    from coeflab.model.plan import read_plan
+
+    carry_out(read_plan(plan / "plan.toml" if plan.is_dir() else plan), out, json)

@@ -1,0 +1,82 @@
+"""Printing: rich tables on a terminal, plain text in a pipe, one JSON object for machines."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from coeflab.model.table import Table
+
+COLOURS = {"pass": "green", "fail": "bold red", "warn": "yellow", "no verdict": "dim", "no table": "dim"}
+
+
+def text(line: str = "") -> None:
+    """A line on standard output."""
+    typer.echo(line)
+
+
+def table(content: Table) -> None:
+    """A table for a person on a terminal, or aligned plain text in a pipe."""
+    if not content.rows:
+        return
+    if sys.stdout.isatty():
+        _rich(content)
+    else:
+        _plain(content)
+
+
+def _rich(content: Table) -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table as RichTable
+    from rich.text import Text
+
+    out = RichTable(title=content.title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+    for i, header in enumerate(content.headers):
+        out.add_column(Text(header), justify="left" if i in content.left else "right", overflow="fold")
+    for row in content.rows:
+        out.add_row(*(Text(cell, style=COLOURS.get(cell, "")) for cell in row))
+    console = Console()
+    console.print(out)
+    for note in content.notes:
+        console.print(Text(note, style="dim"))
+    console.print()
+
+
+def _plain(content: Table) -> None:
+    rows = [content.headers, *content.rows]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(content.headers))]
+    typer.echo(content.title)
+    for row in rows:
+        cells = [
+            c.ljust(w) if i in content.left else c.rjust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True))
+        ]
+        typer.echo("  " + "  ".join(cells).rstrip())
+    for note in content.notes:
+        typer.echo(f"  {note}")
+    typer.echo()
+
+
+def json_object(content: dict[str, Any]) -> None:
+    """One JSON object on standard output."""
+    typer.echo(json.dumps(content, indent=2, allow_nan=False, ensure_ascii=False))
+
+
+@contextmanager
+def progress(quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Says what happens on standard error, while it is a terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda _: None
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status("reading") as status:
+        yield status.update

@@ -1,0 +1,66 @@
+"""A report before it has a format: what HTML and PDF both render."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from coeflab.model.table import Table
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A drawing.
+
+    Attributes
+    ----------
+    anchor : str
+        Unique in the document; letters, digits and hyphens.
+    svg : str
+        One ``<svg>`` element without prolog. Colours are ``var(--fig-NAME, #RRGGBB)``, so that a page sets them and
+        a renderer without style sheets takes the colours after the commas.
+    title : str
+        A short name for screen readers.
+    caption : str
+    description : str
+        What the drawing shows, for readers who cannot see it.
+    """
+
+    anchor: str
+    svg: str
+    title: str
+    caption: str
+    description: str
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """Paragraphs, then figures, then tables, then subsections.
+
+    Attributes
+    ----------
+    anchor, title : str
+    paragraphs : tuple of str
+        Plain text.
+    tables : tuple of Table
+    figures : tuple of Figure
+    subsections : tuple of Section
+    code : tuple of str
+        Commands to type, one per line.
+    """
+
+    anchor: str
+    title: str
+    paragraphs: tuple[str, ...] = ()
+    tables: tuple[Table, ...] = ()
+    figures: tuple[Figure, ...] = ()
+    subsections: tuple[Section, ...] = ()
+    code: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A whole report."""
+
+    title: str
+    subtitle: str
+    sections: tuple[Section, ...]

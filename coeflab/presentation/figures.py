@@ -1,0 +1,148 @@
+"""The figure of one sweep: points, member curves, tangent at the origin, residuals."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.lines import Line2D
+
+from coeflab.core.symbols import primed
+from coeflab.model.fit_result import Sweep
+from coeflab.model.table import coefficient
+from coeflab.presentation.document import Figure
+from coeflab.presentation.panel import BOTTOM, GAP, TOP, Array, Range, drawing, legend, limits, panel
+from coeflab.presentation.series import axis_name, family_name, on_axis, styles
+from coeflab.presentation.svg import COLOURS, power_of_ten, settings, svg_text
+
+RESIDUALS = 70.0
+FINE = 121
+
+
+def recommended_curve(sweep: Sweep, x: Array) -> tuple[Array, Array]:
+    """The recommendation near the origin and its 95 % half-width, shape (n,) each.
+
+    Odd: the tangent through the members' median value at rest. Even: the parabola through it, or the value at rest.
+    The half-width is that of the coefficient alone.
+    """
+    r = sweep.recommendation
+    half = np.nan if r.u95 is None else r.u95
+    value = np.nan if r.value is None else r.value
+    if sweep.target == "1":
+        return np.full_like(x, value), np.full_like(x, half)
+    at_rest = float(np.median([float(e.curve(np.zeros(1))[0]) for e in r.members])) if r.members else 0.0
+    shape = x if sweep.parity == "odd" else x**2
+    return at_rest + value * shape, half * np.abs(shape)
+
+
+def sweep_figure(sweep: Sweep, anchor: str) -> Figure:
+    """Points of a sweep with its curves, and the residuals of the members below."""
+    left_out = [p for p in sweep.left_out if np.isfinite(p.y)]
+    ys = np.concatenate([sweep.y, [p.y for p in left_out]])
+    factor, power = power_of_ten(float(np.max(np.abs(ys), initial=0.0)))
+    xs = on_axis(sweep, np.concatenate([sweep.x, [p.x for p in left_out], [0.0]]))
+    across = limits(xs, 0.04) or (-1.0, 1.0)
+    name = primed(sweep.symbol)
+    title = f"{name}, {sweep.campaign}: data, curves and residuals"
+    with settings():
+        figure = drawing()
+        main = panel(
+            figure, BOTTOM + RESIDUALS + GAP, TOP - BOTTOM - RESIDUALS - GAP, across=across,
+            up=limits(ys * factor, 0.08) or (-1.0, 1.0), name_up=f"{sweep.component}'{power}",
+        )  # fmt: skip
+        legend(figure, _points(main, sweep, left_out, factor) + _curves(main, sweep, factor))
+        _residuals(figure, sweep, across)
+        svg = svg_text(figure, anchor, title, _description(sweep))
+    return Figure(anchor, svg, title, _caption(sweep), _description(sweep))
+
+
+def _points(axes: Axes, sweep: Sweep, left_out: list[Any], factor: float) -> list[Any]:
+    x, y = on_axis(sweep, sweep.x), sweep.y * factor
+    if sweep.se is not None:
+        reach = 2.0 * sweep.se * factor
+        axes.vlines(x, y - reach, y + reach, color=COLOURS["ink"], linewidth=0.8, zorder=3)
+    handles: list[Any] = axes.plot(
+        x, y, linestyle="none", marker="o", markersize=3.6, markerfacecolor="none", markeredgecolor=COLOURS["ink"],
+        markeredgewidth=0.9, zorder=4, label="points" if sweep.se is None else "points, ± 2 standard errors",
+    )  # fmt: skip
+    if left_out:
+        at = on_axis(sweep, np.array([p.x for p in left_out]))
+        handles += axes.plot(
+            at, [p.y * factor for p in left_out], linestyle="none", marker="x", markersize=5.0, color=COLOURS["ink"],
+            markeredgewidth=1.1, zorder=4, label=f"left out ({len(left_out)})",
+        )  # fmt: skip
+    return handles
+
+
+def _curves(axes: Axes, sweep: Sweep, factor: float) -> list[Any]:
+    handles: list[Any] = []
+    drawn = styles(sweep)
+    for e in sweep.recommendation.members:
+        used = sweep.x[e.rows]
+        x = np.linspace(used.min(), used.max(), FINE)
+        style = drawn[e.family.name]
+        handles += axes.plot(
+            on_axis(sweep, x), e.curve(x) * factor, color=style.colour, linestyle=style.line, linewidth=1.4,
+            label=family_name(sweep, e), zorder=2.5,
+        )  # fmt: skip
+    if sweep.recommendation.value is not None:
+        reach = max(e.window for e in sweep.recommendation.members)
+        x = np.linspace(-reach if np.any(sweep.x < 0) else 0.0, reach if np.any(sweep.x > 0) else 0.0, FINE)
+        y, half = recommended_curve(sweep, x)
+        kind = {"x": "slope at rest", "x2": "curvature at rest"}.get(sweep.target, "value at rest")
+        line = Line2D([], [], color=COLOURS["ink"], linewidth=0.9)
+        axes.plot(on_axis(sweep, x), y * factor, color=COLOURS["ink"], linewidth=0.9, zorder=2)
+        if sweep.recommendation.u95 is None:
+            return [*handles, Line2D([], [], color=COLOURS["ink"], linewidth=0.9, label=kind)]
+        axes.fill_between(
+            on_axis(sweep, x), (y - half) * factor, (y + half) * factor, color=COLOURS["band"], alpha=0.35, linewidth=0,
+            zorder=1,
+        )  # fmt: skip
+        line.set_label(f"{kind}, band U95")
+        handles.append(line)
+    return handles
+
+
+def _residuals(figure: Drawing, sweep: Sweep, across: Range) -> None:
+    drawn = styles(sweep)
+    found = [(e, sweep.y[e.rows] - e.curve(sweep.x[e.rows])) for e in sweep.recommendation.members]
+    largest = max((float(np.max(np.abs(y))) for _, y in found), default=0.0)
+    factor, power = power_of_ten(largest)
+    reach = largest * factor * 1.15 or 1.0
+    axes = panel(
+        figure, BOTTOM, RESIDUALS, across=across, up=(-reach, reach), name_up=f"residual{power}",
+        name_across=axis_name(sweep), most_up=3,
+    )  # fmt: skip
+    axes.axhline(0.0, color=COLOURS["muted"], linewidth=0.6)
+    for e, y in found:
+        style = drawn[e.family.name]
+        axes.plot(
+            on_axis(sweep, sweep.x[e.rows]), y * factor, linestyle="none", marker=style.marker, markersize=3.0,
+            markerfacecolor="none", markeredgecolor=style.colour, markeredgewidth=0.8,
+        )  # fmt: skip
+
+
+def _caption(sweep: Sweep) -> str:
+    r, name = sweep.recommendation, primed(sweep.symbol)
+    text = f"{sweep.component}' against {axis_name(sweep).partition('  ')[0]}. "
+    if r.value is None:
+        text += f"The points do not determine {name}. "
+    else:
+        kind = {"x": "tangent at rest", "x2": "parabola at rest"}.get(sweep.target, "value at rest")
+        u95 = "" if r.u95 is None else f" ± {coefficient(r.u95)} (U95, shaded)"
+        text += f"The thin line is the {kind} for the recommended {name} = {coefficient(r.value)}{u95}. "
+        text += "Each member is drawn over its own window; below, what it leaves unexplained there. "
+    if sweep.offset:
+        text += f"{sweep.offset}. "
+    return text.strip()
+
+
+def _description(sweep: Sweep) -> str:
+    n, m = len(sweep.x), len(sweep.left_out)
+    members = ", ".join(family_name(sweep, e) for e in sweep.recommendation.members) or "none"
+    return (
+        f"Upper panel: {n} points of {sweep.component}' over {axis_name(sweep).replace('  ', ' ')}, {m} left out, "
+        f"member curves: {members}. Lower panel: residuals of the members."
+    )

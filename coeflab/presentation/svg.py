@@ -1,0 +1,99 @@
+"""Matplotlib figures as SVG text: equal input gives equal bytes, and the page that holds it sets the colours."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from html import escape
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+POINTS = 72.0
+# Every colour of a drawing is one of these. The values are what a renderer without style sheets shows: dark on white,
+# the series from the palette of Okabe & Ito, darkened so that thin lines keep a contrast of 3 to 1.
+COLOURS = {
+    "ink": "#1c2126",
+    "muted": "#5d666f",
+    "rule": "#c9cfd5",
+    "band": "#9aa5b1",
+    "a": "#0067a8",
+    "b": "#c04f00",
+    "c": "#007a58",
+    "d": "#a3437f",
+}
+_FONT = "DejaVu Sans"
+_SETTINGS = {
+    "svg.fonttype": "none",
+    "svg.hashsalt": "coeflab",
+    "font.family": _FONT,
+    "font.size": 8.5,
+    "text.parse_math": False,
+    "text.color": COLOURS["ink"],
+    "axes.facecolor": "none",
+    "figure.facecolor": "none",
+    "legend.frameon": False,
+    "legend.fontsize": 8.0,
+    "path.simplify": False,
+}
+_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_REFERENCES = re.compile(r'(?:xlink:href="#|url\(#)([^")]+)')
+
+
+@contextmanager
+def settings() -> Iterator[None]:
+    """Matplotlib's defaults with this report's settings, whatever the user's own are; restored afterwards."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(_SETTINGS)
+        yield
+
+
+def power_of_ten(largest: float) -> tuple[float, str]:
+    """Factor that brings numbers of that size to 1 ... 1000, and its text for an axis label (``x 10^3``)."""
+    if not 0.0 < largest < float("inf"):
+        return 1.0, ""
+    exponent = 0
+    while largest * 10.0**exponent < 1.0 and exponent < 30:
+        exponent += 3
+    while largest * 10.0**exponent >= 10_000.0:
+        exponent -= 3
+    return 10.0**exponent, f" × 10{str(exponent).translate(_SUPERSCRIPT)}" if exponent else ""
+
+
+def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
+    """One responsive ``<svg>`` element.
+
+    Parameters
+    ----------
+    figure : Figure
+        Drawn under `settings` with the colours of `COLOURS`.
+    prefix : str
+        Put before every id, so that several drawings share a page.
+    title, description : str
+        Texts for screen readers.
+    """
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    text = buffer.getvalue().decode()
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<!--.*?-->\s*|<metadata>.*?</metadata>\s*|<style.*?</style>\s*", "", text, flags=re.DOTALL)
+    text = text.replace("<defs>\n </defs>\n", "").replace("<defs/>\n", "")
+    used = set(_REFERENCES.findall(text))
+    text = re.sub(r' id="([^"]*)"', lambda m: f' id="{prefix}-{m[1]}"' if m[1] in used else "", text)
+    text = re.sub(r'xlink:href="#', f'href="#{prefix}-', text).replace("url(#", f"url(#{prefix}-")
+    text = text.replace(f" font-family: '{_FONT}';", "")
+    text = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", text)
+    for name, colour in COLOURS.items():
+        text = text.replace(colour, f"var(--fig-{name}, {colour})")
+    text = re.sub(r"\n\s*", "\n", text)
+    box = re.search(r'viewBox="[^"]*"', text)
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" {box[0] if box else ""} role="img" '
+        f'aria-labelledby="{prefix}-title {prefix}-desc" font-family="Helvetica, Arial, sans-serif" '
+        'stroke-linejoin="round" stroke-linecap="butt">\n'
+        f'<title id="{prefix}-title">{escape(title)}</title>\n<desc id="{prefix}-desc">{escape(description)}</desc>\n'
+    )
+    return head + text[text.index(">") + 1 :].strip() + "\n"

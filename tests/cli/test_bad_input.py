@@ -1,0 +1,102 @@
+"""Wrong input: one message, exit code 2, nothing written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Run
+
+
+def spoil(file: Path, old: str, new: str) -> None:
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new, 1))
+
+
+@pytest.fixture
+def study(coeflab: Run, tmp_path: Path) -> Path:
+    coeflab("new", "s")
+    return tmp_path / "s"
+
+
+DRIFT, CAMPAIGN, PLAN = "campaign/drift.csv", "campaign/campaign.toml", "plan.toml"
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "said"),
+    [
+        (DRIFT, "Y [N]", "Y", ["drift.csv", "line 2", 'column "Y"', "without unit"]),
+        (DRIFT, "Y [N]", "Y [furlong]", ["unit of another dimension", "unit of force"]),
+        (DRIFT, "Y [N]", "Y [smoot]", ["unknown unit", "smoot"]),
+        (DRIFT, "Y [N]", "X [N]", ["twice"]),
+        (DRIFT, "beta [deg]", "beta [rad]", ["line 3", "half a turn", "beta [deg]"]),
+        (DRIFT, "2,-9,", "2,nan,", ["line 4", 'column "beta [deg]"', '"nan"']),
+        (DRIFT, "2,-9,", "2,inf,", ["line 4", '"inf"', "finite number"]),
+        (DRIFT, "2,-9,", "2,nine,", ["line 4", '"nine"']),
+        (CAMPAIGN, 'beta = "v = -U sin(beta)"', "", ["campaign.toml", "axes.beta", "no declared sign"]),
+        (CAMPAIGN, 'frame = "FRD"', 'frame = ["forward", "port", "down"]', ["left-handed", "FLU"]),
+        (CAMPAIGN, "speed = 2.0", "speed = 0.0", ["conditions.speed", "above zero"]),
+        (CAMPAIGN, "contains_inertia = false\n", "", []),
+        (PLAN, 'campaign = "campaign"', 'campaign = "nowhere"', ["plan.toml", "nowhere", "table[0].campaign"]),
+        (PLAN, 'fits = ["slope_at_origin"]', 'fits = ["slope_at_orgin"]', ["did you mean slope_at_origin"]),
+        (PLAN, 'name = "my_study"', 'name = "../up"', ["study.name", "it names files"]),
+        (PLAN, "length = 1.60", "lenght = 1.60", ["scaling.length"]),
+    ],
+)
+def test_one_message_exit_two_nothing_written(
+    coeflab: Run, study: Path, file: str, old: str, new: str, said: list[str]
+) -> None:
+    spoil(study / file, old, new)
+    if not said:
+        spoil(study / file, "contains_inertia = false", "")
+        said = ["contains_inertia", "rotating arm"]
+    done = coeflab("run", study / PLAN)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.count("error: ") == 1
+    assert "Traceback" not in done.stderr
+    for text in said:
+        assert text in done.stderr, done.stderr
+    assert not (study.parent / "reports").exists()
+
+
+def test_output_folder_that_cannot_be_written(coeflab: Run, study: Path) -> None:
+    (study / "file").write_text("in the way")
+    done = coeflab("run", study / PLAN, "--out", study / "file" / "below")
+    assert done.returncode == 2
+    assert "cannot write" in done.stderr
+
+
+@pytest.mark.parametrize("what", ["missing", "folder", "empty", "binary"])
+def test_fit_of_something_else(coeflab: Run, tmp_path: Path, what: str) -> None:
+    path = tmp_path / "x.csv"
+    if what == "folder":
+        path.mkdir()
+    elif what != "missing":
+        path.write_bytes(b"" if what == "empty" else bytes(range(256)) * 100)
+    done = coeflab("fit", path)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: ")
+
+
+def test_parameter_file_that_is_none(coeflab: Run, tmp_path: Path) -> None:
+    (tmp_path / "p.json").write_text('{"schema_version": "9"}')
+    done = coeflab("params", "check", "p.json")
+    assert done.returncode == 2
+    assert "schema_version" in done.stderr
+
+
+def test_unknown_validation_names_the_near_one(coeflab: Run) -> None:
+    done = coeflab("validate", "subof")
+    assert done.returncode == 2
+    assert "Did you mean suboff?" in done.stderr
+
+
+def test_failed_check_is_exit_code_one(coeflab: Run, study: Path) -> None:
+    spoil(study / CAMPAIGN, "v = -U sin(beta)", "v = +U sin(beta)")
+    done = coeflab("run", study / PLAN)
+    assert done.returncode == 1
+    assert "Yv'" in done.stdout
+    assert "below zero" in done.stdout

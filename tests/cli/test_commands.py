@@ -1,0 +1,110 @@
+"""What a new user types, and what comes back."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Run
+
+SIX = {"Yv'", "Nv'", "Zw'", "Mw'", "Yr'", "Nr'"}
+CONTRACT = {
+    "symbol", "value", "u95", "unit", "table", "campaign", "body", "scaling", "estimator", "window", "n_points",
+    "status", "parts",
+}  # fmt: skip
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+def test_validation_prints_the_verdict_and_writes_its_files(coeflab: Run, tmp_path: Path) -> None:
+    done = coeflab("validate", "suboff")
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    assert "12 of 12 re-analysed coefficients agree within U95" in done.stdout
+    for column in ("steady CFD, read with LBP", "steady CFD, read with LOA", "PMM CFD 2012", "experiment 1990"):
+        assert column in done.stdout
+    assert re.search(r"Yr' .*no table", done.stdout)
+    written = set(files(tmp_path / "reports" / "suboff"))
+    assert {"report.html", "suboff_fully_appended.parameters.json", "suboff_bare_hull.coefficients.csv"} <= written
+
+
+def test_second_run_changes_no_byte(coeflab: Run, tmp_path: Path) -> None:
+    coeflab("validate", "suboff")
+    first = files(tmp_path)
+    times = {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*") if p.is_file()}
+    again = coeflab("validate", "suboff")
+    assert files(tmp_path) == first
+    assert {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*") if p.is_file()} == times
+    assert "(0 of " in again.stdout
+
+
+def test_json_is_one_object_that_keeps_the_contract(coeflab: Run) -> None:
+    content = json.loads(coeflab("validate", "suboff", "--json").stdout)
+    assert content["passed"] is True
+    for c in content["coefficients"]:
+        assert set(c) == CONTRACT
+        assert c["symbol"].endswith("'")
+        assert set(c["parts"]) == {"random", "model_form", "window", "input"}
+        assert (c["value"] is None) == (c["status"] in ("no_table", "too_few_points"))
+    assert {c["symbol"] for c in content["coefficients"]} >= SIX
+    by = {(c["symbol"], c["campaign"]): c for c in content["coefficients"]}
+    yv = by["Yv'", "suboff_roddy_2"]
+    assert yv["unit"] == "1"
+    assert yv["u95"] == pytest.approx((yv["parts"]["random"] ** 2 + yv["parts"]["model_form"] ** 2) ** 0.5)
+    assert -0.2 < yv["window"][0] < 0 < yv["window"][1] < 0.2
+    assert by["Yr'", "suboff_roddy_2, suboff_roddy_1"]["status"] == "no_table"
+    assert by["Yr'", "suboff_cfd_barehull"]["value"] > 0
+
+
+def test_template_runs_as_it_stands_and_recovers_what_was_planted(coeflab: Run, tmp_path: Path) -> None:
+    assert coeflab("new", "mine").returncode == 0
+    done = coeflab("run", "mine/plan.toml", "--json")
+    assert done.returncode == 0, done.stderr
+    found = {c["symbol"]: c for c in json.loads(done.stdout)["coefficients"]}
+    for symbol, planted in {"Yv'": -0.030, "Nv'": -0.010, "Yr'": 0.006, "Nr'": -0.005, "X0'": -0.0025}.items():
+        assert abs(found[symbol]["value"] - planted) <= found[symbol]["u95"], symbol
+    assert coeflab("new", "mine").returncode == 2
+    assert coeflab("params", "check", "reports/my_study/my_vehicle.parameters.json").returncode == 0
+
+
+def test_fit_shows_members_and_single_estimators(coeflab: Run) -> None:
+    done = coeflab("fit", "suboff_roddy_2", "--symbol", "Yv'")
+    assert done.returncode == 0
+    for text in ("Members for Yv'", "Single estimators for Yv'", "largest window", "doubtful"):
+        assert text in done.stdout
+
+
+def test_fit_on_another_length_scales_by_its_powers(coeflab: Run) -> None:
+    lbp = json.loads(coeflab("fit", "suboff_roddy_2", "--json").stdout)["coefficients"]
+    loa = json.loads(
+        coeflab("fit", "suboff_roddy_2", "--json", "--length", "14.2917 ft", "--length-name", "LOA").stdout
+    )["coefficients"]
+    ratio = 14.2917 / 13.9792
+    assert loa[0]["symbol"] == "Yv'"
+    assert loa[0]["value"] == pytest.approx(lbp[0]["value"] / ratio**2, rel=1e-12)
+    assert loa[1]["value"] == pytest.approx(lbp[1]["value"] / ratio**3, rel=1e-12)
+    assert loa[0]["scaling"].startswith("LOA")
+
+
+@pytest.mark.parametrize("command", ["validate", "run", "fit", "inspect", "new", "formats", "params"])
+def test_help_has_an_example(coeflab: Run, command: str) -> None:
+    done = coeflab(command, "--help")
+    assert done.returncode == 0
+    text = done.stdout if command != "params" else coeflab("params", "check", "--help").stdout
+    assert f"Example: coeflab {command}" in text
+
+
+def test_inspect_and_formats(coeflab: Run) -> None:
+    assert "excluded, grid B" in coeflab("inspect", "suboff_cfd_barehull").stdout
+    assert "slope_at_origin" in coeflab("formats").stdout
+    assert json.loads(coeflab("formats", "--json").stdout)["plugins"]
+    assert json.loads(coeflab("inspect", "suboff_roddy_1", "--json").stdout)["tables"][0]["rows"] == 64
+
+
+def test_completion_is_offered(coeflab: Run) -> None:
+    assert "--install-completion" in coeflab("--help").stdout
