@@ -40,10 +40,9 @@ def _points(s: Sweep, status: Status) -> Check:
 
 
 def _sides(s: Sweep) -> Check | None:
-    members = s.recommendation.members
-    if not members:
+    if not s.recommendation.members:
         return None
-    subject = f"{s.campaign} {primed(s.symbol)}"
+    subject = f"{s.table} {s.variable}'"
     if s.one_sided:
         return Check(
             "coverage",
@@ -54,8 +53,7 @@ def _sides(s: Sweep) -> Check | None:
             "Even and odd terms cannot be told apart; the body is taken as symmetric.",
         )
     low, high = float(s.x.min()), float(s.x.max())
-    share = min(-low, high) / max(-low, high)
-    if share < 0.5:
+    if min(-low, high) < 0.5 * max(-low, high):
         return Check(
             "coverage",
             subject,
@@ -74,7 +72,7 @@ def _extrapolation(s: Sweep) -> Check | None:
         return None
     return Check(
         "coverage",
-        f"{s.campaign} {primed(s.symbol)}",
+        f"{s.table} {s.variable}'",
         Severity.WARN,
         f"smallest |{s.variable}'| = {size.min():.3g} of {size.max():.3g}",
         "a run within a quarter of the range from zero",
@@ -153,6 +151,6 @@ def check(study: Study) -> Sequence[Check]:
     for f in study.fits:
         for s in f.sweeps:
             out.append(_points(s, f.coefficients[s.symbol].status))
-            out += [c for c in (_sides(s), _extrapolation(s)) if c is not None]
+            out += [c for c in (_sides(s), _extrapolation(s)) if c is not None and c not in out]
             out += _replicates(s) + _influential(s)
     return out

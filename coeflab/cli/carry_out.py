@@ -49,7 +49,9 @@ def summarise(study: Study) -> None:
     show.table(tables.side_by_side(study))
     verdicts = tables.verdicts(study)
     show.table(verdicts)
-    if not verdicts.rows:
+    if verdicts.rows:
+        show.table(tables.by_campaign(study))
+    else:
         show.table(tables.coefficients(study))
     findings(study)
     judged = [c.passed for c in study.comparisons if c.passed is not None]

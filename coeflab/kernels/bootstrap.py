@@ -44,7 +44,7 @@ def pairs(f: Factorised, responses: Array, counts: Array) -> Array:
     gram[:, upper[0], upper[1]] = flat
     gram[:, upper[1], upper[0]] = flat
     moments = (counts @ (q[:, :, None] * weighted[:, None, :]).reshape(len(q), -1)).reshape(len(counts), p, -1)
-    back = f.estimator @ q
+    back = f.back
     if p == 2:
         determinant = gram[:, 0, 0] * gram[:, 1, 1] - gram[:, 0, 1] ** 2
         poor = determinant < 1e-9 * np.maximum(gram[:, 0, 0] * gram[:, 1, 1], 1e-300)

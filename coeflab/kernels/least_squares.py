@@ -1,4 +1,4 @@
-"""Linear least squares through a column-scaled singular value decomposition.
+"""Linear least squares: column scaling, QR, and the singular values of R.
 
 The factorisation depends on the design matrix only, so that one factorisation serves many responses: several force
 components, 4,000 synthetic campaigns, or the replicates of a wild bootstrap.
@@ -7,12 +7,16 @@ components, 4,000 synthetic campaigns, or the replicates of a wild bootstrap.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+
+
+BLOCK = 8192
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,25 +29,33 @@ class Factorised:
         The design matrix, rows multiplied by the square root of the weights.
     root_weights : (n,) array
         Square roots of the weights, scaled to mean square 1.
-    basis : (n, p) array
+    basis : (n, rank) array
         Orthonormal basis of the column space.
-    estimator : (p, n) array
-        Pseudo-inverse: coefficients = estimator @ (root_weights * y).
+    back : (p, rank) array
+        Coefficients = back @ basis.T @ (root_weights * y).
     leverage : (n,) array
         Diagonal of the hat matrix.
     rank : int
         Numerical rank of the column-scaled design.
     condition : float
         Condition number of the column-scaled design.
+    null : (p, p - rank) array
+        Directions of the coefficients, columns scaled to unit length, that the rows leave open.
     """
 
     design: Array
     root_weights: Array
     basis: Array
-    estimator: Array
+    back: Array
     leverage: Array
     rank: int
     condition: float
+    null: Array
+
+    @property
+    def estimator(self) -> Array:
+        """Pseudo-inverse, shape (p, n): coefficients = estimator @ (root_weights * y)."""
+        return self.back @ self.basis.T
 
     @property
     def freedom(self) -> int:
@@ -52,7 +64,9 @@ class Factorised:
 
 
 def factorise(design: Array, weights: Array | None = None) -> Factorised:
-    """Factorise a design matrix.
+    """Factorise a design matrix: QR of the column-scaled matrix in blocks of rows, then the singular values of R.
+
+    Beside the matrix only its basis is held, so that a long table needs about twice the memory of its design.
 
     Parameters
     ----------
@@ -62,16 +76,29 @@ def factorise(design: Array, weights: Array | None = None) -> Factorised:
     """
     n = design.shape[0]
     root = np.ones(n) if weights is None else np.sqrt(weights / np.mean(weights))
-    weighted = design * root[:, None]
-    scale = np.linalg.norm(weighted, axis=0)
+    weighted = design if weights is None else design * root[:, None]
+    scale = np.sqrt(np.einsum("ij,ij->j", weighted, weighted))
     scale[scale == 0.0] = 1.0
-    left, singular, right = np.linalg.svd(weighted / scale, full_matrices=False)
+    p = weighted.shape[1]
+    cuts = [*range(0, max(n - BLOCK, 1), BLOCK), n]
+    q = np.empty((n, min(n, p)) if len(cuts) == 2 else (n, p))
+    tops = []
+    for low, high in pairwise(cuts):
+        q[low:high], top = np.linalg.qr(weighted[low:high] / scale)
+        tops.append(top)
+    mixed, r = np.linalg.qr(np.vstack(tops))
+    left, singular, right = np.linalg.svd(r)
     keep = singular > singular[0] * max(weighted.shape) * np.finfo(float).eps if singular.size else singular > 0
-    basis = left[:, keep]
-    estimator = (right[keep].T / singular[keep]) @ basis.T / scale[:, None]
-    condition = float(singular[0] / singular[-1]) if singular.size and singular[-1] > 0 else float("inf")
+    turn, rank = mixed @ left[:, : len(singular)][:, keep], int(keep.sum())
+    for k, (low, high) in enumerate(pairwise(cuts)):
+        q[low:high, :rank] = q[low:high] @ turn[k * q.shape[1] : (k + 1) * q.shape[1]]
+    basis = q[:, :rank]
+    back = (right[: len(singular)][keep].T / singular[keep]) / scale[:, None]
+    full = singular.size == p and singular[-1] > 0
+    condition = float(singular[0] / singular[-1]) if full else float("inf")
     leverage = np.minimum(np.einsum("ij,ij->i", basis, basis), 1.0)
-    return Factorised(weighted, root, basis, estimator, leverage, int(keep.sum()), condition)
+    open_rows = np.concatenate([~keep, np.ones(right.shape[0] - len(singular), dtype=bool)])
+    return Factorised(weighted, root, basis, back, leverage, rank, condition, right[open_rows].T)
 
 
 def solve(f: Factorised, response: Array) -> tuple[Array, Array]:
@@ -94,8 +121,8 @@ def solve(f: Factorised, response: Array) -> tuple[Array, Array]:
     One step of iterative refinement makes up for rounding in the pseudo-inverse.
     """
     weighted = response * (f.root_weights if response.ndim == 1 else f.root_weights[:, None])
-    coefficients = f.estimator @ weighted
-    coefficients = coefficients + f.estimator @ (weighted - f.design @ coefficients)
+    coefficients = f.back @ (f.basis.T @ weighted)
+    coefficients = coefficients + f.back @ (f.basis.T @ (weighted - f.design @ coefficients))
     residuals: Array = weighted - f.design @ coefficients
     return coefficients, residuals
 

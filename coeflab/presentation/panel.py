@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 WIDTH, HEIGHT = 340.0, 336.0
 LEFT, RIGHT, BOTTOM, GAP = 46.0, 10.0, 34.0, 16.0
 LEGEND_ROW, LEGEND_ROWS = 12.2, 4
-TOP = HEIGHT - 6.0 - LEGEND_ROW * LEGEND_ROWS - 4.0
+TOP = HEIGHT - 4.0 - LEGEND_ROW * LEGEND_ROWS - 8.0
 Range = tuple[float, float]
 
 
@@ -117,8 +117,8 @@ def legend(figure: Figure, handles: list[Any]) -> None:
     """One legend in two columns above the panels."""
     figure.legend(
         handles=handles,
-        loc="upper left",
-        bbox_to_anchor=(LEFT / WIDTH, 1.0 - 6.0 / HEIGHT),
+        loc="lower left",
+        bbox_to_anchor=(LEFT / WIDTH, (TOP + 8.0) / HEIGHT),
         ncols=2,
         borderpad=0.0,
         borderaxespad=0.0,

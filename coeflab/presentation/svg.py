@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from html import escape
+from typing import Any
 
 import matplotlib as mpl
 from matplotlib.figure import Figure
@@ -25,7 +26,7 @@ COLOURS = {
     "d": "#a3437f",
 }
 _FONT = "DejaVu Sans"
-_SETTINGS = {
+_SETTINGS: dict[Any, object] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "coeflab",
     "font.family": _FONT,

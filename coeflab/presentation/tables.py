@@ -124,6 +124,25 @@ def side_by_side(study: Study) -> Table:
     return Table("Side by side with the published table", headers, tuple(rows), notes, frozenset({0, 1}))
 
 
+def by_campaign(study: Study) -> Table:
+    """The wanted coefficients, one column a campaign: value and U95, or that no table gives them."""
+    campaigns = list(dict.fromkeys(f.campaign for f in study.fits))
+    found = {(c.symbol, c.campaign): c for c in study.coefficients}
+    rows = []
+    for symbol in study.plan.wanted:
+        cells = []
+        for campaign in campaigns:
+            c = found.get((symbol, campaign))
+            if c is None or c.value is None:
+                cells.append("no table" if c is None else c.status.replace("_", " "))
+            else:
+                cells.append(coefficient(c.value) + (f" +- {coefficient(c.u95)}" if c.u95 is not None else ""))
+        rows.append((primed(symbol), *cells))
+    bodies = {f.campaign: f.body for f in study.fits}
+    notes = tuple(f"{c}: {bodies[c]}" for c in campaigns)
+    return Table("By campaign", ("", *campaigns), tuple(rows), notes, frozenset({0}))
+
+
 def differences(study: Study) -> Table:
     """How far every published column lies from ours, in primed units and in multiples of our U95."""
     rows = tuple(

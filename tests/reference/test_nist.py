@@ -76,7 +76,9 @@ def floats(rows: list[list[Fraction]]) -> Array:
 
 def digits(found: Array, wanted: list[float] | list[Fraction]) -> float:
     """Correct significant digits of the worst number (NIST's log relative error, 16 at most)."""
-    worst = max(float(abs((Fraction(float(a)) - Fraction(b)) / Fraction(b))) for a, b in zip(found, wanted, strict=True))
+    worst = max(
+        float(abs((Fraction(float(a)) - Fraction(b)) / Fraction(b))) for a, b in zip(found, wanted, strict=True)
+    )
     return -log10(max(worst, 1e-16))
 
 

@@ -1,0 +1,175 @@
+"""What a report says about a study, in order; formats render it."""
+
+from __future__ import annotations
+
+import shlex
+
+from coeflab.core.symbols import primed
+from coeflab.model.check import Severity
+from coeflab.model.coefficient import Status
+from coeflab.model.reference import Comparison, Relation
+from coeflab.model.study import Study
+from coeflab.presentation import tables
+from coeflab.presentation.campaign_sections import campaign_section, filled
+from coeflab.presentation.conventions_section import conventions_section
+from coeflab.presentation.document import Document, Section
+
+
+def document(study: Study) -> Document:
+    """The whole report of a study."""
+    taken: set[str] = set()
+    campaigns = tuple(campaign_section(study, fit, taken) for fit in study.fits)
+    sections = (
+        _verdict(study),
+        _coefficients(study),
+        *_comparison(study),
+        Section(
+            "campaigns",
+            "Campaigns",
+            ("Every coefficient with its points, its curves and all estimators that were tried.",),
+            subsections=campaigns,
+        ),
+        _checks(study),
+        conventions_section(study),
+        _provenance(study),
+    )
+    names = ", ".join(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
+    return Document(study.plan.title or study.plan.name, f"Coefficients of {names}", sections)
+
+
+def _listed(parts: list[str]) -> str:
+    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
+
+
+def _counted(n: int, one: str) -> str:
+    return f"{n} {one}" if n == 1 else f"{n} {one}s"
+
+
+def _named(c: Comparison) -> str:
+    return f"{primed(c.coefficient.symbol)} of {c.coefficient.campaign}"
+
+
+def _re_analysis(study: Study) -> list[str]:
+    ours = [c for c in study.comparisons if c.relation is Relation.RE_ANALYSIS]
+    judged = [c for c in ours if c.passed is not None]
+    if not judged:
+        return ["No published evaluation of these data is held against the results, so there is no verdict on them."]
+    failed = [c for c in judged if c.passed is False]
+    count = _counted(len(judged), "comparison")
+    if failed:
+        out = [
+            f"{len(failed)} of {count} with the authors' own evaluation of the same data failed: "
+            f"{_listed([_named(c) for c in failed])} lies further from the published value than U95."
+        ]
+    else:
+        verb = "passed" if len(judged) == 1 else "all passed"
+        out = [
+            f"{count} with the authors' own evaluation of the same data {verb}: each difference lies within our U95."
+        ]
+    if len(ours) > len(judged):
+        rest = _listed([_named(c) for c in ours if c.passed is None])
+        out.append(f"No verdict could be given for {rest}, which has no U95.")
+    out.append(
+        "This is a re-analysis: both sides use the same measurements. A pass says that the evaluation reproduces the "
+        "published one within its stated uncertainty; it says nothing on whether the measurements are right."
+    )
+    return out
+
+
+def _verdict(study: Study) -> Section:
+    text = [*_re_analysis(study), _harvest(study)]
+    others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
+    if others:
+        names = _listed(list(dict.fromkeys(c.reference for c in others)))
+        text.append(
+            f"Cross-body comparison with {names}: those values belong to another body or come from another method, so "
+            "they stand beside ours without a verdict. A difference there may be the appendages as well as an error."
+        )
+    text += _without_value(study)
+    failed = [c for c in study.checks if c.severity is Severity.FAIL]
+    warned = sum(c.severity is Severity.WARN for c in study.checks)
+    if study.checks:
+        text.append(
+            f"Of {_counted(len(study.checks), 'check')}, {len(failed)} failed and {warned} warned; see Checks below."
+        )
+    text.append(f"The study as a whole {'fails' if study.failed else 'has no failing comparison or check'}.")
+    return Section("verdict", "Verdict", tuple(text))
+
+
+def _harvest(study: Study) -> str:
+    found = [c for c in study.coefficients if c.value is not None]
+    bounded = sum(c.u95 is not None for c in found)
+    campaigns = list(dict.fromkeys(t.campaign for t in study.tables))
+    if not campaigns:
+        return "The study holds no tables."
+    rows = _counted(sum(len(t) for t in study.tables), "row")
+    uncertain = "each with U95" if bounded == len(found) else f"{bounded} of them with U95"
+    return (
+        f"{_counted(len(found), 'coefficient')}, {uncertain}, come from {rows} of "
+        f"{_counted(len(campaigns), 'campaign')}: {_listed(campaigns)}."
+    )
+
+
+def _without_value(study: Study) -> list[str]:
+    absent = [c for c in study.coefficients if c.value is None]
+    out = []
+    for status in dict.fromkeys(c.status for c in absent):
+        places: dict[str, list[str]] = {}
+        for c in absent:
+            if c.status is status:
+                places.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
+        names = "; ".join(f"{_listed(symbols)} of {place}" for place, symbols in places.items())
+        out.append(f"Without a value: {names}. {status.advice}".strip())
+    return out
+
+
+def _coefficients(study: Study) -> Section:
+    text: tuple[str, ...] = (
+        "A value is the median of the members: for each form of the curve, the fit in the widest window in which its "
+        "next term is not yet significant. U95 joins the random part (the members' median 95 % interval) and the "
+        "model-form part (the range of the members / sqrt 3) as a root sum of squares. No published value enters.",
+        "A part that was not assessed is shown by a dash: uncertainty of angle, speed, calibration and length, and for "
+        "computed tables the error of grid and turbulence model, are not in U95.",
+    )
+    single = any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients)
+    if single:
+        text += ("Where one form only could be fitted, the value is printed without U95 and should not be relied on.",)
+    return Section("coefficients", "Coefficients", text, filled(tables.coefficients(study)))
+
+
+def _comparison(study: Study) -> tuple[Section, ...]:
+    if not study.comparisons:
+        return ()
+    text = ["Published values are primed by our length before they are compared."]
+    for r in study.references:
+        if r.other_scaling is not None:
+            text.append(
+                f'"{r.name}" is shown in two readings, as the length that its coefficients are divided by is not '
+                f"certain: {r.scaling}, which is taken as printed, and {r.other_scaling}, which rescales every value."
+            )
+    shown = filled(tables.side_by_side(study), tables.differences(study), tables.verdicts(study))
+    return (Section("comparison", "Comparison with published values", tuple(text), shown),)
+
+
+def _checks(study: Study) -> Section:
+    if not study.checks:
+        return Section("checks", "Checks", ("No checks were made.",))
+    text = ("A note or a warning asks for attention; only a failure makes the study fail.",)
+    return Section("checks", "Checks", text, filled(tables.checks(study)))
+
+
+def _provenance(study: Study) -> Section:
+    text = ["The files below are known by the sha256 of their bytes. Equal inputs give this report byte for byte."]
+    settings = dict.fromkeys(
+        f"{f.fit}: {', '.join(f'{k} {v}' for k, v in sorted(f.settings.items()))}." for f in study.fits if f.settings
+    )
+    text += settings
+    code: tuple[str, ...] = ()
+    if study.plan.file is None:
+        text.append("The plan was made by a program, not read from a file.")
+    else:
+        text.append("To reproduce it, run this in the folder of the plan:")
+        code = (f"coeflab run {shlex.quote(study.plan.file.name)}",)
+    return Section(
+        "provenance", "Provenance", tuple(text), filled(tables.provenance(study), tables.works(study)), code=code
+    )

@@ -1,0 +1,37 @@
+"""One HTML file that needs nothing else: no network, no scripts, light and dark, screen and print."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib.resources import files
+
+from jinja2 import BaseLoader, Environment, StrictUndefined
+from markupsafe import Markup
+
+from coeflab.model.study import Study
+from coeflab.presentation.content import document
+
+summary = "one HTML file with tables and figures, for browser and printer"
+citations: tuple[str, ...] = ()
+
+
+def render(study: Study) -> Mapping[str, bytes]:
+    """The report of a study.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    mapping of file name to bytes
+        ``report.html``; equal studies give equal bytes.
+    """
+    folder = files("coeflab.reporting") / "_html"
+    environment = Environment(
+        loader=BaseLoader(), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["drawing"] = Markup
+    template = environment.from_string((folder / "report.html.j2").read_text(encoding="utf-8"))
+    style = Markup((folder / "style.css").read_text(encoding="utf-8"))
+    return {"report.html": template.render(document=document(study), style=style).encode()}

@@ -1,0 +1,78 @@
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from coeflab.model.check import Check, Severity
+from coeflab.presentation.content import document
+from tests.presentation.studies import FEW, FULL, HALF, HOSTILE, small_study
+
+
+def flat(sections):
+    for s in sections:
+        yield s
+        yield from flat(s.subsections)
+
+
+def words(study, anchor):
+    found = next(s for s in flat(document(study).sections) if s.anchor == anchor)
+    return " ".join(found.paragraphs)
+
+
+def test_sections_come_in_the_order_of_reading():
+    anchors = [s.anchor for s in document(small_study(FULL, published=True)).sections]
+    assert anchors == ["verdict", "coefficients", "comparison", "campaigns", "checks", "conventions", "provenance"]
+
+
+def test_without_published_values_there_is_no_verdict_and_no_comparison():
+    study = small_study(FULL)
+    assert "comparison" not in [s.anchor for s in document(study).sections]
+    assert "no verdict" in words(study, "verdict")
+
+
+def test_a_pass_says_what_it_means():
+    text = words(small_study(FULL, published=True), "verdict")
+    assert "all passed" in text
+    assert "re-analysis" in text
+
+
+def test_a_failure_is_named():
+    study = small_study(FULL, published=True)
+    first = replace(study.comparisons[0], passed=False)
+    text = words(replace(study, comparisons=(first, *study.comparisons[1:])), "verdict")
+    assert "1 of 2 comparisons" in text
+    assert "Yv' of tow" in text
+    assert "fails" in text
+
+
+def test_failed_checks_reach_the_verdict():
+    study = small_study(FULL).with_checks((Check("signs", "tow Yv'", Severity.FAIL, "Yv' > 0", "below zero", "axes"),))
+    assert "1 failed" in words(study, "verdict")
+    assert "fails" in words(study, "verdict")
+
+
+def test_absent_coefficients_are_named_with_advice():
+    assert "Nr' of tow" in words(small_study(FULL), "verdict")
+    assert "No table varies this motion" in words(small_study(FULL), "verdict")
+
+
+@pytest.mark.parametrize("angles", [FULL, HALF, FEW, [3.0]])
+def test_anchors_are_unique_and_fit_for_links(angles):
+    study = small_study(angles, named=HOSTILE)
+    study = replace(study, fits=study.fits * 2)
+    sections = list(flat(document(study).sections))
+    anchors = [s.anchor for s in sections] + [f.anchor for s in sections for f in s.figures]
+    assert len(anchors) == len(set(anchors))
+    assert all(re.fullmatch(r"[a-z0-9-]+", a) for a in anchors)
+
+
+def test_a_sweep_tells_which_points_it_leaves_out_and_why():
+    assert f"tow 1 ({HOSTILE})" in words(small_study(FULL), "campaign-tow-yv")
+
+
+def test_a_plan_without_a_file_gets_no_command():
+    last = document(small_study(FULL)).sections[-1]
+    assert last.code == ()
+    assert "made by a program" in " ".join(last.paragraphs)

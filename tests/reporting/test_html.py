@@ -1,0 +1,109 @@
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from coeflab.ports import Renderer
+from coeflab.reporting import REPORTERS
+from tests.presentation.studies import FEW, FULL, HALF, HOSTILE, small_study
+
+VOID = {"meta", "link", "br", "hr", "img", "input"}
+
+
+class Page(HTMLParser):
+    """Elements with their attributes, and whether every one is closed in order."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+        self.crossed: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.crossed.append(tag)
+
+    def named(self, tag):
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+def text_of(study) -> str:
+    return REPORTERS.load("html").render(study)["report.html"].decode()
+
+
+def test_it_is_a_plugin():
+    assert "html" in REPORTERS.names()
+    assert isinstance(REPORTERS.load("html"), Renderer)
+
+
+@pytest.mark.parametrize("angles", [FULL, HALF, FEW, [3.0]])
+@pytest.mark.parametrize("published", [False, True])
+def test_a_small_study_gives_a_well_formed_page(angles, published):
+    page = Page(text_of(small_study(angles, published=published)))
+    assert page.crossed == []
+    assert page.open == []
+    assert len(page.named("h1")) == 1
+    assert page.named("html")[0]["lang"] == "en"
+    identifiers = [a["id"] for _, a in page.elements if "id" in a]
+    assert len(identifiers) == len(set(identifiers))
+
+
+def test_equal_studies_give_equal_bytes():
+    assert text_of(small_study(FULL)) == text_of(small_study(FULL))
+
+
+def test_names_of_users_are_text():
+    text = text_of(small_study(FULL, named=HOSTILE, published=True))
+    assert Page(text).named("script") == []
+    assert "&lt;script&gt;" in text
+
+
+def test_nothing_is_loaded_from_elsewhere():
+    text = text_of(small_study(FULL, published=True))
+    page = Page(text)
+    for _, attributes in page.elements:
+        for key in ("src", "srcset", "action", "data", "poster", "xlink:href"):
+            assert key not in attributes
+        assert re.match(r"#|data:,$", attributes.get("href") or "#")
+    assert "@import" not in text
+    assert re.findall(r"url\((?!#)", text) == []
+    assert set(re.findall(r"https?://[^\s\"<]+", text)) <= {"http://www.w3.org/2000/svg"}
+
+
+def test_links_inside_the_page_lead_somewhere():
+    page = Page(text_of(small_study(FULL)))
+    identifiers = {a["id"] for _, a in page.elements if "id" in a}
+    assert {a["href"][1:] for _, a in page.elements if str(a.get("href", "")).startswith("#")} <= identifiers
+
+
+def test_every_figure_is_described():
+    text = text_of(small_study(FULL))
+    figures = re.findall(r"<figure.*?</figure>", text, flags=re.DOTALL)
+    assert len(figures) == 4
+    for figure in figures:
+        assert 'role="img"' in figure
+        for element in ("title", "desc", "figcaption"):
+            assert re.search(rf"<{element}[^>]*>[^<]+</{element}>", figure)
+
+
+def test_every_table_has_a_caption_and_column_headers():
+    page = Page(text_of(small_study(FULL, published=True)))
+    assert len(page.named("caption")) == len(page.named("table")) > 3
+    assert all(a.get("scope") == "col" for a in page.named("th"))
+
+
+def test_no_path_of_this_machine_is_in_it():
+    assert str(Path.cwd()) not in text_of(small_study(FULL))
