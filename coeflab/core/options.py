@@ -1,4 +1,4 @@
-"""Options of plugins: a frozen dataclass of bounded numbers, filled from a plan or a command line."""
+"""Options of plugins: a frozen dataclass of bounded numbers and words, filled from a plan or a command line."""
 
 from __future__ import annotations
 
@@ -17,6 +17,30 @@ def bounded(default: float, low: float, high: float) -> Any:
     return dataclasses.field(default=default, metadata={"low": low, "high": high})
 
 
+def one_of(default: str, *choices: str) -> Any:
+    """A dataclass field that takes one of some words."""
+    return dataclasses.field(default=default, metadata={"choices": choices})
+
+
+def words(*default: str) -> Any:
+    """A dataclass field that takes a list of words; a text is split at commas and blanks."""
+    return dataclasses.field(default=default, metadata={"words": True})
+
+
+def _text(value: Any, meta: Mapping[str, Any], place: str) -> Any:
+    """A word out of some, or a tuple of words."""
+    if "choices" in meta:
+        if value not in meta["choices"]:
+            near = difflib.get_close_matches(str(value), meta["choices"], n=1)
+            hint = f"Did you mean {near[0]}?" if near else ""
+            raise InputError(shown(value), f"one of {', '.join(meta['choices'])}", column=place, advice=hint)
+        return value
+    items = value.replace(",", " ").split() if isinstance(value, str) else value
+    if not isinstance(items, (list, tuple)) or not all(isinstance(i, str) for i in items):
+        raise InputError(shown(value), "a list of words", column=place)
+    return tuple(items)
+
+
 def parse_options(kind: type[Options], given: Mapping[str, Any], where: str) -> Options:
     """Fill an options dataclass.
 
@@ -25,6 +49,7 @@ def parse_options(kind: type[Options], given: Mapping[str, Any], where: str) -> 
     InputError
         Unknown option, wrong type or out of bounds.
     """
+    filled: dict[str, Any] = {}
     fields = {f.name: f for f in dataclasses.fields(cast(Any, kind))}
     for name, value in given.items():
         if name not in fields:
@@ -35,11 +60,15 @@ def parse_options(kind: type[Options], given: Mapping[str, Any], where: str) -> 
                 column=where,
                 advice=f"Did you mean {near[0]}?" if near else "",
             )
+        meta = fields[name].metadata
+        if "choices" in meta or "words" in meta:
+            filled[name] = _text(value, meta, f"{where}.{name}")
+            continue
         default = fields[name].default
         whole = isinstance(default, int) and not isinstance(default, bool)
         right = isinstance(value, int) if whole else isinstance(value, (int, float))
-        meta = fields[name].metadata
         if isinstance(value, bool) or not right or not meta["low"] <= value <= meta["high"]:
             expected = f"a {'whole ' if whole else ''}number from {meta['low']:g} to {meta['high']:g}"
             raise InputError(shown(value), expected, column=f"{where}.{name}")
-    return kind(**given)
+        filled[name] = value
+    return kind(**filled)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from coeflab.kernels.slopes import Estimate, Recommendation
 from coeflab.model.coefficient import CoefficientSet
+from coeflab.model.fitted_model import FittedModel
 from coeflab.model.frozen import locked
 
 Array = NDArray[np.float64]
@@ -132,6 +133,8 @@ class FitResult:
     citations : tuple of str
     settings : dict of str to str
         Options as used, seed and replicates among them.
+    models : tuple of FittedModel
+        Force laws and tables over one or more variables.
     """
 
     fit: str
@@ -141,6 +144,7 @@ class FitResult:
     sweeps: tuple[Sweep, ...]
     citations: tuple[str, ...]
     settings: dict[str, str]
+    models: tuple[FittedModel, ...] = ()
 
     def sweep(self, symbol: str) -> Sweep:
         """The sweep of a coefficient."""

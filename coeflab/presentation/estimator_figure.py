@@ -19,7 +19,7 @@ from coeflab.presentation.panel import BOTTOM, GAP, TOP, drawing, heading, legen
 from coeflab.presentation.series import Style, family_name, is_in_degrees, on_axis, styles
 from coeflab.presentation.svg import COLOURS, power_of_ten, settings, svg_text
 
-SIDESTEP, HEADING = 0.011, 8.0
+SIDESTEP, HEADING = 0.011, 12.0
 
 
 def estimator_figure(sweep: Sweep, published: tuple[Comparison, ...], anchor: str) -> Figure:

@@ -89,7 +89,7 @@ def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
     text = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", text)
     for name, colour in COLOURS.items():
         text = text.replace(colour, f"var(--fig-{name}, {colour})")
-    text = re.sub(r"\n\s*", "\n", text)
+    text = _without_bare_groups(re.sub(r"\n\s*", "\n", text))
     box = re.search(r'viewBox="[^"]*"', text)
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" {box[0] if box else ""} role="img" '
@@ -98,3 +98,16 @@ def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
         f'<title id="{prefix}-title">{escape(title)}</title>\n<desc id="{prefix}-desc">{escape(description)}</desc>\n'
     )
     return head + text[text.index(">") + 1 :].strip() + "\n"
+
+
+def _without_bare_groups(text: str) -> str:
+    """The same drawing without the groups that carry no attribute."""
+    bare: list[bool] = []
+
+    def kept(tag: re.Match[str]) -> str:
+        if tag[0].startswith("</"):
+            return "" if bare.pop() else tag[0]
+        bare.append(tag[0].startswith("<g>"))
+        return "" if bare[-1] else tag[0]
+
+    return re.sub(r"<g>\n?|<g [^>]*[^/]>|</g>\n?", kept, text)

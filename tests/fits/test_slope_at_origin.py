@@ -209,7 +209,7 @@ def planted(table: ForceTable, **primes: dict[str, float]) -> ForceTable:
 
 
 def test_planted_static_and_control_derivatives_come_back_at_the_real_settings() -> None:
-    """Rudder runs were made at up to 0.2 degrees of drift; the static slope takes that out."""
+    """Rudder runs were made at up to 0.21 degrees of drift; the static slope takes that out, all but its cubic part."""
     (real,) = tables("suboff_roddy_2")
     made = planted(
         real,
@@ -224,7 +224,7 @@ def test_planted_static_and_control_derivatives_come_back_at_the_real_settings()
     }  # fmt: skip
     assert set(found.coefficients.symbols) == set(wanted)
     for symbol, value in wanted.items():
-        assert found.coefficients[symbol].value == pytest.approx(value, rel=1e-8, abs=1e-12), symbol
+        assert found.coefficients[symbol].value == pytest.approx(value, rel=1e-9, abs=2e-8 if symbol.endswith("dr") else 0.0), symbol
     assert "Y'v" in found.sweep("Ydr").offset
 
 

@@ -60,22 +60,11 @@ def small_study(angles: list[float], *, named: str = "tow", errors: bool = False
     table = small_table(angles, named=named, errors=errors)
     result = fit([table], LENGTH, {"replicates": 100})
     missing = (Coefficient("Nr", None, None, Status.NO_TABLE, table.body, campaign=named),)
-    comparisons = ()
-    if published:
-        comparisons = tuple(
-            Comparison(
-                coefficient=c,
-                reference=named,
-                relation=Relation.RE_ANALYSIS,
-                reading="LOA",
-                published=c.value * 1.01,
-                difference=-0.01 * c.value,
-                combined=None,
-                passed=True,
-            )  # fmt: skip
-            for c in result.coefficients.coefficients
-            if c.value is not None
-        )
+    comparisons = []
+    for c in result.coefficients.coefficients if published else ():
+        if c.value is not None:
+            near, gap = c.value * 1.01, -0.01 * c.value
+            comparisons.append(Comparison(c, named, Relation.RE_ANALYSIS, "LOA", near, gap, combined=None, passed=True))
     return Study(
         plan=Plan(name="small", title=f"Study {named}", tables=(), wanted=("Yv", "Nv", "Nr")),
         tables=(table,),
@@ -83,7 +72,7 @@ def small_study(angles: list[float], *, named: str = "tow", errors: bool = False
         missing=missing,
         body=None,
         references=(),
-        comparisons=comparisons,
+        comparisons=tuple(comparisons),
         parameter_files={},
         inputs=table.files,
     )

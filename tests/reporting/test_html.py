@@ -6,8 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from coeflab.core.files import shipped
+from coeflab.model.plan import read_plan
 from coeflab.ports import Renderer
 from coeflab.reporting import REPORTERS
+from coeflab.workbench import run
 from tests.presentation.studies import FEW, FULL, HALF, HOSTILE, small_study
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
@@ -107,3 +110,15 @@ def test_every_table_has_a_caption_and_column_headers():
 
 def test_no_path_of_this_machine_is_in_it():
     assert str(Path.cwd()) not in text_of(small_study(FULL))
+
+
+@pytest.mark.slow
+def test_the_validation_makes_a_page_of_moderate_size():
+    study = run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
+    text = text_of(study)
+    assert len(text.encode()) < 3_000_000
+    drawings = re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)
+    assert len(drawings) == 2 * sum(len(f.sweeps) for f in study.fits)
+    assert max(len(d.encode()) for d in drawings) < 60_000
+    assert Page(text).crossed == []
+    assert text == text_of(study)

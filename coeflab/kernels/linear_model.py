@@ -1,0 +1,191 @@
+"""A linear model with everything an expert asks of it: robust errors, influence, prediction, conditioning, open directions.
+
+PRESS: Allen (1974). Cook's distance: Cook (1977). Runs test: Wald & Wolfowitz (1940).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import ndtr
+
+from coeflab.kernels.least_squares import Array, Factorised, aicc, factorise, solve
+from coeflab.kernels.robust import FULL_LEVERAGE, bell_mccaffrey, t_factor
+
+ILL_CONDITIONED = 1e7
+REFINEMENTS = 12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LinearFit:
+    """A fitted linear model.
+
+    Attributes
+    ----------
+    coefficients : (p,) array
+        NaN where the rows leave a coefficient open.
+    covariance : (p, p) array
+        HC2.
+    freedom : (p,) array
+        Bell-McCaffrey degrees of freedom of every coefficient.
+    half_width : (p,) array
+        95 % half-widths, HC2.
+    residuals : (n,) array
+        Of the response, unweighted.
+    leverage : (n,) array
+    left_out : (n,) array
+        Residual of every point predicted from the others (PRESS residuals).
+    cooks_distance : (n,) array
+    rms : float
+        Root mean square of the residuals.
+    press_rms : float
+        Root mean square of `left_out`.
+    r_squared : float
+    aicc : float
+    runs_probability : float
+        Probability of so few or so many runs of one sign, residuals in the order given; NaN if not computable.
+    condition : float
+        Of the column-scaled design.
+    digits : float
+        Correct decimal digits of the worst coefficient, estimated from the last refinement.
+    correlation : (p, p) array
+    open_directions : (k, p) array
+        Combinations of scaled coefficients that the rows do not determine.
+    rank : int
+    """
+
+    coefficients: Array
+    covariance: Array
+    freedom: Array
+    half_width: Array
+    residuals: Array
+    leverage: Array
+    left_out: Array
+    cooks_distance: Array
+    rms: float
+    press_rms: float
+    r_squared: float
+    aicc: float
+    runs_probability: float
+    condition: float
+    digits: float
+    correlation: Array
+    open_directions: Array
+    rank: int
+
+
+def _refined(f: Factorised, response: Array) -> tuple[Array, float]:
+    """Coefficients with residuals carried in extended precision, and the digits that the last step confirms."""
+    coefficients, _ = solve(f, response)
+    if f.condition < ILL_CONDITIONED:
+        return coefficients, 15.0 - float(np.log10(max(f.condition, 1.0)))
+    target = (response * f.root_weights).astype(np.longdouble)
+    matrix = f.design.astype(np.longdouble)
+    best = coefficients.astype(np.longdouble)
+    change = 1.0
+    for _ in range(REFINEMENTS):
+        step = f.back @ (f.basis.T @ (target - matrix @ best).astype(np.float64))
+        best = best + step
+        change = float(np.max(np.abs(step) / np.maximum(np.abs(best.astype(np.float64)), 1e-300)))
+        if change < 1e-15:
+            break
+    return np.asarray(best, dtype=np.float64), float(-np.log10(max(change, 1e-16)))
+
+
+def runs_probability(residuals: Array) -> float:
+    """Two-sided probability of the number of runs of sign, normal approximation with continuity correction."""
+    signs = residuals[residuals != 0.0] > 0.0
+    n, up = len(signs), int(signs.sum())
+    down = n - up
+    if up < 2 or down < 2:
+        return float("nan")
+    runs = 1 + int(np.count_nonzero(signs[1:] != signs[:-1]))
+    mean = 1.0 + 2.0 * up * down / n
+    variance = (mean - 1.0) * (mean - 2.0) / (n - 1.0)
+    if variance <= 0.0:
+        return float("nan")
+    distance = max(abs(runs - mean) - 0.5, 0.0) / variance**0.5
+    return float(2.0 * ndtr(-distance))
+
+
+def fit_linear(
+    design: Array, response: Array, errors: Array | None = None, constraint: tuple[Array, Array] | None = None
+) -> LinearFit:
+    """Fit a linear model.
+
+    Parameters
+    ----------
+    design : (n, p) array
+    response : (n,) array
+    errors : (n,) array, optional
+        Standard errors; weights are their inverse squares.
+    constraint : ((k, p) array, (k,) array), optional
+        C and d of C b = d, kept exactly.
+
+    Raises
+    ------
+    ValueError
+        The constraint cannot hold.
+    """
+    p = design.shape[1]
+    offset: Array = np.zeros(p)
+    free: Array = np.eye(p)
+    if constraint is not None:
+        c, d = constraint
+        offset = np.asarray(np.linalg.lstsq(c, d, rcond=None)[0], dtype=np.float64)
+        if not np.allclose(c @ offset, d, atol=1e-12 * max(1.0, float(np.max(np.abs(d), initial=0.0)))):
+            raise ValueError("the constraint cannot hold")
+        _, singular, right = np.linalg.svd(c)
+        free = right[int(np.sum(singular > 1e-12 * singular.max())) :].T
+    reduced = design if constraint is None else design @ free
+    centred = response if constraint is None else response - design @ offset
+    f = factorise(reduced, None if errors is None else errors**-2.0)
+    inner, digits = _refined(f, centred)
+    coefficients = inner if constraint is None else offset + free @ inner
+    residuals = response - design @ coefficients
+    weighted = residuals * f.root_weights
+    room = np.where(f.leverage < FULL_LEVERAGE, 1.0 - f.leverage, np.nan)
+    half_square = np.nan_to_num(weighted / np.sqrt(room))
+    moved = f.basis.T * half_square
+    spread = f.back @ moved
+    covariance = free @ (spread @ spread.T) @ free.T
+    freedom = _freedom(f, free, constraint is not None)
+    deviation = np.sqrt(np.diag(covariance))
+    open_directions = (free @ f.null).T
+    undetermined = np.any(np.abs(open_directions) > 1e-6, axis=0) if f.null.size else np.zeros(p, dtype=bool)
+    coefficients = np.where(undetermined, np.nan, coefficients)
+    total = float(np.sum((f.root_weights * (response - np.average(response, weights=f.root_weights**2))) ** 2))
+    remaining = float(np.sum(weighted**2))
+    left_out = residuals / room
+    variance = remaining / f.freedom if f.freedom > 0 else float("nan")
+    size = np.where(deviation > 0, deviation, 1.0)
+    return LinearFit(
+        coefficients=coefficients,
+        covariance=covariance,
+        freedom=freedom,
+        half_width=np.where(undetermined, np.nan, deviation * t_factor(freedom)),
+        residuals=residuals,
+        leverage=f.leverage,
+        left_out=left_out,
+        cooks_distance=weighted**2 * f.leverage / (room**2 * max(f.rank, 1) * variance)
+        if variance and variance > 0
+        else np.full(len(response), np.nan),
+        rms=float(np.sqrt(np.mean(residuals**2))),
+        press_rms=float(np.sqrt(np.nanmean(left_out**2))) if np.any(np.isfinite(left_out)) else float("nan"),
+        r_squared=1.0 - remaining / total if total > 0.0 else float("nan"),
+        aicc=float(aicc(f, weighted)),
+        runs_probability=runs_probability(residuals),
+        condition=f.condition,
+        digits=digits,
+        correlation=covariance / np.outer(size, size),
+        open_directions=open_directions,
+        rank=f.rank,
+    )
+
+
+def _freedom(f: Factorised, free: Array, constrained: bool) -> Array:
+    """Bell-McCaffrey degrees of freedom per coefficient; through the constraint where there is one."""
+    if not constrained:
+        return bell_mccaffrey(f)
+    return bell_mccaffrey(replace(f, back=free @ f.back))

@@ -1,0 +1,161 @@
+"""A fitted force law or table: terms, coefficients with covariance, domain, diagnostics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.kernels.domain import half_spaces, inside
+from coeflab.kernels.linear_model import LinearFit
+from coeflab.kernels.terms import Term, design
+from coeflab.model.frozen import locked
+
+Array = NDArray[np.float64]
+
+
+class Extrapolation(StrEnum):
+    """What a reader outside the data is to do."""
+
+    REFUSE = "refuse"
+    CLAMP = "clamp"
+    TAPER = "taper"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Domain:
+    """Where a model may be read.
+
+    Attributes
+    ----------
+    variables : tuple of str
+    low, high : (d,) array
+        Bounding box.
+    spaces : (m, d + 1) array
+        Half-spaces of the convex hull of the data.
+    rule : Extrapolation
+    """
+
+    variables: tuple[str, ...]
+    low: Array
+    high: Array
+    spaces: Array
+    rule: Extrapolation = Extrapolation.REFUSE
+
+    def __post_init__(self) -> None:
+        for name in ("low", "high", "spaces"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+    @classmethod
+    def of(cls, columns: Mapping[str, Array], rule: Extrapolation = Extrapolation.REFUSE) -> Domain:
+        """The domain of some data, one column a variable."""
+        points = np.column_stack(list(columns.values()))
+        return cls(tuple(columns), points.min(axis=0), points.max(axis=0), half_spaces(points), rule)
+
+    def contains(self, columns: Mapping[str, Array]) -> NDArray[np.bool_]:
+        """Whether points lie inside, shape (n,)."""
+        points = np.column_stack([columns[v] for v in self.variables])
+        return np.asarray(inside(self.spaces, points), dtype=bool)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FittedModel:
+    """One response as a linear combination of terms.
+
+    Attributes
+    ----------
+    response : str
+        ``C_D``, ``Y'``, ``X [N]`` ...
+    unit : str
+        ``1`` or SI.
+    form : str
+        In words: ``polynomial of degree 3, odd``.
+    symbols : tuple of str
+        Name of every coefficient.
+    terms : tuple of Term
+    fit : LinearFit
+    domain : Domain
+    table, campaign, body : str
+    n_points : int
+    x : mapping of variable to (n,) array
+    y : (n,) array
+    labels : tuple of str
+    statements : tuple of str
+        What the data do not determine, collinearity, accuracy: in words.
+    post_selection : bool
+        True when the terms were chosen by looking at the same data; intervals are then too narrow.
+    """
+
+    response: str
+    unit: str
+    form: str
+    symbols: tuple[str, ...]
+    terms: tuple[Term, ...]
+    fit: LinearFit
+    domain: Domain
+    table: str
+    campaign: str
+    body: str
+    x: Mapping[str, Array]
+    y: Array
+    labels: tuple[str, ...]
+    statements: tuple[str, ...] = ()
+    post_selection: bool = False
+
+    @property
+    def n_points(self) -> int:
+        """Rows used."""
+        return len(self.y)
+
+    def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Values, 95 % half-widths of the mean, and whether each point lies inside the domain.
+
+        Parameters
+        ----------
+        columns : mapping of variable to (n,) array
+            Same variables and units as `x`.
+        """
+        rows = design(self.terms, columns)
+        values = rows @ np.nan_to_num(self.fit.coefficients)
+        spread = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", rows, self.fit.covariance, rows), 0.0))
+        return values, 2.0 * spread, self.domain.contains(columns)
+
+    def named(self, symbol: str) -> tuple[float, float]:
+        """Value and 95 % half-width of one coefficient."""
+        i = self.symbols.index(symbol)
+        return float(self.fit.coefficients[i]), float(self.fit.half_width[i])
+
+
+COLLINEAR = 0.98
+FEWEST_DIGITS = 7.0
+SEEN = 0.05
+
+
+def in_words(fit: LinearFit, symbols: tuple[str, ...]) -> tuple[str, ...]:
+    """What the rows do not determine, which coefficients move together, and how exact the arithmetic is."""
+    out = []
+    for direction in fit.open_directions:
+        largest = float(np.max(np.abs(direction)))
+        parts = [(s, float(d) / largest) for s, d in zip(symbols, direction, strict=True) if abs(d) > SEEN * largest]
+        if len(parts) == 1:
+            out.append(f"{parts[0][0]} is not determined: its term is zero on these data.")
+        else:
+            names = ", ".join(s for s, _ in parts)
+            mix = " ".join(f"{d:+.2g} [{s}]" for s, d in parts)
+            out.append(f"{names} are determined only together: adding any multiple of {mix} (each scaled by its column) "
+                       "changes no prediction.")  # fmt: skip
+    p = len(symbols)
+    for i in range(p):
+        for j in range(i + 1, p):
+            if abs(fit.correlation[i, j]) > COLLINEAR:
+                out.append(
+                    f"{symbols[i]} and {symbols[j]} are nearly collinear (correlation {fit.correlation[i, j]:.3f})."
+                )
+    if fit.digits < FEWEST_DIGITS:
+        out.append(
+            f"Only {max(fit.digits, 0):.0f} digits of the coefficients are sure: the terms are nearly dependent."
+        )
+    return tuple(out)
