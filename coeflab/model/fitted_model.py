@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from coeflab.kernels.domain import half_spaces, inside
 from coeflab.kernels.linear_model import LinearFit
 from coeflab.kernels.terms import Term, design
-from coeflab.model.frozen import locked
+from coeflab.model.frozen import locked, locked_columns
 
 Array = NDArray[np.float64]
 
@@ -104,6 +104,10 @@ class FittedModel:
     labels: tuple[str, ...]
     statements: tuple[str, ...] = ()
     post_selection: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", locked_columns(self.x))
+        object.__setattr__(self, "y", locked(self.y))
 
     @property
     def n_points(self) -> int:

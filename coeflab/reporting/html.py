@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from importlib.resources import files
 
 from jinja2 import BaseLoader, Environment, StrictUndefined
-from markupsafe import Markup
 
 from coeflab.model.study import Study
 from coeflab.presentation.content import document
@@ -31,7 +30,6 @@ def render(study: Study) -> Mapping[str, bytes]:
     environment = Environment(
         loader=BaseLoader(), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    environment.filters["drawing"] = Markup
     template = environment.from_string((folder / "report.html.j2").read_text(encoding="utf-8"))
-    style = Markup((folder / "style.css").read_text(encoding="utf-8"))
+    style = (folder / "style.css").read_text(encoding="utf-8")
     return {"report.html": template.render(document=document(study), style=style).encode()}
