@@ -20,7 +20,11 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
 for module in (validate, run, fit, inspect, new, formats):
-    app.command(name=module.__name__.rpartition(".")[2], epilog=f"Example: {module.EXAMPLE}")(module.command)
+    app.command(
+        name=module.__name__.rpartition(".")[2],
+        epilog=f"Example: {module.EXAMPLE}",
+        context_settings=getattr(module, "CONTEXT", None),
+    )(module.command)
 app.add_typer(params.app, name="params")
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from coeflab.core.symbols import primed
 from coeflab.model.coefficient import Coefficient
+from coeflab.model.fitted_model import FittedModel
 from coeflab.model.study import Study
 
 
@@ -29,6 +31,38 @@ def coefficient(c: Coefficient, scaling: str) -> dict[str, Any]:
     }
 
 
+def model(m: FittedModel) -> dict[str, Any]:
+    """One fitted force law or table; a coefficient that the data leave open is null."""
+    rows = zip(m.symbols, m.terms, m.fit.coefficients, m.fit.half_width, strict=True)
+    return {
+        "response": m.response,
+        "unit": m.unit,
+        "form": m.form,
+        "table": m.table,
+        "campaign": m.campaign,
+        "body": m.body,
+        "n_points": m.n_points,
+        "rms": m.fit.rms,
+        "left_out_rms": _finite(m.fit.press_rms),
+        "coefficients": [
+            {"symbol": s, "term": str(t), "value": _finite(float(v)), "half_width_95": _finite(float(h))}
+            for s, t, v, h in rows
+        ],
+        "domain": {
+            "variables": list(m.domain.variables),
+            "low": [float(x) for x in m.domain.low],
+            "high": [float(x) for x in m.domain.high],
+            "outside": m.domain.rule.value,
+        },
+        "post_selection": m.post_selection,
+        "statements": list(m.statements),
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
 def study(s: Study, files: list[str]) -> dict[str, Any]:
     """A whole study."""
     scalings = {f.campaign: str(f.coefficients.scaling) for f in s.fits}
@@ -37,6 +71,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
         "study": s.plan.name,
         "passed": not s.failed,
         "coefficients": [coefficient(c, scalings.get(c.campaign or "", common)) for c in s.coefficients],
+        "models": [model(m) for f in s.fits for m in f.models],
         "comparisons": [
             {
                 "symbol": primed(c.coefficient.symbol),

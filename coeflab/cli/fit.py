@@ -12,21 +12,23 @@ if TYPE_CHECKING:
     from coeflab.model.study import Study
 
 EXAMPLE = "coeflab fit suboff_roddy_2 --symbol Yv"
+CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 
 def command(
+    ctx: typer.Context,
     table: str = typer.Argument(..., help="A campaign folder, one CSV of it, or a shipped campaign's name."),
     fit: str = typer.Option("slope_at_origin", help="Name of the fit (see coeflab formats)."),
     symbol: list[str] = typer.Option([], help="Show estimators and windows of this coefficient; repeatable."),
     length: str = typer.Option("", help='Length of the primes, such as "4.356 m"; default the campaign\'s own.'),
     length_name: str = typer.Option("", help="Name of that length, such as LOA."),
-    largest_angle: float = typer.Option(90.0, help="Largest angle that a window may reach, degrees."),
-    seed: int = typer.Option(1, help="Seed of the bootstrap."),
-    replicates: int = typer.Option(2000, help="Bootstrap replicates."),
     include_uncertain: bool = typer.Option(False, help="Use cells that the source marks as doubtful."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Fit the coefficients of one table and show how they were made."""
+    """Fit the coefficients of one table and show how they were made.
+
+    Any further --option VALUE goes to the fit: --seed 2, --degree 4, --terms "Yv Yv|v|".
+    """
     from coeflab.core.errors import InputError
     from coeflab.core.files import located
     from coeflab.core.units import quantity
@@ -37,14 +39,13 @@ def command(
     path = located(table, "cfd_data")
     if bool(length) != bool(length_name):
         raise InputError("--length without its name", "--length and --length-name together")
-    options = {"replicates": replicates, "seed": seed, "largest_angle": largest_angle}
     only = path.name if path.is_file() and path.suffix != ".toml" else None
     plan = Plan(
         name=path.stem,
         title=path.name,
-        tables=(PlannedTable(path, (fit,), {fit: options}, only),),
+        tables=(PlannedTable(path, (fit,), {fit: further(ctx.args)}, only),),
         scaling=Scaling(quantity(length, "length", key="--length"), length_name) if length else None,
-        wanted=("Yv", "Nv", "Zw", "Mw", "Yr", "Nr"),
+        wanted=("Yv", "Nv", "Zw", "Mw", "Yr", "Nr") if fit == "slope_at_origin" else (),
         include_uncertain=include_uncertain,
     )
     with show.progress(json) as say:
@@ -57,12 +58,39 @@ def command(
     _print(study, [s.removesuffix("'") for s in symbol])
 
 
+def further(arguments: list[str]) -> dict[str, int | float | str]:
+    """Options for a plugin from ``--name value`` or ``--name=value``; numbers where they read as such."""
+    from coeflab.core.errors import InputError, shown
+
+    out: dict[str, int | float | str] = {}
+    rest = list(arguments)
+    while rest:
+        word = rest.pop(0)
+        name, equals, value = word.partition("=")
+        if not name.startswith("--") or (not equals and not rest):
+            raise InputError(shown(word), "--option VALUE")
+        text = value if equals else rest.pop(0)
+        for kind in (int, float):
+            try:
+                out[name[2:].replace("-", "_")] = kind(text)
+                break
+            except ValueError:
+                continue
+        else:
+            out[name[2:].replace("-", "_")] = text
+    return out
+
+
 def _print(study: Study, symbols: list[str]) -> None:
     from coeflab.cli.carry_out import findings
     from coeflab.core.errors import InputError, shown
-    from coeflab.presentation import tables
+    from coeflab.presentation import model_tables, tables
 
     show.table(tables.coefficients(study))
+    models = tuple(m for f in study.fits for m in f.models)
+    for model in models:
+        show.table(model_tables.terms(model))
+    show.table(model_tables.quality(models))
     known = {s.symbol: s for f in study.fits for s in f.sweeps}
     for symbol in symbols:
         if symbol not in known:

@@ -89,9 +89,12 @@ def _rows(table: ForceTable, variable: str, tables: Sequence[ForceTable], length
 
 
 def _collect(
-    rows: _Rows, component: str, length: float
+    rows: _Rows, component: str, length: float, taken_out: Array
 ) -> tuple[Array, Array, Array | None, tuple[str, ...], tuple[LeftOut, ...]]:
-    """x, y, se, labels of the usable points, and those left out with their reasons."""
+    """x, y, se, labels of the usable points, and those left out with their reasons.
+
+    ``taken_out`` is subtracted from the primed force of every row of the sweep's own table.
+    """
     table = rows.table
     reasons = {(e.row, e.component): e.reason for e in table.exclusions}
     parts: list[tuple[ForceTable, NDArray[np.intp], Array]] = [(table, rows.rows, rows.x[rows.rows])]
@@ -100,7 +103,7 @@ def _collect(
     x, y, se, labels = [], [], [], []
     left: list[LeftOut] = []
     for source, index, at in parts:
-        force = source.primed_force(component, length)
+        force = source.primed_force(component, length) - (taken_out if source is table else 0.0)
         error = source.primed_force(component, length, source.errors[component]) if component in source.errors else None
         for i, xi in zip(index, at, strict=True):
             if source.usable[component][i]:
@@ -133,12 +136,12 @@ def _bootstrap(recommendation: slopes.Recommendation, y: Array, options: Options
 def _sweep(
     rows: _Rows, variable: str, component: str, symbol: str, parity: str, length: float, options: Options, slope: float
 ) -> Sweep:
-    x, y, se, labels, left = _collect(rows, component, length)
-    offset = ""
+    offset, taken_out = "", np.zeros(len(rows.table))
     if variable in INCIDENCE and slope:
-        at = rows.table.primed_motion(INCIDENCE[variable], length)[rows.rows][rows.table.usable[component][rows.rows]]
-        y = y - slope * np.pad(at, (0, len(y) - len(at)))
-        offset = f"{component}'{INCIDENCE[variable]} {INCIDENCE[variable]}' of the residual incidence taken out"
+        motion = INCIDENCE[variable]
+        taken_out = slope * rows.table.primed_motion(motion, length)
+        offset = f"{component}{motion}' {motion}' of the residual incidence taken out"
+    x, y, se, labels, left = _collect(rows, component, length, taken_out)
     target = "x" if parity == "odd" else "1" if symbol.endswith("0") else "x2"
     is_angle = variable in ("v", "w")
     limit = np.sin(np.radians(options.largest_angle)) if is_angle else np.inf
@@ -201,7 +204,8 @@ def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
         origin="fit",
         table=sweep.table,
         campaign=sweep.campaign,
-        estimator="median of " + ", ".join(e.family.name.format(x=f"{sweep.variable}'") for e in r.members),
+        estimator=("median of " if len(r.members) > 1 else "")
+        + ", ".join(e.family.name.format(x=f"{sweep.variable}'") for e in r.members),
         window=sweep.window_of(widest),
         n_points=len(widest.rows),
         citation=citation,

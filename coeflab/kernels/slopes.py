@@ -296,7 +296,7 @@ def recommend(
         return Recommendation(None, None, None, None, (), shown)
     values = np.array([e.value for e in members])
     random = float(np.median([e.half_hc2 for e in members]))
-    compared = values if len(members) > 1 else np.array([e.value for e in kept.values()])
+    compared = values if len(members) > 1 else np.array([e.value for e in kept.values() if np.isfinite(e.half_hc2)])
     if len(compared) < 2:
         return Recommendation(float(values[0]), random, None, None, members, shown)
     form = float(np.ptp(compared) / np.sqrt(3.0))

@@ -50,7 +50,8 @@ class Parts:
     random : float or None
         Scatter of the points: median member interval, HC2 with Bell-McCaffrey degrees of freedom.
     model_form : float or None
-        Range of the member estimators / sqrt(3). Each family has its own window, so the choice of window is in here.
+        Range of the member estimators / sqrt(3); a lone member is compared with the families dropped for their width.
+        Each family has its own window, so the choice of window is in here.
     window : float or None
         Reserved for a separately assessed window part.
     input : float or None

@@ -1,4 +1,4 @@
-"""The parameter file: JSON, one body, one scaling, one reference point. Version 1.
+"""The parameter file: JSON, one body, one scaling, one reference point. Version 1.1: 1.0 and fitted tables.
 
 The models below are the schema; ``parameter_file.schema.json`` beside them is generated from them.
 """
@@ -10,27 +10,21 @@ import math
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.symbols import derivative
 from coeflab.core.toml import read_text
+from coeflab.model.parameter_model import ParameterModel
+from coeflab.model.schema_types import Finite, Name, NotNegative, Positive, Strict
 
-SCHEMA_VERSION = "1.0"
+SCHEMA_VERSION = "1.1"
+FIRST_VERSION = "1.0"
 LARGEST = 64 << 20
 SCHEMA_FILE = Path(__file__).with_name("parameter_file.schema.json")
 
-Finite = Annotated[float, Field(allow_inf_nan=False)]
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
-Name = Annotated[str, Field(min_length=1, max_length=200)]
 
-
-class _Model(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class UncertaintyParts(_Model):
+class UncertaintyParts(Strict):
     """95 % half-widths that make up U95; null where not assessed."""
 
     random: NotNegative | None = None
@@ -39,7 +33,7 @@ class UncertaintyParts(_Model):
     input: NotNegative | None = None
 
 
-class ParameterCoefficient(_Model):
+class ParameterCoefficient(Strict):
     """One coefficient."""
 
     symbol: Annotated[str, Field(description="SNAME symbol with prime, for example Yv'")]
@@ -71,14 +65,14 @@ class ParameterCoefficient(_Model):
         return self
 
 
-class ParameterScaling(_Model):
+class ParameterScaling(Strict):
     """Length of the primes."""
 
     length: Positive = Field(description="m")
     length_name: Name
 
 
-class ParameterConditions(_Model):
+class ParameterConditions(Strict):
     """Conditions of the dimensional values."""
 
     density: Positive = Field(description="kg/m^3")
@@ -86,7 +80,7 @@ class ParameterConditions(_Model):
     viscosity: Positive | None = Field(default=None, description="kinematic, m^2/s")
 
 
-class ParameterPoint(_Model):
+class ParameterPoint(Strict):
     """Point that moments, rates and mass moments refer to."""
 
     point: tuple[Finite, Finite, Finite] = Field(description="m, from the datum, in `axes`")
@@ -94,7 +88,7 @@ class ParameterPoint(_Model):
     axes: Literal["FRD"] = "FRD"
 
 
-class ParameterMass(_Model):
+class ParameterMass(Strict):
     """Mass properties about the reference point."""
 
     mass: Positive = Field(description="kg")
@@ -104,7 +98,7 @@ class ParameterMass(_Model):
     mass_moment_prime: Finite
 
 
-class ParameterCovariance(_Model):
+class ParameterCovariance(Strict):
     """Covariance of standard uncertainties (U95 / 2), primed; rows of coefficients without U95 are null."""
 
     symbols: tuple[str, ...]
@@ -128,7 +122,7 @@ class ParameterCovariance(_Model):
         return self
 
 
-class CoveredRange(_Model):
+class CoveredRange(Strict):
     """Range of a motion variable that a campaign covers."""
 
     variable: Name
@@ -138,14 +132,14 @@ class CoveredRange(_Model):
     campaign: str
 
 
-class InputRecord(_Model):
+class InputRecord(Strict):
     """A file that went in."""
 
     name: str
     sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 
-class Provenance(_Model):
+class Provenance(Strict):
     """Where it all comes from."""
 
     coeflab_version: str
@@ -155,7 +149,7 @@ class Provenance(_Model):
     notes: tuple[str, ...] = ()
 
 
-class ParameterFile(_Model):
+class ParameterFile(Strict):
     """Hydrodynamic coefficients of one body with uncertainty and provenance."""
 
     schema_version: Annotated[str, Field(pattern=r"^1\.\d+$")] = SCHEMA_VERSION
@@ -168,6 +162,7 @@ class ParameterFile(_Model):
     coefficients: tuple[ParameterCoefficient, ...]
     covariance: ParameterCovariance
     covered: tuple[CoveredRange, ...]
+    models: tuple[ParameterModel, ...] = Field(default=(), description="fitted tables and force laws, since 1.1")
     provenance: Provenance
 
     @model_validator(mode="after")
@@ -179,6 +174,12 @@ class ParameterFile(_Model):
         unknown = sorted(set(self.covariance.symbols) - set(symbols))
         if unknown:
             raise ValueError(f"the covariance names {', '.join(unknown)}, which are no coefficients")
+        tables = [(m.response, m.names) for m in self.models]
+        for response, names in tables:
+            if tables.count((response, names)) > 1:
+                raise ValueError(f"{response} over {', '.join(names)} stands more than once")
+        if tables and self.schema_version == FIRST_VERSION:
+            raise ValueError(f"models came with version 1.1; this file says {FIRST_VERSION}")
         return self
 
     def coefficient(self, symbol: str) -> ParameterCoefficient | None:
@@ -187,8 +188,13 @@ class ParameterFile(_Model):
         return next((c for c in self.coefficients if c.symbol == wanted), None)
 
     def to_json(self) -> bytes:
-        """The file's bytes: sorted as declared, two blanks of indent, a closing newline, never NaN."""
-        text = json.dumps(self.model_dump(mode="json"), indent=2, ensure_ascii=False, allow_nan=False)
+        """The file's bytes: sorted as declared, two blanks of indent, a closing newline, never NaN.
+
+        A file of version 1.0 is written as one, without the key that came later.
+        """
+        left_out = {"models"} if self.schema_version == FIRST_VERSION else set()
+        content = self.model_dump(mode="json", exclude=left_out)
+        text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
         return (text + "\n").encode()
 
 

@@ -90,14 +90,13 @@ def _sweep_section(study: Study, fit: FitResult, sweep: Sweep, place: str) -> Se
         and k.coefficient.campaign == sweep.campaign
         and k.coefficient.symbol == sweep.symbol
     )
-    figures: tuple[Figure, ...] = ()
+    figures: list[Figure] = []
     if len(sweep.x):
-        figures = (
-            sweep_figure(sweep, f"{place}-data"),
-            estimator_figure(sweep, published, f"{place}-estimators"),
-        )
+        figures.append(sweep_figure(sweep, f"{place}-data"))
+    if sweep.plain or sweep.recommendation.panel:
+        figures.append(estimator_figure(sweep, published, f"{place}-estimators"))
     shown = filled(tables.members(sweep), tables.sensitivity(sweep), tables.left_out(sweep), tables.estimators(sweep))
-    return Section(place, f"{name}", tuple(text), shown, figures)
+    return Section(place, name, tuple(text), shown, tuple(figures))
 
 
 def _caveats(sweep: Sweep) -> list[str]:

@@ -9,7 +9,7 @@ from coeflab.model.check import Severity
 from coeflab.model.coefficient import Status
 from coeflab.model.reference import Comparison, Relation
 from coeflab.model.study import Study
-from coeflab.presentation import tables
+from coeflab.presentation import model_tables, tables
 from coeflab.presentation.campaign_sections import campaign_section, filled
 from coeflab.presentation.conventions_section import conventions_section
 from coeflab.presentation.document import Document, Section
@@ -21,8 +21,9 @@ def document(study: Study) -> Document:
     campaigns = tuple(campaign_section(study, fit, taken) for fit in study.fits)
     sections = (
         _verdict(study),
-        _coefficients(study),
         *_comparison(study),
+        _coefficients(study),
+        *_models(study),
         Section(
             "campaigns",
             "Campaigns",
@@ -92,7 +93,10 @@ def _verdict(study: Study) -> Section:
         text.append(
             f"Of {_counted(len(study.checks), 'check')}, {len(failed)} failed and {warned} warned; see Checks below."
         )
-    text.append(f"The study as a whole {'fails' if study.failed else 'has no failing comparison or check'}.")
+    if study.failed:
+        text.append("The study as a whole fails.")
+    elif study.checks or study.comparisons:
+        text.append("The study as a whole has no failing comparison or check.")
     return Section("verdict", "Verdict", tuple(text))
 
 
@@ -103,11 +107,11 @@ def _harvest(study: Study) -> str:
     if not campaigns:
         return "The study holds no tables."
     rows = _counted(sum(len(t) for t in study.tables), "row")
+    source = f"{rows} of {_counted(len(campaigns), 'campaign')}: {_listed(campaigns)}."
+    if not found:
+        return f"No coefficient could be determined from {source}"
     uncertain = "each with U95" if bounded == len(found) else f"{bounded} of them with U95"
-    return (
-        f"{_counted(len(found), 'coefficient')}, {uncertain}, come from {rows} of "
-        f"{_counted(len(campaigns), 'campaign')}: {_listed(campaigns)}."
-    )
+    return f"Found: {_counted(len(found), 'coefficient')}, {uncertain}, from {source}"
 
 
 def _without_value(study: Study) -> list[str]:
@@ -128,6 +132,8 @@ def _coefficients(study: Study) -> Section:
         "A value is the median of the members: for each form of the curve, the fit in the widest window in which its "
         "next term is not yet significant. U95 joins the random part (the members' median 95 % interval) and the "
         "model-form part (the range of the members / sqrt 3) as a root sum of squares. No published value enters.",
+        "A lone member is compared with the fits that were dropped only because their intervals are too wide; where there "
+        "are none, no U95 is given.",
         "A part that was not assessed is shown by a dash: uncertainty of angle, speed, calibration and length, and for "
         "computed tables the error of grid and turbulence model, are not in U95.",
     )
@@ -135,6 +141,21 @@ def _coefficients(study: Study) -> Section:
     if single:
         text += ("Where one form only could be fitted, the value is printed without U95 and should not be relied on.",)
     return Section("coefficients", "Coefficients", text, filled(tables.coefficients(study)))
+
+
+def _models(study: Study) -> tuple[Section, ...]:
+    models = tuple(m for f in study.fits for m in f.models)
+    if not models:
+        return ()
+    text = (
+        "Force laws and tables over one or more variables. What the data leave open is said below each table and has no "
+        "number; a reader outside the domain follows the stated rule.",
+    )
+    return (
+        Section(
+            "models", "Fitted models", text, (model_tables.quality(models), *(model_tables.terms(m) for m in models))
+        ),
+    )
 
 
 def _comparison(study: Study) -> tuple[Section, ...]:

@@ -224,7 +224,9 @@ def test_planted_static_and_control_derivatives_come_back_at_the_real_settings()
     }  # fmt: skip
     assert set(found.coefficients.symbols) == set(wanted)
     for symbol, value in wanted.items():
-        assert found.coefficients[symbol].value == pytest.approx(value, rel=1e-9, abs=2e-8 if symbol.endswith("dr") else 0.0), symbol
+        assert found.coefficients[symbol].value == pytest.approx(
+            value, rel=1e-9, abs=2e-8 if symbol.endswith("dr") else 0.0
+        ), symbol
     assert "Y'v" in found.sweep("Ydr").offset
 
 

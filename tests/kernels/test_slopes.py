@@ -9,10 +9,21 @@ import pytest
 import statsmodels.api as sm
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import stats
 
 from coeflab.kernels import slopes
 from coeflab.kernels.least_squares import Array
-from coeflab.kernels.slopes import MEMBER, NO_INTERVAL, Recommendation, design, influence, recommend, windows
+from coeflab.kernels.slopes import (
+    MEMBER,
+    NO_INTERVAL,
+    TOO_WIDE,
+    Recommendation,
+    design,
+    estimate,
+    influence,
+    recommend,
+    windows,
+)
 
 SMALLEST = float(np.sin(np.radians(3.0)))
 TRUTHS = {
@@ -238,3 +249,37 @@ def test_the_curve_passes_through_noise_free_points() -> None:
     x = angles(*np.linspace(-18.0, 18.0, 25))
     for e in recommend(x, TRUTHS["cubic"](x), smallest=SMALLEST).members:
         np.testing.assert_allclose(e.curve(x), TRUTHS["cubic"](x), atol=1e-12)
+
+
+def test_an_estimate_with_standard_errors_is_the_weighted_fit_of_statsmodels() -> None:
+    x, y = noisy(11)
+    se = np.random.default_rng(11).uniform(2e-5, 4e-4, len(x))
+    rows, terms = np.flatnonzero(np.abs(x) < 0.25), ("1", "x", "x3", "x2")
+    found = estimate(slopes.ODD[1], terms, "x", x, y, se, rows)
+    assert found is not None
+    by_hand = design(terms, x[rows])
+    for kind, half in (("HC2", None), ("HC3", found.half_hc3)):
+        peer = sm.WLS(y[rows], by_hand, se[rows] ** -2.0).fit(cov_type=kind, use_t=True)
+        np.testing.assert_allclose(found.coefficients, peer.params, rtol=1e-9)
+        if half is None:
+            assert found.standard_error == pytest.approx(peer.bse[1], rel=1e-9)
+        else:
+            assert half == pytest.approx(peer.bse[1] * stats.t.ppf(0.975, len(rows) - 4), rel=1e-9)
+    assert found.half_hc2 == pytest.approx(found.standard_error * stats.t.ppf(0.975, found.freedom), rel=1e-9)
+    assert found.freedom < len(rows) - 4
+    misfit = float(np.sum(((y[rows] - found.curve(x[rows])) / se[rows]) ** 2))
+    assert found.lack_of_fit == pytest.approx(stats.chi2.sf(misfit, len(rows) - 4), rel=1e-8)
+    assert found.window == np.abs(x[rows]).max()
+    assert found.value == found.coefficients[1]
+
+
+def test_a_lone_member_is_held_against_the_families_dropped_for_their_width() -> None:
+    """With little noise only the true form is narrow; the others still tell what the form is worth."""
+    x = angles(*np.linspace(-18.0, 18.0, 25))
+    y = TRUTHS["x|x|"](x) + 2e-6 * np.random.default_rng(0).standard_normal(25)
+    answer = recommend(x, y, smallest=SMALLEST)
+    assert [e.family.must_beat != "" for e in answer.members] == [True]
+    wide = [e.value for e in answer.panel if e.role == TOO_WIDE]
+    assert wide
+    values = [e.value for e in answer.members] + wide
+    assert answer.model_form == pytest.approx((max(values) - min(values)) / 3**0.5)

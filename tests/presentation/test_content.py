@@ -72,6 +72,12 @@ def test_a_sweep_tells_which_points_it_leaves_out_and_why():
     assert f"tow 1 ({HOSTILE})" in words(small_study(FULL), "campaign-tow-yv")
 
 
+def test_points_that_determine_nothing_are_drawn_without_estimators():
+    found = next(s for s in flat(document(small_study(FEW)).sections) if s.anchor == "campaign-tow-yv")
+    assert [f.anchor for f in found.figures] == ["campaign-tow-yv-data"]
+    assert "No coefficient could be determined" in words(small_study(FEW), "verdict")
+
+
 def test_a_plan_without_a_file_gets_no_command():
     last = document(small_study(FULL)).sections[-1]
     assert last.code == ()

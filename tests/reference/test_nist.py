@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.kernels.least_squares import Array, classical_variance, factorise, solve
+from coeflab.kernels.least_squares import BLOCK, Array, classical_variance, factorise, solve
 
 DATA = Path(__file__).parent / "data" / "nist"
 
@@ -167,3 +167,20 @@ def test_many_responses_are_solved_as_one_by_one() -> None:
         np.testing.assert_allclose(coefficients[:, k], one, atol=1e-13)
         np.testing.assert_allclose(residuals[:, k], left, atol=1e-13)
         np.testing.assert_allclose(variance[:, k], classical_variance(f, left), rtol=1e-12)
+
+
+@pytest.mark.parametrize("n", [2 * BLOCK, 2 * BLOCK + 1, 3 * BLOCK - 1])
+def test_a_table_of_several_blocks_is_one_table(n: int) -> None:
+    """Rows are factorised in blocks; the last column repeats another, which only shows when blocks are joined."""
+    rng = np.random.default_rng(n)
+    x = rng.uniform(-0.3, 0.3, n)
+    design = np.column_stack([np.ones(n), x, x**3, 2.0 * x])
+    y, weights = rng.normal(size=n), rng.uniform(0.5, 2.0, n)
+    f, full = factorise(design, weights), factorise(design[:, :3], weights)
+    assert (f.rank, full.rank) == (3, 3)
+    np.testing.assert_allclose(f.basis.T @ f.basis, np.eye(3), atol=1e-12)
+    root = np.sqrt(weights)
+    q, r = np.linalg.qr(design[:, :3] * root[:, None])
+    np.testing.assert_allclose(solve(full, y)[0], np.linalg.solve(r, q.T @ (root * y)), rtol=1e-9)
+    np.testing.assert_allclose(f.leverage, np.sum(q**2, axis=1), rtol=1e-9)
+    np.testing.assert_allclose(solve(f, y)[1], solve(full, y)[1], atol=1e-12)

@@ -1,0 +1,264 @@
+"""Linear and quadratic damping of every axis, X = Xu u + Xu|u| |u|u and its like for Y Z K M N.
+
+Fossen (2011), sections 6.4 and 8.1 for the form; equations 13-18 and 25-30 of the TJ-FlyingFish paper for its use.
+Only rows in which nothing but that axis's velocity moves are used, so the regression is dimensional.
+
+Signs: SNAME's derivatives are those of the force that the fluid exerts, so damping is *negative*. The TJ-FlyingFish
+paper writes F = -(Xu + Xu|u| |u|) u and prints the same numbers with a plus sign.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.options import one_of, parse_options, words
+from coeflab.core.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
+from coeflab.kernels.terms import Term
+from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.model.fit_result import FitResult
+from coeflab.model.fitted_model import FittedModel
+from coeflab.model.force_table import ForceTable
+from coeflab.model.regression import Rows, model_of
+from coeflab.model.scaling import Scaling
+
+summary = "linear and quadratic damping of every axis, from rows in which only its velocity moves"
+citations = ("fossen2011", "tj_flyingfish", "mackinnon1985", "bell2002")
+
+Array = NDArray[np.float64]
+FORMS = {"both": ("{0}", "{0}|{0}|"), "linear": ("{0}",), "quadratic": ("{0}|{0}|",)}
+AT_REST = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Options of the fit.
+
+    Attributes
+    ----------
+    axes : tuple of str
+        Which of u v w p q r.
+    terms : {"both", "linear", "quadratic"}
+        Terms of every axis.
+    offset : {"no", "yes"}
+        Whether a force at rest is fitted too. There is none physically; it shows the bias of a balance.
+    """
+
+    axes: tuple[str, ...] = words(*MOTIONS)
+    terms: str = one_of("both", *FORMS)
+    offset: str = one_of("no", "no", "yes")
+
+
+def _terms(axis: str, chosen: Options) -> tuple[Term, ...]:
+    known = {"{0}": Term(((axis, 1, False),)), "{0}|{0}|": Term(((axis, 1, False), (axis, 1, True)))}
+    rest = (Term(),) if chosen.offset == "yes" else ()
+    return tuple(known[t] for t in FORMS[chosen.terms]) + rest
+
+
+def _alone(table: ForceTable, axis: str, with_rest: bool) -> NDArray[np.bool_]:
+    """Rows in which only ``axis`` moves; rows at rest where the force at rest is wanted."""
+    keep = np.ones(len(table), dtype=bool)
+    for group in (LINEAR, ANGULAR):
+        largest = max(float(np.max(np.abs(table.motion[m]), initial=0.0)) for m in group)
+        for m in group:
+            still = np.abs(table.motion[m]) <= AT_REST * largest
+            if m != axis:
+                keep &= still
+            elif not with_rest:
+                keep &= ~still
+    for angle in table.controls.values():
+        keep &= angle == 0.0
+    return keep
+
+
+def _rows(tables: Sequence[ForceTable], axis: str, chosen: Options) -> Rows | None:
+    """The rows of one axis, None where no table has any."""
+    component = COMPONENTS[MOTIONS.index(axis)]
+    parts = []
+    for t in tables:
+        if component in t.forces:
+            index = np.flatnonzero(_alone(t, axis, chosen.offset == "yes") & t.usable[component])
+            if index.size and np.any(t.motion[axis][index] != 0.0):
+                parts.append((t, index))
+    if not parts:
+        return None
+    errors = [t.errors[component][i] for t, i in parts if component in t.errors]
+    return Rows(
+        x={axis: np.concatenate([t.motion[axis][i] for t, i in parts])},
+        y=np.concatenate([t.forces[component][i] for t, i in parts]),
+        errors=np.concatenate(errors) if len(errors) == len(parts) else None,
+        labels=tuple(t.labels[k] for t, i in parts for k in i),
+        response=component,
+        tables=tuple(t.name for t, _ in parts),
+        campaign=tables[0].campaign,
+        body=tables[0].body,
+    )
+
+
+def _symbols(rows: Rows, terms: Sequence[Term]) -> tuple[str, ...]:
+    """Xu, Xu|u|, and in words the force at rest, which is not SNAME's X0."""
+    return tuple(rows.response + t.suffix if t.factors else f"{rows.response} at rest" for t in terms)
+
+
+def _said(model: FittedModel, axis: str) -> tuple[str, ...]:
+    """Units, sign and doubts of one axis in words."""
+    laws = [s for s, t in zip(model.symbols, model.terms, strict=True) if t.factors]
+    out = [
+        f"{' and '.join(f'{s} in {derivative(s).unit}' for s in laws)}; derivatives of the fluid's force, so negative "
+        f"values damp. A paper that writes {model.response} = -(...) {axis} prints them with the other sign."
+    ]
+    for s in laws:
+        value, half = model.named(s)
+        if np.isfinite(half) and value - half > 0.0:
+            out.append(f"{s} is positive beyond its interval: it drives the motion. Check the axes and the signs.")
+        elif np.isfinite(half) and abs(value) <= half:
+            out.append(f"{s} is not told from zero by these rows.")
+    if np.all(model.x[axis] >= 0.0) or np.all(model.x[axis] <= 0.0):
+        out.append(f"All rows have {axis} of one sign; the form takes the force the other way as equal and opposite.")
+    return tuple(out)
+
+
+def _fitted(rows: Rows, axis: str, chosen: Options) -> FittedModel:
+    terms = _terms(axis, chosen)
+    symbols = _symbols(rows, terms)
+    law = " + ".join(f"{s} {t}" if t.factors else s for s, t in zip(symbols, terms, strict=True))
+    unit = "N*m" if rows.response in MOMENTS else "N"
+    model = model_of(rows, terms, symbols, f"{rows.response} = {law}", unit=unit)
+    return model.with_statements(_said(model, axis))
+
+
+def _coefficients(model: FittedModel, axis: str, citation: str) -> tuple[list[Coefficient], Array]:
+    """Dimensional coefficients of one axis with the covariance of their standard uncertainties (U95 / 2)^2."""
+    index = [i for i, t in enumerate(model.terms) if t.factors]
+    half = model.fit.half_width[index]
+    covariance = model.fit.correlation[np.ix_(index, index)] * np.outer(half, half) / 4.0
+    np.fill_diagonal(covariance, half**2 / 4.0)
+    low, high = float(model.domain.low[0]), float(model.domain.high[0])
+    out = []
+    for i, u95 in zip(index, half, strict=True):
+        value = float(model.fit.coefficients[i])
+        sure = bool(np.isfinite(u95))
+        status = Status.OK if sure else Status.SINGLE_ESTIMATOR if np.isfinite(value) else Status.TOO_FEW_POINTS
+        out.append(
+            Coefficient(
+                symbol=model.symbols[i],
+                value=value if np.isfinite(value) else None,
+                u95=float(u95) if sure else None,
+                status=status,
+                body=model.body,
+                parts=Parts(random=float(u95) if sure else None),
+                origin="fit",
+                unit=derivative(model.symbols[i]).unit,
+                table=model.table,
+                campaign=model.campaign,
+                estimator=f"{model.form}, {axis} from {low:g} to {high:g} {'rad/s' if axis in ANGULAR else 'm/s'}",
+                n_points=model.n_points,
+                citation=citation,
+            )
+        )
+    return out, covariance
+
+
+def _too_few(rows: Rows, axis: str, chosen: Options, citation: str) -> list[Coefficient]:
+    return [
+        Coefficient(
+            rows.response + t.suffix, None, None, Status.TOO_FEW_POINTS, rows.body, origin="fit",
+            table=", ".join(rows.tables), campaign=rows.campaign, n_points=len(rows.y), citation=citation,
+        )
+        for t in _terms(axis, chosen) if t.factors
+    ]  # fmt: skip
+
+
+def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
+    """Fit the damping of every axis that the tables of one campaign move alone.
+
+    Parameters
+    ----------
+    tables : sequence of ForceTable
+        Of one campaign, about one reference point.
+    scaling : Scaling
+        Length of the primes of the coefficients; the models are dimensional.
+    options : mapping
+        See `Options`.
+
+    Returns
+    -------
+    FitResult
+        One model per axis in N or N m over m/s or rad/s, and the coefficients primed by ``scaling`` at the density and
+        speed of the campaign (``coefficients.to_si(conditions)`` gives back the numbers of the models). Their U95 is
+        the scatter of the points; whether the form is right is seen from the runs test and the left-out error.
+
+    Raises
+    ------
+    InputError
+        Unknown axis; no row in which only one of the axes moves; too few such rows on every axis.
+    """
+    chosen = parse_options(Options, options, "linear_quadratic_damping")
+    if wrong := [a for a in chosen.axes if a not in MOTIONS]:
+        raise InputError(
+            shown(wrong[0]), f"some of {', '.join(MOTIONS)}", column="linear_quadratic_damping.axes"
+        )  # fmt: skip
+    first = tables[0]
+    gathered = {a: r for a in dict.fromkeys(chosen.axes) if (r := _rows(tables, a, chosen)) is not None}
+    if not gathered:
+        raise InputError(
+            f"no row of {first.campaign} in which only one of {', '.join(chosen.axes)} moves and its force is given",
+            "columns such as u [m/s], X [N] with the other velocities zero", column="linear_quadratic_damping",
+            advice="A table without the column u, or with angles, moves ahead in every row; write the six velocities "
+            "and, beside them, U [m/s] as the speed that primes refer to.",
+        )  # fmt: skip
+    models: list[FittedModel] = []
+    coefficients: list[Coefficient] = []
+    blocks: list[Array] = []
+    shortfall: InputError | None = None
+    for axis, rows in gathered.items():
+        try:
+            model = _fitted(rows, axis, chosen)
+        except InputError as why:
+            shortfall = why
+            few = _too_few(rows, axis, chosen, first.source.citation)
+            coefficients += few
+            blocks.append(np.full((len(few), len(few)), np.nan))
+            continue
+        found, block = _coefficients(model, axis, first.source.citation)
+        models.append(model)
+        coefficients += found
+        blocks.append(block)
+    if not models and shortfall is not None:
+        raise shortfall
+    dimensional = CoefficientSet(
+        tuple(coefficients),
+        _block_diagonal(blocks),
+        scaling,
+        first.reference_point,
+        first.datum,
+        first.body,
+        first.conditions,
+    )
+    return FitResult(
+        fit="linear_quadratic_damping",
+        campaign=first.campaign,
+        body=first.body,
+        coefficients=dimensional.to_prime(),
+        sweeps=(),
+        citations=citations,
+        settings={"axes": " ".join(chosen.axes), "terms": chosen.terms, "offset": chosen.offset},
+        models=tuple(models),
+    )
+
+
+def _block_diagonal(blocks: Sequence[Array]) -> Array:
+    """Axes share no rows, so their errors are independent; an unknown variance makes its row and column NaN."""
+    size = sum(map(len, blocks))
+    out, at = np.zeros((size, size)), 0
+    for b in blocks:
+        out[at : at + len(b), at : at + len(b)] = b
+        at += len(b)
+    unknown = np.isnan(np.diag(out))
+    out[unknown, :] = out[:, unknown] = np.nan
+    return out

@@ -1,0 +1,200 @@
+"""A fitted table or force law as the parameter file holds it, since version 1.1, and the way back to its values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from coeflab.core.errors import InputError, shown
+from coeflab.kernels.domain import inside
+from coeflab.kernels.extrapolation import clamped, taper_weight
+from coeflab.kernels.terms import Term, design
+from coeflab.model.fitted_model import Extrapolation
+from coeflab.model.schema_types import Finite, Name, NotNegative, Positive, Strict
+
+Array = NDArray[np.float64]
+
+
+class ModelVariable(Strict):
+    """A variable of a fitted model."""
+
+    name: Literal["alpha", "beta", "u", "v", "w", "p", "q", "r", "dr", "ds", "db"]
+    unit: Literal["rad", "1", "m/s", "rad/s"] = Field(description="1: v/U for velocities, r L/U for rates")
+
+
+class ModelFactor(Strict):
+    """A power of a variable."""
+
+    variable: Name
+    power: Annotated[int, Field(ge=1, le=40)]
+    absolute: bool = Field(default=False, description="true: |variable|^power")
+
+
+class ModelTerm(Strict):
+    """A product of powers with its coefficient; null where the data do not determine it."""
+
+    symbol: Name
+    factors: tuple[ModelFactor, ...] = Field(description="empty for the constant")
+    value: Finite | None
+    half_width_95: NotNegative | None
+
+
+class ModelDomain(Strict):
+    """Where the model may be read, in the order of `variables`."""
+
+    low: tuple[Finite, ...]
+    high: tuple[Finite, ...]
+    half_spaces: tuple[tuple[Finite, ...], ...] = Field(
+        description="rows [a, b] with a.x + b <= 0 inside the convex hull of the data"
+    )
+    extrapolation: Literal["refuse", "clamp", "taper"]
+
+
+class ModelArea(Strict):
+    """What the coefficient is divided by beside 1/2 rho V^2; moments also by the length of `scaling`."""
+
+    value: Positive = Field(description="m^2")
+    name: Name
+
+
+class ParameterModel(Strict):
+    """One response as a linear combination of terms."""
+
+    response: Name
+    unit: Name = Field(description="1: nondimensional")
+    form: str
+    variables: Annotated[tuple[ModelVariable, ...], Field(min_length=1)]
+    terms: Annotated[tuple[ModelTerm, ...], Field(min_length=1)]
+    covariance: tuple[tuple[Finite | None, ...], ...] = Field(
+        description="of standard uncertainties (half_width_95 / 2) of the terms; null where not determined"
+    )
+    domain: ModelDomain
+    n_points: Annotated[int, Field(ge=0)]
+    rms: NotNegative
+    press_rms: NotNegative | None = Field(description="of every point predicted from the others")
+    table: str
+    campaign: str
+    post_selection: bool = Field(default=False, description="true: terms chosen on the same data, intervals too narrow")
+    statements: tuple[str, ...] = ()
+    area: ModelArea | None = None
+
+    @model_validator(mode="after")
+    def _consistent(self) -> ParameterModel:
+        names = self.names
+        if len(set(names)) != len(names):
+            raise ValueError(f"{self.response}: a variable stands more than once")
+        for t in self.terms:
+            strange = sorted({f.variable for f in t.factors} - set(names))
+            if strange:
+                raise ValueError(f"{self.response}: {t.symbol} uses {', '.join(strange)}, which is no variable")
+            if t.value is None and t.half_width_95 is not None:
+                raise ValueError(f"{t.symbol}: an interval without a value")
+        d, k = len(names), len(self.terms)
+        edges = (self.domain.low, self.domain.high)
+        if any(len(e) != d for e in edges) or any(len(row) != d + 1 for row in self.domain.half_spaces):
+            raise ValueError(f"{self.response}: the domain does not have {d} variables")
+        if any(a > b for a, b in zip(*edges, strict=True)):
+            raise ValueError(f"{self.response}: the domain's low is above its high")
+        if len(self.covariance) != k or any(len(row) != k for row in self.covariance):
+            raise ValueError(f"{self.response}: the covariance of {k} terms must be {k} x {k}")
+        for i, row in enumerate(self.covariance):
+            diagonal = row[i]
+            if diagonal is not None and diagonal < 0.0:
+                raise ValueError(f"{self.response}: the variance of {self.terms[i].symbol} is negative")
+            if any(not _same(value, self.covariance[j][i]) for j, value in enumerate(row)):
+                raise ValueError(f"{self.response}: the covariance is not symmetric")
+        return self
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The variables."""
+        return tuple(v.name for v in self.variables)
+
+    def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Values, 95 % half-widths of the mean, and whether each point lies inside the convex hull of the data.
+
+        Outside the hull the model's rule decides. ``refuse`` gives NaN. ``clamp`` gives the value at the nearest
+        point of the hull's bounding box. ``taper`` blends the free continuation into that value within a tenth of the
+        box (`coeflab.kernels.extrapolation.taper_weight`). Inside the box but outside the hull, both give the model's
+        own value. A point at which an undetermined term counts is NaN, and so is a half-width without covariance.
+
+        Parameters
+        ----------
+        columns : mapping of variable to (n,) array
+            In the units of `variables`.
+
+        Raises
+        ------
+        InputError
+            A variable is missing or unknown.
+        """
+        if set(columns) != set(self.names):
+            raise InputError(
+                f"values for {', '.join(columns) or 'nothing'}", f"values for {', '.join(self.names)}",
+                column=self.response,
+            )  # fmt: skip
+        points = np.column_stack([np.asarray(columns[v], dtype=np.float64) for v in self.names])
+        domain = self.domain
+        within = np.asarray(inside(np.array(domain.half_spaces).reshape(-1, len(self.names) + 1), points), dtype=bool)
+        rule = Extrapolation(domain.extrapolation)
+        rows = self._rows(points)
+        if rule is not Extrapolation.REFUSE:
+            low, high = np.array(domain.low), np.array(domain.high)
+            edge = self._rows(clamped(points, low, high))
+            free = taper_weight(points, low, high) if rule is Extrapolation.TAPER else np.zeros(len(points))
+            some = free[:, None] > 0.0
+            rows = np.where(some, edge + free[:, None] * np.where(some, rows - edge, 0.0), edge)
+        values = rows @ np.array([0.0 if t.value is None else t.value for t in self.terms])
+        unknown = np.array([t.value is None for t in self.terms])
+        covariance = np.array([[np.nan if c is None else c for c in row] for row in self.covariance], dtype=np.float64)
+        bare = ~unknown & np.isnan(np.diag(covariance))
+        spread = np.sqrt(np.maximum(np.einsum("ij,ij->i", rows @ np.nan_to_num(covariance), rows), 0.0))
+        void = np.any(rows[:, unknown] != 0.0, axis=1)
+        if rule is Extrapolation.REFUSE:
+            void |= ~within
+        half = np.where(void | np.any(rows[:, bare] != 0.0, axis=1), np.nan, 2.0 * spread)
+        return np.where(void, np.nan, values), half, within
+
+    def _rows(self, points: Array) -> Array:
+        terms = tuple(Term(tuple((f.variable, f.power, f.absolute) for f in t.factors)) for t in self.terms)
+        return design(terms, dict(zip(self.names, points.T, strict=True)))
+
+
+def _same(a: float | None, b: float | None) -> bool:
+    if a is None or b is None:
+        return a is b
+    return math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-300)
+
+
+def chosen(models: tuple[ParameterModel, ...], response: str, variables: tuple[str, ...]) -> tuple[ParameterModel, ...]:
+    """The models of a response (empty: of all) over exactly these variables.
+
+    Raises
+    ------
+    InputError
+        No models, no such response, an unknown variable, or one without values.
+    """
+    if not models:
+        raise InputError(
+            "a parameter file without fitted tables", "one with models",
+            advice="Run a study with a fit such as polynomial or surface.",
+        )  # fmt: skip
+    wanted = response.removesuffix("'")
+    found = [m for m in models if not response or m.response.removesuffix("'") == wanted]
+    if not found:
+        known = dict.fromkeys(m.response for m in models)
+        raise InputError(f"no fitted table of {shown(response)}", f"one of {', '.join(known)}", column="--response")
+    names = dict.fromkeys(v for m in found for v in m.names)
+    for v in variables:
+        if v not in names:
+            raise InputError(f"the unknown variable {shown(v)}", f"one of {', '.join(names)}")
+    matching = tuple(m for m in found if set(m.names) == set(variables))
+    if not matching:
+        forms = dict.fromkeys(f"{' and '.join(m.names)} ({m.response})" for m in found)
+        raise InputError(f"values for {' and '.join(variables) or 'no variable'}", f"values for {' or '.join(forms)}")
+    return matching

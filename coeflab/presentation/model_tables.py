@@ -1,0 +1,64 @@
+"""Fitted force laws and tables, as tables to be shown."""
+
+from __future__ import annotations
+
+import math
+
+from coeflab.model.fitted_model import FittedModel
+from coeflab.model.table import ABSENT, Table, number, percent, probability
+
+
+def terms(model: FittedModel) -> Table:
+    """Every coefficient with its interval; what the data leave open is said below, not printed as a number."""
+    rows = []
+    for symbol, term, value, half in zip(
+        model.symbols, model.terms, model.fit.coefficients, model.fit.half_width, strict=True
+    ):
+        known = math.isfinite(value)
+        rows.append(
+            (
+                symbol,
+                str(term),
+                number(float(value), 5) if known else "not determined",
+                number(float(half), 3) if known else ABSENT,
+                percent(float(half), float(value)) if known else ABSENT,
+            )
+        )
+    notes = list(model.statements)
+    if model.post_selection:
+        notes.insert(0, "The terms were selected on these data: the intervals are narrower than they claim.")
+    title = f"{model.response} [{model.unit if model.unit != '1' else '-'}], {model.form}: {model.campaign}"
+    return Table(title, ("", "term", "value", "95 %", "95 %"), tuple(rows), tuple(notes), frozenset({0, 1}))
+
+
+def quality(models: tuple[FittedModel, ...]) -> Table:
+    """How well each response is held, and how well a left-out point is predicted."""
+    rows = tuple(
+        (
+            m.response,
+            m.form,
+            str(m.n_points),
+            str(m.fit.rank),
+            number(m.fit.rms, 3),
+            number(m.fit.press_rms, 3),
+            percent(m.fit.press_rms, float(m.y.max() - m.y.min()) or None),
+            number(m.fit.r_squared, 5),
+            number(m.fit.aicc, 5),
+            probability(m.fit.runs_probability),
+            number(m.fit.condition, 3),
+            "; ".join(
+                f"{v} {number(float(a), 3)} .. {number(float(b), 3)}"
+                for v, a, b in zip(m.domain.variables, m.domain.low, m.domain.high, strict=True)
+            ),
+            m.domain.rule.value,
+        )
+        for m in models
+    )
+    headers = (
+        "", "form", "n", "terms", "rms", "left out", "of range", "R2", "AICc", "runs", "condition", "domain", "outside",
+    )  # fmt: skip
+    notes = (
+        "left out: rms error of every point predicted from the others (PRESS); runs: probability of so few or so many "
+        "runs of one sign by chance; outside: what a reader beyond the domain is to do.",
+    )
+    return Table("Quality of the fitted models", headers, rows, notes, frozenset({0, 1, 11, 12}))
