@@ -26,6 +26,11 @@ WORKS: dict[str, str] = {
     "Biometrika 76, 1989.",
     "ittc_uncertainty": "ITTC, Uncertainty Analysis in CFD, Verification and Validation, 7.5-03-01-01, and "
     "Uncertainty Analysis for Manoeuvring Predictions based on Captive Manoeuvring Tests, 7.5-02-06-04.",
+    "tj_flyingfish": "Modeling and operating point analysis for aquatic translational motion of a cross-medium vehicle "
+    "(TJ-FlyingFish), equations 13-18, 25-30, 49 and 50.",
+    "thauv": "Analysis of a New Twin Hybrid Autonomous Underwater Vehicle (THAUV), equations 28-30 and Table 3.",
+    "huuv2025": "T. Talarczyk, M. Morawski, M. Malec, M. Garncarz, Identification of Motion Model Parameters for a Small "
+    "Hybrid-Propelled Unmanned Underwater Vehicle (HUUV), 2025.",
 }
 
 

@@ -10,7 +10,7 @@ paper writes F = -(Xu + Xu|u| |u|) u and prints the same numbers with a plus sig
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -129,7 +129,7 @@ def _fitted(rows: Rows, axis: str, chosen: Options) -> FittedModel:
     law = " + ".join(f"{s} {t}" if t.factors else s for s, t in zip(symbols, terms, strict=True))
     unit = "N*m" if rows.response in MOMENTS else "N"
     model = model_of(rows, terms, symbols, f"{rows.response} = {law}", unit=unit)
-    return model.with_statements(_said(model, axis))
+    return replace(model, statements=(*_said(model, axis), *model.statements))
 
 
 def _coefficients(model: FittedModel, axis: str, citation: str) -> tuple[list[Coefficient], Array]:

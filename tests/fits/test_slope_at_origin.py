@@ -227,7 +227,7 @@ def test_planted_static_and_control_derivatives_come_back_at_the_real_settings()
         assert found.coefficients[symbol].value == pytest.approx(
             value, rel=1e-9, abs=2e-8 if symbol.endswith("dr") else 0.0
         ), symbol
-    assert "Y'v" in found.sweep("Ydr").offset
+    assert "Yv' v'" in found.sweep("Ydr").offset
 
 
 def arm() -> tuple[ForceTable, ForceTable]:

@@ -1,0 +1,237 @@
+"""A control surface in its own flow: C_D, C_L and C_m of the effective angle delta - alpha.
+
+Equations 15-17 of the HUUV paper: the forces of the elevators depend on delta - alpha only. C_L and C_m are odd (linear
+and, if wanted, cubic), C_D is even (constant and quadratic).
+
+Signs. alpha = atan2(w, u) in FRD, L is upward and normal to the flow, M nose up. With **delta - alpha** a surface at
+delta = alpha lies along the flow, so a positive delta turns its leading edge *down* and lowers lift: the linear
+coefficient of C_L is negative. With **delta + alpha** a positive delta turns the trailing edge down, as in Feldman's
+equations (1979), and raises lift: the linear coefficient is positive. The text of the HUUV paper prints delta - alpha
+for axes that fit x forward, y port, z up, where alpha has the other sign; in FRD that is delta + alpha. Its figures
+of the elevator are not in that text, so which way its delta is positive is not known. The fit states what the data say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError
+from coeflab.core.options import bounded, one_of, parse_options, words
+from coeflab.core.symbols import ANGULAR
+from coeflab.kernels.linear_model import fit_linear
+from coeflab.kernels.robust import t_probability
+from coeflab.kernels.terms import Term, design
+from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.model.fit_result import FitResult
+from coeflab.model.fitted_model import FittedModel
+from coeflab.model.force_table import ForceTable
+from coeflab.model.regression import Area, Rows, collect, model_of, variable
+from coeflab.model.scaling import Scaling
+
+summary = "drag, lift and moment of a control surface over its angle to the flow, delta - alpha"
+citations = ("huuv2025", "feldman1979", "mackinnon1985", "bell2002")
+
+Array = NDArray[np.float64]
+NEEDS = {"C_D": "X", "C_L": "Z", "C_m": "M"}
+DERIVATIVES = {"C_L": ("Zds", -1.0), "C_m": ("Mds", 1.0)}
+NEAR_ZERO = float(np.radians(0.3))
+UNLIKELY = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Options of the fit.
+
+    Attributes
+    ----------
+    effective : {"delta-alpha", "delta+alpha"}
+        Angle between surface and flow; see the signs above.
+    cubic : {"no", "yes"}
+        Whether C_L and C_m have a cubic term.
+    area : float
+        m^2; 0 means L^2, the square of the scaling's length.
+    area_name : tuple of str
+        What that area is, such as ``elevator planform``; needed with ``area``.
+    surface : {"ds", "db"}
+        Which control angle.
+    """
+
+    effective: str = one_of("delta-alpha", "delta-alpha", "delta+alpha")
+    cubic: str = one_of("no", "no", "yes")
+    area: float = bounded(0.0, 0.0, 1e6)
+    area_name: tuple[str, ...] = words()
+    surface: str = one_of("ds", "ds", "db")
+
+
+def _area(chosen: Options, scaling: Scaling) -> Area:
+    name = " ".join(chosen.area_name)
+    if bool(chosen.area) != bool(name):
+        raise InputError(
+            "an area without its name" if chosen.area else "the name of an area without the area",
+            "area (m^2) and area_name together, or neither for L^2", column="control_surface.area",
+        )  # fmt: skip
+    return Area(chosen.area or scaling.length**2, name or "L^2", scaling.length)
+
+
+def _steady(table: ForceTable, surface: str) -> ForceTable:
+    """The table with only those rows in use that neither drift nor turn nor move another surface."""
+    keep = np.abs(variable(table, "beta", 1.0)) <= NEAR_ZERO
+    for m in ANGULAR:
+        keep &= table.motion[m] == 0.0
+    for name, angle in table.controls.items():
+        if name != surface:
+            keep &= angle == 0.0
+    return replace(table, usable={c: mask & keep for c, mask in table.usable.items()})
+
+
+def _terms(response: str, angle: str, chosen: Options) -> tuple[tuple[Term, ...], tuple[str, ...]]:
+    if response == "C_D":
+        powers: tuple[int, ...] = (0, 2)
+    else:
+        powers = (1, 3) if chosen.cubic == "yes" else (1,)
+    terms = tuple(Term(((angle, n, False),)) if n else Term() for n in powers)
+    return terms, tuple(f"{response}{n}" for n in powers)
+
+
+def _effective(rows: Rows, chosen: Options) -> tuple[Rows, str]:
+    sign = -1.0 if chosen.effective == "delta-alpha" else 1.0
+    angle = chosen.effective.replace("-", " - ").replace("+", " + ")
+    return replace(rows, x={angle: rows.x[chosen.surface] + sign * rows.x["alpha"]}), angle
+
+
+def _told(rows: Rows, model: FittedModel, chosen: Options) -> str:
+    """Whether alpha acts as the effective angle says: the slope that is left over for alpha alone."""
+    alpha = rows.x["alpha"]
+    if np.ptp(alpha) <= NEAR_ZERO:
+        return "alpha does not change: that only the effective angle counts is assumed, not tested."
+    extra = fit_linear(np.column_stack([design(model.terms, model.x), alpha]), rows.y, rows.errors)
+    left, half, freedom = float(extra.coefficients[-1]), float(extra.half_width[-1]), float(extra.freedom[-1])
+    error = float(np.sqrt(extra.covariance[-1, -1]))
+    if not np.isfinite(half) or error == 0.0:
+        return "The rows do not tell whether alpha acts through the effective angle alone."
+    chance = float(t_probability(left / error, freedom))
+    found = f"a slope of {left:.3g} +- {half:.2g} per radian is left for alpha alone (p = {chance:.2g})"
+    if chance >= UNLIKELY:
+        return f"As the effective angle says, alpha and delta act together: {found}."
+    other = "delta+alpha" if chosen.effective == "delta-alpha" else "delta-alpha"
+    return f"alpha acts on {model.response} otherwise than through {chosen.effective}: {found}. Try effective = {other}; if that says the same, the table holds more than the surface's own force."  # fmt: skip
+
+
+def _lifts(model: FittedModel) -> str:
+    value, half = model.named("C_L1")
+    if not np.isfinite(half) or abs(value) <= half:
+        return "The rows do not tell which sign of delta raises lift."
+    return f"A {'positive' if value > 0.0 else 'negative'} delta raises lift."
+
+
+def _fitted(rows: Rows, area: Area, chosen: Options) -> FittedModel:
+    used, angle = _effective(rows, chosen)
+    if np.ptp(used.x[angle]) <= NEAR_ZERO:
+        raise InputError(
+            f"one effective angle on every row of {rows.campaign}", "several angles of the surface",
+            column="control_surface",
+        )  # fmt: skip
+    terms, symbols = _terms(rows.response, angle, chosen)
+    parity = "constant + square" if rows.response == "C_D" else "line + cubic" if len(terms) > 1 else "line"
+    by = f"{area.name} ({area.area:.6g} m^2)"
+    by += f" and the length {area.length:.6g} m" if rows.response == "C_m" else ""
+    model = model_of(used, terms, symbols, f"{parity} in {angle} [rad], by {by}")
+    said = [_told(rows, model, chosen)] if rows.response != "C_D" else []
+    if rows.response == "C_L":
+        said.insert(0, _lifts(model))
+    return replace(model, statements=(*said, *model.statements))
+
+
+def _coefficient(model: FittedModel, area: Area, scaling: Scaling, surface: str, citation: str) -> Coefficient | None:
+    """Zds' or Mds' at alpha = 0, where Z = -L and d(effective angle)/d(delta) = 1."""
+    if model.response not in DERIVATIVES:
+        return None
+    symbol, sign = DERIVATIVES[model.response]
+    k = area.area / scaling.length**2
+    value, half = model.named(f"{model.response}1")
+    known, sure = bool(np.isfinite(value)), bool(np.isfinite(half))
+    u95 = float(half * k) if sure else None
+    status = Status.OK if sure else Status.SINGLE_ESTIMATOR if known else Status.TOO_FEW_POINTS
+    return Coefficient(
+        symbol=symbol.replace("ds", surface),
+        value=float(sign * value * k) if known else None,
+        u95=u95,
+        status=status,
+        body=model.body,
+        parts=Parts(random=u95),
+        origin="fit",
+        table=model.table,
+        campaign=model.campaign,
+        estimator=f"{model.response}1, {model.form}",
+        n_points=model.n_points,
+        citation=citation,
+    )
+
+
+def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
+    """Fit the forces of a control surface over its angle to the flow.
+
+    Parameters
+    ----------
+    tables : sequence of ForceTable
+        Of one campaign, about one reference point; the forces of the surface itself. Rows that drift (beyond 0.3
+        degrees), turn, or move another surface are left out.
+    scaling : Scaling
+        Its length divides moments, and its square is the area by default.
+    options : mapping
+        See `Options`.
+
+    Returns
+    -------
+    FitResult
+        Models of those of ``C_D``, ``C_L`` and ``C_m`` whose columns X, Z, M the tables have, and the primes ``Zds'``
+        and ``Mds'`` at zero angle of attack; errors of the two are taken as independent.
+
+    Raises
+    ------
+    InputError
+        No column of the control angle, none of X Z M, one of them missing that a response needs, area without a name,
+        or no more rows than terms.
+    """
+    chosen = parse_options(Options, options, "control_surface")
+    area = _area(chosen, scaling)
+    first = tables[0]
+    column = {"ds": "delta_s", "db": "delta_b"}[chosen.surface]
+    moved = [t for t in tables if chosen.surface in t.controls]
+    if not moved:
+        raise InputError(f"no {column} in {first.campaign}", f"a column {column} [deg]", column="control_surface")
+    used = [_steady(t, chosen.surface) for t in moved]
+    responses = [r for r, c in NEEDS.items() if any(c in t.forces for t in used)]
+    if not responses:
+        raise InputError(f"none of X, Z, M in {first.campaign}", "at least one of them", column="control_surface")
+    models = tuple(
+        _fitted(collect(used, (chosen.surface, "alpha"), r, area), area, chosen) for r in responses
+    )  # fmt: skip
+    made = [_coefficient(m, area, scaling, chosen.surface, first.source.citation) for m in models]
+    coefficients = tuple(c for c in made if c is not None)
+    deviation = np.array([np.nan if c.u95 is None else c.u95 / 2.0 for c in coefficients])
+    covariance = np.where(np.eye(len(deviation)) > 0.0, deviation**2, 0.0)
+    unknown = np.isnan(deviation)
+    covariance[unknown, :] = covariance[:, unknown] = np.nan
+    return FitResult(
+        fit="control_surface",
+        campaign=first.campaign,
+        body=first.body,
+        coefficients=CoefficientSet(
+            coefficients, covariance, scaling, first.reference_point, first.datum, first.body
+        ),
+        sweeps=(),
+        citations=citations,
+        settings={
+            "effective": chosen.effective,
+            "cubic": chosen.cubic,
+            "area": f"{area.area:.6g} m^2, {area.name}",
+            "surface": chosen.surface,
+        },
+        models=models,
+    )  # fmt: skip

@@ -1,0 +1,185 @@
+"""Polynomials in one motion variable: resistance, side force, moments over an angle, a velocity or a rate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError
+from coeflab.core.options import bounded, one_of, parse_options, words
+from coeflab.core.symbols import COMPONENTS, primed
+from coeflab.kernels.terms import Term, power_terms
+from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.model.fit_result import FitResult
+from coeflab.model.fitted_model import Extrapolation, FittedModel, in_words
+from coeflab.model.force_table import ForceTable
+from coeflab.model.regression import ANGLES, Area, collect, model_of
+from coeflab.model.scaling import Scaling
+from coeflab.model.swept import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
+
+summary = "polynomials in one variable (angle, velocity, rate, control), with their domain and intervals"
+citations = ("mackinnon1985", "bell2002", "imbens2016")
+
+LONGEST_SYMBOL = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Options of the fit.
+
+    Attributes
+    ----------
+    variable : str
+        ``alpha``, ``beta`` and controls in radians; velocities and rates primed.
+    responses : tuple of str
+        X Y Z K M N, C_D C_S C_L or C_l C_m C_n; by default every component that the tables have.
+    degree : int
+    parity : str
+        ``odd`` or ``even`` powers only, or ``full``.
+    extrapolation : str
+        What a reader outside the data is to do.
+    area : float
+        m^2; 0 is the square of the primes' length.
+    area_name : str
+        What the area is.
+    """
+
+    variable: str = one_of("beta", "alpha", "beta", "v", "w", "p", "q", "r", "dr", "ds", "db")
+    responses: tuple[str, ...] = words()
+    degree: int = bounded(3, 0, 20)
+    parity: str = one_of("full", "full", "odd", "even")
+    extrapolation: str = one_of("refuse", "refuse", "clamp", "taper")
+    area: float = bounded(0.0, 0.0, 1e6)
+    area_name: str = one_of(PRIMES, *AREAS)
+
+
+def _symbol(name: str, term: Term, area: Area) -> str:
+    """SNAME where there is one (``Yvvv'``), else the response with the term (``C_D_beta^2``)."""
+    if name in COMPONENTS and area.name == PRIMES and not any(v in ANGLES for v, _, _ in term.factors):
+        return primed(name + term.suffix)
+    return f"{named_response(name, area)}_{term if term.factors else 0}"
+
+
+def _model(
+    tables: Sequence[ForceTable], name: str, terms: tuple[Term, ...], area: Area, chosen: Options, said: tuple[str, ...]
+) -> FittedModel:
+    rows = collect(tables, (chosen.variable,), name, area)
+    symbols = tuple(_symbol(name, t, area) for t in terms)
+    parity = "" if chosen.parity == "full" else f", {chosen.parity}"
+    model = model_of(
+        rows,
+        terms,
+        symbols,
+        f"polynomial of degree {chosen.degree}{parity}, in {chosen.variable}",
+        rule=Extrapolation(chosen.extrapolation),
+    )
+    return replace(model, response=named_response(name, area), statements=(*said, *in_words(model.fit, symbols)))
+
+
+def _coefficients(
+    model: FittedModel, chosen: Options, area: Area, citation: str
+) -> tuple[list[Coefficient], NDArray[np.float64]]:
+    """Those of a model that have SNAME names, with the covariance of standard uncertainties (U95/2)."""
+    named = chosen.variable not in ANGLES and area.name == PRIMES and model.response.removesuffix("'") in COMPONENTS
+    keep = [i for i, t in enumerate(model.terms) if named and t.degree <= LONGEST_SYMBOL]
+    x = model.x[chosen.variable]
+    low, high = float(x.min()), float(x.max())
+    if chosen.variable in ("v", "w"):
+        low, high = float(np.arcsin(max(low, -1.0))), float(np.arcsin(min(high, 1.0)))
+    out = []
+    for i in keep:
+        value, half = float(model.fit.coefficients[i]), float(model.fit.half_width[i])
+        u95 = half if np.isfinite(half) else None
+        status = Status.SINGLE_ESTIMATOR if u95 is None else Status.OK
+        out.append(
+            Coefficient(
+                symbol=model.symbols[i].removesuffix("'"),
+                value=value if np.isfinite(value) else None,
+                u95=u95,
+                status=status if np.isfinite(value) else Status.TOO_FEW_POINTS,
+                body=model.body,
+                parts=Parts(random=u95),
+                origin="fit",
+                table=model.table,
+                campaign=model.campaign,
+                estimator=f"{model.form}; model form not assessed",
+                window=(low, high),
+                n_points=model.n_points,
+                citation=citation,
+            )
+        )
+    deviation = np.sqrt(np.diag(model.fit.covariance))
+    ratio = np.divide(model.fit.half_width / 2.0, deviation, out=np.ones_like(deviation), where=deviation > 0.0)
+    covariance = (model.fit.covariance * np.outer(ratio, ratio))[np.ix_(keep, keep)]
+    void = np.array([c.u95 is None for c in out], dtype=bool)
+    covariance[void, :] = covariance[:, void] = np.nan
+    return out, covariance
+
+
+def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
+    """Fit a polynomial in one variable to every response.
+
+    Only rows in which no other variable moves are used.
+
+    Parameters
+    ----------
+    tables : sequence of ForceTable
+        Of one campaign, about one reference point.
+    scaling : Scaling
+        Length of the primes.
+    options : mapping
+        See `Options`.
+
+    Returns
+    -------
+    FitResult
+        Without sweeps; a primed component over a velocity, rate or control also gives SNAME coefficients, whose U95
+        holds the scatter only, as one form says nothing about another.
+
+    Raises
+    ------
+    InputError
+        No such sweep, a response that the tables lack, more terms than rows, or an area without its name.
+    """
+    chosen = parse_options(Options, options, "polynomial")
+    area = area_of(chosen.area, chosen.area_name, scaling)
+    terms = power_terms((chosen.variable,), chosen.degree, "tensor", {chosen.variable: chosen.parity})
+    if not terms:
+        raise InputError("an odd polynomial of degree 0", "a degree of at least 1", column="polynomial.degree")
+    used, said = only_moving(tables, (chosen.variable,), scaling.length)
+    names = chosen.responses or tuple(c for c in COMPONENTS if allowed(used, c, area))
+    if not names:
+        raise InputError(
+            f"no usable force in a sweep over {chosen.variable}", "one of X Y Z K M N", column="polynomial.responses"
+        )
+    models = tuple(_model(allowed(used, n, area) or used, n, terms, area, chosen, said) for n in dict.fromkeys(names))
+    first = tables[0]
+    parts = [_coefficients(m, chosen, area, first.source.citation) for m in models]
+    coefficients = tuple(c for some, _ in parts for c in some)
+    covariance = np.zeros((len(coefficients), len(coefficients)))
+    at = 0
+    for some, block in parts:
+        covariance[at : at + len(some), at : at + len(some)] = block
+        at += len(some)
+    void = np.array([c.u95 is None for c in coefficients], dtype=bool)
+    covariance[void, :] = covariance[:, void] = np.nan
+    return FitResult(
+        fit="polynomial",
+        campaign=first.campaign,
+        body=first.body,
+        coefficients=CoefficientSet(coefficients, covariance, scaling, first.reference_point, first.datum, first.body),
+        sweeps=(),
+        citations=citations,
+        settings={
+            "variable": chosen.variable,
+            "degree": str(chosen.degree),
+            "parity": chosen.parity,
+            "extrapolation": chosen.extrapolation,
+            **area_settings(area),
+        },
+        models=models,
+    )

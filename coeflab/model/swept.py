@@ -1,0 +1,110 @@
+"""Rows of a table in which nothing but the wanted variables moves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from coeflab.core.errors import InputError
+from coeflab.core.symbols import COMPONENTS, FORCES
+from coeflab.model.force_table import Exclusion, ForceTable
+from coeflab.model.regression import WIND, Area, response
+from coeflab.model.scaling import Scaling
+
+AT_REST = np.sin(np.radians(0.05))
+MOVED_BY = {"alpha": ("w",), "beta": ("v",)}
+PRIMES = "L^2"
+AREAS = (PRIMES, "frontal", "wetted", "projected", "planform", "volume^(2/3)")
+
+
+def area_of(value: float, name: str, scaling: Scaling) -> Area:
+    """The area that force coefficients are divided by; 0 is the square of the primes' length.
+
+    Parameters
+    ----------
+    value : float
+        m^2, or 0.
+    name : str
+        One of `AREAS`.
+
+    Raises
+    ------
+    InputError
+        An area without its name, or a name without its area.
+    """
+    if value == 0.0 and name == PRIMES:
+        return Area(scaling.length**2, PRIMES, scaling.length)
+    if value == 0.0 or name == PRIMES:
+        raise InputError(
+            f"area {value:g} m^2 named {name}", "an area above zero with its name, or neither", column="area",
+            advice=f"Names: {', '.join(AREAS[1:])}. Without both the area is {PRIMES} of {scaling}.",
+        )  # fmt: skip
+    return Area(value, name, scaling.length)
+
+
+def area_settings(area: Area) -> dict[str, str]:
+    """The area among the settings of a fit, from which the parameter file takes it."""
+    return {"area": repr(area.area), "area_name": area.name}
+
+
+def named_response(name: str, area: Area) -> str:
+    """``Y'`` for primes, ``C_Y`` by another area; ``C_D`` and its like stay."""
+    if name not in COMPONENTS:
+        return name
+    return f"{name}'" if area.name == PRIMES else f"C_{name}"
+
+
+def allowed(tables: Sequence[ForceTable], name: str, area: Area) -> list[ForceTable]:
+    """The tables that have what a response needs."""
+    if name in WIND and not any(c in t.forces for t in tables for c in FORCES):
+        return []
+    out = []
+    for table in tables:
+        try:
+            _, _, usable = response(table, name, area)
+        except InputError:
+            continue
+        if np.any(usable):
+            out.append(table)
+    return out
+
+
+def only_moving(
+    tables: Sequence[ForceTable], variables: Sequence[str], length: float
+) -> tuple[list[ForceTable], tuple[str, ...]]:
+    """The tables with the rows out of use in which another variable moves.
+
+    Surge does not count. Another variable is at rest within the sine of 0.05 degrees, in primes.
+
+    Returns
+    -------
+    tables : list of ForceTable
+        Tables without such a row are left out.
+    statements : tuple of str
+        How many rows were left out, where any.
+    """
+    free = {"u"} | {m for v in variables for m in MOVED_BY.get(v, (v,))}
+    kept, statements = [], []
+    for table in tables:
+        still = np.ones(len(table), dtype=bool)
+        for name in ("v", "w", "p", "q", "r", *table.controls):
+            if name not in free:
+                still &= np.abs(table.primed_motion(name, length)) <= AT_REST
+        lost = int(np.sum(~still))
+        if not lost:
+            kept.append(table)
+            continue
+        statements.append(f"{lost} of {len(table)} rows of {table.name} are left out: other variables move in them.")
+        if lost < len(table):
+            moving = tuple(
+                Exclusion(int(i), 0, "", f"moves in more than {', '.join(variables)}") for i in np.flatnonzero(~still)
+            )
+            usable = {c: mask & still for c, mask in table.usable.items()}
+            kept.append(replace(table, usable=usable, exclusions=(*table.exclusions, *moving)))
+    if not kept:
+        raise InputError(
+            f"no row in which only {' and '.join(variables)} may move", "a sweep over these variables", column="variable"
+        )
+    return kept, tuple(statements)
