@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import csv
-import io
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.units import Header, parse_header
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-LONGEST_HEADER = 1 << 16
+LONGEST_LINE = 1 << 16
+MOST_CELLS = 2_000_000
+_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,17 +30,17 @@ class Cells:
     headers : tuple of Header
     first_line : int
         Line number of the first row of data.
-    frame : DataFrame of str
-        One column per header, by position.
+    rows : tuple of tuple of str
+        One cell per header.
     """
 
     file: Path
     headers: tuple[Header, ...]
     first_line: int
-    frame: pd.DataFrame
+    rows: tuple[tuple[str, ...], ...]
 
     def __len__(self) -> int:
-        return len(self.frame)
+        return len(self.rows)
 
     def line(self, row: int) -> int:
         """Line number of a row."""
@@ -52,7 +52,8 @@ class Cells:
 
     def texts(self, name: str) -> list[str]:
         """A column as text."""
-        return [str(t).strip() for t in self.frame.iloc[:, self.position(name)]]
+        position = self.position(name)
+        return [row[position] for row in self.rows]
 
     def numbers(self, name: str) -> NDArray[np.float64]:
         """A column as numbers; NaN marks a blank cell.
@@ -62,74 +63,86 @@ class Cells:
         InputError
             Text, NaN or infinity in a cell, with its line.
         """
-        import pandas as pd
-
-        position = self.position(name)
-        text = self.frame.iloc[:, position].str.strip()
-        blank = text.eq("").to_numpy(dtype=bool)
-        values = np.array(pd.to_numeric(text.where(text != "", "0"), errors="coerce"), dtype=float)
-        bad = np.flatnonzero(~blank & ~np.isfinite(values))
-        if bad.size:
-            row = int(bad[0])
-            cell = str(text.iloc[row])
-            doubtful = cell.endswith("?")
-            raise InputError(
-                shown(cell),
-                "a finite number",
-                file=self.file,
-                line=self.line(row),
-                column=self.headers[position].text,
-                advice='Leave the cell blank and name the column under "uncertain".'
-                if doubtful or cell.lower() in ("nan", "-", "n/a")
-                else "",
-            )
-        values[blank] = np.nan
+        values = np.full(len(self), np.nan)
+        for row, cell in enumerate(self.texts(name)):
+            if not cell:
+                continue
+            number = float(cell) if _NUMBER.fullmatch(cell) else np.nan
+            if not np.isfinite(number):
+                raise InputError(
+                    shown(cell),
+                    "a finite number",
+                    file=self.file,
+                    line=self.line(row),
+                    column=self.headers[self.position(name)].text,
+                    advice=_advice(cell),
+                )
+            values[row] = number
         return values
 
 
-def _head(path: Path) -> tuple[str, int]:
-    """The header line and its line number; comment lines before it start with #."""
+def _advice(cell: str) -> str:
+    if cell.endswith("?") or cell.lower() in ("nan", "-", "n/a", "na"):
+        return 'Leave the cell blank and name the column under "uncertain".'
+    return "Write a point for the decimals." if re.fullmatch(r"[-+]?[0-9]+,[0-9]+", cell) else ""
+
+
+def _lines(path: Path) -> Iterator[str]:
+    """Decoded lines, one at a time, so that a huge file of something else fails early."""
     try:
         if path.is_dir():
             raise InputError("a folder", "a CSV file", file=path)
-        if not path.exists():
+        if not path.is_file():
             raise InputError("no such file", "a CSV file", file=path)
         with path.open("rb") as stream:
-            for number in range(1, 1001):
-                raw = stream.readline(LONGEST_HEADER)
-                if not raw:
-                    raise InputError("an empty file", "a header line with units", file=path)
-                if len(raw) >= LONGEST_HEADER or b"\0" in raw:
-                    raise InputError("binary content or an endless line", "a CSV header", file=path, line=number)
-                try:
-                    line = raw.decode("utf-8-sig")
-                except UnicodeDecodeError as why:
-                    raise InputError(
-                        f"the byte 0x{raw[why.start]:02x}",
-                        "UTF-8 text",
-                        file=path,
-                        line=number,
-                        advice="Save the file as UTF-8.",
-                    ) from None
-                if line.strip() and not line.lstrip().startswith("#"):
-                    return line, number
+            for number, raw in enumerate(iter(lambda: stream.readline(LONGEST_LINE), b""), start=1):
+                yield _decoded(raw, path, number)
     except OSError as why:
         raise InputError(str(why.strerror or why), "a readable file", file=path) from None
-    raise InputError("1000 lines of comments", "a header line with units", file=path)
+
+
+def _decoded(raw: bytes, path: Path, number: int) -> str:
+    advice = "Save the file as UTF-8."
+    if number == 1 and raw.startswith(_UTF16):
+        raise InputError("UTF-16 text", "UTF-8 text", file=path, line=number, advice=advice)
+    if b"\0" in raw:
+        raise InputError("binary content (a NUL byte)", "a CSV file", file=path, line=number)
+    try:
+        line = raw.decode("utf-8-sig" if number == 1 else "utf-8")
+    except UnicodeDecodeError as why:
+        # A line cut at its longest may end inside a character.
+        if len(raw) < LONGEST_LINE or why.start < len(raw) - 3:
+            raise InputError(
+                f"the byte 0x{raw[why.start]:02x}", "UTF-8 text", file=path, line=number, advice=advice
+            ) from None
+        line = ""
+    if "\r" in line.rstrip("\r\n") or line.endswith("\r"):
+        raise InputError(
+            "a carriage return as the end of a line", "line ends LF or CRLF", file=path, line=number,
+            advice="Save the file with Unix or Windows line ends.",
+        )  # fmt: skip
+    if len(raw) >= LONGEST_LINE:
+        raise InputError(f"a line longer than {LONGEST_LINE} bytes", "a CSV table", file=path, line=number)
+    return line
 
 
 def _headers(path: Path, line: str, number: int) -> tuple[Header, ...]:
-    if ";" in line and "," not in line:
-        raise InputError("semicolons between columns", "commas", file=path, line=number)
+    for name, separator in (("semicolons", ";"), ("tabs", "\t")):
+        if separator in line and "," not in line:
+            raise InputError(
+                f"{name} between columns", "commas", file=path, line=number,
+                advice="Save the table as comma-separated CSV with a point for the decimals.",
+            )  # fmt: skip
     try:
-        names = next(csv.reader(io.StringIO(line), strict=True))
-    except (csv.Error, StopIteration) as why:
+        names = next(csv.reader([line], strict=True))
+    except csv.Error as why:
         raise InputError(f"a header that cannot be read ({why})", "a CSV header", file=path, line=number) from None
     headers = tuple(parse_header(n) for n in names)
     seen: set[str] = set()
-    for header in headers:
+    for i, header in enumerate(headers, start=1):
         if not header.name or not header.text.isprintable():
-            raise InputError(shown(header.text), 'column names such as "Y [N]"', file=path, line=number)
+            found = f"{shown(header.text)} as header of column {i}"
+            raise InputError(found, 'column names such as "Y [N]"', file=path, line=number)
         if header.name in seen:
             raise InputError(
                 f"the column {shown(header.name)} twice",
@@ -143,55 +156,63 @@ def _headers(path: Path, line: str, number: int) -> tuple[Header, ...]:
 
 
 def read_cells(path: Path) -> Cells:
-    """Read a CSV table as text.
+    """Read a CSV table as text; lines before the header that start with # are comments.
 
     Raises
     ------
     InputError
         Empty, binary, not UTF-8, duplicated columns, rows of other lengths than the header, or no rows at all.
     """
-    head, number = _head(path)
+    lines = _lines(path)
+    number, head = 0, ""
+    for number, head in enumerate(lines, start=1):
+        if head.strip() and not head.lstrip().startswith("#"):
+            break
+    else:
+        found = "nothing but comments" if number else "an empty file"
+        raise InputError(found, "a header line with units", file=path)
     headers = _headers(path, head, number)
-    import pandas as pd
-
-    try:
-        frame = pd.read_csv(
-            path,
-            header=None,
-            skiprows=number,
-            names=list(range(len(headers))),
-            index_col=False,
-            dtype=str,
-            keep_default_na=False,
-            skip_blank_lines=False,
-            encoding="utf-8-sig" if number == 1 else "utf-8",
-            on_bad_lines="error",
-        )
-    except pd.errors.EmptyDataError:
-        raise InputError("a header and no rows", "rows of numbers", file=path, line=number + 1) from None
-    except pd.errors.ParserError as why:
-        raise _ragged(path, number, len(headers), str(why)) from None
-    except UnicodeDecodeError as why:
-        raise InputError(f"bytes that are no UTF-8 ({why.reason})", "UTF-8 text", file=path) from None
-    while len(frame) and not "".join(map(str, frame.iloc[-1].fillna(""))).strip():
-        frame = frame.iloc[:-1]
-    if not len(frame):
+    rows = _rows(lines, path, number, len(headers))
+    while rows and not any(rows[-1]):
+        rows.pop()
+    for i, row in enumerate(rows):
+        if not row:
+            raise InputError(
+                "an empty line", f"{len(headers)} cells", file=path, line=number + 1 + i, advice="Remove it."
+            )
+    if not rows:
         raise InputError("a header and no rows", "rows of numbers", file=path, line=number + 1)
-    short = np.flatnonzero(frame.isna().to_numpy().any(axis=1))
-    if short.size:
-        row = int(short[0])
-        have = int(frame.iloc[row].notna().sum())
-        raise InputError(f"{have} cells", f"{len(headers)} as in the header", file=path, line=number + 1 + row)
-    return Cells(path, headers, number + 1, frame)
+    return Cells(path, headers, number + 1, tuple(rows))
 
 
-def _ragged(path: Path, header_line: int, width: int, message: str) -> InputError:
-    """Find the first row with too many cells, for an error with its line."""
-    with path.open(encoding="utf-8", errors="replace", newline="") as stream:
-        for number, row in enumerate(csv.reader(stream), start=1):
-            if number > header_line and len(row) > width:
-                return InputError(f"{len(row)} cells", f"{width} as in the header", file=path, line=number)
-    return InputError(f"rows that cannot be read ({message})", f"{width} cells in every row", file=path)
+def _rows(lines: Iterator[str], path: Path, header_line: int, width: int) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = []
+    reader = csv.reader(lines, strict=True)
+    while True:
+        line = header_line + len(rows) + 1
+        try:
+            row = next(reader)
+        except StopIteration:
+            return rows
+        except csv.Error as why:
+            raise InputError(
+                f"a row that cannot be read ({why})", f"{width} cells", file=path, line=line,
+                advice="Look for a quotation mark that is not closed.",
+            ) from None  # fmt: skip
+        if reader.line_num != len(rows) + 1:
+            raise InputError("a line break inside quotation marks", "one row a line", file=path, line=line)
+        if row and len(row) != width:
+            advice = "The row has semicolons; write commas." if any(";" in cell for cell in row) else ""
+            raise InputError(
+                f"{len(row)} cell{'s' * (len(row) != 1)}", f"{width} as in the header", file=path, line=line,
+                advice=advice,
+            )  # fmt: skip
+        if len(rows) * width >= MOST_CELLS:
+            raise InputError(
+                f"more than {MOST_CELLS} cells", "a table of steady forces, one row a setting", file=path, line=line,
+                advice="Average time series first.",
+            )  # fmt: skip
+        rows.append(tuple(cell.strip() for cell in row))
 
 
 def require_unit(header: Header, path: Path, line: int, example: str) -> str:

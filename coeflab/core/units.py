@@ -5,8 +5,10 @@ from __future__ import annotations
 import functools
 import math
 import re
+import sys
 from dataclasses import dataclass
 from pathlib import Path
+from tokenize import TokenError
 from typing import Any
 
 from coeflab.core.errors import InputError, UnitsError, shown
@@ -26,7 +28,17 @@ SI = {
     "area": "m^2",
     "none": "",
 }
-_MARINE = {"kn": "knot", "kt": "knot", "rpm": "revolution/minute"}
+_WRITTEN = {
+    "kn": "knot",
+    "kt": "knot",
+    "rpm": "revolution/minute",
+    **{n: f"{n.removesuffix('m')}*m" for n in ("Nm", "kNm")},
+    **dict.fromkeys(("ft-lbf", "lbf-ft"), "ft*lbf"),
+}
+_LONGEST = 40
+# Exponents are single digits: the units library would compute 9^9^9 for ever.
+_NAME = r"[A-Za-zµμ°]+(?:\s*(?:\^|\*\*)\s*-?\s*[1-9])?"
+_UNIT = re.compile(rf"\s*(?:1\s*/\s*)?{_NAME}(?:(?:\s*[*/·]\s*|\s+){_NAME})*\s*")
 _HEADER = re.compile(r"^(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]$")
 _NUMBER = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
 
@@ -75,25 +87,28 @@ def factor(unit: str, dimension: str) -> float:
         if dimension == "none":
             return 1.0
         raise UnitsError(f"[{unit}]", expected)
-    if len(unit) > 40 or not re.fullmatch(r"[A-Za-zµμ°·0-9*/^().\s-]+", unit):
-        raise UnitsError(f"the unit {shown(unit)}", expected)
+    plain = unit.replace("(", " ").replace(")", " ")
+    if unit not in _WRITTEN and (len(unit) > _LONGEST or not _UNIT.fullmatch(plain)):
+        raise UnitsError(f"the unreadable unit {shown(unit)}", expected)
     import pint
 
     registry = _registry()
     try:
-        quantity = registry.Quantity(1.0, registry.parse_units(_MARINE.get(unit, unit.replace("·", "*"))))
-        if dimension in ("angle", "none") and quantity.dimensionless:
-            angular = "radian" in str(quantity.to_root_units().units)
-            if angular != (dimension == "angle"):
-                raise UnitsError(f"[{unit}]", expected)
-        if dimension == "rate" and "radian" not in str(quantity.to_root_units().units):
-            raise UnitsError(f"[{unit}]", expected, advice="Write rad/s, deg/s or rpm.")
-        return float(quantity.to(SI[dimension] or "dimensionless").magnitude)
+        one = registry.Quantity(1.0, registry.parse_units(_WRITTEN.get(unit, unit.replace("·", "*"))))
+        turns = dict(one.to_root_units().unit_items()).get("radian", 0)
+        if one.check(registry.parse_units(SI[dimension] or "dimensionless")) and (
+            turns != (dimension in ("angle", "rate")) or not one._is_multiplicative
+        ):
+            raise UnitsError(f"[{unit}]", expected, advice="Write rad/s, deg/s or rpm." if dimension == "rate" else "")
+        return float(one.to(SI[dimension] or "dimensionless").magnitude)
     except pint.DimensionalityError:
         raise UnitsError(f"[{unit}], a unit of another dimension", expected) from None
     except pint.UndefinedUnitError:
         raise UnitsError(f"the unknown unit {shown(unit)}", expected) from None
-    except (pint.PintError, ValueError, TypeError, AttributeError, SyntaxError, ArithmeticError, AssertionError) as why:
+    except (
+        pint.PintError, ValueError, TypeError, AttributeError, SyntaxError, ArithmeticError, AssertionError, LookupError,
+        TokenError,
+    ) as why:  # fmt: skip
         raise UnitsError(f"the unreadable unit {shown(unit)} ({type(why).__name__})", expected) from None
 
 
@@ -110,7 +125,7 @@ def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key:
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise InputError(shown(value), expected, file=file, column=key)
     if isinstance(value, str):
-        match = _NUMBER.match(value)
+        match = _NUMBER.match(value) if len(value) <= 2 * _LONGEST else None
         if not match:
             raise InputError(shown(value), expected, file=file, column=key)
         try:
@@ -118,7 +133,7 @@ def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key:
         except UnitsError as why:
             raise UnitsError(why.found, why.expected, file=file, column=key, advice=why.advice) from None
     else:
-        number = float(value)
+        number = float(value) if abs(value) < sys.float_info.max else math.inf
     if not math.isfinite(number):
         raise InputError(shown(value), "a finite number", file=file, column=key)
     return number
