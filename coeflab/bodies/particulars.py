@@ -7,7 +7,7 @@ from pathlib import Path
 from coeflab.core.provenance import InputFile, Source, sha256_of
 from coeflab.core.toml import Section, read_toml
 from coeflab.model.body import Body, Configuration, MassProperties, mass_from_primes
-from coeflab.model.scaling import Scaling
+from coeflab.model.scaling import read_scaling
 
 summary = "principal dimensions, volume, centres and mass from a body.toml"
 citations = ("sname1950",)
@@ -15,28 +15,28 @@ citations = ("sname1950",)
 
 def _mass(section: Section, prime: Section) -> MassProperties | None:
     if section.has("mass_prime"):
-        by = Scaling(prime.quantity("length", "length"), prime.text("length_name"))
-        inertia = section.optional_quantity("inertia_prime", "none")
+        by = read_scaling(prime)
+        inertia = section.optional_positive("inertia_prime", "none")
         return mass_from_primes(
-            section.quantity("mass_prime", "none"),
+            section.positive("mass_prime", "none"),
             section.quantity("mass_moment_prime", "none"),
             inertia,
             by,
-            prime.quantity("density", "density"),
+            prime.positive("density", "density"),
         )
     if not section.has("mass"):
         return None
-    mass = section.quantity("mass", "mass")
+    mass = section.positive("mass", "mass")
     forward = section.optional_quantity("centre_of_gravity_forward", "length") or 0.0
-    return MassProperties(mass, mass * forward, section.optional_quantity("inertia", "inertia"))
+    return MassProperties(mass, mass * forward, section.optional_positive("inertia", "inertia"))
 
 
 def _configuration(section: Section, prime: Section) -> Configuration:
     out = Configuration(
         name=section.text("name"),
         title=section.text("title", ""),
-        volume=section.optional_quantity("volume", "volume"),
-        wetted_surface=section.optional_quantity("wetted_surface", "area"),
+        volume=section.optional_positive("volume", "volume"),
+        wetted_surface=section.optional_positive("wetted_surface", "area"),
         centre_of_buoyancy=section.point("centre_of_buoyancy") if section.has("centre_of_buoyancy") else None,
         mass=_mass(section, prime),
     )
@@ -61,7 +61,7 @@ def read(path: Path) -> Body:
         title=head.text("title", ""),
         datum=head.text("datum"),
         reference_point=head.point("reference_point"),
-        lengths={k: lengths.quantity(k, "length") for k in lengths.content},
+        lengths={k: lengths.positive(k, "length") for k in lengths.content},
         configurations=tuple(_configuration(s, prime) for s in root.sections("configuration")),
         source=Source(
             source.text("citation"),

@@ -31,6 +31,10 @@ WORKS: dict[str, str] = {
     "thauv": "Analysis of a New Twin Hybrid Autonomous Underwater Vehicle (THAUV), equations 28-30 and Table 3.",
     "huuv2025": "T. Talarczyk, M. Morawski, M. Malec, M. Garncarz, Identification of Motion Model Parameters for a Small "
     "Hybrid-Propelled Unmanned Underwater Vehicle (HUUV), 2025.",
+    "allen1974": "D. M. Allen, The relationship between variable selection and data augmentation and a method for "
+    "prediction, Technometrics 16, 1974.",
+    "huuv_synthetic": "Synthetic table of a vehicle like the HUUV, made for this project from stated coefficients by "
+    "cfd_data/make_synthetic_huuv.py; neither measured nor computed by CFD.",
 }
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.symbols import derivative
 from coeflab.core.units import quantity
 
 LARGEST = 1 << 20
@@ -85,12 +86,36 @@ class Section:
         """A number in SI or a text with its unit, if given."""
         return self.quantity(key, dimension) if self.has(key) else None
 
+    def positive(self, key: str, dimension: str) -> float:
+        """A required number above zero."""
+        value = self.quantity(key, dimension)
+        if not value > 0.0:
+            raise self.fail(key, f"{shown(self.raw(key))}", "a value above zero")
+        return value
+
+    def optional_positive(self, key: str, dimension: str) -> float | None:
+        """A number above zero, if given."""
+        return self.positive(key, dimension) if self.has(key) else None
+
     def point(self, key: str) -> NDArray[np.float64]:
         """A point or triple of lengths, m."""
-        value = self._required(key, "a point [x, y, z] in metres, FRD, from the datum")
+        return np.array(self.triple(key, "length", "a point [x, y, z] in metres, FRD, from the datum"))
+
+    def triple(self, key: str, dimension: str, kind: str = "") -> tuple[float, float, float]:
+        """Three numbers in SI or texts with units."""
+        expected = kind or f"three numbers [x, y, z] of {dimension}"
+        value = self._required(key, expected)
         if not isinstance(value, list) or len(value) != 3:
-            raise self.fail(key, shown(value), "a point [x, y, z] in metres, FRD, from the datum")
-        return np.array([quantity(v, "length", file=self.file, key=self.key(key)) for v in value])
+            raise self.fail(key, shown(value), expected)
+        x, y, z = (quantity(v, dimension, file=self.file, key=self.key(key)) for v in value)
+        return x, y, z
+
+    def symbol(self, key: str, symbol: str) -> str:
+        """A SNAME derivative that stands under a key."""
+        try:
+            return derivative(symbol).text
+        except InputError as why:
+            raise self.fail(key, why.found, why.expected, why.advice) from None
 
     def texts(self, key: str) -> tuple[str, ...]:
         """A list of texts, empty by default."""

@@ -82,7 +82,8 @@ def factor(unit: str, dimension: str) -> float:
     UnitsError
         The unit is unknown, or of another dimension (a pure number is not an angle).
     """
-    expected = f"a unit of {dimension}, such as {SI[dimension] or '-'}" + (" or deg" if dimension == "angle" else "")
+    expected = f"a unit of {dimension}, such as {SI[dimension]}" + (" or deg" if dimension == "angle" else "")
+    expected = expected if dimension != "none" else "[-], a pure number"
     if unit == "-" or not unit:
         if dimension == "none":
             return 1.0
@@ -93,14 +94,14 @@ def factor(unit: str, dimension: str) -> float:
     import pint
 
     registry = _registry()
+    si = SI[dimension] or "dimensionless"
     try:
         one = registry.Quantity(1.0, registry.parse_units(_WRITTEN.get(unit, unit.replace("·", "*"))))
+        value, double = float(one.to(si).magnitude), float((2.0 * one).to(si).magnitude)
         turns = dict(one.to_root_units().unit_items()).get("radian", 0)
-        if one.check(registry.parse_units(SI[dimension] or "dimensionless")) and (
-            turns != (dimension in ("angle", "rate")) or not one._is_multiplicative
-        ):
+        if turns != (dimension in ("angle", "rate")) or not math.isclose(double, 2.0 * value):
             raise UnitsError(f"[{unit}]", expected, advice="Write rad/s, deg/s or rpm." if dimension == "rate" else "")
-        return float(one.to(SI[dimension] or "dimensionless").magnitude)
+        return value
     except pint.DimensionalityError:
         raise UnitsError(f"[{unit}], a unit of another dimension", expected) from None
     except pint.UndefinedUnitError:

@@ -15,14 +15,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import comb
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
-from coeflab.core.options import bounded, one_of, parse_options, words
-from coeflab.core.symbols import ANGULAR
+from coeflab.core.options import bounded, one_of, parse_options
 from coeflab.kernels.linear_model import fit_linear
 from coeflab.kernels.robust import t_probability
 from coeflab.kernels.terms import Term, design
@@ -30,8 +30,9 @@ from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
-from coeflab.model.regression import Area, Rows, collect, model_of, variable
+from coeflab.model.regression import Area, Rows, collect, model_of
 from coeflab.model.scaling import Scaling
+from coeflab.model.swept import AREAS, PRIMES, area_of, area_settings, only_moving
 
 summary = "drag, lift and moment of a control surface over its angle to the flow, delta - alpha"
 citations = ("huuv2025", "feldman1979", "mackinnon1985", "bell2002")
@@ -41,6 +42,7 @@ NEEDS = {"C_D": "X", "C_L": "Z", "C_m": "M"}
 DERIVATIVES = {"C_L": ("Zds", -1.0), "C_m": ("Mds", 1.0)}
 NEAR_ZERO = float(np.radians(0.3))
 UNLIKELY = 0.05
+EFFECTIVE = "e"
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +57,8 @@ class Options:
         Whether C_L and C_m have a cubic term.
     area : float
         m^2; 0 means L^2, the square of the scaling's length.
-    area_name : tuple of str
-        What that area is, such as ``elevator planform``; needed with ``area``.
+    area_name : str
+        What that area is, needed with ``area``.
     surface : {"ds", "db"}
         Which control angle.
     """
@@ -64,44 +66,59 @@ class Options:
     effective: str = one_of("delta-alpha", "delta-alpha", "delta+alpha")
     cubic: str = one_of("no", "no", "yes")
     area: float = bounded(0.0, 0.0, 1e6)
-    area_name: tuple[str, ...] = words()
+    area_name: str = one_of(PRIMES, *AREAS)
     surface: str = one_of("ds", "ds", "db")
 
 
-def _area(chosen: Options, scaling: Scaling) -> Area:
-    name = " ".join(chosen.area_name)
-    if bool(chosen.area) != bool(name):
-        raise InputError(
-            "an area without its name" if chosen.area else "the name of an area without the area",
-            "area (m^2) and area_name together, or neither for L^2", column="control_surface.area",
-        )  # fmt: skip
-    return Area(chosen.area or scaling.length**2, name or "L^2", scaling.length)
-
-
-def _steady(table: ForceTable, surface: str) -> ForceTable:
-    """The table with only those rows in use that neither drift nor turn nor move another surface."""
-    keep = np.abs(variable(table, "beta", 1.0)) <= NEAR_ZERO
-    for m in ANGULAR:
-        keep &= table.motion[m] == 0.0
-    for name, angle in table.controls.items():
-        if name != surface:
-            keep &= angle == 0.0
-    return replace(table, usable={c: mask & keep for c, mask in table.usable.items()})
-
-
-def _terms(response: str, angle: str, chosen: Options) -> tuple[tuple[Term, ...], tuple[str, ...]]:
+def _powers(response: str, chosen: Options) -> tuple[int, ...]:
     if response == "C_D":
-        powers: tuple[int, ...] = (0, 2)
-    else:
-        powers = (1, 3) if chosen.cubic == "yes" else (1,)
-    terms = tuple(Term(((angle, n, False),)) if n else Term() for n in powers)
-    return terms, tuple(f"{response}{n}" for n in powers)
+        return (0, 2)
+    return (1, 3) if chosen.cubic == "yes" else (1,)
 
 
-def _effective(rows: Rows, chosen: Options) -> tuple[Rows, str]:
-    sign = -1.0 if chosen.effective == "delta-alpha" else 1.0
-    angle = chosen.effective.replace("-", " - ").replace("+", " + ")
-    return replace(rows, x={angle: rows.x[chosen.surface] + sign * rows.x["alpha"]}), angle
+def _expanded(power: int, surface: str, sign: float) -> dict[Term, float]:
+    """(delta + sign alpha)^power as products of delta and alpha."""
+    out = {}
+    for k in range(power + 1):
+        factors = [(surface, power - k), ("alpha", k)]
+        out[Term(tuple((v, n, False) for v, n in factors if n))] = comb(power, k) * sign**k
+    return out
+
+
+def _over_both(rows: Rows, powers: Sequence[int], chosen: Options, form: str) -> FittedModel:
+    """The law over delta and alpha, its coefficients tied so that only the effective angle counts."""
+    if np.ptp(rows.x["alpha"]) <= NEAR_ZERO and np.all(np.abs(rows.x["alpha"]) <= NEAR_ZERO):
+        rows = replace(rows, x={chosen.surface: rows.x[chosen.surface]})
+        terms = tuple(Term(((chosen.surface, n, False),)) if n else Term() for n in powers)
+        return model_of(rows, terms, tuple(f"{rows.response}_{t}" for t in terms), f"{form}, at alpha = 0")
+    parts = [_expanded(n, chosen.surface, _sign(chosen)) for n in powers]
+    terms = tuple(t for p in parts for t in p)
+    ties: list[Array] = []
+    for p in parts:
+        lead, *others = p
+        for t in others:
+            tie = np.zeros(len(terms))
+            tie[terms.index(t)], tie[terms.index(lead)] = 1.0, -p[t] / p[lead]
+            ties.append(tie)
+    constraint = np.array(ties), np.zeros(len(ties))
+    symbols = tuple(f"{rows.response}_{t}" for t in terms)
+    return model_of(rows, terms, symbols, form, constraint=constraint)
+
+
+def _over_effective(rows: Rows, powers: Sequence[int], chosen: Options, form: str) -> FittedModel:
+    """The law as the paper writes it: a listing over the effective angle, whose domain stays delta and alpha."""
+    used = replace(rows, x={EFFECTIVE: rows.x[chosen.surface] + _sign(chosen) * rows.x["alpha"], **rows.x})
+    if np.ptp(used.x[EFFECTIVE]) <= NEAR_ZERO:
+        raise InputError(
+            f"one effective angle on every row of {rows.campaign}", "several angles of the surface",
+            column="control_surface",
+        )  # fmt: skip
+    terms = tuple(Term(((EFFECTIVE, n, False),)) if n else Term() for n in powers)
+    return model_of(used, terms, tuple(f"{rows.response}{n}" for n in powers), form)
+
+
+def _sign(chosen: Options) -> float:
+    return -1.0 if chosen.effective == "delta-alpha" else 1.0
 
 
 def _told(rows: Rows, model: FittedModel, chosen: Options) -> str:
@@ -129,22 +146,21 @@ def _lifts(model: FittedModel) -> str:
     return f"A {'positive' if value > 0.0 else 'negative'} delta raises lift."
 
 
-def _fitted(rows: Rows, area: Area, chosen: Options) -> FittedModel:
-    used, angle = _effective(rows, chosen)
-    if np.ptp(used.x[angle]) <= NEAR_ZERO:
-        raise InputError(
-            f"one effective angle on every row of {rows.campaign}", "several angles of the surface",
-            column="control_surface",
-        )  # fmt: skip
-    terms, symbols = _terms(rows.response, angle, chosen)
-    parity = "constant + square" if rows.response == "C_D" else "line + cubic" if len(terms) > 1 else "line"
+def _fitted(rows: Rows, area: Area, chosen: Options) -> tuple[FittedModel, FittedModel]:
+    """The law over delta and alpha, and the same over the effective angle."""
+    powers = _powers(rows.response, chosen)
+    parity = {(0, 2): "constant + square", (1, 3): "line + cubic", (1,): "line"}[powers]
     by = f"{area.name} ({area.area:.6g} m^2)"
     by += f" and the length {area.length:.6g} m" if rows.response == "C_m" else ""
-    model = model_of(used, terms, symbols, f"{parity} in {angle} [rad], by {by}")
-    said = [_told(rows, model, chosen)] if rows.response != "C_D" else []
+    form = f"{parity} in e = {chosen.effective.replace('-', ' - ').replace('+', ' + ')} [rad], by {by}"
+    listing = _over_effective(rows, powers, chosen, form)
+    model = _over_both(rows, powers, chosen, f"{form}, over {chosen.surface} and alpha")
+    listing = replace(listing, domain=model.domain)
+    said = [_told(rows, listing, chosen)] if rows.response != "C_D" else []
     if rows.response == "C_L":
-        said.insert(0, _lifts(model))
-    return replace(model, statements=(*said, *model.statements))
+        said.insert(0, _lifts(listing))
+    tied = tuple(x for x in model.statements if "collinear" not in x)
+    return replace(model, statements=tied), replace(listing, statements=(*said, *listing.statements))
 
 
 def _coefficient(model: FittedModel, area: Area, scaling: Scaling, surface: str, citation: str) -> Coefficient | None:
@@ -179,8 +195,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Parameters
     ----------
     tables : sequence of ForceTable
-        Of one campaign, about one reference point; the forces of the surface itself. Rows that drift (beyond 0.3
-        degrees), turn, or move another surface are left out.
+        Of one campaign, about one reference point; the forces of the surface itself. Rows that drift, turn, or move
+        another surface are left out.
     scaling : Scaling
         Its length divides moments, and its square is the area by default.
     options : mapping
@@ -189,8 +205,10 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Returns
     -------
     FitResult
-        Models of those of ``C_D``, ``C_L`` and ``C_m`` whose columns X, Z, M the tables have, and the primes ``Zds'``
-        and ``Mds'`` at zero angle of attack; errors of the two are taken as independent.
+        Models of those of ``C_D``, ``C_L`` and ``C_m`` whose columns X, Z, M the tables have: first over delta and
+        alpha with tied coefficients, which the parameter file keeps, then the same over the effective angle ``e``,
+        ``C_D0 C_D2 C_L1 C_L3 C_m1 C_m3``. The coefficients are the primes ``Zds'`` and ``Mds'`` at zero angle of
+        attack; errors of the two are taken as independent.
 
     Raises
     ------
@@ -199,20 +217,19 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         or no more rows than terms.
     """
     chosen = parse_options(Options, options, "control_surface")
-    area = _area(chosen, scaling)
+    area = area_of(chosen.area, chosen.area_name, scaling)
     first = tables[0]
     column = {"ds": "delta_s", "db": "delta_b"}[chosen.surface]
     moved = [t for t in tables if chosen.surface in t.controls]
     if not moved:
         raise InputError(f"no {column} in {first.campaign}", f"a column {column} [deg]", column="control_surface")
-    used = [_steady(t, chosen.surface) for t in moved]
+    used, left_out = only_moving(moved, (chosen.surface, "alpha"), scaling.length)
     responses = [r for r, c in NEEDS.items() if any(c in t.forces for t in used)]
     if not responses:
         raise InputError(f"none of X, Z, M in {first.campaign}", "at least one of them", column="control_surface")
-    models = tuple(
-        _fitted(collect(used, (chosen.surface, "alpha"), r, area), area, chosen) for r in responses
-    )  # fmt: skip
-    made = [_coefficient(m, area, scaling, chosen.surface, first.source.citation) for m in models]
+    pairs = [_fitted(collect(used, (chosen.surface, "alpha"), r, area), area, chosen) for r in responses]
+    models = [replace(m, statements=(*left_out, *m.statements)) for m, _ in pairs] + [m for _, m in pairs]
+    made = [_coefficient(m, area, scaling, chosen.surface, first.source.citation) for _, m in pairs]
     coefficients = tuple(c for c in made if c is not None)
     deviation = np.array([np.nan if c.u95 is None else c.u95 / 2.0 for c in coefficients])
     covariance = np.where(np.eye(len(deviation)) > 0.0, deviation**2, 0.0)
@@ -222,16 +239,14 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         fit="control_surface",
         campaign=first.campaign,
         body=first.body,
-        coefficients=CoefficientSet(
-            coefficients, covariance, scaling, first.reference_point, first.datum, first.body
-        ),
+        coefficients=CoefficientSet(coefficients, covariance, scaling, first.reference_point, first.datum, first.body),
         sweeps=(),
         citations=citations,
         settings={
             "effective": chosen.effective,
             "cubic": chosen.cubic,
-            "area": f"{area.area:.6g} m^2, {area.name}",
             "surface": chosen.surface,
+            **area_settings(area),
         },
-        models=models,
-    )  # fmt: skip
+        models=tuple(models),
+    )

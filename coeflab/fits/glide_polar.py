@@ -17,23 +17,27 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import one_of, parse_options, words
-from coeflab.core.symbols import ANGULAR, LINEAR
-from coeflab.kernels.terms import Term
+from coeflab.core.symbols import LINEAR
+from coeflab.kernels.linear_model import fit_linear
+from coeflab.kernels.robust import t_probability
+from coeflab.kernels.terms import Term, design
 from coeflab.kernels.wind_axes import wind_forces
 from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import FittedModel
+from coeflab.model.fitted_model import Domain, FittedModel
 from coeflab.model.force_table import ForceTable
 from coeflab.model.regression import Rows, model_of, variable
 from coeflab.model.scaling import Scaling
+from coeflab.model.swept import only_moving
 
 summary = "lift, drag and pitching moment of a glider over angle of attack and speed, per degree and per radian"
 citations = ("thauv", "fossen2011", "mackinnon1985", "bell2002")
 
 Array = NDArray[np.float64]
 POWERS = {"L": 1, "D": 2, "M": 1}
-DEGREES = float(np.degrees(1.0))
 NEAR_ZERO = float(np.radians(0.3))
+SAME_SPEED = 1e-3
+UNLIKELY = 0.05
 SLOPES = ("K_L", "K_D", "K_M")
 PRINTABLE = ("K_L0", "K_L", "K_D0", "K_D", "K_M0", "K_M")
 
@@ -45,7 +49,7 @@ class Options:
     Attributes
     ----------
     angle_unit : {"deg", "rad"}
-        Unit of a in the models; the other one is in their statements.
+        ``deg`` lists the models per degree, as the paper prints them, beside those per radian; ``rad`` the latter only.
     printed : tuple of str
         Coefficients that somebody printed, such as ``K_L=9.5281 K_D=0.215``; the models then state their unit.
     """
@@ -70,16 +74,6 @@ class AngleUnit:
     statements: tuple[str, ...]
 
 
-def _steady(table: ForceTable) -> NDArray[np.bool_]:
-    """Rows without drift, rotation or deflected controls."""
-    keep = np.abs(variable(table, "beta", 1.0)) <= NEAR_ZERO
-    for m in ANGULAR:
-        keep &= table.motion[m] == 0.0
-    for angle in table.controls.values():
-        keep &= angle == 0.0
-    return keep
-
-
 def _forces(table: ForceTable) -> dict[str, tuple[Array, NDArray[np.bool_]]]:
     """D, L and, where the table has it, M with the rows that are usable.
 
@@ -101,29 +95,30 @@ def _forces(table: ForceTable) -> dict[str, tuple[Array, NDArray[np.bool_]]]:
     return out
 
 
-def _rows(tables: Sequence[ForceTable]) -> dict[str, Rows]:
-    """V in m/s and alpha in radians against L, D and M of all tables."""
+def _rows(tables: Sequence[ForceTable]) -> dict[str, tuple[Rows, Array]]:
+    """alpha in radians against L, D and M over V^2, with V.
+
+    The weights are those of an error of L, D and M that is the same at every speed.
+    """
     found: dict[str, list[tuple[ForceTable, Array, NDArray[np.intp]]]] = {}
     for t in tables:
-        steady = _steady(t)
         for name, (values, usable) in _forces(t).items():
-            found.setdefault(name, []).append((t, values, np.flatnonzero(steady & usable)))
+            found.setdefault(name, []).append((t, values, np.flatnonzero(usable)))
     out = {}
     for name, parts in found.items():
-        speed = [np.sqrt(sum(np.square(t.motion[m][i]) for m in LINEAR)) for t, _, i in parts]
-        out[name] = Rows(
-            x={
-                "V": np.concatenate(speed),
-                "alpha": np.concatenate([variable(t, "alpha", 1.0)[i] for t, _, i in parts]),
-            },
-            y=np.concatenate([values[i] for _, values, i in parts]),
-            errors=None,
+        squares = [sum((np.square(t.motion[m][i]) for m in LINEAR), np.zeros(len(i))) for t, _, i in parts]
+        square = np.concatenate(squares)
+        rows = Rows(
+            x={"alpha": np.concatenate([variable(t, "alpha", 1.0)[i] for t, _, i in parts])},
+            y=np.concatenate([values[i] for _, values, i in parts]) / square,
+            errors=1.0 / square,
             labels=tuple(t.labels[k] for t, _, i in parts for k in i),
-            response=name,
+            response=f"{name}/V^2",
             tables=tuple(t.name for t, _, _ in parts),
             campaign=tables[0].campaign,
             body=tables[0].body,
         )
+        out[name] = rows, np.sqrt(square)
     return out
 
 
@@ -131,8 +126,8 @@ def _check_angles(rows: Rows) -> None:
     """Raise unless there are rows and their angle of attack changes."""
     if not len(rows.y):
         raise InputError(
-            f"no usable row of {rows.campaign} without drift, rotation and deflected controls",
-            "a sweep of the angle of attack", column="glide_polar",
+            f"no usable row of {rows.response} in {rows.campaign}", "a sweep of the angle of attack",
+            column="glide_polar",
         )  # fmt: skip
     if np.ptp(rows.x["alpha"]) <= NEAR_ZERO:
         raise InputError(
@@ -141,49 +136,49 @@ def _check_angles(rows: Rows) -> None:
         )  # fmt: skip
 
 
-def _fitted(rows: Rows, unit: str) -> FittedModel:
-    name, power = rows.response, POWERS[rows.response]
-    angle = f"alpha [{unit}]"
-    used = replace(rows, x={"V": rows.x["V"], angle: rows.x["alpha"] * (DEGREES if unit == "deg" else 1.0)})
-    square = ("V", 2, False)
-    symbols = (f"K_{name}0", f"K_{name} [1/{unit}{'^2' if power > 1 else ''}]")
-    form = f"{name} = (K_{name}0 + K_{name} a{'^2' if power > 1 else ''}) V^2, a in {unit}, V in m/s"
-    terms = (Term((square,)), Term(((angle, power, False), square)))
-    return model_of(used, terms, symbols, form, unit="N*m" if name == "M" else "N")
+def _fitted(rows: Rows, name: str, unit: str) -> FittedModel:
+    """The law of one force; per degree it is a listing, whose domain stays in radians."""
+    power, angle = POWERS[name], "alpha" if unit == "rad" else "alpha_deg"
+    squared = "^2" if power > 1 else ""
+    used = rows if unit == "rad" else replace(rows, x={angle: np.degrees(rows.x["alpha"]), **rows.x})
+    symbols = (f"K_{name}0", f"K_{name} [1/{unit}{squared}]")
+    form = f"{name} = (K_{name}0 + K_{name} a{squared}) V^2, a in {unit}, V in m/s"
+    terms = (Term(), Term(((angle, power, False),)))
+    model = model_of(used, terms, symbols, form, unit="N*m/(m/s)^2" if name == "M" else "N/(m/s)^2")
+    return replace(model, domain=Domain.of(rows.x), x=used.x)
 
 
-def _other_unit(model: FittedModel, unit: str) -> str:
-    """The slope in the other unit of angle, in words."""
-    power = POWERS[model.response]
-    value, half = model.named(model.symbols[1])
-    other, k = ("rad", DEGREES**power) if unit == "deg" else ("deg", DEGREES**-power)
-    symbol = model.symbols[1].replace(unit, other)
-    return f"The same slope in the other unit: {symbol} = {value * k:.6g} +- {half * k:.3g}."
-
-
-def _said(model: FittedModel, unit: str) -> tuple[str, ...]:
-    out = [
-        f"K_{model.response}0 and K_{model.response} times V^2 give {model.unit}: they hold the fluid's density and are "
-        "not divided by an area.",
-        _other_unit(model, unit),
-    ]
-    if np.ptp(model.x["V"]) <= 1e-3 * model.x["V"].max():
-        out.append(
-            f"All rows run at {model.x['V'].mean():.4g} m/s: that the force goes with V^2 is assumed, not tested."
+def _said(model: FittedModel, name: str, speed: Array, errors: Array | None) -> tuple[str, ...]:
+    """What K holds, and whether the force goes with the square of the speed."""
+    held = f"K_{name}0 and K_{name} hold the fluid's density and are not divided by an area."
+    if np.ptp(speed) <= SAME_SPEED * speed.max():
+        return (
+            held,
+            f"All rows run at {speed.mean():.4g} m/s: that the force goes with V^2 is assumed, not tested.",
         )
-    return tuple(out)
+    relative = speed / speed.mean() - 1.0
+    extra = fit_linear(np.column_stack([design(model.terms, model.x), relative]), model.y, errors)
+    error = float(np.sqrt(extra.covariance[-1, -1]))
+    if not np.isfinite(extra.half_width[-1]) or error == 0.0:
+        return (held, "The rows do not tell whether the force goes with V^2.")
+    chance = float(t_probability(float(extra.coefficients[-1]) / error, float(extra.freedom[-1])))
+    range_ = f"from {speed.min():.4g} to {speed.max():.4g} m/s"
+    if chance >= UNLIKELY:
+        return (held, f"{name}/V^2 shows no trend with V {range_} (p = {chance:.2g}), as the law says.")
+    return (
+        held,
+        f"{name}/V^2 changes with V {range_} beyond chance (p = {chance:.2g}): the force does not go with V^2 alone.",
+    )
 
 
-def _per_unit(result: FitResult, slope: str) -> tuple[dict[str, tuple[float, float]], int] | None:
-    """Value and half-width of a slope per degree and per radian, and the power of the angle."""
+def _per_unit(result: FitResult, slope: str) -> dict[str, tuple[float, float]] | None:
+    """Value and half-width of a slope per degree and per radian."""
     for m in result.models:
-        if f"K_{m.response}" == slope:
-            power = POWERS[m.response]
-            value, half = m.named(m.symbols[1])
-            k = DEGREES**power
-            if result.settings["angle_unit"] == "deg":
-                return {"deg": (value, half), "rad": (value * k, half * k)}, power
-            return {"deg": (value / k, half / k), "rad": (value, half)}, power
+        found = next((s for s in m.symbols if s.startswith(f"{slope} [1/rad")), None)
+        if found is not None:
+            value, half = m.named(found)
+            k = np.radians(1.0) ** POWERS[slope[-1]]
+            return {"deg": (value * k, half * k), "rad": (value, half)}
     return None
 
 
@@ -219,16 +214,15 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
         if fitted is None:
             said.append(f"{slope}: not fitted, so the printed {printed[slope]:g} is not compared.")
             continue
-        both, _ = fitted
-        value, half = both["deg"]
+        value, half = fitted["deg"]
         if not (np.isfinite(half) and abs(value) > half) or value * printed[slope] <= 0.0:
             said.append(
                 f"{slope}: printed {printed[slope]:g}, fitted {value:.4g} +- {half:.2g} per degree: of another sign, or "
                 "the fit does not tell it from zero; it says nothing about the unit."
             )
             continue
-        unit = min(both, key=lambda u: abs(float(np.log(printed[slope] / both[u][0]))))
-        value, half = both[unit]
+        unit = min(fitted, key=lambda u: abs(float(np.log(printed[slope] / fitted[u][0]))))
+        value, half = fitted[unit]
         place = "inside" if abs(printed[slope] - value) <= half else "outside"
         votes.add(unit)
         said.append(f"{slope}: printed {printed[slope]:g} is per {unit}, {place} the fitted {value:.5g} +- {half:.2g}.")
@@ -258,8 +252,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Parameters
     ----------
     tables : sequence of ForceTable
-        Of one campaign, about one reference point. Rows with drift (beyond 0.3 degrees), rotation or deflected controls
-        are left out. One speed is enough; that the force goes with V^2 is then assumed, which the result says.
+        Of one campaign, about one reference point. Rows with drift, rotation or deflected controls are left out. One
+        speed is enough; that the force goes with V^2 is then assumed, which the result says.
     scaling : Scaling
         Kept with the (empty) set of SNAME coefficients; the polar is dimensional.
     options : mapping
@@ -268,7 +262,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     Returns
     -------
     FitResult
-        Models ``L``, ``D`` [N] and, with a column M, ``M`` [N m], over V [m/s] and alpha.
+        Models of L/V^2, D/V^2 and, with a column M, M/V^2 over alpha in radians; then, unless they are not wanted, the
+        same per degree, over the columns ``alpha_deg`` and (for the domain) ``alpha``.
 
     Raises
     ------
@@ -278,23 +273,25 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     chosen = parse_options(Options, options, "glide_polar")
     printed = _printed(chosen.printed)
     first = tables[0]
-    models = []
-    for rows in _rows(tables).values():
+    used, left_out = only_moving(tables, ("alpha",), scaling.length)
+    radians, degrees = [], []
+    for name, (rows, speed) in _rows(used).items():
         _check_angles(rows)
-        model = _fitted(rows, chosen.angle_unit)
-        models.append(replace(model, statements=(*_said(model, chosen.angle_unit), *model.statements)))
+        model = _fitted(rows, name, "rad")
+        said = (*_said(model, name, speed, rows.errors), *left_out, *model.statements)
+        radians.append(replace(model, statements=said))
+        degrees.append(_fitted(rows, name, "deg"))
+    models = (*radians, *(degrees if chosen.angle_unit == "deg" else ()))
     result = FitResult(
         fit="glide_polar",
         campaign=first.campaign,
         body=first.body,
-        coefficients=CoefficientSet(
-            (), np.zeros((0, 0)), scaling, first.reference_point, first.datum, first.body
-        ),
+        coefficients=CoefficientSet((), np.zeros((0, 0)), scaling, first.reference_point, first.datum, first.body),
         sweeps=(),
         citations=citations,
         settings={"angle_unit": chosen.angle_unit, "printed": " ".join(chosen.printed)},
-        models=tuple(models),
-    )  # fmt: skip
+        models=models,
+    )
     if not printed:
         return result
     answer = angle_unit_of(printed, result)

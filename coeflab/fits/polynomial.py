@@ -112,11 +112,8 @@ def _coefficients(
                 citation=citation,
             )
         )
-    deviation = np.sqrt(np.diag(model.fit.covariance))
-    ratio = np.divide(model.fit.half_width / 2.0, deviation, out=np.ones_like(deviation), where=deviation > 0.0)
-    covariance = (model.fit.covariance * np.outer(ratio, ratio))[np.ix_(keep, keep)]
-    void = np.array([c.u95 is None for c in out], dtype=bool)
-    covariance[void, :] = covariance[:, void] = np.nan
+    standard = model.fit.half_width[keep] / 2.0
+    covariance = model.fit.correlation[np.ix_(keep, keep)] * np.outer(standard, standard)
     return out, covariance
 
 

@@ -186,6 +186,30 @@ def _sweep(
     )
 
 
+def _arm_shift(tables: Sequence[ForceTable]) -> float:
+    """How far forward the point lies at which rotating runs have no cross flow; 0 if there is no one such point.
+
+    About any other point an arm's runs have v = r dx (w = -q dx), and no row turns without drifting.
+    """
+    found: list[Array] = []
+    for table in tables:
+        for rate, drift, sign in (("r", "v", -1.0), ("q", "w", 1.0)):
+            turning = table.motion[rate] != 0.0
+            if np.any(turning):
+                found.append(sign * table.motion[drift][turning] / table.motion[rate][turning])
+    if not found:
+        return 0.0
+    shifts = np.concatenate(found)
+    scale = float(tables[0].scaling.length)
+    return float(np.median(shifts)) if float(np.ptp(shifts)) <= 1e-6 * scale else 0.0
+
+
+def _moved(shift: float) -> dict[str, str]:
+    if not shift:
+        return {}
+    return {"swept about": f"a point {shift:+.6g} m forward, where the rotating runs do not drift; then moved back"}
+
+
 def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
     r = sweep.recommendation
     if r.value is None:
@@ -272,6 +296,9 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     """
     chosen = parse_options(Options, options, "slope_at_origin")
     length = scaling.length
+    wanted = tables[0].reference_point
+    shift = _arm_shift(tables)
+    tables = [t.about(wanted + np.array([shift, 0.0, 0.0])) for t in tables]
     sweeps: list[Sweep] = []
     for table in tables:
         for variable in (v for v in (*ODD,) if v in table.varies):
@@ -299,8 +326,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
             first.reference_point,
             first.datum,
             first.body,
-        ),
+        ).about(wanted),
         sweeps=tuple(sweeps),
         citations=citations,
-        settings={"replicates": str(chosen.replicates), "seed": str(chosen.seed)},
+        settings={"replicates": str(chosen.replicates), "seed": str(chosen.seed)} | _moved(shift),
     )

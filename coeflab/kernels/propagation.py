@@ -1,7 +1,7 @@
 """Uncertain inputs carried to results: linear sensitivities and seeded Monte Carlo of the same function.
 
-JCGM 100:2008 (linear), JCGM 101:2008 (Monte Carlo). Half-widths are 95 %, standard uncertainties half of them, inputs
-normal. A refit holds the members of a recommendation fixed, their forms and their rows, and so measures how the data
+JCGM 100:2008 (linear), JCGM 101:2008 (Monte Carlo). Half-widths are two standard uncertainties and inputs are normal, so
+percentiles are those of two standard deviations, 2.275 and 97.725. A refit holds the members of a recommendation fixed, their forms and their rows, and so measures how the data
 move the answer, not how they move the choice.
 """
 
@@ -16,7 +16,7 @@ from coeflab.kernels.least_squares import Array
 from coeflab.kernels.slopes import Estimate, design
 
 STEP = 0.01
-LOW, HIGH = 2.5, 97.5
+LOW, HIGH = 2.275013194817921, 97.72498680518208
 
 
 def refit(members: tuple[Estimate, ...], x: Array, y: Array) -> Array:
@@ -92,7 +92,7 @@ class Propagated:
     linear : float
         95 % half-width by first-order propagation.
     monte_carlo : float
-        Half the distance of the 2.5 and 97.5 percentiles.
+        Half the distance of the percentiles 2.275 and 97.725.
     low, high : float
         Those percentiles.
     draws : int

@@ -256,8 +256,10 @@ def recommend(
 ) -> Recommendation:
     """Recommended slope, curvature or intercept.
 
-    U95 = hypot(median of the members' half-widths, range of the members / sqrt 3). A lone member is compared with the
-    families that were dropped only for their width; without any there is no model-form part and no U95.
+    U95 = hypot(median of the members' half-widths, 2 a / sqrt 3), with a the distance of the farthest member from the
+    value: a rectangular distribution of half-width a about the value has the standard deviation a / sqrt 3. For members
+    that lie symmetrically this is their range / sqrt 3. A lone member is compared with the families that were dropped
+    only for their width; without any there is no model-form part and no U95.
 
     Parameters
     ----------
@@ -299,8 +301,9 @@ def recommend(
     compared = values if len(members) > 1 else np.array([e.value for e in kept.values() if np.isfinite(e.half_hc2)])
     if len(compared) < 2:
         return Recommendation(float(values[0]), random, None, None, members, shown)
-    form = float(np.ptp(compared) / np.sqrt(3.0))
-    return Recommendation(float(np.median(values)), random, form, float(np.hypot(random, form)), members, shown)
+    value = float(np.median(values))
+    form = float(2.0 * np.max(np.abs(compared - value)) / np.sqrt(3.0))
+    return Recommendation(value, random, form, float(np.hypot(random, form)), members, shown)
 
 
 def _beats(e: Estimate, target: str, x: Array, y: Array, se: Array | None) -> bool:

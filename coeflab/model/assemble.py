@@ -15,6 +15,7 @@ from coeflab.model.body import Body
 from coeflab.model.coefficient import Coefficient, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
+from coeflab.model.model_record import recorded
 from coeflab.model.parameter_file import (
     CoveredRange,
     InputRecord,
@@ -130,6 +131,8 @@ def assemble(
         Campaigns of another body, scaling or reference point.
     """
     chosen = [f for name in group.campaigns for f in fits if f.campaign == name]
+    if not chosen:
+        raise InputError("no campaign", "campaigns that the study fits", column=f"parameter_file.{group.name}.campaigns")
     sets = [f.coefficients for f in chosen]
     first = sets[0]
     for s, f in zip(sets, chosen, strict=True):
@@ -145,9 +148,8 @@ def assemble(
     for k, s in enumerate(sets):
         for i, c in enumerate(s.coefficients):
             if c.symbol in entries:
-                notes.append(
-                    f"{primed(c.symbol)} from {entries[c.symbol][0].campaign}; {c.campaign} gives {c.value:.6g}"
-                )
+                given = "no value" if c.value is None else f"{c.value:.6g}"
+                notes.append(f"{primed(c.symbol)} from {entries[c.symbol][0].campaign}; {c.campaign} gives {given}")
             else:
                 entries[c.symbol] = (c, k, i)
     extra = {c.symbol: c for c in _literature(group, references, first.scaling, first.reference_point)}
@@ -164,8 +166,10 @@ def assemble(
                     covariance[i, j] = sets[k].covariance[row, entries[d.symbol][2]]
         elif c.u95 is not None:
             covariance[i, i] = (c.u95 / 2.0) ** 2
-    void = np.array([c.u95 is None for c in coefficients])
+    void = np.array([c.u95 is None for c in coefficients], dtype=bool)
     covariance[void, :] = covariance[:, void] = np.nan
+    models, repeated = recorded(chosen)
+    notes += repeated
     configuration = body.configuration(group.body) if body else None
     mass = configuration.mass if configuration else None
     if mass and body and not np.allclose(body.reference_point, first.reference_point, atol=1e-6):
@@ -195,6 +199,7 @@ def assemble(
             matrix=tuple(tuple(None if np.isnan(v) else float(v) for v in row) for row in covariance),
         ),
         covered=_covered([t for t in tables if t.campaign in group.campaigns], first.scaling.length),
+        models=models,
         provenance=Provenance(
             coeflab_version=__version__,
             study=study,

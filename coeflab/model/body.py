@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +64,7 @@ class Body:
     name, title, datum : str
     reference_point : (3,) array
         Point of the mass properties, m, FRD, from the datum.
-    lengths : dict of str to float
+    lengths : mapping of str to float
         Named particulars, m.
     configurations : tuple of Configuration
     source : Source
@@ -73,12 +75,13 @@ class Body:
     title: str
     datum: str
     reference_point: NDArray[np.float64]
-    lengths: dict[str, float]
+    lengths: Mapping[str, float]
     configurations: tuple[Configuration, ...]
     source: Source
     files: tuple[InputFile, ...]
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
 
     def configuration(self, name: str) -> Configuration | None:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import Axes, parse_axes
-from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import Source
 from coeflab.core.toml import Section, read_toml
-from coeflab.model.scaling import Conditions, Scaling
+from coeflab.model.frozen import locked
+from coeflab.model.scaling import Conditions, Scaling, read_conditions, read_scaling
 
 FILE = "campaign.toml"
 
@@ -49,7 +51,7 @@ class TableDeclaration:
         None where it was not declared.
     labels, ignore : tuple of str
         Columns that name rows, and columns to skip.
-    select : dict of str to str
+    select : mapping of str to str
         Only rows with this text in that label column enter fits.
     select_reason : str
     """
@@ -59,7 +61,7 @@ class TableDeclaration:
     contains_inertia: bool | None
     labels: tuple[str, ...]
     ignore: tuple[str, ...]
-    select: dict[str, str]
+    select: Mapping[str, str]
     select_reason: str
 
 
@@ -73,7 +75,7 @@ class Campaign:
     body: str
     importer: str
     axes: Axes
-    signs: dict[str, str]
+    signs: Mapping[str, str]
     datum: str
     reference_point: NDArray[np.float64]
     scaling: Scaling
@@ -83,18 +85,19 @@ class Campaign:
     source: Source
     tables: tuple[TableDeclaration, ...]
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "signs", MappingProxyType(dict(self.signs)))
+        object.__setattr__(self, "reference_point", locked(self.reference_point))
+
 
 def _inertia(section: Section) -> Inertia | None:
     if not section.content:
         return None
-    tensor = section.raw("inertia", [0.0, 0.0, 0.0])
-    if not isinstance(tensor, list) or len(tensor) != 3:
-        raise section.fail("inertia", shown(tensor), "[Ix, Iy, Iz] about the centre of gravity, kg m^2")
     centre = section.point("centre_of_gravity")
     out = Inertia(
-        section.quantity("mass", "mass"),
+        section.positive("mass", "mass"),
         (float(centre[0]), float(centre[1]), float(centre[2])),
-        (float(tensor[0]), float(tensor[1]), float(tensor[2])),
+        section.triple("inertia", "inertia"),
     )
     section.finish()
     return out
@@ -112,7 +115,7 @@ def _tables(root: Section) -> tuple[TableDeclaration, ...]:
                 contains_inertia=t.flag("contains_inertia") if t.has("contains_inertia") else None,
                 labels=t.texts("labels"),
                 ignore=t.texts("ignore"),
-                select=chosen,
+                select=MappingProxyType(chosen),
                 select_reason=select.text("reason", "not selected by the campaign"),
             )
         )
@@ -149,11 +152,11 @@ def read_campaign(path: Path) -> Campaign:
         body=head.text("body"),
         importer=head.text("importer", "csv"),
         axes=parse_axes(axes.raw("frame"), path),
-        signs={k: str(axes.raw(k)) for k in ("alpha", "beta") if axes.has(k)},
+        signs={k: axes.text(k) for k in ("alpha", "beta") if axes.has(k)},
         datum=axes.text("datum"),
         reference_point=axes.point("reference_point"),
-        scaling=Scaling(scaling.quantity("length", "length"), scaling.text("length_name")),
-        conditions=_conditions(conditions),
+        scaling=read_scaling(scaling),
+        conditions=read_conditions(conditions),
         half_model=head.flag("half_model", False),
         inertia=_inertia(root.section("inertia", required=False)),
         source=Source(
@@ -173,14 +176,3 @@ def read_campaign(path: Path) -> Campaign:
     for section in (head, axes, scaling, conditions, source, root):
         section.finish()
     return campaign
-
-
-def _conditions(section: Section) -> Conditions:
-    try:
-        return Conditions(
-            density=section.quantity("density", "density"),
-            speed=section.quantity("speed", "speed"),
-            viscosity=section.optional_quantity("viscosity", "viscosity"),
-        )
-    except InputError as why:
-        raise InputError(why.found, why.expected, file=section.file, column=why.column, advice=why.advice) from None

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import ScalingMismatchError, shown
-from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative
+from coeflab.core.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative
 from coeflab.kernels.transforms import derivative_transfer
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Conditions, Scaling
@@ -50,7 +50,8 @@ class Parts:
     random : float or None
         Scatter of the points: median member interval, HC2 with Bell-McCaffrey degrees of freedom.
     model_form : float or None
-        Range of the member estimators / sqrt(3); a lone member is compared with the families dropped for their width.
+        2 a / sqrt(3), a the distance of the farthest member estimator from the value; a lone member is compared with
+        the families dropped for their width.
         Each family has its own window, so the choice of window is in here.
     window : float or None
         Reserved for a separately assessed window part.
@@ -116,6 +117,13 @@ class Coefficient:
         parts = Parts(times(p.random), times(p.model_form), times(p.window), times(p.input))
         return replace(self, value=times(self.value, factor), u95=times(self.u95), parts=parts, unit=unit)
 
+    def with_rates(self, longer: float) -> Coefficient:
+        """With the window of a rate, r' = r L / U, for a length ``longer`` times the old one."""
+        rate = any(f in ANGULAR for f in derivative(self.symbol).factors)
+        if self.window is None or not rate:
+            return self
+        return replace(self, window=(self.window[0] * longer, self.window[1] * longer))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CoefficientSet:
@@ -165,7 +173,8 @@ class CoefficientSet:
 
     def _scaled(self, factors: Array, units: list[str], scaling: Scaling, to: Conditions | None) -> CoefficientSet:
         rows = zip(self.coefficients, factors, units, strict=True)
-        changed = tuple(c.scaled(float(k), unit) for c, k, unit in rows)
+        longer = scaling.length / self.scaling.length
+        changed = tuple(c.scaled(float(k), unit).with_rates(longer) for c, k, unit in rows)
         covariance = self.covariance * np.outer(factors, factors)
         return replace(self, coefficients=changed, covariance=covariance, scaling=scaling, conditions=to)
 
@@ -200,8 +209,8 @@ class CoefficientSet:
     def about(self, point: Array) -> CoefficientSet:
         """The set about another point (m, FRD, same datum), with its covariance.
 
-        First-order velocity derivatives go through the 6 x 6 congruence transform, control derivatives through its
-        force half. A coefficient that needs an unknown one becomes `Status.NOT_DETERMINED`; so do higher-order
+        First-order velocity and acceleration derivatives go through the 6 x 6 congruence transform, control
+        derivatives through its force half. A coefficient that needs an unknown one becomes `Status.NOT_DETERMINED`; so do higher-order
         moment and rate terms, whose transfer needs terms that steady sweeps do not give.
         """
         shift = np.asarray(point, dtype=float) - self.reference_point
@@ -212,6 +221,7 @@ class CoefficientSet:
         values = np.array([c.value if c.value is not None else 0.0 for c in self.coefficients])
         moved = matrix @ values
         covariance = matrix @ np.nan_to_num(self.covariance) @ matrix.T
+        covariance = 0.5 * (covariance + covariance.T)
         lost = (matrix != 0.0) @ np.isnan(np.diag(self.covariance))
         covariance[lost, :] = covariance[:, lost] = np.nan
         changed = []
@@ -245,12 +255,12 @@ def transfer_matrix(
         d = derivative(symbol)
         row = COMPONENTS.index(d.component)
         terms: dict[str, float] = {}
-        if len(d.factors) == 1 and d.factors[0] in MOTIONS:
-            column = MOTIONS.index(d.factors[0])
+        if len(d.factors) == 1 and (motion := d.factors[0].removesuffix("dot")) in MOTIONS:
+            column, dot = MOTIONS.index(motion), d.factors[0].removeprefix(motion)
             for k, component in enumerate(COMPONENTS):
                 for j, variable in enumerate(MOTIONS):
                     if (weight := left[row, k] * right[j, column]) != 0.0:
-                        terms[component + variable] = float(weight)
+                        terms[component + variable + dot] = float(weight)
         elif all(f not in ("p", "q", "r") and not f.endswith("dot") for f in d.factors):
             for k, component in enumerate(COMPONENTS):
                 if left[row, k] != 0.0:

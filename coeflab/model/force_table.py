@@ -12,6 +12,7 @@ from coeflab.core.provenance import InputFile, Source
 from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.kernels.transforms import force_transfer, velocity_transfer
 from coeflab.model.frozen import locked, locked_columns
+from coeflab.model.input_uncertainty import InputUncertainty
 from coeflab.model.scaling import Conditions, Scaling
 
 Array = NDArray[np.float64]
@@ -77,6 +78,10 @@ class ForceTable:
     files : tuple of InputFile
     notes : tuple of str
         What the importer did: inertia taken out, half model doubled, axes turned.
+    cells : (n,) array or None
+        Cells of the grid that computed each row, NaN where blank; None where the table does not say.
+    uncertainty : InputUncertainty or None
+        Of the inputs, as the campaign declares it; None where it does not.
     """
 
     name: str
@@ -98,12 +103,16 @@ class ForceTable:
     source: Source
     files: tuple[InputFile, ...] = ()
     notes: tuple[str, ...] = field(default=())
+    cells: Array | None = None
+    uncertainty: InputUncertainty | None = None
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors"):
             object.__setattr__(self, name, locked_columns(getattr(self, name)))
         object.__setattr__(self, "usable", locked_columns(self.usable, bool))
         object.__setattr__(self, "speed", locked(self.speed))
+        if self.cells is not None:
+            object.__setattr__(self, "cells", locked(self.cells))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
 
     def __len__(self) -> int:
@@ -140,6 +149,7 @@ class ForceTable:
         nu = np.column_stack([self.motion[m] for m in MOTIONS]) @ velocity_transfer(shift).T
         transfer = force_transfer(shift)
         forces, errors, usable = dict(self.forces), dict(self.errors), dict(self.usable)
+        exclusions = list(self.exclusions)
         for i, component in enumerate(COMPONENTS):
             needed = [(c, transfer[i, j]) for j, c in enumerate(COMPONENTS) if transfer[i, j] != 0.0]
             if len(needed) == 1 or component not in forces:
@@ -147,9 +157,11 @@ class ForceTable:
             if any(c not in forces for c, _ in needed):
                 del forces[component], usable[component]
                 errors.pop(component, None)
+                exclusions = [e for e in exclusions if e.component != component]
                 continue
             forces[component] = np.asarray(sum(self.forces[c] * k for c, k in needed))
             usable[component] = np.logical_and.reduce([self.usable[c] for c, _ in needed])
+            exclusions += self._passed_on(component, [c for c, _ in needed if c != component])
             if all(c in self.errors for c, _ in needed):
                 errors[component] = np.asarray(sum(self.errors[c] * abs(k) for c, k in needed))
             else:
@@ -160,17 +172,25 @@ class ForceTable:
             forces=forces,
             errors=errors,
             usable=usable,
+            exclusions=tuple(exclusions),
             reference_point=np.asarray(point, dtype=float),
             notes=(*self.notes, f"moments moved by ({', '.join(f'{s:+.6g}' for s in shift)}) m"),
         )
 
+    def _passed_on(self, component: str, needed: list[str]) -> list[Exclusion]:
+        """Exclusions of a moment that it inherits from the forces in its transfer."""
+        own = {e.row for e in self.exclusions if e.component == component}
+        return [
+            replace(e, component=component, reason=f"{e.component}: {e.reason}")
+            for e in self.exclusions
+            if e.component in needed and e.row not in own
+        ]
+
     def with_uncertain_cells(self) -> ForceTable:
         """The table with the cells in use that its source marks as doubtful but prints."""
-        usable = {c: np.array(mask) for c, mask in self.usable.items()}
-        kept = []
-        for e in self.exclusions:
-            if e.uncertain and np.isfinite(self.forces[e.component][e.row]):
-                usable[e.component][e.row] = True
-            else:
-                kept.append(e)
+        kept = [e for e in self.exclusions if not (e.uncertain and np.isfinite(self.forces[e.component][e.row]))]
+        usable = {c: np.ones(len(self), dtype=bool) for c in self.usable}
+        for e in kept:
+            for component in [e.component] if e.component else usable:
+                usable[component][e.row] = False
         return replace(self, usable=usable, exclusions=tuple(kept), notes=(*self.notes, "doubtful cells in use"))

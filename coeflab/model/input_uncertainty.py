@@ -68,6 +68,8 @@ def read_input_uncertainty(section: Section) -> InputUncertainty | None:
         return None
     found: dict[str, float] = {}
     for name in NAMES:
+        section.raw(name)
+    for name in NAMES:
         dimension = DIMENSIONS.get(name, "none")
         value = section.optional_quantity(name, dimension)
         if value is None:

@@ -54,6 +54,8 @@ class ParameterCoefficient(Strict):
 
     @model_validator(mode="after")
     def _honest(self) -> ParameterCoefficient:
+        if not self.symbol.endswith("'"):
+            raise ValueError(f"{self.symbol}: a symbol without prime; write {self.symbol}'")
         try:
             derivative(self.symbol)
         except InputError as why:
@@ -109,12 +111,15 @@ class ParameterCovariance(Strict):
         k = len(self.symbols)
         if len(self.matrix) != k or any(len(row) != k for row in self.matrix):
             raise ValueError(f"the covariance of {k} coefficients must be {k} x {k}")
+        if len(set(self.symbols)) != k:
+            raise ValueError("the covariance names a coefficient twice")
         for i, row in enumerate(self.matrix):
             for j, value in enumerate(row):
                 other = self.matrix[j][i]
                 if (value is None) != (other is None):
                     raise ValueError("the covariance is not symmetric")
-                if value is not None and other is not None and not math.isclose(value, other, rel_tol=1e-9):
+                rounding = 1e-12 * max(abs(v) for v in (row[i], self.matrix[j][j], 0.0) if v is not None)
+                if value is not None and other is not None and not math.isclose(value, other, rel_tol=1e-9, abs_tol=rounding):
                     raise ValueError("the covariance is not symmetric")
             diagonal = row[i]
             if diagonal is not None and diagonal < 0.0:

@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 class ModelVariable(Strict):
     """A variable of a fitted model."""
 
-    name: Literal["alpha", "beta", "u", "v", "w", "p", "q", "r", "dr", "ds", "db"]
+    name: Name = Field(description="alpha beta u v w p q r dr ds db")
     unit: Literal["rad", "1", "m/s", "rad/s"] = Field(description="1: v/U for velocities, r L/U for rates")
 
 
@@ -195,6 +195,6 @@ def chosen(models: tuple[ParameterModel, ...], response: str, variables: tuple[s
             raise InputError(f"the unknown variable {shown(v)}", f"one of {', '.join(names)}")
     matching = tuple(m for m in found if set(m.names) == set(variables))
     if not matching:
-        forms = dict.fromkeys(f"{' and '.join(m.names)} ({m.response})" for m in found)
-        raise InputError(f"values for {' and '.join(variables) or 'no variable'}", f"values for {' or '.join(forms)}")
+        forms = ", or for ".join(dict.fromkeys(" and ".join(m.names) for m in found))
+        raise InputError(f"values for {' and '.join(variables) or 'no variable'}", f"values for {forms}")
     return matching

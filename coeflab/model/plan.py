@@ -8,9 +8,8 @@ from pathlib import Path
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.symbols import derivative
 from coeflab.core.toml import Section, read_toml
-from coeflab.model.scaling import Conditions, Scaling
+from coeflab.model.scaling import read_conditions, read_scaling
 from coeflab.model.study import Plan, PlannedParameterFile, PlannedTable
 
 _NAME = re.compile(r"^[\w][\w .+-]{0,79}$")
@@ -64,7 +63,7 @@ def read_plan(path: Path) -> Plan:
     scaling, conditions, body = (root.section(k, required=False) for k in ("scaling", "conditions", "body"))
     wanted = study.texts("wanted") or ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
     for symbol in wanted:
-        derivative(symbol)
+        study.symbol("wanted", symbol)
     files = []
     for s in root.sections("parameter_file"):
         name, group = safe_name(s, "name"), s.texts("campaigns")
@@ -84,14 +83,8 @@ def read_plan(path: Path) -> Plan:
         tables=_tables(root),
         reference_point=study.point("reference_point") if study.has("reference_point") else None,
         datum=study.text("datum", ""),
-        scaling=Scaling(scaling.quantity("length", "length"), scaling.text("length_name")) if scaling.content else None,
-        conditions=Conditions(
-            conditions.quantity("density", "density"),
-            conditions.quantity("speed", "speed"),
-            conditions.optional_quantity("viscosity", "viscosity"),
-        )
-        if conditions.content
-        else None,
+        scaling=read_scaling(scaling) if scaling.content else None,
+        conditions=read_conditions(conditions) if conditions.content else None,
         body=_path(body, "path", "geometry") if body.content else None,
         references=tuple(references),
         parameter_files=tuple(files),

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.symbols import derivative
+from coeflab.core.errors import InputError, shown
 from coeflab.core.toml import Section, read_toml
+from coeflab.core.units import quantity
 from coeflab.model.coefficient import Coefficient
-from coeflab.model.scaling import Scaling
+from coeflab.model.frozen import locked
+from coeflab.model.scaling import Scaling, read_scaling
 
 
 class Relation(StrEnum):
@@ -67,8 +71,13 @@ class Reference:
     note: str
     values: tuple[PublishedValue, ...]
     literature: tuple[Literature, ...]
-    uncertainties: dict[str, float]
+    uncertainties: Mapping[str, float]
     reference_point: NDArray[np.float64] | None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "uncertainties", MappingProxyType(dict(self.uncertainties)))
+        if self.reference_point is not None:
+            object.__setattr__(self, "reference_point", locked(self.reference_point))
 
     def printed(self, symbol: str) -> PublishedValue | None:
         """The published value of a symbol, if there is one."""
@@ -157,19 +166,19 @@ def _values(section: Section) -> tuple[PublishedValue, ...]:
     out = []
     for symbol in section.content:
         printed = section.text(symbol)
-        derivative(symbol)
+        section.symbol(symbol, symbol)
         try:
-            value: float | None = float(printed)
-        except ValueError:
+            value: float | None = quantity(printed, "none")
+        except InputError:
             if not printed.endswith("?"):
-                raise section.fail(symbol, f'"{printed}"', 'a number, or one that ends in "?" if illegible') from None
+                raise section.fail(symbol, shown(printed), 'a number, or one that ends in "?" if illegible') from None
             value = None
         out.append(PublishedValue(symbol, printed, value))
     return tuple(out)
 
 
 def _uncertainties(section: Section) -> dict[str, float]:
-    return {name: section.quantity(name, "none") for name in section.content}
+    return {name: section.positive(name, "none") for name in section.content}
 
 
 def read_references(path: Path) -> tuple[Reference, ...]:
@@ -183,13 +192,12 @@ def read_references(path: Path) -> tuple[Reference, ...]:
     root = read_toml(path)
     out = []
     for s in root.sections("reference"):
-        other = s.optional_quantity("other_length", "length")
         kinds = s.section("literature", required=False)
         literature = []
         for kind in kinds.content:
             k = kinds.section(kind)
             literature.append(
-                Literature(kind, k.text("method"), k.quantity("uncertainty", "none"), _values(k.section("values")))
+                Literature(kind, k.text("method"), k.positive("uncertainty", "none"), _values(k.section("values")))
             )
             k.finish()
         out.append(
@@ -200,8 +208,8 @@ def read_references(path: Path) -> tuple[Reference, ...]:
                 body=s.text("body"),
                 relation=Relation(s.text("relation", choices=tuple(r.value for r in Relation))),
                 campaigns=s.texts("campaigns"),
-                scaling=Scaling(s.quantity("length", "length"), s.text("length_name")),
-                other_scaling=None if other is None else Scaling(other, s.text("other_length_name")),
+                scaling=read_scaling(s),
+                other_scaling=read_scaling(s, "other_") if s.has("other_length") else None,
                 note=s.text("note", ""),
                 values=_values(s.section("values")),
                 literature=tuple(literature),

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.symbols import derivative
+from coeflab.core.toml import Section
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,3 +77,17 @@ class Scaling:
             raise ScalingMismatchError(
                 f"coefficients primed by {self} and by {other} do not mix; rescale one of them first (to_length)."
             )
+
+
+def read_scaling(section: Section, prefix: str = "") -> Scaling:
+    """The Scaling that a section states under ``length`` and ``length_name``."""
+    return Scaling(section.positive(f"{prefix}length", "length"), section.text(f"{prefix}length_name"))
+
+
+def read_conditions(section: Section) -> Conditions:
+    """The Conditions that a section states."""
+    return Conditions(
+        density=section.positive("density", "density"),
+        speed=section.positive("speed", "speed"),
+        viscosity=section.optional_positive("viscosity", "viscosity"),
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -104,6 +105,9 @@ class Study:
     parameter_files: Mapping[str, ParameterFile]
     inputs: tuple[InputFile, ...]
     checks: tuple[Check, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "parameter_files", MappingProxyType(dict(self.parameter_files)))
 
     @property
     def coefficients(self) -> tuple[Coefficient, ...]:

@@ -105,6 +105,8 @@ def only_moving(
             kept.append(replace(table, usable=usable, exclusions=(*table.exclusions, *moving)))
     if not kept:
         raise InputError(
-            f"no row in which only {' and '.join(variables)} may move", "a sweep over these variables", column="variable"
+            f"no row in which only {' and '.join(variables)} may move",
+            "a sweep over these variables",
+            column="variable",
         )
     return kept, tuple(statements)

@@ -39,10 +39,16 @@ def campaign_section(study: Study, fit: FitResult, taken: set[str]) -> Section:
     title = mine[0].title if mine else fit.campaign
     if sum(f.campaign == fit.campaign for f in study.fits) > 1:
         title = f"{title} ({fit.fit})"
+    text = [line for t in mine for line in _about(t)]
+    if "swept about" in fit.settings:
+        text.append(
+            f"Figures and estimators are about {fit.settings['swept about']}: the coefficients in the tables are about "
+            "the study's reference point."
+        )
     return Section(
         place,
         title,
-        tuple(text for t in mine for text in _about(t)) if mine else (),
+        tuple(text),
         filled(tables.coefficients(study, fit.campaign)),
         subsections=tuple(_sweep_section(study, fit, s, anchor(f"{place} {s.symbol}", taken)) for s in fit.sweeps),
     )

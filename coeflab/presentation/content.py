@@ -131,7 +131,11 @@ def _coefficients(study: Study) -> Section:
     text: tuple[str, ...] = (
         "A value is the median of the members: for each form of the curve, the fit in the widest window in which its "
         "next term is not yet significant. U95 joins the random part (the members' median 95 % interval) and the "
-        "model-form part (the range of the members / sqrt 3) as a root sum of squares. No published value enters.",
+        "model-form part (2 / sqrt 3 times the distance of the farthest member, as for a rectangular distribution about the "
+        "value) as a root sum of squares. No published value enters.",
+        "The model-form part presumes that the true curve is close to one of the forms. In simulations with line, cubic or "
+        "v|v| as the truth U95 covers it in 97, 97 and 85 to 90 of 100 campaigns; for a mixture of v|v| and v^3, which the "
+        "points cannot tell from a polynomial, only in 25 to 50.",
         "A lone member is compared with the fits that were dropped only because their intervals are too wide; where there "
         "are none, no U95 is given.",
         "A part that was not assessed is shown by a dash: uncertainty of angle, speed, calibration and length, and for "

@@ -243,10 +243,6 @@ def test_planted_rotary_derivatives_come_back_from_a_rotating_arm() -> None:
         assert found[symbol].value == pytest.approx(value, rel=1e-9)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="about another point an arm's runs have v = r dx, so no row varies r alone and Yr, Nr are not given",
-)
 def test_planted_rotary_derivatives_come_back_about_another_point() -> None:
     both, dx = arm(), 0.3
     length = both[0].scaling.length

@@ -214,7 +214,9 @@ def test_value_and_u95_are_median_and_sum_of_squares_of_the_members() -> None:
     assert len(values) >= 2
     assert answer.value == np.median(values)
     assert answer.random == np.median(halves)
-    assert answer.model_form == pytest.approx((max(values) - min(values)) / 3**0.5)
+    assert answer.value is not None
+    farthest = max(abs(v - answer.value) for v in values)
+    assert answer.model_form == pytest.approx(2.0 * farthest / 3**0.5)
     assert answer.u95 == pytest.approx((answer.random**2 + answer.model_form**2) ** 0.5)
     assert max(halves) <= 3.0 * min(halves)
     assert [e for e in answer.panel if e.role == MEMBER] == list(answer.members)
@@ -282,4 +284,5 @@ def test_a_lone_member_is_held_against_the_families_dropped_for_their_width() ->
     wide = [e.value for e in answer.panel if e.role == TOO_WIDE]
     assert wide
     values = [e.value for e in answer.members] + wide
-    assert answer.model_form == pytest.approx((max(values) - min(values)) / 3**0.5)
+    assert answer.value is not None
+    assert answer.model_form == pytest.approx(2.0 * max(abs(v - answer.value) for v in values) / 3**0.5)

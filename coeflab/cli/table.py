@@ -1,0 +1,143 @@
+"""``coeflab table``: values of a fitted table, as CSV."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from coeflab.model.parameter_model import ParameterModel
+
+EXAMPLE = "coeflab table reports/huuv/huuv.parameters.json --alpha=-20:20:1 --beta=0"
+CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
+LARGEST = 5_000_000
+CHUNK = 65_536
+VALUES = "low:high:step, a number, or numbers with commas"
+
+
+def command(
+    ctx: typer.Context,
+    params: Path = typer.Argument(..., help="A parameter file with fitted tables."),
+    response: str = typer.Option("", help="Only this response, such as C_D or Y'."),
+    out: Path | None = typer.Option(None, help="File to write; without it the table goes to standard output."),
+) -> None:
+    """Evaluate a fitted table and print it as CSV.
+
+    Give every variable as --NAME=LOW:HIGH:STEP, a number or a comma list: angles in degrees, primes as such. The column
+    "inside" is 1 within the convex hull of the data; cells that the file's rule refuses stay blank.
+    """
+    from coeflab.core.errors import InputError, shown
+    from coeflab.core.files import write_atomically
+    from coeflab.model.parameter_file import read_parameter_file
+    from coeflab.model.parameter_model import chosen
+
+    if str(params).startswith("--"):
+        raise InputError(shown(params), "the parameter file first, then --NAME=VALUES")
+    given = wanted(ctx.args)
+    models = chosen(read_parameter_file(params).models, response, tuple(given))
+    lines = _lines(models, given)
+    if out is not None:
+        changed = write_atomically(out, "".join(lines).encode())
+        typer.echo(f"{out}: {'written' if changed else 'unchanged'}", err=True)
+        return
+    for chunk in lines:
+        typer.echo(chunk, nl=False)
+
+
+def wanted(arguments: list[str]) -> dict[str, NDArray[np.float64]]:
+    """Values of every variable, as typed.
+
+    Raises
+    ------
+    InputError
+        Something that is no --NAME=VALUES, a variable given twice, values that cannot be read, or too many points.
+    """
+    from coeflab.core.errors import InputError, shown
+
+    out: dict[str, NDArray[np.float64]] = {}
+    points = 1
+    rest = list(arguments)
+    while rest:
+        word = rest.pop(0)
+        name, equals, text = word.partition("=")
+        if not name.startswith("--") or len(name) < 3 or (not equals and not rest):
+            raise InputError(shown(word), f"--NAME=VALUES with {VALUES}")
+        text = text if equals else rest.pop(0)
+        name = name[2:]
+        if name in out:
+            raise InputError(f"{shown('--' + name)} twice", "every variable once")
+        out[name] = _values(name, text, LARGEST // points)
+        points *= len(out[name])
+    return out
+
+
+def _values(name: str, text: str, most: int) -> NDArray[np.float64]:
+    import numpy as np
+
+    from coeflab.core.errors import InputError, shown
+
+    try:
+        numbers = [float(x) for x in text.split(":" if ":" in text else ",")]
+    except ValueError:
+        numbers = []
+    ranged = ":" in text
+    if not numbers or not all(map(math.isfinite, numbers)) or (ranged and len(numbers) != 3):
+        raise InputError(shown(text), VALUES, column=f"--{name}")
+    count = float(len(numbers))
+    if ranged:
+        low, high, step = numbers
+        if step <= 0.0 or high < low:
+            raise InputError(shown(text), "a low below the high and a step above zero", column=f"--{name}")
+        count = (high - low) / step + 1.0
+    if not count <= most + 1e-6:
+        raise InputError(
+            f"a grid of more than {LARGEST:,} points", "a coarser one", column=f"--{name}",
+            advice="Take a larger step or fewer values.",
+        )  # fmt: skip
+    if not ranged:
+        return np.array(numbers)
+    return np.asarray(low + step * np.arange(int(count + 1e-9)))
+
+
+def _header(name: str, unit: str) -> str:
+    angle = {"rad": "deg", "1": "-"}.get(unit, unit)
+    return f"{name}' [-]" if unit == "1" and len(name) == 1 else f"{name} [{angle}]"
+
+
+def _lines(models: tuple[ParameterModel, ...], given: dict[str, NDArray[np.float64]]) -> Iterator[str]:
+    """The CSV in pieces: header, then rows, the last variable fastest."""
+    import numpy as np
+
+    units = {v.name: v.unit for v in models[0].variables}
+    yield ",".join(
+        [_header(v, units[v]) for v in given]
+        + [f"{m.response}{what} [{'-' if m.unit == '1' else m.unit}]" for m in models for what in ("", " U95")]
+        + ["inside"]
+    ) + "\n"
+    shape = tuple(len(x) for x in given.values())
+    total = math.prod(shape)
+    for start in range(0, total, CHUNK):
+        index = np.unravel_index(np.arange(start, min(start + CHUNK, total)), shape)
+        typed = {v: x[i] for (v, x), i in zip(given.items(), index, strict=True)}
+        columns = {v: np.radians(x) if units[v] == "rad" else x for v, x in typed.items()}
+        inside = np.ones(len(index[0]), dtype=bool)
+        cells = [_text(x) for x in typed.values()]
+        for m in models:
+            values, half, within = m.evaluate({v: columns[v] for v in m.names})
+            cells += [_text(values), _text(half)]
+            inside &= within
+        cells.append(["1" if w else "0" for w in inside])
+        yield "".join(",".join(row) + "\n" for row in zip(*cells, strict=True))
+
+
+def _text(values: NDArray[np.float64]) -> list[str]:
+    """Ten significant digits; blank where there is no value."""
+    return ["" if math.isnan(x) else f"{x + 0.0:.10g}" for x in values.tolist()]

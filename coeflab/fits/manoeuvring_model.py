@@ -1,0 +1,247 @@
+"""Manoeuvring models: any SNAME terms, fitted jointly over drift, rotating-arm and combined tables of a campaign.
+
+Term sets: Gertler & Hagen (1967), Feldman (1979). HC2: MacKinnon & White (1985), degrees of freedom: Bell & McCaffrey
+(2002). Valid inside the convex hull of the data; U95 holds the scatter of the points about the chosen form only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from coeflab.core.errors import InputError
+from coeflab.core.options import one_of, parse_options, words
+from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.kernels.least_squares import Array
+from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.model.fit_result import FitResult
+from coeflab.model.fitted_model import FittedModel
+from coeflab.model.force_table import ForceTable
+from coeflab.model.joint_model import Component, joint_models
+from coeflab.model.joint_rows import joint_rows, moving
+from coeflab.model.manoeuvring_terms import SETS, NamedTerm, canonical, read_equation, read_term, read_terms
+from coeflab.model.scaling import Scaling
+from coeflab.model.secant import secant
+
+summary = "manoeuvring model of any SNAME terms over all tables of a campaign, with linear equations between coefficients"
+citations = ("gertler1967", "feldman1979", "mackinnon1985", "bell2002")
+
+SCATTER_ONLY = "U95 holds the scatter of the points about this form; the error of the form itself is not in it."
+UNWEIGHTED = (
+    "Rows weigh alike: their stated standard errors are noise of one run, not the error of the model. weights = yes "
+    "uses them."
+)
+WEIGHTED = "Rows are weighted by their stated standard errors, as asked."
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Options of the fit.
+
+    Attributes
+    ----------
+    terms : tuple of str
+        SNAME symbols such as ``Yv``, ``Yv|v|``, ``Nrr|r|``; each must occur in the data.
+    set : str
+        Terms of a standard set as well; horizontal if no terms are given. Those that the data do not excite are
+        reported as not determined.
+    components : tuple of str
+        Components of the set; none given means all that the tables have.
+    intercepts : str
+        ``yes`` adds Y0, N0 ... to every component; ``no`` leaves only those that the terms name.
+    constraints : tuple of str
+        Linear equations, kept exactly: ``Mw = -Nv``.
+    weights : str
+        ``yes`` weighs rows by their standard errors.
+    """
+
+    terms: tuple[str, ...] = words()
+    set: str = one_of("", "horizontal", "vertical", "none")
+    components: tuple[str, ...] = words()
+    intercepts: str = one_of("yes", "yes", "no")
+    constraints: tuple[str, ...] = words()
+    weights: str = one_of("no", "yes", "no")
+
+
+def _asked(options: Options, tables: Sequence[ForceTable]) -> tuple[tuple[NamedTerm, ...], tuple[NamedTerm, ...]]:
+    """Terms to fit, and terms of the set that no row excites."""
+    named = read_terms(options.terms, "manoeuvring_model.terms")
+    chosen = options.set or ("none" if named else "horizontal")
+    if chosen == "none" and not named:
+        raise InputError("no terms", "terms, or a set", column="manoeuvring_model.terms",
+                         advice="For example terms = Yv,Yv|v|,Nv or set = horizontal.")  # fmt: skip
+    measured = {c for t in tables for c in t.forces}
+    unknown = [c for c in options.components if c not in COMPONENTS]
+    if unknown:
+        raise InputError(", ".join(unknown), f"some of {', '.join(COMPONENTS)}", column="manoeuvring_model.components")
+    wanted = measured & set(options.components or COMPONENTS)
+    of_set = [t for s in SETS.get(chosen, ()) if (t := read_term(s, "set")).component in wanted]
+    if options.intercepts == "yes":
+        of_set += [read_term(f"{c}0", "set") for c in {t.component for t in named}]
+    else:
+        of_set = [t for t in of_set if t.term.factors]
+    taken, moves = {t.key for t in named}, set(moving(tables))
+    fitted, idle = list(named), []
+    for t in of_set:
+        if t.key in taken:
+            continue
+        taken.add(t.key)
+        occurring = _occurs(t, tables) if moves.issuperset(v for v, _, _ in t.term.factors) else False
+        (fitted if occurring else idle).append(t)
+    order = {c: i for i, c in enumerate(COMPONENTS)}
+    return tuple(sorted(fitted, key=lambda t: (order[t.component], bool(t.term.factors)))), tuple(idle)
+
+
+def _occurs(term: NamedTerm, tables: Sequence[ForceTable]) -> bool:
+    """Whether a usable row of the component has all motions of a term at once."""
+    for t in tables:
+        if term.component not in t.forces:
+            continue
+        together = np.array(t.usable[term.component])
+        for v, _, _ in term.term.factors:
+            together &= (t.controls[v] if v in t.controls else t.motion.get(v, np.zeros(len(t)))) != 0.0
+        if np.any(together):
+            return True
+    return False
+
+
+def _with_secants(model: FittedModel) -> list[str]:
+    """Secants beside the slopes that the model has more than a line for."""
+    out = []
+    for symbol, term, value in zip(model.symbols, model.terms, model.fit.coefficients, strict=True):
+        key = canonical(term)
+        if len(key) == 1 and key[0][0] in MOTIONS and key[0][1:] == (1, True) and np.isfinite(value):
+            beside = [
+                float(b)
+                for t, b in zip(model.terms, model.fit.coefficients, strict=True)
+                for k in [canonical(t)]
+                if len(k) == 1 and k[0][0] == key[0][0] and k[0][2] and k[0][1] > 1
+            ]
+            if beside and np.all(np.isfinite(beside)):
+                out.append(str(secant(model, symbol)))
+    return out
+
+
+def _window(model: FittedModel, index: int) -> tuple[float, float] | None:
+    """Range of the motion of a coefficient of one variable: radians for v' and w', else as it is."""
+    names = {v for v, _, _ in model.terms[index].factors}
+    if len(names) != 1:
+        return None
+    name = names.pop()
+    low, high = float(model.x[name].min()), float(model.x[name].max())
+    if name in ("v", "w"):
+        return float(np.arcsin(np.clip(low, -1.0, 1.0))), float(np.arcsin(np.clip(high, -1.0, 1.0)))
+    return low, high
+
+
+def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
+    shared: dict[str, Any] = {
+        "body": model.body, "origin": "fit", "table": model.table, "campaign": model.campaign,
+        "n_points": model.n_points, "citation": citation,
+        "estimator": f"joint least squares, {model.response}' = {' + '.join(model.symbols)}",
+    }  # fmt: skip
+    out = []
+    for i, symbol in enumerate(model.symbols):
+        value, half = float(model.fit.coefficients[i]), float(model.fit.half_width[i])
+        if not np.isfinite(value):
+            out.append(Coefficient(symbol, None, None, Status.NOT_DETERMINED, **shared))
+            continue
+        u95 = half if np.isfinite(half) else None
+        status = Status.OK if u95 is not None else Status.SINGLE_ESTIMATOR
+        out.append(
+            Coefficient(symbol, value, u95, status, parts=Parts(random=u95), window=_window(model, i), **shared)
+        )
+    return out
+
+
+def _covariance(spread: Array, coefficients: Sequence[Coefficient]) -> Array:
+    """(U95/2)^2 on the diagonal, correlations of the sandwich beside it; NaN where there is no U95."""
+    size = np.linalg.norm(spread, axis=1)
+    unit = spread / np.where(size > 0.0, size, 1.0)[:, None]
+    u = np.array([np.nan if c.u95 is None else c.u95 / 2.0 for c in coefficients])
+    out = (unit @ unit.T) * np.outer(u, u)
+    out[np.diag_indices(len(u))] = u**2
+    return np.asarray(out)
+
+
+def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
+    """Fit the model over all tables of one campaign.
+
+    Parameters
+    ----------
+    tables : sequence of ForceTable
+        Of one campaign, about one reference point.
+    scaling : Scaling
+        Length of the primes.
+    options : mapping
+        See `Options`.
+
+    Returns
+    -------
+    FitResult
+        One model per component; coefficients that the rows leave open have no value and say so.
+
+    Raises
+    ------
+    InputError
+        Unknown, repeated or unexcited terms; more terms than rows; equations that are unreadable or cannot hold.
+    """
+    chosen = parse_options(Options, options, "manoeuvring_model")
+    equations = [read_equation(c, "manoeuvring_model.constraints") for c in chosen.constraints]
+    terms, idle = _asked(chosen, tables)
+    components = {}
+    for c in dict.fromkeys(t.component for t in terms):
+        own = tuple(t for t in terms if t.component == c)
+        variables = tuple(dict.fromkeys(v for t in own for v, _, _ in t.term.factors)) or moving(tables)[:1]
+        components[c] = Component(c, own, joint_rows(tables, variables, c, scaling.length))
+    weighted = chosen.weights == "yes"
+    stated = {c: p.data.rows.errors is not None for c, p in components.items()}
+    if weighted and not all(stated.values()):
+        lacking = ", ".join(c for c, known in stated.items() if not known)
+        raise InputError(f"no standard errors of {lacking}", "weights = no", column="manoeuvring_model.weights",
+                         advice="Every usable row needs se_ columns of the component.")  # fmt: skip
+    n_runs = sum(map(len, tables))
+    models, spread = joint_models(components, equations, "manoeuvring model", weighted=weighted, n_runs=n_runs)
+    weights_said = {c: [WEIGHTED] if weighted else [UNWEIGHTED] if known else [] for c, known in stated.items()}
+    finished = tuple(_finished(m, weights_said[m.response], idle) for m in models)
+    first = tables[0]
+    coefficients = [c for m in finished for c in _coefficients(m, first.source.citation)]
+    open_ones = [
+        Coefficient(t.symbol, None, None, Status.NOT_DETERMINED, first.body, origin="fit", campaign=first.campaign,
+                    estimator="its motion does not occur in the tables")
+        for t in idle
+    ]  # fmt: skip
+    every = tuple(coefficients + open_ones)
+    return FitResult(
+        fit="manoeuvring_model",
+        campaign=first.campaign,
+        body=first.body,
+        coefficients=CoefficientSet(
+            every,
+            _covariance(np.vstack([spread, np.zeros((len(open_ones), n_runs))]), every),
+            scaling,
+            first.reference_point,
+            first.datum,
+            first.body,
+        ),
+        sweeps=(),
+        citations=citations,
+        settings={
+            "terms": " ".join(t.symbol for t in terms),
+            "constraints": ", ".join(map(str, equations)) or "none",
+            "weights": chosen.weights,
+        },
+        models=finished,
+    )
+
+
+def _finished(model: FittedModel, weights: Sequence[str], idle: Sequence[NamedTerm]) -> FittedModel:
+    """The model with what a reader must know about it, in words."""
+    absent = [t.symbol for t in idle if t.component == model.response]
+    said = [*model.statements, *_with_secants(model), *weights, SCATTER_ONLY]
+    if absent:
+        said.insert(0, f"Not determined, as the tables do not hold their motion: {', '.join(absent)}.")
+    return replace(model, statements=tuple(said))

@@ -1,0 +1,255 @@
+"""Tables over two variables: drag, side force, lift and moments over angles of attack and drift.
+
+The additive form C_D(a, b) = C_Da(a) + C_Db(b) - C_D0 is the corrected one: the sum of the two slices that the HUUV
+paper (Talarczyk et al. 2025) prints holds the force at rest twice; `sum_of_slices` shows by how much.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.options import bounded, one_of, parse_options, words
+from coeflab.core.symbols import PORT_STARBOARD
+from coeflab.kernels.nested import nested_test
+from coeflab.kernels.terms import Term, power_terms
+from coeflab.model.coefficient import CoefficientSet
+from coeflab.model.fit_result import FitResult
+from coeflab.model.fitted_model import Extrapolation, FittedModel, in_words
+from coeflab.model.force_table import ForceTable
+from coeflab.model.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
+from coeflab.model.scaling import Scaling
+from coeflab.model.swept import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
+
+summary = "polynomial surfaces in two variables, additive or with interaction, each measured against the other"
+citations = ("huuv2025", "allen1974", "hurvich1989", "mackinnon1985", "bell2002")
+
+Array = NDArray[np.float64]
+USUAL = ("C_D", "C_S", "C_L", "C_m", "C_n")
+FORMS = ("tensor", "total", "additive")
+PARITIES = ("full", "odd", "even", "symmetric")
+ODD_RESPONSES = frozenset({"C_S", *(r for r, c in MOMENT_COEFFICIENTS.items() if c in "KN"), *"YKN"})
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Options of the fit.
+
+    Attributes
+    ----------
+    variables : tuple of str
+        Two of alpha, beta, v, w, p, q, r and controls.
+    responses : tuple of str
+        By default those of C_D C_S C_L C_m C_n that the tables allow.
+    degree : int
+        Of each variable (``tensor``, ``additive``) or of the product (``total``).
+    form : str
+    parity : tuple of str
+        ``variable=odd|even|full|symmetric``, full where not named. ``symmetric`` takes the parity of each response
+        from port-starboard symmetry: side force, roll and yaw odd in beta, the others even.
+    extrapolation : str
+        What a reader outside the data is to do.
+    area : float
+        m^2; 0 is the square of the primes' length.
+    area_name : str
+        What the area is.
+    """
+
+    variables: tuple[str, ...] = words("alpha", "beta")
+    responses: tuple[str, ...] = words()
+    degree: int = bounded(4, 1, 8)
+    form: str = one_of("tensor", *FORMS)
+    parity: tuple[str, ...] = words()
+    extrapolation: str = one_of("refuse", "refuse", "clamp", "taper")
+    area: float = bounded(0.0, 0.0, 1e6)
+    area_name: str = one_of(PRIMES, *AREAS)
+
+
+def _parities(chosen: Options, name: str) -> dict[str, str]:
+    """Parity of every variable for one response."""
+    out: dict[str, str] = {}
+    sided = [v for v in chosen.variables if v == "beta" or v in PORT_STARBOARD]
+    for word in chosen.parity:
+        variable, _, rule = word.partition("=")
+        if variable not in chosen.variables or rule not in PARITIES:
+            raise InputError(
+                shown(word), f"variable=rule with one of {', '.join(chosen.variables)} and one of {', '.join(PARITIES)}",
+                column="surface.parity",
+            )  # fmt: skip
+        if rule == "symmetric":
+            if sided != [variable]:
+                raise InputError(
+                    shown(word), "symmetric for the one variable that port-starboard symmetry turns around",
+                    column="surface.parity",
+                )  # fmt: skip
+            rule = "odd" if name in ODD_RESPONSES else "even"
+        out[variable] = rule
+    return out
+
+
+def _fitted(rows: Rows, chosen: Options, form: str, area: Area) -> FittedModel | None:
+    """One form; None where it has no terms or more than the rows can carry."""
+    variables = tuple(rows.x)
+    rule = _parities(chosen, rows.response)
+    terms = power_terms(variables, chosen.degree, form, rule)
+    if not terms or len(terms) >= len(rows.y):
+        return None
+    name = named_response(rows.response, area)
+    symbols = tuple(f"{name}_{t if t.factors else 0}" for t in terms)
+    parities = "".join(f", {r} in {v}" for v, r in rule.items() if r != "full")
+    shape = {
+        "tensor": f"surface of degree {chosen.degree} in each of {' and '.join(variables)}",
+        "total": f"surface of total degree {chosen.degree} in {' and '.join(variables)}",
+        "additive": f"sum of curves of degree {chosen.degree} in {' and '.join(variables)}, value at rest once",
+    }[form]
+    model = model_of(rows, terms, symbols, shape + parities, rule=Extrapolation(chosen.extrapolation))
+    return replace(model, response=name)
+
+
+def _squares(model: FittedModel, rows: Rows) -> float:
+    """Weighted sum of squared residuals."""
+    weights = np.ones(len(rows.y)) if rows.errors is None else rows.errors**-2.0
+    return float(np.sum(weights * model.fit.residuals**2))
+
+
+def compared(additive: FittedModel | None, full: FittedModel | None, rows: Rows) -> str:
+    """The additive form against the full one, in words.
+
+    Both by rms, by the rms of left-out points (PRESS) and by AICc; the F test of the interaction terms assumes equal,
+    independent, normal noise.
+    """
+    if additive is None or full is None:
+        what = "additive form has no terms of this parity" if additive is None else "full form has too many terms"
+        return f"The interaction of the variables is not tested: the {what}."
+    test = nested_test(_squares(additive, rows), additive.fit.rank, _squares(full, rows), full.fit.rank, len(rows.y))
+    if test.between <= 0:
+        return "The additive and the full form have the same terms: there is no interaction to test."
+    sides = "; ".join(
+        f"{label}: {len(m.terms)} terms, rms {m.fit.rms:.3g}, left out {m.fit.press_rms:.3g}, AICc {m.fit.aicc:.1f}"
+        for label, m in (("additive", additive), ("full", full))
+    )
+    probability = "not computable" if np.isnan(test.probability) else f"{test.probability:.3g}"
+    return (
+        f"Additive against full. {sides}. F = {test.ratio:.3g} on {test.between} and {test.within} degrees of freedom; "
+        f"probability of such interaction terms by noise alone: {probability}."
+    )
+
+
+def sum_of_slices(model: FittedModel, columns: Mapping[str, Array]) -> tuple[Array, Array]:
+    """What the printed sum C_Da(a) + C_Db(b) would give, and its error against the model.
+
+    Each slice is the model with the other variable at zero, so each holds the value at rest C_D0, and the sum holds it
+    twice: for an additive model the error is C_D0 everywhere, for any model it is C_D0 at the origin.
+
+    Parameters
+    ----------
+    model : FittedModel
+        In two variables.
+    columns : mapping of variable to (n,) array
+
+    Returns
+    -------
+    printed, error : (n,) array
+        The sum of the slices, and the sum less the model.
+    """
+    slices = [
+        model.evaluate({v: x if v == kept else np.zeros_like(x) for v, x in columns.items()})[0]
+        for kept in model.domain.variables
+    ]
+    printed = np.asarray(sum(slices), dtype=np.float64)
+    return printed, np.asarray(printed - model.evaluate(columns)[0], dtype=np.float64)
+
+
+def _slices_in_words(model: FittedModel) -> tuple[str, ...]:
+    """A warning where the terms hold a value at rest that a sum of slices would count twice."""
+    if Term() not in model.terms:
+        return ()
+    i = model.terms.index(Term())
+    value = float(model.fit.coefficients[i])
+    if not np.isfinite(value):
+        return ()
+    first, second = model.domain.variables
+    return (
+        f"The slices over {first} and over {second} both hold {model.symbols[i]} = {value:.4g}: their plain sum counts it "
+        "twice, so subtract it once.",
+    )
+
+
+def _model(tables: Sequence[ForceTable], name: str, chosen: Options, area: Area, said: tuple[str, ...]) -> FittedModel:
+    first, second = chosen.variables
+    rows = collect(tables, (first, second), name, area)
+    fitted = {form: _fitted(rows, chosen, form, area) for form in FORMS}
+    model = fitted[chosen.form]
+    if model is None:
+        raise InputError(
+            f"{len(rows.y)} usable rows of {name}", f"more rows than terms, and at least one term, for {chosen.form}",
+            column="surface.degree", advice="Run more points, ask for a lower degree or another parity.",
+        )  # fmt: skip
+    full = fitted["tensor"] or fitted["total"] if chosen.form == "additive" else model
+    words_ = (
+        *said,
+        compared(fitted["additive"], full, rows),
+        *(_slices_in_words(model) if chosen.form == "additive" else ()),
+        *in_words(model.fit, model.symbols),
+    )
+    return replace(model, statements=words_)
+
+
+def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
+    """Fit a polynomial surface to every response.
+
+    Only rows in which no third variable moves are used. Whatever form is asked for, the additive one is measured
+    against the one with interaction, and the model says the outcome in words.
+
+    Parameters
+    ----------
+    tables : sequence of ForceTable
+        Of one campaign, about one reference point.
+    scaling : Scaling
+        Length of the primes and of moment coefficients.
+    options : mapping
+        See `Options`.
+
+    Returns
+    -------
+    FitResult
+        Without sweeps and without SNAME coefficients.
+
+    Raises
+    ------
+    InputError
+        No such rows, a response that the tables lack, more terms than rows, or an area without its name.
+    """
+    chosen = parse_options(Options, options, "surface")
+    if len(set(chosen.variables)) != 2 or len(chosen.variables) != 2:
+        raise InputError(
+            f"the variables {', '.join(chosen.variables) or 'none'}", "two different ones", column="surface.variables"
+        )
+    area = area_of(chosen.area, chosen.area_name, scaling)
+    used, said = only_moving(tables, chosen.variables, scaling.length)
+    names = chosen.responses or tuple(n for n in USUAL if allowed(used, n, area))
+    if not names:
+        raise InputError("no force that the tables give", f"one of {', '.join(USUAL)}", column="surface.responses")
+    first = tables[0]
+    return FitResult(
+        fit="surface",
+        campaign=first.campaign,
+        body=first.body,
+        coefficients=CoefficientSet((), np.zeros((0, 0)), scaling, first.reference_point, first.datum, first.body),
+        sweeps=(),
+        citations=citations,
+        settings={
+            "variables": " ".join(chosen.variables),
+            "degree": str(chosen.degree),
+            "form": chosen.form,
+            "parity": " ".join(chosen.parity) or "full",
+            "extrapolation": chosen.extrapolation,
+            **area_settings(area),
+        },
+        models=tuple(_model(allowed(used, n, area) or used, n, chosen, area, said) for n in dict.fromkeys(names)),
+    )

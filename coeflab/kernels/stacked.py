@@ -1,0 +1,156 @@
+"""Several responses fitted together, so that linear equations between their coefficients hold exactly.
+
+Rows of every response are divided by its own residual scatter (one step of feasible generalised least squares, Zellner
+1962, without the correlation); the covariance is a sandwich over runs, so errors of one run may be correlated between
+responses (Liang & Zeger 1986), each residual inflated as in HC2 (MacKinnon & White 1985).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from coeflab.kernels.cross_validation import constrained_space
+from coeflab.kernels.least_squares import Array, Index, factorise
+from coeflab.kernels.linear_model import LinearFit, fit_linear, runs_probability
+from coeflab.kernels.robust import FULL_LEVERAGE, t_factor
+
+
+def influence(design: Array, errors: Array | None = None, constraint: tuple[Array, Array] | None = None) -> Array:
+    """G of b = b0 + G y, shape (p, n): how every row moves every coefficient."""
+    size = np.linalg.norm(design, axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    scaled = None if constraint is None else (constraint[0] / size, constraint[1])
+    _, free = constrained_space(scaled, design.shape[1])
+    f = factorise((design / size) @ free, None if errors is None else errors**-2.0)
+    return np.asarray((free @ f.estimator) * f.root_weights / size[:, None])
+
+
+def spread_by_run(fit: LinearFit, moves: Array, run: Index, n_runs: int) -> Array:
+    """S with covariance S S', shape (p, n_runs): what the residuals of every run say about every coefficient.
+
+    Parameters
+    ----------
+    fit : LinearFit
+    moves : (p, n) array
+        Of `influence`.
+    run : (n,) array
+        Run of every row.
+    n_runs : int
+    """
+    room = np.where(fit.leverage < FULL_LEVERAGE, 1.0 - fit.leverage, np.inf)
+    rows = moves * (fit.residuals / np.sqrt(room))
+    out = np.zeros((len(moves), n_runs))
+    np.add.at(out.T, run, rows.T)
+    return out
+
+
+def scatter(design: Array, response: Array, errors: Array | None) -> float:
+    """Residual standard deviation of one response by itself; the response's own size where nothing is left over."""
+    f = factorise(design, None if errors is None else errors**-2.0)
+    weighted = response * f.root_weights
+    rest = float(np.linalg.norm(weighted - f.basis @ (f.basis.T @ weighted)))
+    size = float(np.linalg.norm(weighted))
+    if f.freedom < 1 or rest <= 1e-12 * size:
+        return max(size / len(response) ** 0.5, 1e-300)
+    return rest / f.freedom**0.5
+
+
+def fit_stacked(
+    designs: Sequence[Array],
+    responses: Sequence[Array],
+    runs: Sequence[Index],
+    constraint: tuple[Array, Array],
+    errors: Sequence[Array | None],
+) -> tuple[LinearFit, Array]:
+    """One fit of all responses under C b = d, coefficients in the order of the designs.
+
+    Parameters
+    ----------
+    designs : sequence of (n_i, p_i) arrays
+    responses : sequence of (n_i,) arrays
+    runs : sequence of (n_i,) arrays
+        Run of every row; a run has at most one row in each response.
+    constraint : ((k, p) array, (k,) array)
+    errors : sequence of (n_i,) arrays or None
+        Standard errors as relative weights inside a response.
+
+    Returns
+    -------
+    fit : LinearFit
+        Over the stacked rows; covariance by run.
+    moves : (p, n) array
+        See `influence`.
+
+    Raises
+    ------
+    ValueError
+        The constraint cannot hold.
+    """
+    design = np.zeros((sum(map(len, responses)), sum(d.shape[1] for d in designs)))
+    noise, row, column = [], 0, 0
+    for d, y, e in zip(designs, responses, errors, strict=True):
+        design[row : row + len(y), column : column + d.shape[1]] = d
+        relative = np.ones(len(y)) if e is None else e / float(np.sqrt(np.mean(e**2)))
+        noise.append(relative * scatter(d, y, e))
+        row, column = row + len(y), column + d.shape[1]
+    sigma, y = np.concatenate(noise), np.concatenate(responses)
+    size = np.linalg.norm(design / sigma[:, None], axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    scaled = (constraint[0] / size, constraint[1])
+    start, free = constrained_space(scaled, design.shape[1])
+    fit = fit_linear(design / size, y, sigma, scaled)
+    moves = influence(design, sigma, constraint)
+    coefficients = start / size + moves @ (y - design @ (start / size))
+    open_directions = _open_directions(design / size / sigma[:, None], free)
+    known = ~np.any(np.abs(open_directions) > 1e-6, axis=0)
+    spread = spread_by_run(fit, moves, np.concatenate(runs), 1 + max(int(r.max()) for r in runs))
+    covariance = spread @ spread.T
+    deviation = np.sqrt(np.diag(covariance))
+    unit = np.where(deviation > 0.0, deviation, 1.0)
+    stacked = replace(
+        fit,
+        coefficients=np.where(known, coefficients, np.nan),
+        covariance=covariance,
+        half_width=np.where(known, deviation * t_factor(fit.freedom), np.nan),
+        correlation=covariance / np.outer(unit, unit),
+        open_directions=open_directions,
+    )
+    return stacked, moves
+
+
+def _open_directions(unit: Array, free: Array) -> Array:
+    """Combinations of scaled coefficients that change no prediction and break no equation, shape (k, p)."""
+    matrix = unit @ free
+    _, singular, right = np.linalg.svd(matrix)
+    rank = int(np.sum(singular > max(matrix.shape) * np.finfo(float).eps * singular.max(initial=0.0)))
+    return np.asarray((free @ right[rank:].T).T)
+
+
+def part_of(fit: LinearFit, rows: slice, columns: slice, response: Array) -> LinearFit:
+    """The share of one response in a stacked fit; AICc belongs to the whole and is NaN here."""
+    residuals, left_out = fit.residuals[rows], fit.left_out[rows]
+    total = float(np.sum((response - response.mean()) ** 2))
+    coefficients = fit.coefficients[columns]
+    touching = fit.open_directions[:, columns]
+    return replace(
+        fit,
+        coefficients=coefficients,
+        covariance=fit.covariance[columns, columns],
+        freedom=fit.freedom[columns],
+        half_width=fit.half_width[columns],
+        residuals=residuals,
+        leverage=fit.leverage[rows],
+        left_out=left_out,
+        cooks_distance=fit.cooks_distance[rows],
+        rms=float(np.sqrt(np.mean(residuals**2))),
+        press_rms=float(np.sqrt(np.nanmean(left_out**2))) if np.any(np.isfinite(left_out)) else float("nan"),
+        r_squared=1.0 - float(np.sum(residuals**2)) / total if total > 0.0 else float("nan"),
+        aicc=float("nan"),
+        runs_probability=runs_probability(residuals),
+        correlation=fit.correlation[columns, columns],
+        open_directions=touching[np.any(np.abs(touching) > 1e-6, axis=1)],
+        rank=int(np.isfinite(coefficients).sum()),
+    )

@@ -1,0 +1,127 @@
+"""Quantities made of several coefficients: centre of pressure and stability indices, with the budgets' uncertainty.
+
+Linear propagation with covariance beside Monte Carlo of the same function. Both are ratios: where the interval of a
+denominator holds zero, neither is an interval, and none is given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.symbols import primed
+from coeflab.kernels.propagation import Propagated, propagate, reaches_zero
+from coeflab.kernels.stability import index_gradient
+from coeflab.model.budget import Budget, covariance, further
+from coeflab.model.coefficient import CoefficientSet
+from coeflab.model.parameter_file import ParameterFile
+
+Array = NDArray[np.float64]
+CENTRES = {"Nv'/Yv'": ("Nv", "Yv", 1.0), "-Mw'/Zw'": ("Mw", "Zw", -1.0)}
+INDICES = {"G_h": ("Yv'", "Nv'", "Yr'", "Nr'", 1.0), "G_v": ("Zw'", "Mw'", "Zq'", "Mq'", -1.0)}
+DRAWS, SEED = 20_000, 1
+
+
+@dataclass(frozen=True, slots=True)
+class Derived:
+    """One quantity.
+
+    Attributes
+    ----------
+    name, subject : str
+        ``subject`` is the campaign or parameter file.
+    value : float
+    result : Propagated or None
+        None where no interval can be given.
+    statement : str
+        Why not, or how far the two half-widths agree.
+    """
+
+    name: str
+    subject: str
+    value: float
+    result: Propagated | None
+    statement: str
+
+
+def centre_of_pressure(
+    among: CoefficientSet, found: Sequence[Budget], subject: str, draws: int = DRAWS, seed: int = SEED
+) -> tuple[Derived, ...]:
+    """x/L = Nv'/Yv' and -Mw'/Zw', forward of the reference point, of the planes that a set has."""
+    whole = covariance(among, [b for b in found if b.campaign == subject])
+    out = []
+    for name, (moment, force, sign) in CENTRES.items():
+        if any(s not in among or among[s].value is None for s in (moment, force)):
+            continue
+        at = [among.symbols.index(s) for s in (moment, force)]
+        m, f = (float(among.coefficients[i].value or 0.0) for i in at)
+        if f == 0.0:
+            continue
+        cells = whole[np.ix_(at, at)]
+        gradient = sign * np.array([1.0 / f, -m / f**2])
+
+        def ratio(d: Array, m: float = m, f: float = f, sign: float = sign) -> Array:
+            return np.asarray(sign * (m + d[:, 0]) / (f + d[:, 1]))
+
+        denominators = [(primed(force), f, 2.0 * float(cells[1, 1]) ** 0.5)]
+        out.append(_derived(name, subject, sign * m / f, ratio, gradient, cells, denominators, draws, seed))
+    return tuple(out)
+
+
+def stability(
+    parameters: ParameterFile, found: Sequence[Budget], draws: int = DRAWS, seed: int = SEED
+) -> tuple[Derived, ...]:
+    """G_h and G_v of a parameter file that has the mass and all four derivatives of a plane."""
+    out = []
+    for name, (*symbols, sign) in INDICES.items():
+        chosen = [c for s in symbols if (c := parameters.coefficient(str(s))) is not None and c.value is not None]
+        if parameters.mass is None or len(chosen) < len(symbols):
+            continue
+        values = np.array([float(c.value or 0.0) for c in chosen])
+        mass, moment = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
+        rows = [parameters.covariance.symbols.index(c.symbol) for c in chosen]
+        cells = [[parameters.covariance.matrix[i][j] for j in rows] for i in rows]
+        whole = np.array([[np.nan if v is None else v for v in row] for row in cells])
+        whole = whole + further([c.symbol for c in chosen], [c.campaign for c in chosen], found)
+        gradient = index_gradient(*(float(v) for v in values), mass, moment)
+
+        def index(d: Array, at: Array = values, mass: float = mass, moment: float = moment) -> Array:
+            force_slope, moment_slope, force_rate, moment_rate = (at + d).T
+            return np.asarray(1.0 - moment_slope * (force_rate - mass) / (force_slope * (moment_rate - moment)))
+
+        halves = 2.0 * np.sqrt(np.diag(whole))
+        denominators = [
+            (chosen[0].symbol, float(values[0]), float(halves[0])),
+            (f"{chosen[3].symbol} - xG'm'", float(values[3]) - moment, float(halves[3])),
+        ]
+        value = float(index(np.zeros((1, 4)))[0])
+        out.append(_derived(name, parameters.name, value, index, gradient, whole, denominators, draws, seed))
+    return tuple(out)
+
+
+def _derived(
+    name: str,
+    subject: str,
+    value: float,
+    function: Callable[[Array], Array],
+    gradient: Array,
+    cells: Array,
+    denominators: Sequence[tuple[str, float, float]],
+    draws: int,
+    seed: int,
+) -> Derived:
+    if not np.all(np.isfinite(cells)):
+        return Derived(name, subject, value, None, "no interval: a coefficient in it has no U95")
+    for label, size, half in denominators:
+        if reaches_zero(size, half):
+            text = f"no interval: that of the denominator {label} = {size:.3g} +- {half:.2g} holds zero"
+            return Derived(name, subject, value, None, text)
+    result = propagate(function, gradient, cells, draws, seed)
+    apart = abs(result.linear / result.monte_carlo - 1.0) if result.monte_carlo > 0.0 else 0.0
+    text = f"linear and Monte Carlo half-widths differ by {100.0 * apart:.1f} %"
+    if apart > 0.1:
+        text += ": the interval is skew, read the percentiles"
+    return Derived(name, subject, value, result, text)

@@ -1,0 +1,211 @@
+"""Force laws of several components over several tables, fitted together where equations link them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import accumulate, pairwise
+
+import numpy as np
+
+from coeflab.core.errors import InputError, shown
+from coeflab.kernels.cross_validation import predict_left_out, thirds
+from coeflab.kernels.least_squares import Array, Index
+from coeflab.kernels.stacked import fit_stacked, influence, part_of, scatter, spread_by_run
+from coeflab.kernels.terms import design
+from coeflab.model.fitted_model import Domain, FittedModel, in_words
+from coeflab.model.joint_rows import JointRows
+from coeflab.model.manoeuvring_terms import Equation, NamedTerm, read_term
+from coeflab.model.out_of_sample import errors_of
+from coeflab.model.regression import model_of
+
+Constraint = tuple[Array, Array]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Component:
+    """One force component of a joint fit: its terms and rows."""
+
+    name: str
+    terms: tuple[NamedTerm, ...]
+    data: JointRows
+
+    @property
+    def matrix(self) -> Array:
+        """Design, shape (n, p)."""
+        return design(tuple(t.term for t in self.terms), self.data.rows.x)
+
+    @property
+    def symbols(self) -> tuple[str, ...]:
+        """Names of the coefficients."""
+        return tuple(t.symbol for t in self.terms)
+
+
+def constraint_of(equations: Sequence[Equation], terms: Sequence[NamedTerm], place: str) -> Constraint:
+    """C and d of C b = d over the coefficients of ``terms``.
+
+    Raises
+    ------
+    InputError
+        An equation names a coefficient that the model does not have.
+    """
+    index = {t.key: i for i, t in enumerate(terms)}
+    matrix = np.zeros((len(equations), len(terms)))
+    for row, equation in enumerate(equations):
+        for symbol, weight in equation.weights:
+            key = read_term(symbol, place).key
+            if key not in index:
+                names = ", ".join(t.symbol for t in terms)
+                raise InputError(f"{shown(symbol)} in {shown(equation)}", f"coefficients of the model: {names}",
+                                 column=place, advice=f"Add {symbol} to the terms.")  # fmt: skip
+            matrix[row, index[key]] += weight
+    return matrix, np.array([e.right for e in equations])
+
+
+def linked(components: Sequence[str], equations: Sequence[Equation]) -> list[tuple[str, ...]]:
+    """Components that equations tie together, in the order given."""
+    group = {c: {c} for c in components}
+    for equation in equations:
+        tied = {symbol[0] for symbol, _ in equation.weights}
+        merged = set().union(*(group.get(c, set()) for c in tied))
+        for c in merged:
+            group[c] = merged
+    out: list[tuple[str, ...]] = []
+    for c in components:
+        if not any(c in g for g in out):
+            out.append(tuple(k for k in components if k in group[c]))
+    return out
+
+
+def _left_out(
+    parts: Sequence[Component], constraint: Constraint | None, errors: Sequence[Array | None]
+) -> list[list[str]]:
+    """Statements on rows not seen, per component."""
+    runs, first = np.unique(np.concatenate([p.data.run for p in parts]), return_index=True)
+    variables = tuple(dict.fromkeys(v for p in parts for v in p.data.rows.x))
+    columns = {v: np.concatenate([p.data.rows.x.get(v, np.zeros(len(p.data.run))) for p in parts]) for v in variables}
+    tables = np.concatenate([p.data.table for p in parts])
+    every_third = thirds([columns[v][first] for v in variables])
+    ways = [("Every third point left out", every_third)]
+    if len(np.unique(tables)) > 1:
+        ways.append(("Each table left out in turn", tables[first]))
+    sizes = [len(p.terms) for p in parts]
+    stacked = np.zeros((len(tables), sum(sizes)))
+    ends = list(pairwise(accumulate((len(p.data.run) for p in parts), initial=0)))
+    for p, (low, high), (left, right) in zip(parts, ends, pairwise(accumulate(sizes, initial=0)), strict=True):
+        stacked[low:high, left:right] = p.matrix
+    y = np.concatenate([p.data.rows.y for p in parts])
+    noise = [
+        (np.ones(len(p.data.run)) if e is None else e / float(np.sqrt(np.mean(e**2))))
+        * scatter(p.matrix, p.data.rows.y, e)
+        for p, e in zip(parts, errors, strict=True)
+    ]
+    said: list[list[str]] = [[] for _ in parts]
+    row_run = np.searchsorted(runs, np.concatenate([p.data.run for p in parts]))
+    for how, fold in ways:
+        predicted = predict_left_out(stacked, y, fold[row_run], constraint, 1.0 / np.concatenate(noise))
+        for k, (low, high) in enumerate(ends):
+            said[k].append(str(errors_of(how, y[low:high], predicted[low:high])))
+    return said
+
+
+def _one(part: Component, form: str, errors: Array | None, n_runs: int) -> tuple[FittedModel, Array]:
+    rows = part.data.rows
+    model = model_of(rows, tuple(t.term for t in part.terms), part.symbols, form, weighted=errors is not None)
+    moves = influence(part.matrix, errors)
+    return model, spread_by_run(model.fit, moves, part.data.run, n_runs)
+
+
+def _several(
+    parts: Sequence[Component], constraint: Constraint, form: str, errors: Sequence[Array | None], n_runs: int
+) -> tuple[list[FittedModel], Array]:
+    n, free = sum(len(p.data.run) for p in parts), sum(len(p.terms) for p in parts) - len(constraint[1])
+    if n <= free:
+        raise InputError(
+            f"{n} usable rows for {free} free terms of {', '.join(p.name for p in parts)}", "more rows than terms",
+            column="terms", advice="Run more points or ask for fewer terms.",
+        )  # fmt: skip
+    run: list[Index] = [p.data.run for p in parts]
+    try:
+        fit, moves = fit_stacked([p.matrix for p in parts], [p.data.rows.y for p in parts], run, constraint, errors)
+    except ValueError as why:
+        raise InputError(str(why), "equations that some coefficients can meet", column="constraints",
+                         advice="Two of the equations contradict each other. Remove one.") from None  # fmt: skip
+    spread = spread_by_run(fit, moves, np.concatenate(run), n_runs)
+    symbols = tuple(s for p in parts for s in p.symbols)
+    said = in_words(fit, symbols)
+    models, row, column = [], 0, 0
+    for p in parts:
+        rows = p.data.rows
+        shares = slice(row, row + len(rows.y)), slice(column, column + len(p.terms))
+        row, column = shares[0].stop, shares[1].stop
+        models.append(
+            FittedModel(
+                response=p.name,
+                unit="1",
+                form=form,
+                symbols=p.symbols,
+                terms=tuple(t.term for t in p.terms),
+                fit=part_of(fit, *shares, rows.y),
+                domain=Domain.of(rows.x),
+                table=", ".join(rows.tables),
+                campaign=rows.campaign,
+                body=rows.body,
+                x=rows.x,
+                y=rows.y,
+                labels=rows.labels,
+                statements=tuple(s for s in said if any(name in s.replace(",", " ").split() for name in p.symbols)),
+            )
+        )
+    return models, spread
+
+
+def joint_models(
+    components: Mapping[str, Component], equations: Sequence[Equation], form: str, *, weighted: bool, n_runs: int
+) -> tuple[list[FittedModel], Array]:
+    """Fit all components; those that equations link, together.
+
+    Parameters
+    ----------
+    components : mapping of str to Component
+    equations : sequence of Equation
+    form : str
+    weighted : bool
+        Weigh rows by their standard errors.
+    n_runs : int
+        Runs of all tables.
+
+    Returns
+    -------
+    models : list of FittedModel
+        In the order of the components.
+    spread : (p, n_runs) array
+        S with S S' the covariance of all coefficients, errors of one run correlated as the residuals are.
+
+    Raises
+    ------
+    InputError
+        Too few rows, a term that no row excites, an unknown coefficient, or equations that cannot hold.
+    """
+    all_terms = [t for c in components.values() for t in c.terms]
+    constraint_of(equations, all_terms, "constraints")
+    models: dict[str, FittedModel] = {}
+    spreads: dict[str, Array] = {}
+    for names in linked(tuple(components), equations):
+        parts = [components[c] for c in names]
+        own = [e for e in equations if e.weights[0][0][0] in names]
+        constraint = constraint_of(own, [t for p in parts for t in p.terms], "constraints") if own else None
+        errors = [p.data.rows.errors if weighted else None for p in parts]
+        if constraint is None:
+            model, spread = _one(parts[0], form, errors[0], n_runs)
+            fitted = [model]
+        else:
+            fitted, spread = _several(parts, constraint, form, errors, n_runs)
+        said, at = _left_out(parts, constraint, errors), 0
+        kept = [str(e) for e in own]
+        for c, model, more in zip(names, fitted, said, strict=True):
+            extra = [f"Kept exactly: {', '.join(kept)}."] if kept else []
+            models[c] = replace(model, statements=(*components[c].data.statements, *extra, *model.statements, *more))
+            spreads[c] = spread[at : at + len(model.symbols)]
+            at += len(model.symbols)
+    return [models[c] for c in components], np.vstack([spreads[c] for c in components])

@@ -1,0 +1,109 @@
+"""From fitted models to those of a parameter file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from coeflab.core.symbols import ANGULAR, CONTROLS, LINEAR
+from coeflab.model.fit_result import FitResult
+from coeflab.model.fitted_model import FittedModel
+from coeflab.model.parameter_model import (
+    ModelArea,
+    ModelDomain,
+    ModelFactor,
+    ModelTerm,
+    ModelVariable,
+    ParameterModel,
+)
+
+ANGLES = ("alpha", "beta")
+
+
+def _variable_unit(name: str, unit: str) -> str:
+    """Angles in radians; velocities and rates primed in a nondimensional model, SI in a dimensional one; else 1."""
+    if name in LINEAR:
+        return "1" if unit == "1" else "m/s"
+    if name in ANGULAR:
+        return "1" if unit == "1" else "rad/s"
+    return "rad" if name in (*ANGLES, *CONTROLS) else "1"
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def record(model: FittedModel, area: ModelArea | None = None) -> ParameterModel:
+    """A fitted model as the parameter file holds it.
+
+    The covariance is that of standard uncertainties, half_width_95 / 2, as everywhere in the file: the correlation of
+    the fit with those on its diagonal. A half-width of a point is then twice the root of its variance, and for one term
+    alone the term's own.
+    """
+    standard = model.fit.half_width / 2.0
+    covariance = model.fit.correlation * np.outer(standard, standard)
+    np.fill_diagonal(covariance, standard**2)
+    covariance = (covariance + covariance.T) / 2.0
+    names = model.domain.variables
+    return ParameterModel.model_validate(
+        {
+            "response": model.response,
+            "unit": model.unit,
+            "form": model.form,
+            "variables": tuple(
+                ModelVariable.model_validate({"name": v, "unit": _variable_unit(v, model.unit)}) for v in names
+            ),
+            "terms": tuple(
+                ModelTerm(
+                    symbol=s,
+                    factors=tuple(ModelFactor(variable=v, power=n, absolute=a) for v, n, a in t.factors),
+                    value=_finite(c),
+                    half_width_95=_finite(h),
+                )
+                for s, t, c, h in zip(
+                    model.symbols, model.terms, model.fit.coefficients, model.fit.half_width, strict=True
+                )
+            ),
+            "covariance": tuple(tuple(_finite(x) for x in row) for row in covariance),
+            "domain": ModelDomain(
+                low=tuple(map(float, model.domain.low)),
+                high=tuple(map(float, model.domain.high)),
+                half_spaces=tuple(tuple(map(float, row)) for row in model.domain.spaces),
+                extrapolation=model.domain.rule.value,
+            ),
+            "n_points": model.n_points,
+            "rms": model.fit.rms,
+            "press_rms": _finite(model.fit.press_rms),
+            "table": model.table,
+            "campaign": model.campaign,
+            "post_selection": model.post_selection,
+            "statements": model.statements,
+            "area": area,
+        }
+    )
+
+
+def recorded(fits: Sequence[FitResult]) -> tuple[tuple[ParameterModel, ...], list[str]]:
+    """The models of some fits, and notes on those that repeat a response over the same variables.
+
+    Of such models the earliest in the plan counts, as with coefficients. A fit of area coefficients names the area in
+    its settings ``area`` (m^2) and ``area_name``.
+    """
+    out: dict[tuple[str, tuple[str, ...]], ParameterModel] = {}
+    notes = []
+    for f in fits:
+        area = None
+        if "area" in f.settings:
+            area = ModelArea(value=float(f.settings["area"]), name=f.settings["area_name"])
+        for model in f.models:
+            key = (model.response, model.domain.variables)
+            if key in out:
+                kept = out[key]
+                notes.append(
+                    f"{model.response} over {', '.join(key[1])}: {kept.form} of {kept.campaign} is kept, {model.form} of "
+                    f"{model.campaign} is in the report only"
+                )
+            else:
+                out[key] = record(model, area if model.unit == "1" else None)
+    return tuple(out.values()), notes

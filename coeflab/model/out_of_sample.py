@@ -1,0 +1,64 @@
+"""What a model is worth on rows that it has not seen, as a share of the response's range."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coeflab.kernels.cross_validation import predict_left_out, thirds
+from coeflab.kernels.least_squares import Array
+from coeflab.kernels.terms import design
+from coeflab.model.fitted_model import FittedModel
+
+
+@dataclass(frozen=True, slots=True)
+class OutOfSample:
+    """Prediction errors of left-out rows.
+
+    Attributes
+    ----------
+    how : str
+        Which rows are left out.
+    rms, largest : float
+        Share of the response's range; NaN if no row could be predicted.
+    predicted, rows : int
+        Rows that the others determine, and all rows.
+    """
+
+    how: str
+    rms: float
+    largest: float
+    predicted: int
+    rows: int
+
+    def __str__(self) -> str:
+        if not self.predicted:
+            return f"{self.how}: the remaining rows do not determine the model, so nothing can be predicted."
+        missing = self.rows - self.predicted
+        if missing > self.predicted:
+            return (
+                f"{self.how}: the remaining rows determine only {self.predicted} of {self.rows} left-out rows, so no "
+                "error is given."
+            )
+        rest = f"; {missing} of {self.rows} rows are not determined by the others" if missing else ""
+        return (
+            f"{self.how}: the left-out rows are predicted to {100 * self.rms:.2f} % rms, {100 * self.largest:.2f} % at "
+            f"most, of the response's range{rest}."
+        )
+
+
+def errors_of(how: str, response: Array, predicted: Array) -> OutOfSample:
+    """Compare predictions, NaN where there is none, with what was measured."""
+    known = np.isfinite(predicted)
+    size = float(np.ptp(response)) or float("nan")
+    error = np.abs(predicted[known] - response[known]) / size
+    rms = float(np.sqrt(np.mean(error**2))) if error.size else float("nan")
+    return OutOfSample(how, rms, float(error.max()) if error.size else float("nan"), int(known.sum()), len(response))
+
+
+def every_third_point(model: FittedModel) -> OutOfSample:
+    """Leave every third point out, each point once: rows sorted by the motion variables, ends included."""
+    fold = thirds(list(model.x.values()))
+    predicted = predict_left_out(design(model.terms, model.x), model.y, fold)
+    return errors_of("Every third point left out", model.y, predicted)
