@@ -30,9 +30,9 @@ app.add_typer(params.app, name="params")
 
 def _version(value: bool) -> None:
     if value:
-        from coeflab import __version__
+        from coeflab.core.version import VERSION
 
-        typer.echo(f"coeflab {__version__}")
+        typer.echo(f"coeflab {VERSION}")
         raise typer.Exit
 
 

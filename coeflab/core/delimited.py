@@ -164,13 +164,11 @@ def read_cells(path: Path) -> Cells:
         Empty, binary, not UTF-8, duplicated columns, rows of other lengths than the header, or no rows at all.
     """
     lines = _lines(path)
-    number, head = 0, ""
-    for number, head in enumerate(lines, start=1):
-        if head.strip() and not head.lstrip().startswith("#"):
-            break
-    else:
-        found = "nothing but comments" if number else "an empty file"
-        raise InputError(found, "a header line with units", file=path)
+    numbered = enumerate(lines, start=1)
+    first = next((n for n in numbered if n[1].strip() and not n[1].lstrip().startswith("#")), None)
+    if first is None:
+        raise InputError("an empty file, or one of comments only", "a header line with units", file=path)
+    number, head = first
     headers = _headers(path, head, number)
     rows = _rows(lines, path, number, len(headers))
     while rows and not any(rows[-1]):

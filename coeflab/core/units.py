@@ -99,9 +99,6 @@ def factor(unit: str, dimension: str) -> float:
         one = registry.Quantity(1.0, registry.parse_units(_WRITTEN.get(unit, unit.replace("·", "*"))))
         value, double = float(one.to(si).magnitude), float((2.0 * one).to(si).magnitude)
         turns = dict(one.to_root_units().unit_items()).get("radian", 0)
-        if turns != (dimension in ("angle", "rate")) or not math.isclose(double, 2.0 * value):
-            raise UnitsError(f"[{unit}]", expected, advice="Write rad/s, deg/s or rpm." if dimension == "rate" else "")
-        return value
     except pint.DimensionalityError:
         raise UnitsError(f"[{unit}], a unit of another dimension", expected) from None
     except pint.UndefinedUnitError:
@@ -111,6 +108,9 @@ def factor(unit: str, dimension: str) -> float:
         TokenError,
     ) as why:  # fmt: skip
         raise UnitsError(f"the unreadable unit {shown(unit)} ({type(why).__name__})", expected) from None
+    if turns != (dimension in ("angle", "rate")) or not math.isclose(double, 2.0 * value):
+        raise UnitsError(f"[{unit}]", expected, advice="Write rad/s, deg/s or rpm." if dimension == "rate" else "")
+    return value
 
 
 def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key: str = "") -> float:

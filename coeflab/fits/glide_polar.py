@@ -96,7 +96,7 @@ def _forces(table: ForceTable) -> dict[str, tuple[Array, NDArray[np.bool_]]]:
 
 
 def _rows(tables: Sequence[ForceTable]) -> dict[str, tuple[Rows, Array]]:
-    """alpha in radians against L, D and M over V^2, with V.
+    """L, D and M over V^2 against alpha in radians, and V.
 
     The weights are those of an error of L, D and M that is the same at every speed.
     """

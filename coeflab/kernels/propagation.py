@@ -64,23 +64,6 @@ def displaced(x: Array, offset: Array, x_factor: Array, y: Array, y_factor: Arra
     return x_factor[:, None] * (np.sin(moved) if angular else moved), y_factor[:, None] * y
 
 
-def sensitivities(function: Callable[[Array], Array], half_widths: Array) -> Array:
-    """Derivatives by central differences, shape (k,).
-
-    Parameters
-    ----------
-    function : callable
-        (s, k) inputs as deviations from their nominal values -> (s,) results.
-    half_widths : (k,) array
-        95 % half-widths, above zero; the step is a hundredth of them.
-    """
-    step = STEP * half_widths
-    at = np.vstack([np.diag(step), -np.diag(step)])
-    values = function(at)
-    k = len(half_widths)
-    return np.asarray((values[:k] - values[k:]) / (2.0 * step))
-
-
 @dataclass(frozen=True, slots=True)
 class Propagated:
     """One result two ways.
@@ -141,10 +124,14 @@ def propagate(
     """
     k = len(gradient)
     sample = function(normal_draws(covariance, draws, seed))
+    return summary_of(sample, float(function(np.zeros((1, k)))[0]), gradient, covariance, seed)
+
+
+def summary_of(sample: Array, value: float, gradient: Array, covariance: Array, seed: int) -> Propagated:
+    """Both half-widths from a sample, (s,), of a result and its gradient."""
     low, high = (float(v) for v in np.percentile(sample, [LOW, HIGH]))
     variance = max(float(gradient @ covariance @ gradient), 0.0)
-    value = float(function(np.zeros((1, k)))[0])
-    return Propagated(value, 2.0 * variance**0.5, 0.5 * (high - low), low, high, draws, seed)
+    return Propagated(value, 2.0 * variance**0.5, 0.5 * (high - low), low, high, len(sample), seed)
 
 
 def reaches_zero(value: float, half_width: float) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab import __version__
+from coeflab.core.version import VERSION
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import derivative, primed
@@ -122,7 +122,7 @@ def assemble(
 ) -> ParameterFile:
     """Build the parameter file of a group of campaigns.
 
-    Where two campaigns give one coefficient the earlier in the plan counts, and a note says so; a fitted value comes
+    Where two campaigns give one value the earlier in the plan counts, and a note says so; a fitted value comes
     before literature, and a symbol that neither gives is written with its status.
 
     Raises
@@ -132,7 +132,9 @@ def assemble(
     """
     chosen = [f for name in group.campaigns for f in fits if f.campaign == name]
     if not chosen:
-        raise InputError("no campaign", "campaigns that the study fits", column=f"parameter_file.{group.name}.campaigns")
+        raise InputError(
+            "no campaign", "campaigns that the study fits", column=f"parameter_file.{group.name}.campaigns"
+        )
     sets = [f.coefficients for f in chosen]
     first = sets[0]
     for s, f in zip(sets, chosen, strict=True):
@@ -147,12 +149,17 @@ def assemble(
     entries: dict[str, tuple[Coefficient, int, int]] = {}
     for k, s in enumerate(sets):
         for i, c in enumerate(s.coefficients):
-            if c.symbol in entries:
-                given = "no value" if c.value is None else f"{c.value:.6g}"
-                notes.append(f"{primed(c.symbol)} from {entries[c.symbol][0].campaign}; {c.campaign} gives {given}")
-            else:
+            earlier = entries[c.symbol][0] if c.symbol in entries else None
+            used, other = (
+                (c, earlier) if earlier is None or (earlier.value is None and c.value is not None) else (earlier, c)
+            )
+            if other is not None:
+                given = "no value" if other.value is None else f"{other.value:.6g}"
+                notes.append(f"{primed(c.symbol)} from {used.campaign}; {other.campaign} gives {given}")
+            if used is c:
                 entries[c.symbol] = (c, k, i)
     extra = {c.symbol: c for c in _literature(group, references, first.scaling, first.reference_point)}
+    entries = {s: e for s, e in entries.items() if e[0].value is not None or s not in extra or extra[s].value is None}
     absent = [c for c in missing if c.campaign == ", ".join(group.campaigns) and c.body == group.body]
     coefficients = [c for c, _, _ in entries.values()]
     coefficients += [c for s, c in extra.items() if s not in entries]
@@ -201,7 +208,7 @@ def assemble(
         covered=_covered([t for t in tables if t.campaign in group.campaigns], first.scaling.length),
         models=models,
         provenance=Provenance(
-            coeflab_version=__version__,
+            coeflab_version=VERSION,
             study=study,
             inputs=tuple(InputRecord(name=i.name, sha256=i.sha256) for i in inputs),
             citations=tuple(dict.fromkeys([c.citation for c in coefficients if c.citation] + [*chosen[0].citations])),

@@ -7,14 +7,14 @@ is one that all points of a campaign share.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.symbols import ANGULAR, MOMENTS, derivative, primed
-from coeflab.kernels.propagation import Propagated, displaced, propagate, refit, sensitivities
+from coeflab.core.symbols import ANGULAR, MOMENTS, primed
+from coeflab.kernels.propagation import STEP, Propagated, displaced, normal_draws, refit, summary_of
 from coeflab.model.coefficient import Coefficient, CoefficientSet, transfer_matrix
 from coeflab.model.fit_result import FitResult, Sweep
 from coeflab.model.force_table import ForceTable
@@ -25,6 +25,7 @@ from coeflab.model.study import Study
 Array = NDArray[np.float64]
 DRAWS, SEED = 2000, 1
 ROUNDING = 1e-9
+NEWTON = 4
 ALWAYS_OPEN = {
     "cfd": ("turbulence model", "domain and boundary conditions"),
     "experiment": ("rig interference and blockage",),
@@ -87,7 +88,7 @@ class Budget:
     value : float
         Primed.
     parts : tuple of BudgetPart
-        Assessed ones only.
+        Assessed ones only; ``random and model form`` in one where a move of the reference point has joined them.
     u95 : float or None
         None where the fit itself gives none.
     inputs : tuple of InputPart
@@ -135,28 +136,40 @@ def budgets(study: Study, draws: int = DRAWS, seed: int = SEED) -> tuple[Budget,
         Of the Monte Carlo over the inputs.
     """
     tables = {t.name: t for t in study.tables}
-    out = []
-    for fit in study.fits:
-        for sweep in fit.sweeps:
-            c = fit.coefficients[sweep.symbol]
-            if c.value is not None and sweep.table in tables:
-                out.append(budget(c, sweep, fit.coefficients, tables[sweep.table], draws, seed))
-    return tuple(out)
+    return tuple(b for fit in study.fits for b in budgets_of(fit, tables, draws, seed))
 
 
-def budget(
-    c: Coefficient, sweep: Sweep, among: CoefficientSet, table: ForceTable, draws: int = DRAWS, seed: int = SEED
+def budgets_of(
+    fit: FitResult, tables: Mapping[str, ForceTable], draws: int = DRAWS, seed: int = SEED
+) -> tuple[Budget, ...]:
+    """Budgets of one fit; ``tables`` by name."""
+    sweeps = [s for s in fit.sweeps if s.recommendation.value is not None and s.table in tables]
+    if not sweeps:
+        return ()
+    declared = tables[sweeps[0].table].uncertainty
+    moved = None
+    if declared is not None and declared.declared:
+        moved = _moved_by(fit, tuple(sweeps), declared, draws, seed)
+    found = []
+    for i, sweep in enumerate(sweeps):
+        c = fit.coefficients[sweep.symbol]
+        if c.value is not None:
+            found.append(_budget(c, sweep, tables[sweep.table], *(moved[i] if moved else ((), None))))
+    return tuple(found)
+
+
+def _budget(
+    c: Coefficient, sweep: Sweep, table: ForceTable, inputs: tuple[InputPart, ...], total: Propagated | None
 ) -> Budget:
-    """The budget of one coefficient, which must have a value."""
     value = 0.0 if c.value is None else c.value
+    raw = sweep.recommendation.value or 0.0
+    apart = [abs(s.value - raw) for s in sweep.sensitivity if s.value is not None]
+    fitted = {"random": c.parts.random, "model form": c.parts.model_form}
+    if c.u95 is not None and c.parts.random is None:
+        fitted = {"random and model form": c.u95}
     found: dict[str, float] = {}
     lacking: list[str] = []
-    spread = [s.value for s in sweep.sensitivity if s.value is not None]
-    for name, part in (
-        ("random", c.parts.random),
-        ("model form", c.parts.model_form),
-        ("window", float(np.ptp([*spread, value])) / 3.0**0.5 if spread else None),
-    ):
+    for name, part in (fitted | {"window": 2.0 * max(apart) / 3.0**0.5 if apart else None}).items():
         if part is None:
             lacking.append(name)
         else:
@@ -166,10 +179,9 @@ def budget(
     if relative is not None:
         found["grid"] = relative * abs(value)
     elif table.source.kind == "cfd":
-        lacking.append("grid" if study is None else f"grid ({study.convergence.statement})")
-    inputs, total = _inputs(sweep, among, table, draws, seed)
-    found.update({p.name: p.linear for p in inputs})
-    lacking += _undeclared(sweep, table, inputs, shifted(sweep.symbol, among)) + list(ALWAYS_OPEN[table.source.kind])
+        lacking.append("grid" if study is None else f"grid ({study.convergence.convergence})")
+    found.update({p.name.replace("_", " "): p.linear for p in inputs if p.linear > 0.0})
+    lacking += _undeclared(sweep, table, inputs) + list(ALWAYS_OPEN[table.source.kind])
     u95 = None if c.u95 is None else float(np.sqrt(sum(h * h for h in found.values())))
     parts = tuple(BudgetPart(n, h, (h / u95) ** 2 if u95 else None) for n, h in found.items())
     return Budget(
@@ -178,22 +190,26 @@ def budget(
     )  # fmt: skip
 
 
-def acting(symbol: str, variable: str) -> tuple[str, ...]:
-    """Inputs that act on a coefficient of a sweep over ``variable``, the reference point apart."""
-    d = derivative(symbol)
-    rate = variable in ANGULAR
+def acting(sweep: Sweep) -> tuple[str, ...]:
+    """Inputs that can act on the coefficient of a sweep and whose effect its own rows show.
+
+    An angle error of a rotating arm is not among them: it adds a drift whose coupling with the rate a sweep of the rate
+    alone does not know.
+    """
+    moment, rate = sweep.component in MOMENTS, sweep.variable in ANGULAR
     names = {
-        "angle": not rate, "rate": rate and bool(d.factors), "speed": True, "force": d.component not in MOMENTS,
-        "moment": d.component in MOMENTS, "length": True, "density": True,
+        "angle": not rate, "rate": rate, "speed": True, "force": not moment, "moment": moment,
+        "reference_point": sweep.component in ("M", "N") or sweep.variable in ("q", "r"), "length": True,
+        "density": True,
     }  # fmt: skip
     return tuple(n for n, acts in names.items() if acts)
 
 
 def perturbed(sweep: Sweep, names: Sequence[str]) -> Callable[[Array], Array]:
-    """The recommendation as a function of input errors, members held fixed: (s, k) deviations -> (s,) values.
+    """The sweep's value as a function of input errors, members held fixed: (s, k) deviations -> (s,) values.
 
     A deviation d says that the true angle is the set one plus d, that true speed, rate, length, density and forces are
-    1 + d times those in the table.
+    1 + d times those in the table. The reference point is left to `CoefficientSet.about`.
     """
     force_power = 3 if sweep.component in MOMENTS else 2
     rate = sweep.variable in ANGULAR
@@ -212,71 +228,70 @@ def perturbed(sweep: Sweep, names: Sequence[str]) -> Callable[[Array], Array]:
     return values
 
 
-def shifted(symbol: str, among: CoefficientSet) -> tuple[float, float] | None:
-    """First and second order change of a coefficient when its reference point moves forward, per m and per m^2.
+def _moved_by(
+    fit: FitResult, sweeps: tuple[Sweep, ...], declared: InputUncertainty, draws: int, seed: int
+) -> list[tuple[tuple[InputPart, ...], Propagated]]:
+    """Inputs of every sweep's coefficient, and all inputs together by both ways."""
+    names = declared.declared
+    half = np.array([getattr(declared, n) for n in names], dtype=float)
+    function, transferable = _of_inputs(fit, sweeps, names)
+    step = STEP * half
+    around = function(np.vstack([np.diag(step), -np.diag(step)]))
+    gradients = (around[: len(names)] - around[len(names) :]) / (2.0 * step[:, None])
+    nominal = np.abs(function(np.zeros((1, len(names))))[0])
+    gradients = np.where(np.abs(gradients * half[:, None]) > ROUNDING * nominal, gradients, 0.0)
+    covariance = np.diag((half / 2.0) ** 2)
+    sample = function(normal_draws(covariance, draws, seed))
+    out = []
+    for i, sweep in enumerate(sweeps):
+        acts = [n for n in acting(sweep) if n != "reference_point" or transferable[i]]
+        inputs = tuple(InputPart(n, float(half[k]), float(gradients[k, i])) for k, n in enumerate(names) if n in acts)
+        out.append((inputs, summary_of(sample[:, i], float(nominal[i]), gradients[:, i], covariance, seed)))
+    return out
 
-    None where a coefficient that the transfer needs is not known.
+
+def _of_inputs(
+    fit: FitResult, sweeps: tuple[Sweep, ...], names: tuple[str, ...]
+) -> tuple[Callable[[Array], Array], NDArray[np.bool_]]:
+    """All coefficients of a fit as functions of the inputs, (s, k) -> (s, m), and which of them a transfer determines.
+
+    The transfer is a quadratic of the shift, I + d A + d^2 B. A fit may have swept about another point than the one that
+    its coefficients are about; how far forward the coefficients' point lies is read off the coefficients.
     """
-    i, h = among.symbols.index(symbol), 1.0
-    values = np.array([0.0 if c.value is None else c.value for c in among.coefficients])
-    length = among.scaling.length
-    moved = []
-    for step in (h, -h):
-        matrix, known = transfer_matrix(among.symbols, among.available, np.array([step / length, 0.0, 0.0]))
-        if not known[i]:
-            return None
-        moved.append(float(matrix[i] @ values) - float(values[i]))
-    return 0.5 * (moved[0] - moved[1]), 0.5 * (moved[0] + moved[1])
-
-
-def _inputs(
-    sweep: Sweep, among: CoefficientSet, table: ForceTable, draws: int, seed: int
-) -> tuple[tuple[InputPart, ...], Propagated | None]:
-    declared = table.uncertainty
-    if declared is None or not declared.declared or not sweep.recommendation.members:
-        return (), None
-    names = [n for n in acting(sweep.symbol, sweep.variable) if n in declared.declared]
-    shift = shifted(sweep.symbol, among)
-    moves = declared.reference_point is not None and shift is not None and shift != (0.0, 0.0)
-    data = perturbed(sweep, names)
-    first, second = shift if moves and shift is not None else (0.0, 0.0)
-    every = [*names, "reference_point"] if moves else names
-    if not every:
-        return (), None
+    symbols = tuple(s.symbol for s in sweeps)
+    length = fit.coefficients.scaling.length
+    at = [transfer_matrix(symbols, frozenset(symbols), np.array([d / length, 0.0, 0.0])) for d in (1.0, -1.0)]
+    known = at[0][1] & at[1][1]
+    first = np.where(known[:, None], 0.5 * (at[0][0] - at[1][0]), 0.0)
+    second = np.where(known[:, None], 0.5 * (at[0][0] + at[1][0]) - np.eye(len(symbols)), 0.0)
+    raw = np.array([s.recommendation.value for s in sweeps], dtype=float)
+    final = np.array([fit.coefficients[s].value or 0.0 for s in symbols])
+    slopes, curves = first @ raw, second @ raw
+    k = int(np.argmax(np.abs(slopes)))
+    shift = 0.0
+    if slopes[k] != 0.0:
+        for _ in range(NEWTON):
+            shift += (final[k] - raw[k] - shift * slopes[k] - shift**2 * curves[k]) / (slopes[k] + 2 * shift * curves[k])
+    each = [perturbed(s, names) for s in sweeps]
 
     def values(deviations: Array) -> Array:
-        along = deviations[:, len(names)] if moves else np.zeros(len(deviations))
-        return data(deviations[:, : len(names)]) + first * along + second * along**2
+        about = np.column_stack([f(deviations) for f in each])
+        dx = np.full((len(deviations), 1), shift)
+        if "reference_point" in names:
+            dx = dx + deviations[:, [names.index("reference_point")]]
+        return np.asarray(about + dx * (about @ first.T) + dx**2 * (about @ second.T))
 
-    half = np.array([_half_width(declared, n) for n in every])
-    gradient = sensitivities(values, half)
-    gradient = np.where(np.abs(gradient * half) > ROUNDING * abs(float(values(np.zeros((1, len(half))))[0])), gradient, 0.0)
-    total = propagate(values, gradient, np.diag((half / 2.0) ** 2), draws, seed)
-    return tuple(InputPart(n, float(u), float(s)) for n, u, s in zip(every, half, gradient, strict=True)), total
-
-
-def _feels_point(sweep: Sweep) -> bool:
-    """Whether moving the reference point along x can change the coefficient."""
-    return sweep.component in ("M", "N") or sweep.variable in ("q", "r")
+    return values, known
 
 
-def _half_width(declared: InputUncertainty, name: str) -> float:
-    return float(getattr(declared, name))
-
-
-def _undeclared(
-    sweep: Sweep, table: ForceTable, inputs: tuple[InputPart, ...], shift: tuple[float, float] | None
-) -> list[str]:
+def _undeclared(sweep: Sweep, table: ForceTable, inputs: tuple[InputPart, ...]) -> list[str]:
     """Inputs that may act and were not assessed, by name."""
-    computed = table.source.kind == "cfd"
     if table.source.kind == "synthetic" and table.uncertainty is None:
         return []
-    wanted = [n for n in acting(sweep.symbol, sweep.variable) if not (computed and n in NOT_OF_A_COMPUTATION)]
-    if sweep.variable in ANGULAR:
-        wanted.append("angle")
-    if _feels_point(sweep):
-        wanted.append("reference_point")
-    known = {p.name for p in inputs} | (set() if shift != (0.0, 0.0) else {"reference_point"})
+    wanted = acting(sweep) + (("angle",) if sweep.variable in ANGULAR else ())
+    if table.source.kind == "cfd":
+        wanted = tuple(n for n in wanted if n not in NOT_OF_A_COMPUTATION)
+    known = {p.name for p in inputs}
     return [n.replace("_", " ") for n in wanted if n not in known]
 
 

@@ -119,7 +119,11 @@ class ParameterCovariance(Strict):
                 if (value is None) != (other is None):
                     raise ValueError("the covariance is not symmetric")
                 rounding = 1e-12 * max(abs(v) for v in (row[i], self.matrix[j][j], 0.0) if v is not None)
-                if value is not None and other is not None and not math.isclose(value, other, rel_tol=1e-9, abs_tol=rounding):
+                if (
+                    value is not None
+                    and other is not None
+                    and not math.isclose(value, other, rel_tol=1e-9, abs_tol=rounding)
+                ):
                     raise ValueError("the covariance is not symmetric")
             diagonal = row[i]
             if diagonal is not None and diagonal < 0.0:
@@ -211,6 +215,17 @@ def schema() -> bytes:
     return (json.dumps(content, indent=2) + "\n").encode()
 
 
+def _in_words(kind: str, message: str, value: object) -> tuple[str, str]:
+    """What pydantic found and expected."""
+    if kind == "missing":
+        return "nothing", "a value"
+    if kind == "extra_forbidden":
+        return "an unknown key", "only the keys of the schema"
+    if kind == "value_error":
+        return message.removeprefix("Value error, "), "a parameter file that agrees with itself"
+    return shown(value), message.removeprefix("Input should be ").removeprefix("String should ")
+
+
 def read_parameter_file(path: Path) -> ParameterFile:
     """Read and validate a parameter file.
 
@@ -243,7 +258,7 @@ def read_parameter_file(path: Path) -> ParameterFile:
         first = why.errors()[0]
         place = ".".join(str(p) for p in first["loc"]) or "file"
         more = f" ({why.error_count() - 1} more)" if why.error_count() > 1 else ""
-        found = shown(first["input"]) if first["type"] != "missing" else "nothing"
-        raise InputError(found, first["msg"] + more, file=path, column=place) from None
+        found, expected = _in_words(first["type"], first["msg"], first["input"])
+        raise InputError(found, expected + more, file=path, column=place) from None
     except CoeflabError as why:
         raise InputError(str(why), "a valid parameter file", file=path) from None
