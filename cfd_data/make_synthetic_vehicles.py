@@ -178,8 +178,8 @@ def thauv(case: str) -> tuple[bytes, Description]:
 def elevator() -> tuple[bytes, Description]:
     """The elevator alone over its angle and the angle of attack; coefficients chosen, as the paper only plots its own."""
     rng = np.random.default_rng(SEEDS["elevator"])
-    delta = np.tile(np.arange(-20.0, 21.0, 5.0), 3)
-    alpha = np.repeat([-10.0, 0.0, 10.0], 9)
+    delta = np.tile(np.arange(-20.0, 21.0, 2.5), 3)
+    alpha = np.repeat([-10.0, 0.0, 10.0], 17)
     e, a, k = np.radians(delta - alpha), np.radians(alpha), ELEVATOR
     q = 0.5 * 1000.0 * ELEVATOR_SPEED**2 * ELEVATOR_AREA
     drag = noisy(q * (k["C_D0"] + k["C_D2"] * e**2), ELEVATOR_NOISE, rng)

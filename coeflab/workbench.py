@@ -17,6 +17,7 @@ from coeflab.model.assemble import assemble
 from coeflab.model.body import Body
 from coeflab.model.campaign import FILE, read_campaign
 from coeflab.model.coefficient import Coefficient, Status
+from coeflab.model.declared import declared
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
 from coeflab.model.reference import compare, read_references
@@ -93,7 +94,7 @@ def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
             advice="`coeflab new DIR` writes a commented one.",
         )
     campaign = read_campaign(declaration)
-    return IMPORTERS.load(campaign.importer).read(campaign, planned.only)
+    return declared(IMPORTERS.load(campaign.importer).read(campaign, planned.only), campaign)
 
 
 def read_body(path: Path) -> Body:

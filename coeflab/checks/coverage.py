@@ -8,8 +8,8 @@ import numpy as np
 
 from coeflab.core.symbols import primed
 from coeflab.kernels.diagnostics import high_leverage, outliers, replicate_groups
+from coeflab.kernels.families import design
 from coeflab.kernels.least_squares import factorise, solve
-from coeflab.kernels.slopes import design
 from coeflab.model.check import Check, Severity
 from coeflab.model.coefficient import Status
 from coeflab.model.fit_result import Sweep

@@ -7,7 +7,7 @@ import sys
 
 import typer
 
-from coeflab.cli import fit, formats, inspect, new, params, run, table, validate
+from coeflab.cli import compare, fit, formats, inspect, new, params, run, table, validate
 
 app = typer.Typer(
     name="coeflab",
@@ -19,7 +19,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-for module in (validate, run, fit, inspect, new, formats, table):
+for module in (validate, run, fit, inspect, new, formats, table, compare):
     app.command(
         name=module.__name__.rpartition(".")[2],
         epilog=f"Example: {module.EXAMPLE}",

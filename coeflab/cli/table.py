@@ -117,11 +117,14 @@ def _lines(models: tuple[ParameterModel, ...], given: dict[str, NDArray[np.float
     import numpy as np
 
     units = {v.name: v.unit for v in models[0].variables}
-    yield ",".join(
-        [_header(v, units[v]) for v in given]
-        + [f"{m.response}{what} [{'-' if m.unit == '1' else m.unit}]" for m in models for what in ("", " U95")]
-        + ["inside"]
-    ) + "\n"
+    yield (
+        ",".join(
+            [_header(v, units[v]) for v in given]
+            + [f"{m.response}{what} [{'-' if m.unit == '1' else m.unit}]" for m in models for what in ("", " U95")]
+            + ["inside"]
+        )
+        + "\n"
+    )
     shape = tuple(len(x) for x in given.values())
     total = math.prod(shape)
     for start in range(0, total, CHUNK):

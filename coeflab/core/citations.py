@@ -35,6 +35,23 @@ WORKS: dict[str, str] = {
     "prediction, Technometrics 16, 1974.",
     "huuv_synthetic": "Synthetic table of a vehicle like the HUUV, made for this project from stated coefficients by "
     "cfd_data/make_synthetic_huuv.py; neither measured nor computed by CFD.",
+    "roache1998": "P. J. Roache, Verification and Validation in Computational Science and Engineering, Hermosa, 1998.",
+    "celik2008": "I. B. Celik, U. Ghia, P. J. Roache, C. J. Freitas, H. Coleman, P. E. Raad, Procedure for Estimation and "
+    "Reporting of Uncertainty Due to Discretization in CFD Applications, J. Fluids Engineering 130, 078001, 2008.",
+    "eca2014": "L. Eca, M. Hoekstra, A procedure for the estimation of the numerical uncertainty of CFD calculations based "
+    "on grid refinement studies, J. Computational Physics 262, 2014.",
+    "oberkampf2010": "W. L. Oberkampf, C. J. Roy, Verification and Validation in Scientific Computing, Cambridge, 2010.",
+    "asme_vv20": "ASME V&V 20-2009, Standard for Verification and Validation in Computational Fluid Dynamics and Heat "
+    "Transfer, 2009.",
+    "jcgm100": "JCGM 100:2008, Evaluation of measurement data: Guide to the expression of uncertainty in measurement, and "
+    "JCGM 101:2008, Propagation of distributions using a Monte Carlo method.",
+    "brunton2016": "S. L. Brunton, J. L. Proctor, J. N. Kutz, Discovering governing equations from data by sparse "
+    "identification of nonlinear dynamical systems, PNAS 113(15), 2016.",
+    "kaptanoglu2022": "A. A. Kaptanoglu et al., PySINDy: A comprehensive Python package for robust sparse system "
+    "identification, J. Open Source Software 7(69), 2022.",
+    "fasel2022": "U. Fasel, J. N. Kutz, B. W. Brunton, S. L. Brunton, Ensemble-SINDy, Proc. Royal Society A 478, 2022.",
+    "chen2008": "J. Chen, Z. Chen, Extended Bayesian information criteria for model selection with large model spaces, "
+    "Biometrika 95(3), 2008.",
 }
 
 

@@ -16,6 +16,7 @@ from coeflab.core.units import Header, parse_header
 
 LONGEST_LINE = 1 << 16
 MOST_CELLS = 2_000_000
+MOST_BLANK_LINES = 1000
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
@@ -186,6 +187,7 @@ def read_cells(path: Path) -> Cells:
 def _rows(lines: Iterator[str], path: Path, header_line: int, width: int) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     reader = csv.reader(lines, strict=True)
+    blank = 0
     while True:
         line = header_line + len(rows) + 1
         try:
@@ -210,6 +212,9 @@ def _rows(lines: Iterator[str], path: Path, header_line: int, width: int) -> lis
                 f"more than {MOST_CELLS} cells", "a table of steady forces, one row a setting", file=path, line=line,
                 advice="Average time series first.",
             )  # fmt: skip
+        blank = 0 if row else blank + 1
+        if blank > MOST_BLANK_LINES:
+            raise InputError(f"{blank} empty lines", "rows of numbers", file=path, line=line, advice="Remove them.")
         rows.append(tuple(cell.strip() for cell in row))
 
 

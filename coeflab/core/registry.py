@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import importlib
+import inspect
 import pkgutil
 from importlib.metadata import entry_points
 from typing import Any, Generic, TypeVar
@@ -63,4 +64,6 @@ class Registry(Generic[Port]):
 
 
 def _members(port: type) -> list[str]:
-    return sorted(set(getattr(port, "__annotations__", {})) | {n for n in vars(port) if not n.startswith("_")})
+    protocols = [c for c in port.__mro__ if getattr(c, "_is_protocol", False) and c.__module__ != "typing"]
+    names = {n for c in protocols for n in (*inspect.get_annotations(c), *vars(c))}
+    return sorted(n for n in names if not n.startswith("_"))

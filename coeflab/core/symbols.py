@@ -22,7 +22,8 @@ CONTROLS = ("dr", "ds", "db")
 CONTROL_COLUMNS = {"delta_r": "dr", "delta_s": "ds", "delta_b": "db"}
 PORT_STARBOARD = frozenset("YKNvpr") | {"dr"}
 
-_TOKEN = re.compile(r"(\|?)(dr|ds|db|[uvwpqr]dot|[uvwpqr])(\|?)")
+_FACTOR = r"(?:dr|ds|db|[uvwpqr]dot|[uvwpqr])"
+_TOKEN = re.compile(rf"\|(?P<absolute>{_FACTOR})\||(?P<signed>{_FACTOR})")
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +73,9 @@ class Derivative:
 
     @property
     def odd_in_port_starboard(self) -> bool:
-        """True when a body symmetric port to starboard must have zero for this derivative."""
-        flips = [self.component, *(f.removesuffix("dot") for f in self.factors)]
+        """True when a body symmetric port to starboard must have zero for this derivative; |v| does not flip."""
+        signed = [m["signed"].removesuffix("dot") for m in _TOKEN.finditer(self.text, 1) if m["signed"]]
+        flips = [self.component, *signed]
         return sum(name in PORT_STARBOARD for name in flips) % 2 == 1
 
 
@@ -98,9 +100,9 @@ def derivative(symbol: str) -> Derivative:
         at = 0
         while at < len(rest) and valid:
             match = _TOKEN.match(rest, at)
-            valid = match is not None and bool(match.group(1)) == bool(match.group(3))
+            valid = match is not None
             if match is not None:
-                factors.append(match.group(2))
+                factors.append(match["absolute"] or match["signed"])
                 at = match.end()
     if not valid or len(factors) > 5:
         known = [c + f for c in COMPONENTS for f in ("v", "w", "r", "q", "p", "vv", "ww", "rr", "dr", "ds", "0")]

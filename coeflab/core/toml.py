@@ -31,6 +31,7 @@ class Section:
     def __init__(self, content: dict[str, Any], file: Path, name: str = "") -> None:
         self.content, self.file, self.name = content, file, name
         self._read: set[str] = set()
+        self._known: set[str] = set()
 
     def key(self, key: str) -> str:
         """Dotted name of a key."""
@@ -42,6 +43,7 @@ class Section:
 
     def has(self, key: str) -> bool:
         """Whether the key is there."""
+        self._known.add(key)
         return key in self.content
 
     def raw(self, key: str, default: Any = None) -> Any:
@@ -142,11 +144,12 @@ class Section:
         """Refuse keys that nobody read."""
         for key in self.content:
             if key not in self._read:
-                near = difflib.get_close_matches(key, sorted(self._read), n=1)
+                known = sorted(self._read | self._known)
+                near = difflib.get_close_matches(key, known, n=1)
                 raise self.fail(
                     key,
                     "an unknown key",
-                    "one of " + ", ".join(sorted(self._read)),
+                    "one of " + ", ".join(known),
                     f"Did you mean {self.key(near[0])}?" if near else "",
                 )
 

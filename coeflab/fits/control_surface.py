@@ -9,6 +9,9 @@ coefficient of C_L is negative. With **delta + alpha** a positive delta turns th
 equations (1979), and raises lift: the linear coefficient is positive. The text of the HUUV paper prints delta - alpha
 for axes that fit x forward, y port, z up, where alpha has the other sign; in FRD that is delta + alpha. Its figures
 of the elevator are not in that text, so which way its delta is positive is not known. The fit states what the data say.
+
+Validity: the intervals are those of scatter. Where it grows fivefold towards the largest angle, those of C_D2 cover 93.2 %
+of campaigns of 51 rows, and 92.8 % of those of 27 rows (both sweeps of delta at three angles of attack).
 """
 
 from __future__ import annotations
@@ -41,7 +44,7 @@ Array = NDArray[np.float64]
 NEEDS = {"C_D": "X", "C_L": "Z", "C_m": "M"}
 DERIVATIVES = {"C_L": ("Zds", -1.0), "C_m": ("Mds", 1.0)}
 NEAR_ZERO = float(np.radians(0.3))
-UNLIKELY = 0.05
+UNLIKELY = 0.01
 EFFECTIVE = "e"
 
 
@@ -136,7 +139,13 @@ def _told(rows: Rows, model: FittedModel, chosen: Options) -> str:
     if chance >= UNLIKELY:
         return f"As the effective angle says, alpha and delta act together: {found}."
     other = "delta+alpha" if chosen.effective == "delta-alpha" else "delta-alpha"
-    return f"alpha acts on {model.response} otherwise than through {chosen.effective}: {found}. Try effective = {other}; if that says the same, the table holds more than the surface's own force."  # fmt: skip
+    turned = -2.0 * _sign(chosen) * float(extra.coefficients[0])
+    advice = (
+        f"Try effective = {other}."
+        if abs(left - turned) < abs(left)
+        else "The table holds more than the surface's own force, or C_L and C_m need their cubic term."
+    )
+    return f"alpha acts on {model.response} otherwise than through {chosen.effective}: {found}. {advice}"
 
 
 def _lifts(model: FittedModel) -> str:

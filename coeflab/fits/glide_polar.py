@@ -37,7 +37,7 @@ Array = NDArray[np.float64]
 POWERS = {"L": 1, "D": 2, "M": 1}
 NEAR_ZERO = float(np.radians(0.3))
 SAME_SPEED = 1e-3
-UNLIKELY = 0.05
+UNLIKELY = 0.01
 SLOPES = ("K_L", "K_D", "K_M")
 PRINTABLE = ("K_L0", "K_L", "K_D0", "K_D", "K_M0", "K_M")
 
@@ -50,11 +50,16 @@ class Options:
     ----------
     angle_unit : {"deg", "rad"}
         ``deg`` lists the models per degree, as the paper prints them, beside those per radian; ``rad`` the latter only.
+    noise : {"square", "constant"}
+        How the error of a force goes with V, which gives the weights: ``square`` for an error that is a share of the
+        force, as in computations; ``constant`` for a balance. The intervals stand another noise, but are then wider
+        than need be (``square``) or, with fewer rows that count, less sure (``constant``).
     printed : tuple of str
         Coefficients that somebody printed, such as ``K_L=9.5281 K_D=0.215``; the models then state their unit.
     """
 
     angle_unit: str = one_of("deg", "deg", "rad")
+    noise: str = one_of("square", "square", "constant")
     printed: tuple[str, ...] = words()
 
 
@@ -95,11 +100,8 @@ def _forces(table: ForceTable) -> dict[str, tuple[Array, NDArray[np.bool_]]]:
     return out
 
 
-def _rows(tables: Sequence[ForceTable]) -> dict[str, tuple[Rows, Array]]:
-    """L, D and M over V^2 against alpha in radians, and V.
-
-    The weights are those of an error of L, D and M that is the same at every speed.
-    """
+def _rows(tables: Sequence[ForceTable], noise: str) -> dict[str, tuple[Rows, Array]]:
+    """L, D and M over V^2 against alpha in radians, and V."""
     found: dict[str, list[tuple[ForceTable, Array, NDArray[np.intp]]]] = {}
     for t in tables:
         for name, (values, usable) in _forces(t).items():
@@ -111,7 +113,7 @@ def _rows(tables: Sequence[ForceTable]) -> dict[str, tuple[Rows, Array]]:
         rows = Rows(
             x={"alpha": np.concatenate([variable(t, "alpha", 1.0)[i] for t, _, i in parts])},
             y=np.concatenate([values[i] for _, values, i in parts]) / square,
-            errors=1.0 / square,
+            errors=1.0 / square if noise == "constant" else None,
             labels=tuple(t.labels[k] for t, _, i in parts for k in i),
             response=f"{name}/V^2",
             tables=tuple(t.name for t, _, _ in parts),
@@ -152,23 +154,17 @@ def _said(model: FittedModel, name: str, speed: Array, errors: Array | None) -> 
     """What K holds, and whether the force goes with the square of the speed."""
     held = f"K_{name}0 and K_{name} hold the fluid's density and are not divided by an area."
     if np.ptp(speed) <= SAME_SPEED * speed.max():
-        return (
-            held,
-            f"All rows run at {speed.mean():.4g} m/s: that the force goes with V^2 is assumed, not tested.",
-        )
+        return held, f"All rows run at {speed.mean():.4g} m/s: that the force goes with V^2 is assumed, not tested."
     relative = speed / speed.mean() - 1.0
     extra = fit_linear(np.column_stack([design(model.terms, model.x), relative]), model.y, errors)
     error = float(np.sqrt(extra.covariance[-1, -1]))
     if not np.isfinite(extra.half_width[-1]) or error == 0.0:
-        return (held, "The rows do not tell whether the force goes with V^2.")
+        return held, "The rows do not tell whether the force goes with V^2."
     chance = float(t_probability(float(extra.coefficients[-1]) / error, float(extra.freedom[-1])))
-    range_ = f"from {speed.min():.4g} to {speed.max():.4g} m/s"
+    where = f"with V from {speed.min():.4g} to {speed.max():.4g} m/s"
     if chance >= UNLIKELY:
-        return (held, f"{name}/V^2 shows no trend with V {range_} (p = {chance:.2g}), as the law says.")
-    return (
-        held,
-        f"{name}/V^2 changes with V {range_} beyond chance (p = {chance:.2g}): the force does not go with V^2 alone.",
-    )
+        return held, f"{name}/V^2 shows no trend {where} (p = {chance:.2g}), as the law says."
+    return held, f"{name}/V^2 changes {where} (p = {chance:.2g}): the force does not go with V^2 alone."
 
 
 def _per_unit(result: FitResult, slope: str) -> dict[str, tuple[float, float]] | None:
@@ -275,7 +271,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     first = tables[0]
     used, left_out = only_moving(tables, ("alpha",), scaling.length)
     radians, degrees = [], []
-    for name, (rows, speed) in _rows(used).items():
+    for name, (rows, speed) in _rows(used, chosen.noise).items():
         _check_angles(rows)
         model = _fitted(rows, name, "rad")
         said = (*_said(model, name, speed, rows.errors), *left_out, *model.statements)
@@ -289,7 +285,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         coefficients=CoefficientSet((), np.zeros((0, 0)), scaling, first.reference_point, first.datum, first.body),
         sweeps=(),
         citations=citations,
-        settings={"angle_unit": chosen.angle_unit, "printed": " ".join(chosen.printed)},
+        settings={"angle_unit": chosen.angle_unit, "noise": chosen.noise, "printed": " ".join(chosen.printed)},
         models=models,
     )
     if not printed:

@@ -209,8 +209,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         raise InputError(
             f"no row of {first.campaign} in which only one of {', '.join(chosen.axes)} moves and its force is given",
             "columns such as u [m/s], X [N] with the other velocities zero", column="linear_quadratic_damping",
-            advice="A table without the column u, or with angles, moves ahead in every row; write the six velocities "
-            "and, beside them, U [m/s] as the speed that primes refer to.",
+            advice="With angles, or with u zero throughout, the reader completes u from U and every row moves ahead; "
+            "put the six velocities in one table and, beside them, U [m/s] as the speed that primes refer to.",
         )  # fmt: skip
     models: list[FittedModel] = []
     coefficients: list[Coefficient] = []

@@ -21,12 +21,14 @@ from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
 from coeflab.model.joint_model import Component, joint_models
-from coeflab.model.joint_rows import joint_rows, moving
+from coeflab.model.joint_rows import joint_rows, measured, moving
 from coeflab.model.manoeuvring_terms import SETS, NamedTerm, canonical, read_equation, read_term, read_terms
 from coeflab.model.scaling import Scaling
 from coeflab.model.secant import secant
 
-summary = "manoeuvring model of any SNAME terms over all tables of a campaign, with linear equations between coefficients"
+summary = (
+    "manoeuvring model of any SNAME terms over all tables of a campaign, with linear equations between coefficients"
+)
 citations = ("gertler1967", "feldman1979", "mackinnon1985", "bell2002")
 
 SCATTER_ONLY = "U95 holds the scatter of the points about this form; the error of the form itself is not in it."
@@ -73,24 +75,29 @@ def _asked(options: Options, tables: Sequence[ForceTable]) -> tuple[tuple[NamedT
     if chosen == "none" and not named:
         raise InputError("no terms", "terms, or a set", column="manoeuvring_model.terms",
                          advice="For example terms = Yv,Yv|v|,Nv or set = horizontal.")  # fmt: skip
-    measured = {c for t in tables for c in t.forces}
     unknown = [c for c in options.components if c not in COMPONENTS]
     if unknown:
         raise InputError(", ".join(unknown), f"some of {', '.join(COMPONENTS)}", column="manoeuvring_model.components")
-    wanted = measured & set(options.components or COMPONENTS)
+    wanted = set(measured(tables)) & set(options.components or COMPONENTS)
     of_set = [t for s in SETS.get(chosen, ()) if (t := read_term(s, "set")).component in wanted]
     if options.intercepts == "yes":
         of_set += [read_term(f"{c}0", "set") for c in {t.component for t in named}]
     else:
         of_set = [t for t in of_set if t.term.factors]
     taken, moves = {t.key for t in named}, set(moving(tables))
-    fitted, idle = list(named), []
+    fitted, idle = list(named), list[NamedTerm]()
     for t in of_set:
         if t.key in taken:
             continue
         taken.add(t.key)
         occurring = _occurs(t, tables) if moves.issuperset(v for v, _, _ in t.term.factors) else False
         (fitted if occurring else idle).append(t)
+    alone = {t.component for t in fitted} - {t.component for t in fitted if t.term.factors or t in named}
+    idle += [t for t in fitted if t.component in alone]
+    fitted = [t for t in fitted if t.component not in alone]
+    if not fitted:
+        raise InputError(f"no motion of the {chosen} set in {tables[0].campaign}", "tables in which one of its motions varies",
+                         column="manoeuvring_model.set", advice="Name the terms, or use the other set.")  # fmt: skip
     order = {c: i for i, c in enumerate(COMPONENTS)}
     return tuple(sorted(fitted, key=lambda t: (order[t.component], bool(t.term.factors)))), tuple(idle)
 
@@ -151,9 +158,7 @@ def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
             continue
         u95 = half if np.isfinite(half) else None
         status = Status.OK if u95 is not None else Status.SINGLE_ESTIMATOR
-        out.append(
-            Coefficient(symbol, value, u95, status, parts=Parts(random=u95), window=_window(model, i), **shared)
-        )
+        out.append(Coefficient(symbol, value, u95, status, parts=Parts(random=u95), window=_window(model, i), **shared))
     return out
 
 
@@ -195,7 +200,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     components = {}
     for c in dict.fromkeys(t.component for t in terms):
         own = tuple(t for t in terms if t.component == c)
-        variables = tuple(dict.fromkeys(v for t in own for v, _, _ in t.term.factors)) or moving(tables)[:1]
+        variables = tuple(dict.fromkeys(v for t in own for v, _, _ in t.term.factors)) or ("u",)
         components[c] = Component(c, own, joint_rows(tables, variables, c, scaling.length))
     weighted = chosen.weights == "yes"
     stated = {c: p.data.rows.errors is not None for c, p in components.items()}

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, one_of, parse_options, words
 from coeflab.core.symbols import COMPONENTS, primed
+from coeflab.kernels.sharpened import sharpened
 from coeflab.kernels.terms import Term, power_terms
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.model.fit_result import FitResult
@@ -77,7 +78,9 @@ def _model(
         f"polynomial of degree {chosen.degree}{parity}, in {chosen.variable}",
         rule=Extrapolation(chosen.extrapolation),
     )
-    return replace(model, response=named_response(name, area), statements=(*said, *in_words(model.fit, symbols)))
+    exact = sharpened(model.fit, terms, rows.x, rows.y, rows.errors)
+    words_ = (*said, *in_words(exact, symbols))
+    return replace(model, response=named_response(name, area), fit=exact, statements=words_)
 
 
 def _coefficients(

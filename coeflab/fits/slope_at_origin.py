@@ -15,12 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.options import bounded, parse_options
-from coeflab.kernels import slopes
+from coeflab.kernels import families, slopes
 from coeflab.kernels.bootstrap import draw_counts, pairs, percentile_interval, wild
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
-from coeflab.model.fit_result import BootstrapInterval, FitResult, LeftOut, Sensitivity, Sweep
+from coeflab.model.fit_result import BootstrapInterval, FitResult, Sensitivity, Sweep
 from coeflab.model.force_table import ForceTable
 from coeflab.model.scaling import Scaling
+from coeflab.model.sweep_rows import INCIDENCE, SweepRows, arm_shift, collect_points, sweep_rows
 
 summary = "slopes at the origin by several forms and windows, with random and model-form uncertainty"
 citations = ("mackinnon1985", "bell2002", "imbens2016", "davidson2008", "hurvich1989")
@@ -28,9 +29,6 @@ citations = ("mackinnon1985", "bell2002", "imbens2016", "davidson2008", "hurvich
 Array = NDArray[np.float64]
 ODD = {"v": "YNK", "w": "ZM", "r": "YNK", "q": "ZM", "p": "K", "dr": "YNK", "ds": "ZM"}
 EVEN = {"v": "X", "w": "X", "r": "X", "q": "X"}
-INCIDENCE = {"dr": "v", "ds": "w"}
-AT_REST = np.sin(np.radians(0.05))
-NEAR_ZERO = np.sin(np.radians(0.3))
 SMALLEST_ANGLE = np.sin(np.radians(3.0))
 ANGLE_CAPS = (10.0, 12.0, 18.0)
 RATE_CAPS = (0.5, 0.75, 1.0)
@@ -55,70 +53,6 @@ class Options:
     largest_angle: float = bounded(90.0, 1.0, 90.0)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Rows:
-    """Rows of one sweep, with rest rows of the same campaign where a one-sided sweep has none of its own."""
-
-    table: ForceTable
-    x: Array
-    rows: NDArray[np.intp]
-    rest: tuple[ForceTable, NDArray[np.intp]] | None
-
-
-def _others_at_rest(table: ForceTable, variable: str, length: float) -> NDArray[np.bool_]:
-    """Rows in which nothing but surge and ``variable`` moves (control sweeps: within 0.3 degrees of zero incidence)."""
-    keep = np.ones(len(table), dtype=bool)
-    for name in ("v", "w", "p", "q", "r", *table.controls):
-        if name != variable:
-            limit = NEAR_ZERO if INCIDENCE.get(variable) == name else AT_REST
-            keep &= np.abs(table.primed_motion(name, length)) <= limit
-    return keep
-
-
-def _rows(table: ForceTable, variable: str, tables: Sequence[ForceTable], length: float) -> _Rows:
-    keep = _others_at_rest(table, variable, length)
-    x = table.primed_motion(variable, length)
-    rest = None
-    if slopes.is_one_sided(x[keep]) and not np.any(keep & (np.abs(x) <= AT_REST)):
-        for other in tables:
-            still = _others_at_rest(other, "", length)
-            if other is not table and np.any(still) and np.allclose(other.speed[still], table.speed.mean(), rtol=0.01):
-                rest = (other, np.flatnonzero(still))
-                break
-    return _Rows(table, x, np.flatnonzero(keep), rest)
-
-
-def _collect(
-    rows: _Rows, component: str, length: float, taken_out: Array
-) -> tuple[Array, Array, Array | None, tuple[str, ...], tuple[LeftOut, ...]]:
-    """x, y, se, labels of the usable points, and those left out with their reasons.
-
-    ``taken_out`` is subtracted from the primed force of every row of the sweep's own table.
-    """
-    table = rows.table
-    reasons = {(e.row, e.component): e.reason for e in table.exclusions}
-    parts: list[tuple[ForceTable, NDArray[np.intp], Array]] = [(table, rows.rows, rows.x[rows.rows])]
-    if rows.rest is not None and component in rows.rest[0].forces:
-        parts.append((*rows.rest, np.zeros(len(rows.rest[1]))))
-    x, y, se, labels = [], [], [], []
-    left: list[LeftOut] = []
-    for source, index, at in parts:
-        force = source.primed_force(component, length) - (taken_out if source is table else 0.0)
-        error = source.primed_force(component, length, source.errors[component]) if component in source.errors else None
-        for i, xi in zip(index, at, strict=True):
-            if source.usable[component][i]:
-                x.append(xi)
-                y.append(force[i])
-                se.append(np.nan if error is None else error[i])
-                labels.append(source.labels[i])
-            elif source is table:
-                why = reasons.get((int(i), component)) or reasons.get((int(i), ""), "excluded")
-                left.append(LeftOut(float(xi), float(force[i]), source.labels[i], why))
-    errors = np.array(se)
-    known = errors if len(errors) and np.all(np.isfinite(errors)) else None
-    return np.array(x), np.array(y), known, tuple(labels), tuple(left)
-
-
 def _bootstrap(recommendation: slopes.Recommendation, y: Array, options: Options) -> dict[str, BootstrapInterval]:
     out = {}
     for k, e in enumerate(recommendation.members):
@@ -134,14 +68,21 @@ def _bootstrap(recommendation: slopes.Recommendation, y: Array, options: Options
 
 
 def _sweep(
-    rows: _Rows, variable: str, component: str, symbol: str, parity: str, length: float, options: Options, slope: float
+    rows: SweepRows,
+    variable: str,
+    component: str,
+    symbol: str,
+    parity: str,
+    length: float,
+    options: Options,
+    slope: float,
 ) -> Sweep:
     offset, taken_out = "", np.zeros(len(rows.table))
     if variable in INCIDENCE and slope:
         motion = INCIDENCE[variable]
         taken_out = slope * rows.table.primed_motion(motion, length)
         offset = f"{component}{motion}' {motion}' of the residual incidence taken out"
-    x, y, se, labels, left = _collect(rows, component, length, taken_out)
+    x, y, se, labels, left = collect_points(rows, component, length, taken_out)
     target = "x" if parity == "odd" else "1" if symbol.endswith("0") else "x2"
     is_angle = variable in ("v", "w")
     limit = np.sin(np.radians(options.largest_angle)) if is_angle else np.inf
@@ -156,10 +97,10 @@ def _sweep(
     reach = float(np.max(np.abs(x), initial=0.0))
     caps = [float(np.sin(np.radians(c))) for c in ANGLE_CAPS] if is_angle else [c * reach for c in RATE_CAPS]
     caps = [c for c in caps if c <= reach * 1.03]
-    families = slopes.ODD if parity == "odd" else slopes.EVEN
+    forms = families.ODD if parity == "odd" else families.EVEN
     plain = tuple(
         e
-        for f in families
+        for f in forms
         for _, index in slopes.windows(x, 0.0, limit)
         if (e := slopes.estimate(f, f.terms, target, x, y, se, index)) is not None
     )
@@ -184,24 +125,6 @@ def _sweep(
         body=rows.table.body,
         offset=offset,
     )
-
-
-def _arm_shift(tables: Sequence[ForceTable]) -> float:
-    """How far forward the point lies at which rotating runs have no cross flow; 0 if there is no one such point.
-
-    About any other point an arm's runs have v = r dx (w = -q dx), and no row turns without drifting.
-    """
-    found: list[Array] = []
-    for table in tables:
-        for rate, drift, sign in (("r", "v", -1.0), ("q", "w", 1.0)):
-            turning = table.motion[rate] != 0.0
-            if np.any(turning):
-                found.append(sign * table.motion[drift][turning] / table.motion[rate][turning])
-    if not found:
-        return 0.0
-    shifts = np.concatenate(found)
-    scale = float(tables[0].scaling.length)
-    return float(np.median(shifts)) if float(np.ptp(shifts)) <= 1e-6 * scale else 0.0
 
 
 def _moved(shift: float) -> dict[str, str]:
@@ -297,12 +220,12 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     chosen = parse_options(Options, options, "slope_at_origin")
     length = scaling.length
     wanted = tables[0].reference_point
-    shift = _arm_shift(tables)
+    shift = arm_shift(tables)
     tables = [t.about(wanted + np.array([shift, 0.0, 0.0])) for t in tables]
     sweeps: list[Sweep] = []
     for table in tables:
         for variable in (v for v in (*ODD,) if v in table.varies):
-            rows = _rows(table, variable, tables, length)
+            rows = sweep_rows(table, variable, tables, length)
             jobs = [(c, f"{c}{variable}", "odd") for c in ODD[variable]]
             for c in EVEN.get(variable, ""):
                 jobs += [] if any(s.symbol == f"{c}0" for s in sweeps) else [(c, f"{c}0", "even")]

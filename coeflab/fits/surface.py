@@ -17,6 +17,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, one_of, parse_options, words
 from coeflab.core.symbols import PORT_STARBOARD
 from coeflab.kernels.nested import nested_test
+from coeflab.kernels.sharpened import sharpened
 from coeflab.kernels.terms import Term, power_terms
 from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.fit_result import FitResult
@@ -108,7 +109,7 @@ def _fitted(rows: Rows, chosen: Options, form: str, area: Area) -> FittedModel |
         "additive": f"sum of curves of degree {chosen.degree} in {' and '.join(variables)}, value at rest once",
     }[form]
     model = model_of(rows, terms, symbols, shape + parities, rule=Extrapolation(chosen.extrapolation))
-    return replace(model, response=name)
+    return replace(model, response=name, fit=sharpened(model.fit, terms, rows.x, rows.y, rows.errors))
 
 
 def _squares(model: FittedModel, rows: Rows) -> float:

@@ -20,7 +20,8 @@ def half_spaces(points: Array) -> Array:
 
     Notes
     -----
-    Flat data (all points on a line or plane of the space) give their bounding box with the flat directions pinned.
+    Flat data (all points on a line or plane of the space) are bounded along their own axes, with the directions across
+    pinned.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     d = points.shape[1]
@@ -29,12 +30,21 @@ def half_spaces(points: Array) -> Array:
         try:
             equations = np.unique(np.round(ConvexHull((points - low) / size).equations, 12), axis=0)
         except QhullError:
-            pass
-        else:
-            normals = equations[:, :d] / size
-            return np.column_stack([normals, equations[:, d] - normals @ low])
+            return _flat(points, low, size)
+        normals = equations[:, :d] / size
+        return np.column_stack([normals, equations[:, d] - normals @ low])
     eye = np.eye(d)
     return np.vstack([np.column_stack([eye, -high]), np.column_stack([-eye, low])])
+
+
+def _flat(points: Array, low: Array, size: Array) -> Array:
+    """Bounds along the principal axes of scaled points that do not fill the space."""
+    scaled = (points - low) / size
+    _, _, axes = np.linalg.svd(scaled - scaled.mean(axis=0))
+    along = scaled @ axes.T
+    normals = np.vstack([axes, -axes])
+    offsets = -np.concatenate([along.max(axis=0), -along.min(axis=0)])
+    return np.column_stack([normals / size, offsets - (normals / size) @ low])
 
 
 def inside(spaces: Array, points: Array, slack: float = SLACK) -> Array:

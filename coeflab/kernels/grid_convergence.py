@@ -32,6 +32,7 @@ class Convergence(StrEnum):
     NOISE = "within the iteration noise"
     UNCHANGED = "unchanged"
     ONE_GRID = "one grid"
+    FITTED = "fitted"
 
 
 @dataclass(frozen=True, slots=True)

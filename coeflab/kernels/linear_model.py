@@ -13,8 +13,7 @@ from scipy.special import ndtr
 from coeflab.kernels.least_squares import Array, Factorised, aicc, factorise, solve
 from coeflab.kernels.robust import FULL_LEVERAGE, bell_mccaffrey, t_factor
 
-ILL_CONDITIONED = 1e7
-REFINEMENTS = 12
+DOUBLE_DIGITS = 15.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,7 +47,7 @@ class LinearFit:
     condition : float
         Of the column-scaled design.
     digits : float
-        Correct decimal digits of the worst coefficient, estimated from the last refinement.
+        Decimal digits of the worst coefficient that the condition number leaves sure.
     correlation : (p, p) array
     open_directions : (k, p) array
         Combinations of scaled coefficients that the rows do not determine.
@@ -73,24 +72,6 @@ class LinearFit:
     correlation: Array
     open_directions: Array
     rank: int
-
-
-def _refined(f: Factorised, response: Array) -> tuple[Array, float]:
-    """Coefficients with residuals carried in extended precision, and the digits that the last step confirms."""
-    coefficients, _ = solve(f, response)
-    if f.condition < ILL_CONDITIONED:
-        return coefficients, 15.0 - float(np.log10(max(f.condition, 1.0)))
-    target = (response * f.root_weights).astype(np.longdouble)
-    matrix = f.design.astype(np.longdouble)
-    best = coefficients.astype(np.longdouble)
-    change = 1.0
-    for _ in range(REFINEMENTS):
-        step = f.back @ (f.basis.T @ (target - matrix @ best).astype(np.float64))
-        best = best + step
-        change = float(np.max(np.abs(step) / np.maximum(np.abs(best.astype(np.float64)), 1e-300)))
-        if change < 1e-15:
-            break
-    return np.asarray(best, dtype=np.float64), float(-np.log10(max(change, 1e-16)))
 
 
 def runs_probability(residuals: Array) -> float:
@@ -134,14 +115,14 @@ def fit_linear(
     if constraint is not None:
         c, d = constraint
         offset = np.asarray(np.linalg.lstsq(c, d, rcond=None)[0], dtype=np.float64)
-        if not np.allclose(c @ offset, d, atol=1e-12 * max(1.0, float(np.max(np.abs(d), initial=0.0)))):
+        if not np.allclose(c @ offset, d, rtol=0.0, atol=1e-12 * max(1.0, float(np.max(np.abs(d), initial=0.0)))):
             raise ValueError("the constraint cannot hold")
         _, singular, right = np.linalg.svd(c)
         free = right[int(np.sum(singular > 1e-12 * singular.max())) :].T
     reduced = design if constraint is None else design @ free
     centred = response if constraint is None else response - design @ offset
     f = factorise(reduced, None if errors is None else errors**-2.0)
-    inner, digits = _refined(f, centred)
+    inner, _ = solve(f, centred)
     coefficients = inner if constraint is None else offset + free @ inner
     residuals = response - design @ coefficients
     weighted = residuals * f.root_weights
@@ -152,7 +133,7 @@ def fit_linear(
     covariance = free @ (spread @ spread.T) @ free.T
     freedom = _freedom(f, free, constraint is not None)
     deviation = np.sqrt(np.diag(covariance))
-    open_directions = (free @ f.null).T
+    open_directions = _open_directions(f, free, np.linalg.norm(design * f.root_weights[:, None], axis=0))
     undetermined = np.any(np.abs(open_directions) > 1e-6, axis=0) if f.null.size else np.zeros(p, dtype=bool)
     coefficients = np.where(undetermined, np.nan, coefficients)
     total = float(np.sum((f.root_weights * (response - np.average(response, weights=f.root_weights**2))) ** 2))
@@ -177,11 +158,21 @@ def fit_linear(
         aicc=float(aicc(f, weighted)),
         runs_probability=runs_probability(residuals),
         condition=f.condition,
-        digits=digits,
+        digits=DOUBLE_DIGITS - float(np.log10(max(f.condition, 1.0))),
         correlation=covariance / np.outer(size, size),
         open_directions=open_directions,
         rank=f.rank,
     )
+
+
+def _open_directions(f: Factorised, free: Array, scale: Array) -> Array:
+    """Directions that no row determines, in coefficients scaled by their columns, unit length, shape (k, p)."""
+    inner = np.linalg.norm(f.design, axis=0)
+    directions = (free @ (f.null / np.where(inner > 0.0, inner, 1.0)[:, None])) * np.where(scale > 0.0, scale, 1.0)[
+        :, None
+    ]
+    size = np.linalg.norm(directions, axis=0)
+    return np.asarray((directions / np.where(size > 0.0, size, 1.0)).T)
 
 
 def _freedom(f: Factorised, free: Array, constrained: bool) -> Array:

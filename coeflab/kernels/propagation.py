@@ -11,9 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import ndtri
 
+from coeflab.kernels.families import design
 from coeflab.kernels.least_squares import Array
-from coeflab.kernels.slopes import Estimate, design
+from coeflab.kernels.slopes import Estimate
 
 STEP = 0.01
 LOW, HIGH = 2.275013194817921, 97.72498680518208
@@ -47,7 +49,9 @@ def _member(e: Estimate, x: Array, y: Array) -> Array:
     return np.asarray(solved @ f.back[e.target])
 
 
-def displaced(x: Array, offset: Array, x_factor: Array, y: Array, y_factor: Array, angular: bool) -> tuple[Array, Array]:
+def displaced(
+    x: Array, offset: Array, x_factor: Array, y: Array, y_factor: Array, angular: bool
+) -> tuple[Array, Array]:
     """Perturbed data sets, two (s, n) arrays.
 
     Parameters
@@ -92,7 +96,10 @@ class Propagated:
 
 
 def normal_draws(covariance: Array, draws: int, seed: int) -> Array:
-    """Normal deviations with a covariance, shape (draws, k), every second one the mirror image of the one before.
+    """Normal deviations with a covariance, shape (draws, k): a Latin hypercube over its principal axes.
+
+    Each axis has one draw in each of ``draws`` slices of equal probability (McKay, Beckman & Conover 1979), which makes
+    the percentiles of nearly additive functions several times sharper than independent draws do.
 
     Raises
     ------
@@ -103,9 +110,10 @@ def normal_draws(covariance: Array, draws: int, seed: int) -> Array:
     if np.any(size < -1e-9 * max(float(np.max(np.abs(size), initial=0.0)), 1e-300)):
         raise ValueError("the covariance is not positive semidefinite")
     root = vectors * np.sqrt(np.clip(size, 0.0, None))
-    half = np.random.default_rng(seed).standard_normal(((draws + 1) // 2, len(size)))
-    both = np.stack([half, -half], axis=1).reshape(-1, len(size))[:draws]
-    return np.asarray(both @ root.T)
+    rng = np.random.default_rng(seed)
+    slices = rng.permuted(np.tile(np.arange(draws), (len(size), 1)), axis=1)
+    places = np.clip((slices + rng.random(slices.shape)) / draws, 1e-12, 1.0 - 1e-12)
+    return np.asarray((root @ ndtri(places)).T)
 
 
 def propagate(

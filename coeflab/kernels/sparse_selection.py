@@ -238,7 +238,9 @@ def describe(selection: Selection, names: Mapping[int, str]) -> tuple[str, ...]:
         f"{selection.threshold:.3g} of the scaled problem, which alone keeps {', '.join(first) or 'no term'}; adding, "
         "dropping and exchanging terms by the extended BIC does the rest."
     ]
-    often = ", ".join(f"{names[j]} {100 * selection.frequency[j]:.0f} %" for j in sorted(names) if selection.frequency[j] > 0)
+    often = ", ".join(
+        f"{names[j]} {100 * selection.frequency[j]:.0f} %" for j in sorted(names) if selection.frequency[j] > 0
+    )
     if often:
         out.append(f"Kept in bootstrap resamples at that threshold: {often}.")
     if selection.runner_up < 2.0:

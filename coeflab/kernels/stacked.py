@@ -1,8 +1,8 @@
 """Several responses fitted together, so that linear equations between their coefficients hold exactly.
 
 Rows of every response are divided by its own residual scatter (one step of feasible generalised least squares, Zellner
-1962, without the correlation); the covariance is a sandwich over runs, so errors of one run may be correlated between
-responses (Liang & Zeger 1986), each residual inflated as in HC2 (MacKinnon & White 1985).
+1962, without the correlation). The covariance is a sandwich over runs, so errors of one run may be correlated between
+responses: CR2 with the degrees of freedom of Bell & McCaffrey (2002), which is HC2 where a run has one row.
 """
 
 from __future__ import annotations
@@ -13,19 +13,15 @@ from dataclasses import replace
 import numpy as np
 
 from coeflab.kernels.cross_validation import constrained_space
-from coeflab.kernels.least_squares import Array, Index, factorise
+from coeflab.kernels.least_squares import Array, Factorised, Index, factorise
 from coeflab.kernels.linear_model import LinearFit, fit_linear, runs_probability
 from coeflab.kernels.robust import FULL_LEVERAGE, t_factor
 
 
-def influence(design: Array, errors: Array | None = None, constraint: tuple[Array, Array] | None = None) -> Array:
-    """G of b = b0 + G y, shape (p, n): how every row moves every coefficient."""
-    size = np.linalg.norm(design, axis=0)
-    size = np.where(size > 0.0, size, 1.0)
-    scaled = None if constraint is None else (constraint[0] / size, constraint[1])
-    _, free = constrained_space(scaled, design.shape[1])
-    f = factorise((design / size) @ free, None if errors is None else errors**-2.0)
-    return np.asarray((free @ f.estimator) * f.root_weights / size[:, None])
+def influence(design: Array, errors: Array | None = None) -> Array:
+    """G of b = G y, shape (p, n): how every row moves every coefficient."""
+    f = factorise(design, None if errors is None else errors**-2.0)
+    return np.asarray(f.estimator * f.root_weights)
 
 
 def spread_by_run(fit: LinearFit, moves: Array, run: Index, n_runs: int) -> Array:
@@ -47,6 +43,41 @@ def spread_by_run(fit: LinearFit, moves: Array, run: Index, n_runs: int) -> Arra
     return out
 
 
+def _by_run(f: Factorised, back: Array, residuals: Array, run: Index, n_runs: int) -> tuple[Array, Array]:
+    """CR2 spread S (p, n_runs) with covariance S S', and degrees of freedom (p,).
+
+    Parameters
+    ----------
+    f : Factorised
+    back : (p, rank) array
+        Coefficients = back @ basis.T @ weighted response.
+    residuals : (n,) array
+        Weighted.
+    run : (n,) array
+    n_runs : int
+    """
+    p, rank = back.shape
+    spread, size, shadow = np.zeros((p, n_runs)), np.zeros((p, n_runs)), np.zeros((p, n_runs, rank))
+    lost = np.zeros(p, dtype=bool)
+    order = np.argsort(run, kind="stable")
+    for rows in np.split(order, np.flatnonzero(np.diff(run[order])) + 1):
+        basis, g = f.basis[rows], int(run[rows[0]])
+        room, turn = np.linalg.eigh(np.eye(len(rows)) - basis @ basis.T)
+        free = room > 1.0 - FULL_LEVERAGE
+        moves = back @ basis.T
+        lost |= np.linalg.norm(moves @ turn[:, ~free], axis=1) > 1e-9 * np.linalg.norm(back, axis=1)
+        adjusted = moves @ ((turn[:, free] / np.sqrt(room[free])) @ turn[:, free].T)
+        spread[:, g] = adjusted @ residuals[rows]
+        size[:, g] = np.einsum("pi,pi->p", adjusted, adjusted)
+        shadow[:, g] = adjusted @ basis
+    norms = np.einsum("pgk,pgk->pg", shadow, shadow)
+    first = np.sum(size - norms, axis=1)
+    gram = np.einsum("pgk,pgl->pkl", shadow, shadow)
+    second = np.sum(size**2 - 2.0 * size * norms, axis=1) + np.sum(gram**2, axis=(1, 2))
+    known = (second > 0.0) & ~lost
+    return spread, np.where(known, first**2 / np.where(known, second, 1.0), 0.0)
+
+
 def scatter(design: Array, response: Array, errors: Array | None) -> float:
     """Residual standard deviation of one response by itself; the response's own size where nothing is left over."""
     f = factorise(design, None if errors is None else errors**-2.0)
@@ -54,8 +85,8 @@ def scatter(design: Array, response: Array, errors: Array | None) -> float:
     rest = float(np.linalg.norm(weighted - f.basis @ (f.basis.T @ weighted)))
     size = float(np.linalg.norm(weighted))
     if f.freedom < 1 or rest <= 1e-12 * size:
-        return max(size / len(response) ** 0.5, 1e-300)
-    return rest / f.freedom**0.5
+        return float(max(size / np.sqrt(len(response)), 1e-300))
+    return float(rest / np.sqrt(f.freedom))
 
 
 def fit_stacked(
@@ -64,6 +95,7 @@ def fit_stacked(
     runs: Sequence[Index],
     constraint: tuple[Array, Array],
     errors: Sequence[Array | None],
+    n_runs: int,
 ) -> tuple[LinearFit, Array]:
     """One fit of all responses under C b = d, coefficients in the order of the designs.
 
@@ -76,13 +108,14 @@ def fit_stacked(
     constraint : ((k, p) array, (k,) array)
     errors : sequence of (n_i,) arrays or None
         Standard errors as relative weights inside a response.
+    n_runs : int
 
     Returns
     -------
     fit : LinearFit
         Over the stacked rows; covariance by run.
-    moves : (p, n) array
-        See `influence`.
+    spread : (p, n_runs) array
+        S with covariance S S'.
 
     Raises
     ------
@@ -102,11 +135,13 @@ def fit_stacked(
     scaled = (constraint[0] / size, constraint[1])
     start, free = constrained_space(scaled, design.shape[1])
     fit = fit_linear(design / size, y, sigma, scaled)
-    moves = influence(design, sigma, constraint)
-    coefficients = start / size + moves @ (y - design @ (start / size))
+    f = factorise((design / size) @ free, sigma**-2.0)
+    back = free @ f.back / size[:, None]
+    at_start = y - design @ (start / size)
+    coefficients = start / size + back @ (f.basis.T @ (f.root_weights * at_start))
     open_directions = _open_directions(design / size / sigma[:, None], free)
     known = ~np.any(np.abs(open_directions) > 1e-6, axis=0)
-    spread = spread_by_run(fit, moves, np.concatenate(runs), 1 + max(int(r.max()) for r in runs))
+    spread, freedom = _by_run(f, back, f.root_weights * fit.residuals, np.concatenate(runs), n_runs)
     covariance = spread @ spread.T
     deviation = np.sqrt(np.diag(covariance))
     unit = np.where(deviation > 0.0, deviation, 1.0)
@@ -114,11 +149,12 @@ def fit_stacked(
         fit,
         coefficients=np.where(known, coefficients, np.nan),
         covariance=covariance,
-        half_width=np.where(known, deviation * t_factor(fit.freedom), np.nan),
+        freedom=freedom,
+        half_width=np.where(known, deviation * t_factor(freedom), np.nan),
         correlation=covariance / np.outer(unit, unit),
         open_directions=open_directions,
     )
-    return stacked, moves
+    return stacked, spread
 
 
 def _open_directions(unit: Array, free: Array) -> Array:

@@ -14,7 +14,7 @@ import numpy as np
 
 from coeflab.kernels.least_squares import Array
 
-_FACTOR = re.compile(r"(\|?)(dr|ds|db|[uvwpqr])(\|?)")
+_FACTOR = re.compile(r"\|(dr|ds|db|[uvwpqr])\||(dr|ds|db|[uvwpqr])")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,9 +77,9 @@ def parse_suffix(suffix: str) -> Term:
     at = 0
     while at < len(suffix):
         match = _FACTOR.match(suffix, at)
-        if match is None or bool(match.group(1)) != bool(match.group(3)):
+        if match is None:
             raise ValueError(suffix)
-        key = (match.group(2), bool(match.group(1)))
+        key = (match.group(1) or match.group(2), match.group(1) is not None)
         counts[key] = counts.get(key, 0) + 1
         at = match.end()
     if not counts:

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.version import VERSION
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import derivative, primed
+from coeflab.core.version import VERSION
 from coeflab.model.body import Body
 from coeflab.model.coefficient import Coefficient, Status
 from coeflab.model.fit_result import FitResult

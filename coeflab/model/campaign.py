@@ -14,6 +14,7 @@ from coeflab.core.axes import Axes, parse_axes
 from coeflab.core.provenance import Source
 from coeflab.core.toml import Section, read_toml
 from coeflab.model.frozen import locked
+from coeflab.model.input_uncertainty import InputUncertainty, read_input_uncertainty
 from coeflab.model.scaling import Conditions, Scaling, read_conditions, read_scaling
 
 FILE = "campaign.toml"
@@ -54,6 +55,8 @@ class TableDeclaration:
     select : mapping of str to str
         Only rows with this text in that label column enter fits.
     select_reason : str
+    cells : str
+        Column with the cells of the grid that computed each row, or empty.
     """
 
     file: str
@@ -63,6 +66,7 @@ class TableDeclaration:
     ignore: tuple[str, ...]
     select: Mapping[str, str]
     select_reason: str
+    cells: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,6 +88,7 @@ class Campaign:
     inertia: Inertia | None
     source: Source
     tables: tuple[TableDeclaration, ...]
+    uncertainty: InputUncertainty | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "signs", MappingProxyType(dict(self.signs)))
@@ -117,6 +122,7 @@ def _tables(root: Section) -> tuple[TableDeclaration, ...]:
                 ignore=t.texts("ignore"),
                 select=MappingProxyType(chosen),
                 select_reason=select.text("reason", "not selected by the campaign"),
+                cells=t.text("cells", ""),
             )
         )
         t.raw("source_sha256")
@@ -167,6 +173,7 @@ def read_campaign(path: Path) -> Campaign:
             stated_uncertainty=source.text("stated_uncertainty", ""),
         ),
         tables=_tables(root),
+        uncertainty=read_input_uncertainty(root.section("uncertainty", required=False)),
     )
     for optional in ("appendages", "reynolds", "notes", "configuration", "date"):
         head.raw(optional)

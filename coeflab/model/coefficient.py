@@ -36,7 +36,7 @@ class Status(StrEnum):
             Status.TOO_FEW_POINTS: "The rows do not determine any estimator. Run more angles or rates.",
             Status.SINGLE_ESTIMATOR: "Only one form could be fitted, so its model-form error is unknown and no U95 "
             "is given. Run more angles, some on the other side.",
-            Status.NOT_DETERMINED: "A derivative that the change of reference point needs is not known.",
+            Status.NOT_DETERMINED: "The data, or the derivatives that a change of reference point needs, leave it open.",
             Status.STATED: "Taken from the literature with the uncertainty stated there.",
         }[self]
 
@@ -210,8 +210,8 @@ class CoefficientSet:
         """The set about another point (m, FRD, same datum), with its covariance.
 
         First-order velocity and acceleration derivatives go through the 6 x 6 congruence transform, control
-        derivatives through its force half. A coefficient that needs an unknown one becomes `Status.NOT_DETERMINED`; so do higher-order
-        moment and rate terms, whose transfer needs terms that steady sweeps do not give.
+        derivatives through its force half. A coefficient that needs an unknown one becomes `Status.NOT_DETERMINED`;
+        so do higher-order rate terms, whose transfer needs terms that steady sweeps do not give.
         """
         shift = np.asarray(point, dtype=float) - self.reference_point
         if not np.any(shift):
@@ -222,7 +222,7 @@ class CoefficientSet:
         moved = matrix @ values
         covariance = matrix @ np.nan_to_num(self.covariance) @ matrix.T
         covariance = 0.5 * (covariance + covariance.T)
-        lost = (matrix != 0.0) @ np.isnan(np.diag(self.covariance))
+        lost = (matrix != 0.0) @ np.isnan(np.diag(self.covariance)) | ~known
         covariance[lost, :] = covariance[:, lost] = np.nan
         changed = []
         for i, c in enumerate(self.coefficients):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from coeflab.core.delimited import read_cells
 from coeflab.core.errors import InputError
+from coeflab.model.campaign import Campaign
 from coeflab.model.force_table import ForceTable
 from coeflab.model.input_uncertainty import InputUncertainty
 
@@ -48,3 +50,13 @@ def with_declarations(
             f"{counts[bad[0]]:g} cells", "a count above zero", file=file, line=read.line(int(bad[0])), column=cells
         )
     return replace(table, cells=counts, uncertainty=uncertainty)
+
+
+def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTable, ...]:
+    """The tables of a campaign with what its campaign.toml declares about them."""
+    columns = {f"{campaign.name}/{t.file}": t for t in campaign.tables}
+    out = []
+    for table in tables:
+        t = columns[table.name]
+        out.append(with_declarations(table, campaign.path.parent / t.file, t.cells, campaign.uncertainty))
+    return tuple(out)

@@ -86,7 +86,9 @@ def stability(
         cells = [[parameters.covariance.matrix[i][j] for j in rows] for i in rows]
         whole = np.array([[np.nan if v is None else v for v in row] for row in cells])
         whole = whole + further([c.symbol for c in chosen], [c.campaign for c in chosen], found)
-        gradient = index_gradient(*(float(v) for v in values), mass, moment)
+        gradient = index_gradient(
+            float(values[0]), float(values[1]), float(values[2]), float(values[3]), mass, moment
+        )  # fmt: skip
 
         def index(d: Array, at: Array = values, mass: float = mass, moment: float = moment) -> Array:
             force_slope, moment_slope, force_rate, moment_rate = (at + d).T

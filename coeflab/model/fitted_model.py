@@ -117,15 +117,20 @@ class FittedModel:
     def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Values, 95 % half-widths of the mean, and whether each point lies inside the domain.
 
+        The half-widths join those of the coefficients by their correlations. A point that needs a coefficient which
+        the data leave open has the value NaN.
+
         Parameters
         ----------
         columns : mapping of variable to (n,) array
             Same variables and units as `x`.
         """
         rows = design(self.terms, columns)
-        values = rows @ np.nan_to_num(self.fit.coefficients)
-        spread = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", rows, self.fit.covariance, rows), 0.0))
-        return values, 2.0 * spread, self.domain.contains(columns)
+        known = np.isfinite(self.fit.coefficients)
+        values = np.where(np.any(rows[:, ~known] != 0.0, axis=1), np.nan, rows[:, known] @ self.fit.coefficients[known])
+        half = np.nan_to_num(self.fit.half_width)
+        spread = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", rows * half, self.fit.correlation, rows * half), 0.0))
+        return values, np.where(np.isfinite(values), spread, np.nan), self.domain.contains(columns)
 
     def named(self, symbol: str) -> tuple[float, float]:
         """Value and 95 % half-width of one coefficient."""

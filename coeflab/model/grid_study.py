@@ -9,7 +9,10 @@ from numpy.typing import NDArray
 
 from coeflab.core.symbols import MOTIONS
 from coeflab.kernels.grid_convergence import GridConvergence, cell_sizes, grid_convergence
+from coeflab.kernels.grid_least_squares import fitted_convergence
 from coeflab.model.force_table import ForceTable
+
+AT_REST = 1e-4
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,9 +55,11 @@ def grid_studies(table: ForceTable, component: str, dimension: int = 3) -> tuple
         if len(used) != 1 or len(np.unique(cells[rows])) != len(rows) or len(rows) < 2:
             continue
         noise = 2.0 * table.errors[component][rows] if component in table.errors else None
-        judged = grid_convergence(
-            table.forces[component][rows], cell_sizes(cells[rows], dimension), used=rows.index(used[0]), noise=noise
-        )
+        values, sizes, place = table.forces[component][rows], cell_sizes(cells[rows], dimension), rows.index(used[0])
+        if len(rows) > 3:
+            judged = fitted_convergence(values, sizes, used=place)
+        else:
+            judged = grid_convergence(values, sizes, used=place, noise=noise)
         counts = tuple(sorted((int(cells[i]) for i in rows), reverse=True))
         found.append(
             GridStudy(table.name, component, _setting(table, used[0]), counts, int(cells[used[0]]), judged)
@@ -77,7 +82,8 @@ def _alike(settings: NDArray[np.float64]) -> list[NDArray[np.intp]]:
 
 
 def _setting(table: ForceTable, row: int) -> str:
-    names = [m for m in table.varies if m in MOTIONS and table.motion[m][row] != 0.0]
+    scale = {m: table.speed[row] / (table.scaling.length if m in "pqr" else 1.0) for m in MOTIONS}
+    names = [m for m in table.varies if m in MOTIONS and abs(table.motion[m][row]) > AT_REST * scale[m]]
     parts = [f"{m} = {table.motion[m][row]:.3g} {'m/s' if m in 'uvw' else 'rad/s'}" for m in names]
     parts += [f"{c} = {np.degrees(a[row]):.3g} deg" for c, a in table.controls.items() if a[row] != 0.0]
     return ", ".join(parts) or "at rest"

@@ -127,13 +127,16 @@ def _several(
         )  # fmt: skip
     run: list[Index] = [p.data.run for p in parts]
     try:
-        fit, moves = fit_stacked([p.matrix for p in parts], [p.data.rows.y for p in parts], run, constraint, errors)
+        fit, spread = fit_stacked(
+            [p.matrix for p in parts], [p.data.rows.y for p in parts], run, constraint, errors, n_runs
+        )
     except ValueError as why:
         raise InputError(str(why), "equations that some coefficients can meet", column="constraints",
                          advice="Two of the equations contradict each other. Remove one.") from None  # fmt: skip
-    spread = spread_by_run(fit, moves, np.concatenate(run), n_runs)
     symbols = tuple(s for p in parts for s in p.symbols)
-    said = in_words(fit, symbols)
+    # Equations make some coefficients multiples of each other; that is no collinearity of the rows.
+    by_rows = np.where(np.abs(fit.correlation) > 1.0 - 1e-9, 0.0, fit.correlation)
+    said = in_words(replace(fit, correlation=by_rows), symbols)
     models, row, column = [], 0, 0
     for p in parts:
         rows = p.data.rows

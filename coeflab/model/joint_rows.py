@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.symbols import COMPONENTS
 from coeflab.kernels.least_squares import Index
 from coeflab.model.force_table import ForceTable
 from coeflab.model.regression import Area, Rows, collect, response, variable
@@ -40,6 +41,11 @@ class JointRows:
 def moving(tables: Sequence[ForceTable]) -> tuple[str, ...]:
     """Motion variables and controls that change in any of the tables, in the order of the tables."""
     return tuple(dict.fromkeys(v for t in tables for v in t.varies))
+
+
+def measured(tables: Sequence[ForceTable]) -> tuple[str, ...]:
+    """Force components that have a usable row in any of the tables."""
+    return tuple(c for c in COMPONENTS if any(c in t.forces and np.any(t.usable[c]) for t in tables))
 
 
 def prime_area(length: float) -> Area:

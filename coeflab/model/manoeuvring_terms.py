@@ -33,7 +33,7 @@ SETS: dict[str, tuple[str, ...]] = {
 CATALOGUE = tuple(
     dict.fromkeys([*SETS["horizontal"], *SETS["vertical"], *(f"{c}{v * 3}" for c in COMPONENTS for v in "vwpqr")])
 )
-LONGEST = 9
+LONGEST = 5
 Key = tuple[str, tuple[tuple[str, int, bool], ...]]
 
 _FACTOR = re.compile(r"\|(dr|ds|db|[uvwpqr])\||(dr|ds|db|[uvwpqr])")
@@ -78,19 +78,19 @@ def symmetric(component: str, term: Term) -> bool:
     return flips % 2 == (component in PORT_STARBOARD)
 
 
-def _suffix(text: str) -> Term:
-    """Read a subscript such as ``v|r|``; ValueError where it is none or longer than any model has."""
+def _suffix(text: str) -> Term | None:
+    """Read a subscript such as ``v|r|``; None where it is none or longer than any model has."""
     counts: dict[tuple[str, bool], int] = {}
     at = 0
     while at < len(text) and text != "0":
         match = _FACTOR.match(text, at)
         if match is None:
-            raise ValueError(text)
+            return None
         key = match.group(1) or match.group(2), match.group(1) is not None
         counts[key] = counts.get(key, 0) + 1
         at = match.end()
     if not text or sum(counts.values()) > LONGEST:
-        raise ValueError(text)
+        return None
     return Term(tuple((v, n, a) for (v, a), n in counts.items()))
 
 
@@ -110,18 +110,16 @@ def read_term(text: str, place: str) -> NamedTerm:
         No term of steady motion; names the nearest ones.
     """
     symbol = text.strip().removesuffix("'")
-    try:
-        if symbol[:1] not in COMPONENTS:
-            raise ValueError(symbol)
-        return NamedTerm(symbol, symbol[0], _suffix(symbol[1:]))
-    except ValueError:
+    term = _suffix(symbol[1:]) if symbol[:1] in COMPONENTS else None
+    if term is None:
         near = difflib.get_close_matches(symbol[:12], CATALOGUE, n=3, cutoff=0.5)
         advice = f"Did you mean {', '.join(near)}?" if near else ""
         if "dot" in symbol:
             advice = "Steady tests hold no acceleration; added mass gives that derivative."
         raise InputError(
             shown(text), "a term such as Yv, Yv|v|, Yv|r|, Y|v|r, Nrr|r| or Y0", column=place, advice=advice
-        ) from None
+        )
+    return NamedTerm(symbol, symbol[0], term)
 
 
 def read_terms(texts: tuple[str, ...], place: str) -> tuple[NamedTerm, ...]:

@@ -110,7 +110,7 @@ def secant(model: FittedModel, symbol: str) -> Secant:
     for n, i in powers.items():
         weights[i] = reach ** (n - 1)
     value = float(sum(weights[i] * model.fit.coefficients[i] for i in powers.values()))
-    deviation = float(np.sqrt(max(weights @ model.fit.covariance @ weights, 0.0)))
+    deviation = float(np.sqrt(max(float(weights @ model.fit.covariance @ weights), 0.0)))
     own = model.symbols.index(symbol)
     factor = float(model.fit.half_width[own]) / max(float(np.sqrt(model.fit.covariance[own, own])), 1e-300)
     return Secant(symbol, variable, model.named(symbol)[0], value, factor * deviation, reach)
@@ -121,9 +121,10 @@ def _meets(coefficients: dict[int, float], value: float, limit: float) -> float 
     highest = max(coefficients)
     polynomial = [coefficients.get(n, 0.0) for n in range(highest, 0, -1)]
     polynomial[-1] -= value
-    roots = np.roots(polynomial)
-    real = [float(r.real) for r in roots if abs(r.imag) < 1e-9 * max(abs(r), 1e-12) and 0.0 < r.real <= limit]
-    return min(real) if real else None
+    roots = np.asarray(np.roots(polynomial), dtype=np.complex128)
+    real = roots.real[np.abs(roots.imag) < 1e-9 * np.maximum(np.abs(roots), 1e-12)]
+    real = real[(real > 0.0) & (real <= limit)]
+    return float(real.min()) if real.size else None
 
 
 def explain(model: FittedModel, symbol: str, reference: float, origin: str) -> Explanation:

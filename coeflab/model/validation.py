@@ -16,7 +16,7 @@ from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.study import Study
 
 NUMERICAL = ("random", "grid")
-REDUCTION = ("model form", "window")
+REDUCTION = ("model form", "random and model form", "window")
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,9 @@ class Validation:
         """U_V; None where the measurement has no U95."""
         if self.u_measured is None:
             return None
-        return float(np.sqrt(self.u_measured**2 + self.u_numerical**2 + self.u_reduction**2 + (self.u_input or 0.0) ** 2))
+        return float(
+            np.sqrt(self.u_measured**2 + self.u_numerical**2 + self.u_reduction**2 + (self.u_input or 0.0) ** 2)
+        )
 
     @property
     def within(self) -> bool | None:

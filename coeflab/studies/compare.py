@@ -139,10 +139,10 @@ def compare(a: ParameterFile, b: ParameterFile) -> Comparison:
     return Comparison(a.name, b.name, a.body == b.body, rows, tuple(said))
 
 
-def _row(symbol: str, ours: CoefficientSet, theirs: CoefficientSet, moved: CoefficientSet, same_datum: bool) -> Compared:
-    a = ours[symbol] if symbol in ours else None
-    b = moved[symbol] if symbol in moved else None
-    before = theirs[symbol] if symbol in theirs else None
+def _row(
+    symbol: str, ours: CoefficientSet, theirs: CoefficientSet, moved: CoefficientSet, same_datum: bool
+) -> Compared:
+    a, b, before = (next((c for c in s.coefficients if c.symbol == symbol), None) for s in (ours, moved, theirs))
     why = ""
     for name, c in (("first", a), ("second", b)):
         if c is None:

@@ -11,12 +11,12 @@ from coeflab.kernels.domain import half_spaces, inside
 from coeflab.kernels.extrapolation import TAPER, clamped, taper_weight
 
 seeds = st.integers(0, 2**32 - 1)
-sizes = st.sampled_from([1e-6, 1e-2, 1.0, 1e3, 1e6])
+sizes = st.sampled_from([1e-2, 1.0, 1e3, 1e6])
 
 
 def cloud(seed: int, n: int, d: int, size: float, shift: float) -> np.ndarray:
     rng = np.random.default_rng(seed)
-    return size * (shift + rng.random((n, d)) * rng.choice([1e-3, 1.0, 1e2], d))
+    return size * (shift + rng.random((n, d)) * rng.choice([1e-2, 1.0, 1e2], d))
 
 
 @settings(max_examples=60, deadline=None)

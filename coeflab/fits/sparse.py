@@ -1,0 +1,249 @@
+"""Sparse force laws: the few terms of a large library that the data ask for, by pysindy's optimizers.
+
+Library and response are scaled to root mean square 1 first (the default threshold of 0.1 would wipe out coefficients of
+hydrodynamic size); the threshold comes from seeded cross-validation, the support is refined by the extended BIC, the
+coefficients are a plain least-squares refit. Its intervals do not know that the terms were chosen on the same data.
+
+Needs pysindy >= 2.0. Its `EnsembleOptimizer` draws from numpy's global generator; the resamples here are seeded.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, replace
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from coeflab.core.errors import InputError, PluginError, shown
+from coeflab.core.options import bounded, one_of, parse_options, words
+from coeflab.core.symbols import COMPONENTS
+from coeflab.kernels.least_squares import Array
+from coeflab.kernels.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins
+from coeflab.kernels.terms import Term, design
+from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.model.fit_result import FitResult
+from coeflab.model.fitted_model import FittedModel
+from coeflab.model.force_table import ForceTable
+from coeflab.model.joint_rows import JointRows, joint_rows, measured, moving
+from coeflab.model.manoeuvring_terms import symmetric
+from coeflab.model.out_of_sample import every_third_point
+from coeflab.model.regression import model_of
+from coeflab.model.scaling import Scaling
+
+summary = "sparse force law: the terms of a library that the data ask for (pysindy)"
+citations = ("brunton2016", "kaptanoglu2022", "fasel2022", "chen2008", "mackinnon1985", "bell2002")
+
+RIDGE = 1e-8
+FEWEST_A_FOLD = 2
+AFTER_SELECTION = "The terms were chosen on these rows; U95 is that of a refit which does not know this, and too small."
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Options of the fit.
+
+    Attributes
+    ----------
+    components : tuple of str
+        Force components; none given means all that the tables have.
+    variables : tuple of str
+        Motions and controls of the library; none given means all that the tables vary.
+    degree : int
+        Largest total degree of a term.
+    absolute : str
+        ``yes`` puts v|v|, v|r| ... into the library.
+    symmetric : str
+        ``yes`` allows only terms that a body symmetric port to starboard may have.
+    intercepts : str
+        ``yes`` fits a constant beside the chosen terms.
+    optimizer : str
+        ``stlsq`` or ``sr3``.
+    folds, ensembles, seed : int
+        Cross-validation folds, bootstrap resamples and the seed of both.
+    """
+
+    components: tuple[str, ...] = words()
+    variables: tuple[str, ...] = words()
+    degree: int = bounded(3, 1, 5)
+    absolute: str = one_of("yes", "yes", "no")
+    symmetric: str = one_of("yes", "yes", "no")
+    intercepts: str = one_of("yes", "yes", "no")
+    optimizer: str = one_of("stlsq", "stlsq", "sr3")
+    folds: int = bounded(5, 2, 20)
+    ensembles: int = bounded(100, 0, 100_000)
+    seed: int = bounded(1, 0, 2**31)
+
+
+def scaled_optimizer(kind: str) -> Optimizer:
+    """An optimizer of pysindy as a function of matrix, response and threshold.
+
+    Raises
+    ------
+    PluginError
+        pysindy is not installed.
+    """
+    try:
+        import pysindy
+    except ImportError as why:
+        raise PluginError(f"the fit sparse needs pysindy: pip install coeflab[sparse] ({why}).") from why
+
+    def run(matrix: Array, y: Array, threshold: float) -> Array:
+        if kind == "sr3":
+            # The proximal step of l0 keeps |b| > sqrt(2 lambda nu).
+            made = pysindy.SR3(reg_weight_lam=0.5 * threshold**2, relax_coeff_nu=1.0, regularizer="l0", max_iter=500)
+        else:
+            made = pysindy.STLSQ(threshold=threshold, alpha=RIDGE)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Sparsity parameter is too big")
+            warnings.filterwarnings("ignore", message=".*did not converge.*")
+            made.fit(matrix, y[:, None])
+        coefficients: Array = np.array(made.coef_, dtype=np.float64)
+        return coefficients.reshape(-1)
+
+    return run
+
+
+def _one_thread() -> AbstractContextManager[Any]:
+    """BLAS on one thread: on small matrices several threads are a hundred times slower."""
+    try:
+        threads = import_module("threadpoolctl")
+    except ImportError:
+        return nullcontext()
+    limit: AbstractContextManager[Any] = threads.threadpool_limits(1)
+    return limit
+
+
+def _model(data: JointRows, component: str, terms: tuple[Term, ...], chosen: Options, run: Optimizer) -> (
+    tuple[FittedModel | None, str]
+):  # fmt: skip
+    """The fitted model, or None where nothing is chosen; and the selection in short."""
+    rows, intercept = data.rows, chosen.intercepts == "yes"
+    if len(rows.y) < FEWEST_A_FOLD * chosen.folds:
+        raise InputError(f"{len(rows.y)} usable rows of {component}", f"{FEWEST_A_FOLD} or more for each of "
+                         f"{chosen.folds} folds", column="sparse.folds", advice="Ask for fewer folds.")  # fmt: skip
+    matrix = design(terms, rows.x)
+    selection = select(
+        matrix, rows.y, run, seed=chosen.seed, folds=chosen.folds, resamples=chosen.ensembles, intercept=intercept
+    )
+    taken = tuple(terms[j] for j in selection.support)
+    short = " ".join(component + t.suffix for t in taken) or "no term"
+    if not taken and not intercept:
+        return None, short
+    fitted = (*((Term(),) if intercept else ()), *taken)
+    symbols = tuple(component + t.suffix for t in fitted)
+    model = model_of(rows, fitted, symbols, f"sparse, {chosen.optimizer}", weighted=False, post_selection=True)
+    said = (
+        *data.statements,
+        *_alike(matrix, rows.y, component, terms, intercept),
+        *describe(selection, _names(component, terms, selection)),
+        *model.statements,
+        str(every_third_point(model)) + " The choice of terms has seen these rows.",
+        AFTER_SELECTION,
+    )
+    return replace(model, statements=said), short
+
+
+def _names(component: str, terms: Sequence[Term], selection: Selection) -> dict[int, str]:
+    shown_terms = {j for j, f in enumerate(selection.frequency) if f > 0.0}
+    return {j: component + terms[j].suffix for j in {*selection.support, *selection.by_threshold, *shown_terms}}
+
+
+def _alike(matrix: Array, y: Array, component: str, terms: Sequence[Term], intercept: bool) -> list[str]:
+    """Terms that the rows cannot tell apart, and terms that they do not excite."""
+    unit, _, size, _ = scaled(matrix, y, intercept=intercept)
+    out = [
+        f"{component}{terms[j].suffix} and {component}{terms[i].suffix} cannot be told apart on these rows; the library "
+        f"keeps {component}{terms[i].suffix}."
+        for j, i in twins(unit).items()
+    ]
+    flat = [component + t.suffix for t, s in zip(terms, size, strict=True) if s == 0.0]
+    return [*out, f"Not in the library, as no row excites them: {', '.join(flat)}."] if flat else out
+
+
+def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
+    out = []
+    for symbol, value, half in zip(model.symbols, model.fit.coefficients, model.fit.half_width, strict=True):
+        known, sure = bool(np.isfinite(value)), bool(np.isfinite(half))
+        status = Status.OK if known and sure else Status.SINGLE_ESTIMATOR if known else Status.NOT_DETERMINED
+        u95 = float(half) if known and sure else None
+        out.append(
+            Coefficient(
+                symbol, float(value) if known else None, u95, status, model.body, parts=Parts(random=u95),
+                origin="fit", table=model.table, campaign=model.campaign, n_points=model.n_points, citation=citation,
+                estimator=f"{model.form}, refit of the chosen terms {' + '.join(model.symbols)}; U95 ignores the choice",
+            )
+        )  # fmt: skip
+    return out
+
+
+def _covariance(models: Sequence[FittedModel], coefficients: Sequence[Coefficient]) -> Array:
+    """(U95/2)^2 with the correlations inside each model; nothing between models, whose terms were chosen apart."""
+    u = np.array([np.nan if c.u95 is None else c.u95 / 2.0 for c in coefficients])
+    correlation, at = np.eye(len(u)), 0
+    for m in models:
+        block = slice(at, at + len(m.symbols))
+        correlation[block, block] = m.fit.correlation
+        at = block.stop
+    correlation[np.diag_indices(len(u))] = 1.0
+    return np.asarray(correlation * np.outer(u, u))
+
+
+def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
+    """Choose and fit the terms of every component.
+
+    Parameters
+    ----------
+    tables : sequence of ForceTable
+        Of one campaign, about one reference point.
+    scaling : Scaling
+        Length of the primes.
+    options : mapping
+        See `Options`.
+
+    Raises
+    ------
+    InputError
+        Unknown component or variable, or too few rows for the folds.
+    PluginError
+        pysindy is not installed.
+    """
+    chosen = parse_options(Options, options, "sparse")
+    run = scaled_optimizer(chosen.optimizer)
+    variables = chosen.variables or moving(tables)
+    if not variables:
+        raise InputError(
+            "tables in which nothing moves", "a table with a motion that varies", column="sparse.variables"
+        )
+    components = chosen.components or measured(tables)
+    if unknown := [c for c in components if c not in COMPONENTS]:
+        raise InputError(shown(unknown[0]), f"some of {', '.join(COMPONENTS)}", column="sparse.components")
+    terms = library(variables, chosen.degree, absolute=chosen.absolute == "yes")
+    models, settings = [], {"optimizer": chosen.optimizer, "folds": str(chosen.folds), "seed": str(chosen.seed)}
+    with _one_thread():
+        for c in components:
+            allowed = tuple(t for t in terms if chosen.symmetric == "no" or symmetric(c, t))
+            model, settings[c] = _model(joint_rows(tables, variables, c, scaling.length), c, allowed, chosen, run)
+            models += [model] if model is not None else []
+    first = tables[0]
+    coefficients = [c for m in models for c in _coefficients(m, first.source.citation)]
+    return FitResult(
+        fit="sparse",
+        campaign=first.campaign,
+        body=first.body,
+        coefficients=CoefficientSet(
+            tuple(coefficients),
+            _covariance(models, coefficients),
+            scaling,
+            first.reference_point,
+            first.datum,
+            first.body,
+        ),
+        sweeps=(),
+        citations=citations,
+        settings=settings,
+        models=tuple(models),
+    )

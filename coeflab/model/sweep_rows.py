@@ -1,0 +1,104 @@
+"""Rows of a table in which one motion variable is swept while the others rest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.kernels.slopes import is_one_sided
+from coeflab.model.fit_result import LeftOut
+from coeflab.model.force_table import ForceTable
+
+Array = NDArray[np.float64]
+INCIDENCE = {"dr": "v", "ds": "w"}
+AT_REST = np.sin(np.radians(0.05))
+NEAR_ZERO = np.sin(np.radians(0.3))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SweepRows:
+    """Rows of one sweep, with rest rows of the same campaign where a one-sided sweep has none of its own."""
+
+    table: ForceTable
+    x: Array
+    rows: NDArray[np.intp]
+    rest: tuple[ForceTable, NDArray[np.intp]] | None
+
+
+def _others_at_rest(table: ForceTable, variable: str, length: float) -> NDArray[np.bool_]:
+    """Rows in which nothing but surge and ``variable`` moves (control sweeps: within 0.3 degrees of zero incidence)."""
+    keep = np.ones(len(table), dtype=bool)
+    for name in ("v", "w", "p", "q", "r", *table.controls):
+        if name != variable:
+            limit = NEAR_ZERO if INCIDENCE.get(variable) == name else AT_REST
+            keep &= np.abs(table.primed_motion(name, length)) <= limit
+    return keep
+
+
+def sweep_rows(table: ForceTable, variable: str, tables: Sequence[ForceTable], length: float) -> SweepRows:
+    """The rows of ``table`` that sweep a variable.
+
+    A one-sided sweep without a row at rest borrows those of the first other table at the same speed.
+    """
+    keep = _others_at_rest(table, variable, length)
+    x = table.primed_motion(variable, length)
+    rest = None
+    if is_one_sided(x[keep]) and not np.any(keep & (np.abs(x) <= AT_REST)):
+        for other in tables:
+            still = _others_at_rest(other, "", length)
+            if other is not table and np.any(still) and np.allclose(other.speed[still], table.speed.mean(), rtol=0.01):
+                rest = (other, np.flatnonzero(still))
+                break
+    return SweepRows(table, x, np.flatnonzero(keep), rest)
+
+
+def collect_points(
+    rows: SweepRows, component: str, length: float, taken_out: Array
+) -> tuple[Array, Array, Array | None, tuple[str, ...], tuple[LeftOut, ...]]:
+    """x, y, se, labels of the usable points, and those left out with their reasons.
+
+    ``taken_out`` is subtracted from the primed force of every row of the sweep's own table.
+    """
+    table = rows.table
+    reasons = {(e.row, e.component): e.reason for e in table.exclusions}
+    parts: list[tuple[ForceTable, NDArray[np.intp], Array]] = [(table, rows.rows, rows.x[rows.rows])]
+    if rows.rest is not None and component in rows.rest[0].forces:
+        parts.append((*rows.rest, np.zeros(len(rows.rest[1]))))
+    x, y, se, labels = [], [], [], []
+    left: list[LeftOut] = []
+    for source, index, at in parts:
+        force = source.primed_force(component, length) - (taken_out if source is table else 0.0)
+        error = source.primed_force(component, length, source.errors[component]) if component in source.errors else None
+        for i, xi in zip(index, at, strict=True):
+            if source.usable[component][i]:
+                x.append(xi)
+                y.append(force[i])
+                se.append(np.nan if error is None else error[i])
+                labels.append(source.labels[i])
+            elif source is table:
+                why = reasons.get((int(i), component)) or reasons.get((int(i), ""), "excluded")
+                left.append(LeftOut(float(xi), float(force[i]), source.labels[i], why))
+    errors = np.array(se)
+    known = errors if len(errors) and np.all(np.isfinite(errors)) else None
+    return np.array(x), np.array(y), known, tuple(labels), tuple(left)
+
+
+def arm_shift(tables: Sequence[ForceTable]) -> float:
+    """How far forward the point lies at which rotating runs have no cross flow; 0 if there is no one such point.
+
+    About any other point an arm's runs have v = r dx (w = -q dx), and no row turns without drifting.
+    """
+    found: list[Array] = []
+    for table in tables:
+        for rate, drift, sign in (("r", "v", -1.0), ("q", "w", 1.0)):
+            turning = table.motion[rate] != 0.0
+            if np.any(np.abs(table.primed_motion(drift, 1.0)[turning]) > AT_REST):
+                found.append(sign * table.motion[drift][turning] / table.motion[rate][turning])
+    if not found:
+        return 0.0
+    shifts = np.concatenate(found)
+    scale = float(tables[0].scaling.length)
+    return float(np.median(shifts)) if float(np.ptp(shifts)) <= 1e-6 * scale else 0.0

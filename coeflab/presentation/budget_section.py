@@ -1,0 +1,48 @@
+"""The uncertainty budget in a report: what U95 holds, what a validation concludes, how it carries on."""
+
+from __future__ import annotations
+
+from coeflab.core.symbols import primed
+from coeflab.model.budget import budgets
+from coeflab.model.derived import centre_of_pressure, stability
+from coeflab.model.study import Study
+from coeflab.model.table import Table
+from coeflab.model.validation import validations
+from coeflab.presentation import budget_tables
+from coeflab.presentation.document import Section
+from coeflab.presentation.tornado_figure import tornado_figure
+
+
+def budget_sections(study: Study) -> tuple[Section, ...]:
+    """One section, or none where no coefficient has a budget."""
+    found = budgets(study)
+    if not found:
+        return ()
+    derived = [d for f in study.fits for d in centre_of_pressure(f.coefficients, found, f.campaign)]
+    derived += [d for p in study.parameter_files.values() for d in stability(p, found)]
+    tables = (
+        budget_tables.overview(found),
+        budget_tables.grids(found),
+        budget_tables.validation(validations(study, found)),
+        budget_tables.derived(derived),
+    )
+    text = (
+        "The verdict above uses the scatter of the points and the model form alone. Here every assessed part is joined as "
+        "a root sum of squares: the window, the grid where a campaign has a grid study, and the inputs that a campaign "
+        "declares (angle, speed, calibration, reference point, length). A part that was not assessed is named, never zero.",
+    )
+    wanted = [b for b in found if b.symbol.removesuffix("'") in study.plan.wanted]
+    parts = tuple(
+        Section(
+            f"budget-{i}",
+            f"{primed(b.symbol)} of {b.campaign}",
+            tables=(budget_tables.budget(b),),
+            figures=(tornado_figure(b, f"tornado-{i}"),),
+        )
+        for i, b in enumerate(wanted)
+    )
+    return (Section("budget", "Uncertainty budget", text, _filled(tables), subsections=parts),)
+
+
+def _filled(tables: tuple[Table, ...]) -> tuple[Table, ...]:
+    return tuple(t for t in tables if t.rows)

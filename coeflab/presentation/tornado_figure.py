@@ -1,0 +1,74 @@
+"""The figure of one budget: parts as bars, the largest on top."""
+
+from __future__ import annotations
+
+from matplotlib.figure import Figure as Drawing
+
+from coeflab.core.symbols import primed
+from coeflab.model.budget import Budget
+from coeflab.model.table import coefficient, percent
+from coeflab.presentation.document import Figure
+from coeflab.presentation.panel import tick_texts, ticks
+from coeflab.presentation.svg import COLOURS, POINTS, power_of_ten, settings, svg_text
+
+WIDTH, LEFT, RIGHT, BOTTOM, TOP = 340.0, 112.0, 44.0, 34.0, 8.0
+ROW, THICK = 17.0, 0.62
+MEASURED = ("random", "model form", "random and model form", "window")
+
+
+def tornado_figure(b: Budget, anchor: str) -> Figure:
+    """Half-widths of all assessed parts to both sides of the value, and U95 below them.
+
+    Parameters
+    ----------
+    b : Budget
+    anchor : str
+    """
+    bars = sorted(((p.name, p.half_width) for p in b.parts), key=lambda p: -p[1])
+    if b.u95 is not None:
+        bars.append(("U95", b.u95))
+    factor, power = power_of_ten(max((h for _, h in bars), default=0.0))
+    name = primed(b.symbol)
+    title = f"{name}, {b.campaign}: uncertainty budget"
+    description = _description(b, bars)
+    with settings():
+        height = BOTTOM + TOP + ROW * max(len(bars), 1)
+        figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
+        _bars(figure, bars, height, factor, f"change of {name}{power}")
+        svg = svg_text(figure, anchor, title, description)
+    return Figure(anchor, svg, title, _caption(b), description)
+
+
+def _bars(figure: Drawing, bars: list[tuple[str, float]], height: float, factor: float, name: str) -> None:
+    width, tall = WIDTH - LEFT - RIGHT, height - BOTTOM - TOP
+    axes = figure.add_axes((LEFT / WIDTH, BOTTOM / height, width / WIDTH, tall / height))
+    axes.set_axis_off()
+    reach = 1.08 * factor * max((h for _, h in bars), default=0.0) or 1.0
+    across, rows = (-reach, reach), max(len(bars), 1)
+    axes.set_xlim(*across)
+    axes.set_ylim(-0.5, rows - 0.5)
+    at = ticks(across, 6)
+    axes.vlines(at, -0.5, rows - 0.5, color=COLOURS["rule"], linewidth=0.5, zorder=0)
+    axes.axvline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=3)
+    for row, (label, half) in enumerate(bars):
+        y, size = rows - 1.0 - row, half * factor
+        colour = COLOURS["ink" if label == "U95" else "a" if label in MEASURED else "b" if label == "grid" else "c"]
+        axes.barh(y, 2.0 * size, height=THICK, left=-size, color=colour, zorder=2)
+        base = (BOTTOM + (y + 0.5) * ROW - 2.9) / height
+        figure.text((LEFT - 5.5) / WIDTH, base, label, ha="right", va="baseline", fontsize=8.0)
+        figure.text((WIDTH - RIGHT + 5.5) / WIDTH, base, f"± {size:.3g}", ha="left", va="baseline", fontsize=8.0)
+    for x, text in zip(at, tick_texts(at), strict=True):
+        place = LEFT + width * (float(x) - across[0]) / (across[1] - across[0])
+        figure.text(place / WIDTH, (BOTTOM - 13.5) / height, text, ha="center", va="baseline", fontsize=8.0)
+    figure.text((LEFT + width / 2.0) / WIDTH, (BOTTOM - 27.5) / height, name, ha="center", va="baseline")
+
+
+def _caption(b: Budget) -> str:
+    text = f"95 % half-widths of the parts of {primed(b.symbol)} = {coefficient(b.value)}"
+    text += f", joined to U95 = {coefficient(b.u95)} as a root sum of squares. " if b.u95 is not None else "; no U95. "
+    return text + f"Not assessed: {', '.join(b.unassessed) or 'nothing known'}."
+
+
+def _description(b: Budget, bars: list[tuple[str, float]]) -> str:
+    each = ", ".join(f"{label} {coefficient(half)} ({percent(half, b.value)})" for label, half in bars) or "no part"
+    return f"Bars of half-widths to both sides of {coefficient(b.value)}: {each}."

@@ -1,0 +1,184 @@
+"""``coeflab compare``: conversions that must not change a verdict, and what cannot be compared."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from coeflab.core.symbols import derivative
+from coeflab.model.parameter_file import ParameterFile, read_parameter_file
+from coeflab.studies.compare import Verdict, compare
+from tests.cli.conftest import Run
+
+VALUES = {"Yv'": (-0.028, 0.002), "Nv'": (-0.014, 0.001), "Yr'": (0.005, 0.001), "Nr'": (-0.0045, 0.0004)}
+LENGTH = 4.26086
+
+
+def made(values: dict[str, tuple[float | None, float | None]], **changes: Any) -> ParameterFile:
+    """A synthetic parameter file; covariance diagonal."""
+    symbols = list(values)
+    matrix = [
+        [None if u is None or v[1] is None else ((u / 2) ** 2 if s == t else 0.0) for t, v in values.items()]
+        for s, (_, u) in values.items()
+    ]
+    content: dict[str, Any] = {
+        "name": "first",
+        "body": "hull",
+        "scaling": {"length": LENGTH, "length_name": "LBP"},
+        "reference_point": {"point": [-2.0, 0.0, 0.0], "datum": "nose"},
+        "conditions": {"density": 1000.0, "speed": 2.0},
+        "mass": None,
+        "coefficients": [
+            {
+                "symbol": s, "value": v, "u95": u, "unit": "1", "value_si": v, "unit_si": derivative(s).unit,
+                "status": "no_table" if v is None else "ok", "origin": "none" if v is None else "fit", "parts": {},
+            }
+            for s, (v, u) in values.items()
+        ],
+        "covariance": {"symbols": symbols, "matrix": matrix},
+        "covered": [],
+        "provenance": {"coeflab_version": "0", "study": "s", "inputs": [], "citations": []},
+    }  # fmt: skip
+    return ParameterFile.model_validate(content | changes)
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Callable[[ParameterFile, str], Path]:
+    def to(content: ParameterFile, name: str) -> Path:
+        path = tmp_path / name
+        path.write_bytes(content.to_json())
+        return path
+
+    return to
+
+
+def changed(**new: tuple[float | None, float | None]) -> dict[str, tuple[float | None, float | None]]:
+    return {**VALUES, **{f"{s}'": v for s, v in new.items()}}
+
+
+def test_difference_ratio_and_verdict() -> None:
+    found = compare(made(VALUES), made(changed(Yv=(-0.031, 0.0015), Nv=(-0.016, 0.001)), name="second"))
+    yv, nv, yr, _ = found.rows
+    assert yv.difference == pytest.approx(-0.003)
+    assert yv.combined == pytest.approx(0.0025)
+    assert yv.ratio == pytest.approx(1.2)
+    assert [r.verdict for r in (yv, nv, yr)] == [Verdict.APART, Verdict.APART, Verdict.WITHIN]
+    assert yr.ratio == 0.0
+    assert found.statements == ()
+    assert found.same_body
+
+
+def test_another_length_is_converted_by_its_powers() -> None:
+    ratio = LENGTH / 4.356
+    powers = {"Yv'": 2, "Nv'": 3, "Yr'": 3, "Nr'": 4}
+    other = {s: (v * ratio ** powers[s], u * ratio ** powers[s]) for s, (v, u) in VALUES.items()}
+    found = compare(made(VALUES), made(other, scaling={"length": 4.356, "length_name": "LOA"}, name="loa"))
+    for r in found.rows:
+        assert r.b == pytest.approx(VALUES[r.symbol][0], rel=1e-12)
+        assert r.u95_b == pytest.approx(VALUES[r.symbol][1], rel=1e-12)
+        assert r.verdict is Verdict.WITHIN
+    assert found.statements == ("loa converted from LOA 4.356 m to LBP 4.26086 m",)
+
+
+def test_another_reference_point_is_transferred() -> None:
+    yv, nv, yr, nr = (v for v, _ in VALUES.values())
+    dx = 0.5 / LENGTH
+    moved = {"Yv'": yv, "Nv'": nv - dx * yv, "Yr'": yr - dx * yv, "Nr'": nr - dx * (nv + yr) + dx**2 * yv}
+    there = {s: (v, VALUES[s][1]) for s, v in moved.items()}
+    point = {"point": [-1.5, 0.0, 0.0], "datum": "nose"}
+    found = compare(made(VALUES), made(there, reference_point=point, name="second"))
+    for r in found.rows:
+        assert r.b == pytest.approx(VALUES[r.symbol][0], rel=1e-12)
+        assert r.verdict is Verdict.WITHIN
+    assert "second moved to the reference point of first, (-2, 0, 0) m" in found.statements
+    alone = compare(made(VALUES), made({"Nr'": there["Nr'"]}, reference_point=point)).rows
+    reasons = {r.symbol: r.reason for r in alone}
+    assert {r.verdict for r in alone} == {Verdict.NOT_COMPARABLE}
+    assert "needs coefficients" in reasons["Nr'"]
+    assert reasons["Yv'"] == "not in the second file"
+
+
+def test_a_move_that_needs_an_unbounded_coefficient_has_no_interval() -> None:
+    point = {"point": [-1.5, 0.0, 0.0], "datum": "nose"}
+    found = compare(made(VALUES), made(changed(Yv=(-0.028, None)), reference_point=point))
+    reasons = {r.symbol: r.reason for r in found.rows}
+    assert set(reasons.values()) == {"no U95 on one side"}
+    assert all(r.b is not None and r.u95_b is None for r in found.rows)
+
+
+def test_other_datums_leave_only_forces_by_velocities() -> None:
+    other = {"point": [-2.0, 0.0, 0.0], "datum": "centre of buoyancy"}
+    wanted = {**VALUES, "X0'": (-0.001, 0.0001), "Ydr'": (0.006, 0.001), "Kv'": (0.001, 0.001)}
+    found = compare(made(wanted), made(wanted, reference_point=other))
+    assert {r.symbol for r in found.rows if r.verdict is Verdict.WITHIN} == {"Yv'", "X0'", "Ydr'"}
+    assert "other datums" in found.statements[0]
+
+
+def test_other_bodies_are_flagged() -> None:
+    found = compare(made(VALUES), made(VALUES, body="hull with sail"))
+    assert not found.same_body
+    assert "different bodies" in found.statements[0]
+
+
+def test_what_has_no_value_or_no_interval_is_not_compared() -> None:
+    found = compare(made(VALUES), made(changed(Yv=(-0.03, None), Nv=(None, None), Zw=(0.1, 0.1))))
+    reasons = {r.symbol: (r.verdict, r.reason) for r in found.rows}
+    assert reasons["Yv'"] == (Verdict.NOT_COMPARABLE, "no U95 on one side")
+    assert reasons["Nv'"] == (Verdict.NOT_COMPARABLE, "no value in the second file (no table)")
+    assert reasons["Zw'"] == (Verdict.NOT_COMPARABLE, "not in the first file")
+    assert found.rows[0].difference == pytest.approx(-0.002)
+    assert found.rows[0].ratio is None
+
+
+def test_files_that_share_their_inputs_say_so() -> None:
+    shared = {
+        "coeflab_version": "0", "study": "s", "citations": [],
+        "inputs": [{"name": "tow/table.csv", "sha256": "0" * 64}],
+    }  # fmt: skip
+    found = compare(made(VALUES, provenance=shared), made(VALUES, provenance=shared))
+    assert any("tow/table.csv" in s and "not independent" in s for s in found.statements)
+
+
+def test_the_command_prints_a_table_and_exits_zero_even_when_apart(
+    coeflab: Run, write: Callable[[ParameterFile, str], Path]
+) -> None:
+    a = write(made(VALUES), "a.json")
+    b = write(made(changed(Yv=(-0.05, 0.001)), name="second", body="other"), "b.json")
+    done = coeflab("compare", a, b)
+    assert done.returncode == 0, done.stderr
+    assert "second against first" in done.stdout
+    assert "1 apart" in done.stdout
+    assert "different bodies" in done.stdout
+    content = json.loads(coeflab("compare", a, b, "--json").stdout)
+    assert content["same_body"] is False
+    assert [c["verdict"] for c in content["coefficients"]] == ["apart", "within", "within", "within"]
+    assert content["coefficients"][0]["difference"] == pytest.approx(-0.022)
+
+
+@pytest.mark.parametrize("content", [None, b"", b"{", b'{"schema_version": "9"}', b"[1, 2]"])
+def test_bad_input_exits_two_with_one_message(
+    coeflab: Run, tmp_path: Path, write: Callable[[ParameterFile, str], Path], content: bytes | None
+) -> None:
+    good, bad = write(made(VALUES), "a.json"), tmp_path / "bad.json"
+    if content is not None:
+        bad.write_bytes(content)
+    for pair in ((good, bad), (bad, good)):
+        done = coeflab("compare", *pair)
+        assert done.returncode == 2
+        assert done.stdout == ""
+        assert done.stderr.startswith("error: ")
+        assert "bad.json" in done.stderr
+        assert "Traceback" not in done.stderr
+
+
+def test_help_has_an_example(coeflab: Run) -> None:
+    assert "Example: coeflab compare" in coeflab("compare", "--help").stdout
+
+
+def test_a_file_that_was_written_is_within_itself(write: Callable[[ParameterFile, str], Path]) -> None:
+    p = read_parameter_file(write(made(VALUES), "a.json"))
+    assert {r.verdict for r in compare(p, p).rows} == {Verdict.WITHIN}

@@ -1,0 +1,71 @@
+"""Campaign folders made to order, and no skipped test where CI forbids it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Generator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from coeflab.core.files import shipped
+from coeflab.model.force_table import ForceTable
+from coeflab.model.plan import read_plan
+from coeflab.model.study import PlannedTable, Study
+from coeflab.workbench import read_tables, run
+
+SECTIONS = {
+    "campaign": 'title = "Synthetic"\nbody = "synthetic_body"',
+    "axes": (
+        'frame = "FRD"\nbeta = "v = -U sin(beta)"\nalpha = "w = +U sin(alpha)"\n'
+        'datum = "nose"\nreference_point = [-2.0, 0.0, 0.0]'
+    ),
+    "scaling": 'length = 4.0\nlength_name = "LBP"',
+    "conditions": "speed = 2.0\ndensity = 1000.0",
+    "source": 'citation = "synthetic"\nkind = "synthetic"',
+    "inertia": "",
+}
+DRIFT = "beta [deg],Y [N],N [N*m]\n-4,-20.5,-30.25\n0,0.5,0.25\n4,21.5,30.75\n"
+
+
+@pytest.fixture
+def write_campaign(tmp_path: Path) -> Callable[..., Path]:
+    """Write campaign.toml and table.csv; keywords replace whole sections, ``table`` adds keys to [[table]]."""
+
+    def write(csv: str | bytes = DRIFT, *, table: str = "", root: str = "", **sections: str) -> Path:
+        folder = tmp_path / f"campaign_{len(list(tmp_path.iterdir()))}"
+        folder.mkdir()
+        merged = {**SECTIONS, **sections}
+        text = root + "".join(f"[{name}]\n{content}\n\n" for name, content in merged.items() if content)
+        text += f'[[table]]\nfile = "table.csv"\n{table}\n'
+        (folder / "campaign.toml").write_text(text, encoding="utf-8")
+        (folder / "table.csv").write_bytes(csv.encode() if isinstance(csv, str) else csv)
+        return folder
+
+    return write
+
+
+@pytest.fixture
+def read_table(write_campaign: Callable[..., Path]) -> Callable[..., ForceTable]:
+    """Write a campaign and read its one table."""
+
+    def read(csv: str | bytes = DRIFT, **pieces: Any) -> ForceTable:
+        return read_tables(PlannedTable(write_campaign(csv, **pieces), ()))[0]
+
+    return read
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """With COEFLAB_FORBID_SKIPS a skipped test is a failed one; an expected failure is none."""
+    report = yield
+    if os.environ.get("COEFLAB_FORBID_SKIPS") and report.skipped and not hasattr(report, "wasxfail"):
+        report.outcome, report.longrepr = "failed", f"skipped where skips are forbidden: {report.longrepr}"
+    return report
+
+
+@pytest.fixture(scope="session")
+def suboff() -> Study:
+    """The SUBOFF study, run once."""
+    return run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))

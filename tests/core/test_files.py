@@ -1,0 +1,84 @@
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from coeflab.core.errors import InputError, OutputError
+from coeflab.core.files import located, shipped, write_atomically
+from coeflab.core.provenance import sha256_of
+
+
+def test_content_and_folders(tmp_path: Path) -> None:
+    target = tmp_path / "a" / "b" / "c.txt"
+    assert write_atomically(target, b"one")
+    assert target.read_bytes() == b"one"
+    assert target.stat().st_mode & 0o777 == 0o644
+    assert [p.name for p in target.parent.iterdir()] == ["c.txt"]
+
+
+def test_equal_content_is_left_untouched(tmp_path: Path) -> None:
+    target = tmp_path / "c.txt"
+    write_atomically(target, b"one")
+    os.utime(target, ns=(1, 1))
+    inode = target.stat().st_ino
+    assert not write_atomically(target, b"one")
+    assert (target.stat().st_mtime_ns, target.stat().st_ino) == (1, inode)
+    assert write_atomically(target, b"two")
+    assert target.stat().st_mtime_ns > 1
+
+
+@pytest.mark.parametrize("where", ["write", "replace"])
+def test_a_failure_leaves_the_old_file_and_no_litter(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, where: str
+) -> None:
+    target = tmp_path / "c.txt"
+    write_atomically(target, b"old")
+
+    def fail(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(*((Path, "replace") if where == "replace" else (os, "fdopen")), fail)
+    with pytest.raises(OutputError, match=r"cannot write .*c\.txt: No space left on device.*--out"):
+        write_atomically(target, b"new")
+    assert target.read_bytes() == b"old"
+    assert [p.name for p in tmp_path.iterdir()] == ["c.txt"]
+
+
+def test_places_that_cannot_be_written(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(OutputError, match="cannot write"):
+        write_atomically(tmp_path / "file" / "below" / "c.txt", b"x")
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(OutputError, match="cannot write"):
+        write_atomically(tmp_path / "folder", b"x")
+    with pytest.raises(OutputError, match="cannot write"):
+        write_atomically(tmp_path / ("n" * 300), b"x")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["file", "folder"]
+
+
+def test_shipped_data() -> None:
+    assert (shipped("cfd_data") / "suboff" / "plan.toml").is_file()
+    assert (shipped("geometry") / "suboff" / "body.toml").is_file()
+    assert located("suboff_roddy_2", "cfd_data") == shipped("cfd_data") / "suboff_roddy_2"
+
+
+def test_a_path_beside_the_plan_comes_before_a_shipped_name(tmp_path: Path) -> None:
+    (tmp_path / "suboff_roddy_2").mkdir()
+    assert located("suboff_roddy_2", "cfd_data", tmp_path) == tmp_path / "suboff_roddy_2"
+    assert located(tmp_path, "cfd_data", Path("elsewhere")) == tmp_path
+
+
+@pytest.mark.parametrize("name", ["nowhere", "../nowhere", "a\0b", "n" * 5000, ""])
+def test_paths_to_nothing(tmp_path: Path, name: str) -> None:
+    if not name:
+        assert located(name, "cfd_data", tmp_path) == tmp_path
+        return
+    with pytest.raises(InputError, match=r"no file or folder|no usable path"):
+        located(name, "cfd_data", tmp_path)
+
+
+def test_sha256(tmp_path: Path) -> None:
+    (tmp_path / "abc").write_bytes(b"abc")
+    assert sha256_of(tmp_path / "abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"

@@ -1,0 +1,104 @@
+"""What every plugin of every room keeps; a new file is taken in by itself."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import inspect
+import pkgutil
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import coeflab
+from coeflab.added_mass import ADDED_MASS
+from coeflab.bodies import BODIES
+from coeflab.checks import CHECKS
+from coeflab.core.citations import WORKS
+from coeflab.core.registry import Registry
+from coeflab.exporters import EXPORTERS
+from coeflab.fits import FITS
+from coeflab.importers import IMPORTERS
+from coeflab.parameter_importers import PARAMETER_IMPORTERS
+from coeflab.reporting import REPORTERS
+from coeflab.simulators import SIMULATORS
+
+ROOMS: tuple[Registry[Any], ...] = (
+    IMPORTERS, BODIES, FITS, ADDED_MASS, SIMULATORS, EXPORTERS, PARAMETER_IMPORTERS, CHECKS, REPORTERS,
+)  # fmt: skip
+PLUGINS = [pytest.param(room, name, id=f"{room.package}.{name}") for room in ROOMS for name in room.names()]
+
+
+def test_every_room_is_here() -> None:
+    """A folder whose __init__ makes a Registry is a room."""
+    found = set()
+    for module in pkgutil.iter_modules(coeflab.__path__):
+        init = Path(coeflab.__path__[0]) / module.name / "__init__.py"
+        if init.is_file() and re.search(r"^[A-Z_]+ = Registry\(__name__", init.read_text(), re.MULTILINE):
+            found.add(f"coeflab.{module.name}")
+    assert found == {room.package for room in ROOMS}
+
+
+@pytest.mark.parametrize("room", ROOMS, ids=lambda r: r.package)
+def test_rooms_say_what_they_hold(room: Registry[Any]) -> None:
+    assert room.kind
+    assert importlib.import_module(room.package).__doc__
+    assert list(room.names()) == sorted(set(room.names()))
+
+
+def test_the_rooms_of_the_main_path_are_not_empty() -> None:
+    assert "csv" in IMPORTERS.names()
+    assert "particulars" in BODIES.names()
+    assert "slope_at_origin" in FITS.names()
+    assert "csv" in EXPORTERS.names()
+    assert {"symmetry", "signs"} <= set(CHECKS.names())
+    assert "html" in REPORTERS.names()
+
+
+@pytest.mark.parametrize(("room", "name"), PLUGINS)
+def test_contract(room: Registry[Any], name: str) -> None:
+    plugin = room.load(name)
+    assert re.fullmatch(r"[a-z][a-z0-9_]*", name)
+    assert plugin.__name__.rpartition(".")[2] == name
+    assert isinstance(plugin.summary, str)
+    assert plugin.summary == plugin.summary.strip()
+    assert 10 <= len(plugin.summary) <= 120
+    assert "\n" not in plugin.summary
+    assert isinstance(plugin.citations, tuple)
+    unknown = [c for c in plugin.citations if c not in WORKS]
+    assert not unknown
+    assert inspect.getdoc(plugin)
+
+
+@pytest.mark.parametrize(("room", "name"), PLUGINS)
+def test_verbs_have_the_arguments_of_the_port(room: Registry[Any], name: str) -> None:
+    plugin = room.load(name)
+    verbs = [n for n, f in vars(room._port).items() if inspect.isfunction(f) and not n.startswith("_")]
+    assert verbs
+    for verb in verbs:
+        wanted = inspect.signature(vars(room._port)[verb]).parameters
+        have = inspect.signature(getattr(plugin, verb)).parameters
+        assert [p for p in wanted if p != "self"] == list(have)[: len(wanted) - 1]
+        extra = list(have.values())[len(wanted) - 1 :]
+        assert all(p.default is not inspect.Parameter.empty for p in extra)
+        assert inspect.getdoc(getattr(plugin, verb))
+
+
+@pytest.mark.parametrize(("room", "name"), PLUGINS)
+def test_no_plugin_imports_another(room: Registry[Any], name: str) -> None:
+    module = room.load(name)
+    tree = ast.parse(inspect.getsource(module))
+    rooms = tuple(r.package + "." for r in ROOMS)
+    for node in ast.walk(tree):
+        names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+        names += [a.name for a in node.names] if isinstance(node, ast.Import) else []
+        assert not [n for n in names if n.startswith(rooms)]
+
+
+def test_every_work_is_one_line() -> None:
+    for key, text in WORKS.items():
+        assert re.fullmatch(r"[a-z0-9_]+", key)
+        assert "\n" not in text
+        assert len(text) > 20

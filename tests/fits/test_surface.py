@@ -1,0 +1,248 @@
+"""Surfaces over two variables, on the synthetic campaign and on planted tables."""
+
+from __future__ import annotations
+
+import importlib.util
+from dataclasses import replace
+from functools import cache
+from hashlib import sha256
+
+import numpy as np
+import pytest
+
+from coeflab.core.errors import InputError
+from coeflab.core.files import shipped
+from coeflab.fits import FITS
+from coeflab.fits.surface import sum_of_slices
+from coeflab.importers import IMPORTERS
+from coeflab.kernels.least_squares import factorise, solve
+from coeflab.kernels.robust import bell_mccaffrey, hc_variance, t_factor
+from coeflab.kernels.terms import design
+from coeflab.model.campaign import FILE, read_campaign
+from coeflab.model.fit_result import FitResult
+from coeflab.model.force_table import ForceTable
+
+FRONTAL = {"area": 0.04, "area_name": "frontal"}
+SYMMETRIC = {"degree": 3, "parity": "beta=symmetric", **FRONTAL}
+
+
+@cache
+def maker():
+    path = shipped("cfd_data") / "make_synthetic_huuv.py"
+    spec = importlib.util.spec_from_file_location("make_synthetic_huuv", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@cache
+def campaign() -> ForceTable:
+    return IMPORTERS.load("csv").read(read_campaign(shipped("cfd_data") / "huuv_synthetic" / FILE))[0]
+
+
+def fit(table: ForceTable, **options) -> FitResult:
+    return FITS.load("surface").fit([table], table.scaling, options)
+
+
+@cache
+def symmetric() -> FitResult:
+    return fit(campaign(), **SYMMETRIC)
+
+
+def model(result: FitResult, response: str):
+    return next(m for m in result.models if m.response == response)
+
+
+def planted(values: np.ndarray, noise: np.ndarray) -> ForceTable:
+    """The synthetic campaign's angles with M = q A L values, plus noise."""
+    table = campaign()
+    q = 0.5 * 998.0 * 1.0**2 * 0.04 * 1.2
+    return replace(table, forces={**table.forces, "M": q * (values + noise)})
+
+
+def angles() -> tuple[np.ndarray, np.ndarray]:
+    m = campaign().motion
+    return np.arctan2(m["w"], m["u"]), np.arcsin(m["v"])
+
+
+def test_the_campaign_is_what_its_script_makes_and_says_that_it_is_synthetic():
+    folder = shipped("cfd_data") / "huuv_synthetic"
+    raw = (folder / "table.csv").read_bytes()
+    assert maker().table().encode() == raw
+    assert sha256(raw).hexdigest() in (folder / FILE).read_text()
+    table = campaign()
+    assert table.source.kind == "synthetic"
+    assert "ynthetic" in table.title
+    for terms in maker().TRUTH.values():
+        for value in terms.values():
+            assert f"{abs(value):.2f}" in table.source.how_obtained
+    alpha, beta = np.degrees(angles())
+    assert (alpha.min(), alpha.max()) == pytest.approx((-25.0, 25.0))
+    assert (beta.min(), beta.max()) == pytest.approx((0.0, 25.0))
+
+
+@pytest.mark.parametrize("response", ["C_D", "C_S", "C_L", "C_m", "C_n"])
+def test_stated_coefficients_come_back_within_their_intervals(response):
+    found = model(symmetric(), response)
+    truth = maker().TRUTH[response]
+    seen = 0
+    for symbol, term in zip(found.symbols, found.terms, strict=True):
+        powers = tuple(sum(n for v, n, _ in term.factors if v == name) for name in ("alpha", "beta"))
+        value, half = found.named(symbol)
+        assert abs(value - truth.get(powers, 0.0)) <= 1.5 * half, symbol
+        seen += powers in truth
+    assert seen == len(truth)
+    assert found.fit.rms == pytest.approx(maker().NOISE, rel=0.1)
+
+
+def test_signs_that_can_be_seen():
+    """Drag brakes, side force is against the drift, lift is with the attack, the moments turn the bow away."""
+    at = {"alpha": np.array([0.2]), "beta": np.array([0.2])}
+    signs = {m.response: float(np.sign(m.evaluate(at)[0][0])) for m in symmetric().models}
+    assert signs == {"C_D": 1.0, "C_S": -1.0, "C_L": 1.0, "C_m": 1.0, "C_n": -1.0}
+
+
+def test_the_symmetry_of_the_hull_gives_every_response_its_parity():
+    for m in symmetric().models:
+        odd = m.response in ("C_S", "C_n")
+        assert all(t.odd_in("beta") == odd for t in m.terms)
+
+
+@pytest.mark.parametrize(
+    ("form", "terms"), [("tensor", 9), ("total", 6), ("additive", 5)]
+)  # fmt: skip
+def test_planted_surfaces_come_back_exactly(form, terms):
+    a, b = angles()
+    values = 0.3 - 0.2 * a + 1.1 * a**2 + 0.4 * b + 0.7 * b**2
+    found = model(fit(planted(values, 0.0), degree=2, form=form, responses="C_m", **FRONTAL), "C_m")
+    assert len(found.terms) == terms
+    wanted = {"C_m_0": 0.3, "C_m_alpha": -0.2, "C_m_alpha^2": 1.1, "C_m_beta": 0.4, "C_m_beta^2": 0.7}
+    for symbol, value in zip(found.symbols, found.fit.coefficients, strict=True):
+        assert value == pytest.approx(wanted.get(symbol, 0.0), abs=1e-10)
+
+
+@pytest.mark.parametrize("form", ["additive", "total"])
+def test_random_intervals_cover_the_truth_as_often_as_they_say(form):
+    """20,000 seeded campaigns on every third row, their noise growing with the angles.
+
+    The plugin fits the first ten; for the others its arithmetic is repeated on all of them at once.
+    """
+    rng = np.random.default_rng(20)
+    a, b = angles()
+    truth = {"C_m_0": 0.3, "C_m_alpha": -0.2, "C_m_alpha^2": 1.1, "C_m_beta": 0.4, "C_m_beta^2": 0.7}
+    clean = 0.3 - 0.2 * a + 1.1 * a**2 + 0.4 * b + 0.7 * b**2
+    mask = np.arange(len(a)) % 3 == 0
+    noise = (0.002 * (1.0 + np.abs(a) + b))[:, None] * rng.standard_normal((len(a), 20_000))
+    options = {"degree": 2, "form": form, "responses": "C_m", **FRONTAL}
+    usable = {**campaign().usable, "M": mask}
+    fitted = [fit(replace(planted(clean, e), usable=usable), **options).models[0] for e in noise.T[:10]]
+    f = factorise(design(fitted[0].terms, {"alpha": a[mask], "beta": b[mask]}))
+    coefficients, residuals = solve(f, (clean[:, None] + noise)[mask])
+    half = np.sqrt(hc_variance(f, residuals, 2)) * t_factor(bell_mccaffrey(f))[:, None]
+    for k, m in enumerate(fitted):
+        np.testing.assert_allclose(coefficients[:, k], m.fit.coefficients, atol=1e-10)
+        np.testing.assert_allclose(half[:, k], m.fit.half_width, rtol=1e-8)
+    wanted = np.array([truth.get(s, 0.0) for s in fitted[0].symbols])
+    share = np.mean(np.abs(coefficients - wanted[:, None]) <= half, axis=1)
+    assert np.all((share >= 0.93) & (share <= 0.97)), share
+
+
+def test_interaction_is_found_where_there_is_one_and_not_elsewhere():
+    said = {m.response: next(s for s in m.statements if "Additive" in s) for m in symmetric().models}
+    chance = {r: float(s.rpartition(" ")[2].rstrip(".")) for r, s in said.items()}
+    assert chance["C_D"] < 1e-50
+    assert all(p > 0.01 for r, p in chance.items() if r != "C_D")
+    for text in said.values():
+        for word in ("rms", "left out", "AICc", "F = "):
+            assert word in text
+
+
+def test_the_interaction_test_is_right_as_often_as_it_says():
+    """Without interaction its probability is even between 0 and 1: 200 seeded campaigns."""
+    rng = np.random.default_rng(5)
+    a, b = angles()
+    found = []
+    for _ in range(200):
+        table = planted(0.3 + a**2 + b, 0.002 * rng.standard_normal(len(a)))
+        said = fit(table, degree=2, form="additive", responses="C_m", **FRONTAL).models[0].statements[0]
+        found.append(float(said.rpartition(" ")[2].rstrip(".")))
+    deciles = np.histogram(found, bins=10, range=(0.0, 1.0))[0]
+    assert np.sum((deciles - 20.0) ** 2 / 20.0) < 27.9
+
+
+def test_the_printed_sum_of_two_slices_counts_the_value_at_rest_twice():
+    """HUUV paper, eq. 8: C_Dab ~ C_Da + C_Db holds C_D0 twice; the corrected form takes it off once."""
+    a, b = angles()
+    additive = model(fit(campaign(), form="additive", **FRONTAL), "C_D")
+    at_rest = additive.named("C_D_0")[0]
+    assert at_rest == pytest.approx(0.3, abs=0.02)
+    printed, error = sum_of_slices(additive, {"alpha": a, "beta": b})
+    np.testing.assert_allclose(error, at_rest, rtol=1e-12)
+    np.testing.assert_allclose(printed - at_rest, additive.evaluate({"alpha": a, "beta": b})[0], rtol=1e-12)
+    full = model(symmetric(), "C_D")
+    origin = {"alpha": np.zeros(1), "beta": np.zeros(1)}
+    printed, error = sum_of_slices(full, origin)
+    assert error[0] == pytest.approx(full.named("C_D_0")[0], rel=1e-12)
+    assert printed[0] == pytest.approx(2.0 * full.named("C_D_0")[0], rel=1e-12)
+    assert any("counts it twice" in s for s in additive.statements)
+    assert not any("counts it twice" in s for s in full.statements)
+
+
+def test_only_the_responses_that_the_table_allows():
+    table = campaign()
+    without = replace(table, forces={c: table.forces[c] for c in ("Y", "N")})
+    with pytest.raises(InputError, match="no X"):
+        fit(without, responses="C_D", degree=2)
+    assert [m.response for m in fit(without, degree=2).models] == ["C_n"]
+    in_plane = replace(table, forces={c: table.forces[c] for c in ("Z", "M")})
+    assert [m.response for m in fit(in_plane, degree=2).models] == ["C_m"]
+
+
+def test_other_variables_and_primes():
+    table = campaign()
+    found = fit(table, variables="w v", responses="Z", degree=3, form="total")
+    assert found.models[0].response == "Z'"
+    assert found.models[0].domain.variables == ("w", "v")
+    assert found.settings["area_name"] == "L^2"
+    assert float(found.settings["area"]) == pytest.approx(1.44)
+
+
+def test_rows_that_turn_are_left_out():
+    table = campaign()
+    turning = replace(table, motion={**table.motion, "r": np.where(np.arange(len(table)) < 31, 0.3, 0.0)})
+    found = fit(turning, degree=2, responses="C_D").models[0]
+    assert found.n_points == 200
+    assert found.statements[0].startswith("31 of 231 rows")
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"variables": "alpha"}, "two different ones"),
+        ({"variables": "alpha alpha"}, "two different ones"),
+        ({"variables": "alpha gamma"}, '"gamma"'),
+        ({"parity": "beta=weird"}, "beta=weird"),
+        ({"parity": "v=odd"}, "v=odd"),
+        ({"parity": "alpha=symmetric"}, "port-starboard"),
+        ({"variables": "v r", "parity": "v=symmetric"}, "port-starboard"),
+        ({"area": 1.0}, "an area above zero with its name"),
+        ({"degree": 1, "form": "additive", "parity": "alpha=odd beta=odd"}, "at least one term"),
+        ({"form": "cubic"}, "one of tensor, total, additive"),
+        ({"responses": "C_Q"}, "C_Q"),
+    ],
+)
+def test_misuse_is_one_clear_error(options, said):
+    with pytest.raises(InputError) as caught:
+        fit(campaign(), **options)
+    assert said in str(caught.value)
+
+
+def test_more_terms_than_rows_is_refused_and_the_comparison_says_so():
+    table = campaign()
+    few = replace(table, usable={**table.usable, "M": np.arange(len(table)) % 16 == 0})
+    with pytest.raises(InputError, match="15 usable rows of C_m"):
+        fit(few, degree=4, responses="C_m")
+    said = fit(few, degree=3, form="additive", responses="C_m").models[0].statements[0]
+    assert said.startswith("Additive against full")
+    assert "full: 10 terms" in said
+    assert "not tested" in fit(few, degree=6, form="additive", responses="C_m").models[0].statements[0]

@@ -1,0 +1,188 @@
+"""The parameter file: schema, bytes, and everything that is none."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from coeflab.core.errors import InputError
+from coeflab.model.parameter_file import SCHEMA_FILE, ParameterFile, read_parameter_file, schema
+from coeflab.model.study import Study
+
+SAMPLE = Path(__file__).parents[1] / "data" / "parameters_1_0.json"
+FILES = ("suboff_fully_appended", "suboff_bare_hull", "suboff_bare_hull_cfd")
+
+
+def test_shipped_schema_is_the_models() -> None:
+    assert SCHEMA_FILE.read_bytes() == schema()
+    jsonschema.Draft202012Validator.check_schema(json.loads(schema()))
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_files_of_the_study_hold_to_the_schema(suboff: Study, name: str) -> None:
+    content = json.loads(suboff.parameter_files[name].to_json())
+    jsonschema.validate(content, json.loads(SCHEMA_FILE.read_text()), jsonschema.Draft202012Validator)
+    content["surprise"] = 1
+    with pytest.raises(jsonschema.ValidationError, match="surprise"):
+        jsonschema.validate(content, json.loads(SCHEMA_FILE.read_text()))
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_bytes_round_trip(suboff: Study, tmp_path: Path, name: str) -> None:
+    raw = suboff.parameter_files[name].to_json()
+    (tmp_path / "p.json").write_bytes(raw)
+    back = read_parameter_file(tmp_path / "p.json")
+    assert back == suboff.parameter_files[name]
+    assert back.to_json() == raw
+    assert raw.endswith(b"}\n")
+    assert b"NaN" not in raw
+
+
+def test_the_first_version_still_loads() -> None:
+    file = read_parameter_file(SAMPLE)
+    assert file.schema_version == "1.0"
+    yv = file.coefficient("Yv")
+    assert yv is not None
+    assert yv.value == pytest.approx(-0.006, abs=0.001)
+    assert file.to_json() == SAMPLE.read_bytes()
+
+
+@pytest.mark.parametrize("source", ["study", "sample"])
+def test_an_illegible_digit_stays_visible_without_a_value(suboff: Study, source: str) -> None:
+    file = read_parameter_file(SAMPLE) if source == "sample" else suboff.parameter_files["suboff_bare_hull"]
+    c = file.coefficient("Yvdot'")
+    assert c is not None
+    assert (c.value, c.u95, c.value_si, c.status, c.origin) == (None, None, None, "not_determined", "literature")
+    assert "-0.01327?" in c.estimator
+    row = file.covariance.symbols.index("Yvdot'")
+    assert set(file.covariance.matrix[row]) == {None}
+    legible = file.coefficient("Yrdot'")
+    assert legible is not None
+    assert legible.value == pytest.approx(0.000060)
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_values_agree_with_each_other(suboff: Study, name: str) -> None:
+    """SI by the file's own length, density and speed; variance by U95 / 2; intervals only with values."""
+    file = suboff.parameter_files[name]
+    half_rho, u, length = file.conditions.density / 2.0, file.conditions.speed, file.scaling.length
+    units = {
+        "Yv'": u * length**2,
+        "Nv'": u * length**3,
+        "Yr'": u * length**3,
+        "Nr'": u * length**4,
+        "Yrdot'": length**4,
+    }
+    checked = 0
+    for i, c in enumerate(file.coefficients):
+        if c.symbol in units and c.value is not None:
+            assert c.value_si == pytest.approx(c.value * half_rho * units[c.symbol], rel=1e-12)
+            checked += 1
+        variance = file.covariance.matrix[i][i]
+        assert (variance is None) == (c.u95 is None)
+        if variance is not None and c.u95 is not None:
+            assert 2.0 * variance**0.5 == pytest.approx(c.u95, rel=1e-9)
+    assert checked >= 2
+
+
+Edit = Callable[[dict[str, Any]], object]
+BAD: list[tuple[Edit, list[str]]] = [
+    (lambda d: d["coefficients"].append(d["coefficients"][0]), ["stands more than once"]),
+    (lambda d: d["coefficients"][0].update(symbol="Yv"), ["without prime", "Yv'"]),
+    (lambda d: d["coefficients"][0].update(symbol="Qv'"), ["coefficients.0", "SNAME derivative"]),
+    (lambda d: d["coefficients"][0].update(value="big"), ["coefficients.0.value", 'found "big"', "a valid number"]),
+    (lambda d: d["coefficients"][0].update(value=None), ["coefficients.0", "does not go with status"]),
+    (lambda d: d["coefficients"][0].update(u95=-1), ["coefficients.0.u95", 'found "-1"']),
+    (lambda d: d["coefficients"][0].update(unit="N"), ["coefficients.0.unit"]),
+    (lambda d: d["coefficients"][0].pop("value"), ["coefficients.0.value", "found nothing"]),
+    (lambda d: d["coefficients"][0].update(colour=1), ["coefficients.0.colour", "an unknown key"]),
+    (lambda d: d.pop("scaling"), ['"scaling": found nothing']),
+    (lambda d: d.pop("schema_version"), ["schema_version"]),
+    (lambda d: d.update(schema_version="2.0"), ['schema_version "2.0"', "expected 1.x"]),
+    (lambda d: d.update(schema_version=1), ['schema_version "1"']),
+    (lambda d: d["scaling"].update(length=0), ["scaling.length", "greater than 0"]),
+    (lambda d: d["conditions"].update(density=-1), ["conditions.density", "greater than 0"]),
+    (lambda d: d["reference_point"].update(axes="FLU"), ["reference_point.axes", "'FRD'"]),
+    (lambda d: d["reference_point"].update(point=[1, 2]), ["reference_point.point"]),
+    (lambda d: d["covariance"]["matrix"][0].__setitem__(1, 1.0), ["covariance", "not symmetric"]),
+    (lambda d: d["covariance"]["matrix"][0].__setitem__(1, None), ["covariance", "not symmetric"]),
+    (lambda d: d["covariance"]["matrix"][0].__setitem__(0, -1e-9), ["the variance of", "is negative"]),
+    (lambda d: d["covariance"]["matrix"].pop(), ["covariance", "must be"]),
+    (lambda d: d["covariance"]["symbols"].__setitem__(0, "Kp'"), ["the covariance names Kp'", "no coefficients"]),
+    (lambda d: d["covariance"]["symbols"].__setitem__(0, d["covariance"]["symbols"][1]), ["names a coefficient twice"]),
+    (lambda d: d["provenance"]["inputs"][0].update(sha256="xyz"), ["provenance.inputs.0.sha256"]),
+]
+
+
+def refused(path: Path) -> str:
+    with pytest.raises(InputError) as caught:
+        read_parameter_file(path)
+    message = str(caught.value)
+    assert path.name in message
+    assert "\n" not in message
+    assert len(message) < 500
+    return message
+
+
+@pytest.mark.parametrize(("edit", "said"), BAD, ids=range(len(BAD)))
+def test_files_that_break_the_schema(tmp_path: Path, edit: Edit, said: list[str]) -> None:
+    content = json.loads(SAMPLE.read_bytes())
+    edit(content)
+    (tmp_path / "p.json").write_text(json.dumps(content))
+    message = refused(tmp_path / "p.json")
+    for text in said:
+        assert text in message
+
+
+def in_place_of_a_value(token: str) -> bytes:
+    text = SAMPLE.read_text()
+    at = text.index('"value": ') + len('"value": ')
+    return (text[:at] + token + text[text.index(",", at) :]).encode()
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (SAMPLE.read_bytes()[:700], ["line 33", "expected JSON"]),
+        (b"", ["an empty file"]),
+        (b"{", ["line 1", "expected JSON"]),
+        (b"[" * 100 + b"]" * 100, ["an object"]),
+        (b"[" * 100_000, ["a parameter file in JSON"]),
+        (b"[]", ['"file"', "an object"]),
+        (b"\xff\xfe{}", ["the byte 0xff", "UTF-8"]),
+        (in_place_of_a_value("NaN"), ["NaN is no JSON number"]),
+        (in_place_of_a_value("-Infinity"), ["-Infinity is no JSON number"]),
+        (in_place_of_a_value("1e999"), ["coefficients.0.value", "finite number"]),
+        (in_place_of_a_value("1" * 5000), ["p.json"]),
+        (in_place_of_a_value('"\\ud800"'), ["p.json"]),
+    ],
+    ids=range(12),
+)
+def test_files_that_are_no_json(tmp_path: Path, content: bytes, said: list[str]) -> None:
+    (tmp_path / "p.json").write_bytes(content)
+    message = refused(tmp_path / "p.json")
+    for text in said:
+        assert text in message
+
+
+def test_places_without_a_file(tmp_path: Path) -> None:
+    assert "found a folder" in refused(tmp_path)
+    assert "no such file" in refused(tmp_path / "nowhere.json")
+
+
+def test_a_bom_is_harmless(tmp_path: Path) -> None:
+    (tmp_path / "p.json").write_bytes(b"\xef\xbb\xbf" + SAMPLE.read_bytes())
+    assert read_parameter_file(tmp_path / "p.json").to_json() == SAMPLE.read_bytes()
+
+
+def test_rounding_is_no_asymmetry() -> None:
+    content = json.loads(SAMPLE.read_bytes())
+    matrix = content["covariance"]["matrix"]
+    matrix[0][1] = 1e-16 * matrix[0][0]
+    matrix[1][0] = -matrix[0][1]
+    ParameterFile.model_validate(content)
