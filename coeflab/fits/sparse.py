@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.core.errors import InputError, PluginError, shown
+from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, one_of, parse_options, words
 from coeflab.core.symbols import COMPONENTS
 from coeflab.kernels.least_squares import Array
@@ -79,17 +79,8 @@ class Options:
 
 
 def scaled_optimizer(kind: str) -> Optimizer:
-    """An optimizer of pysindy as a function of matrix, response and threshold.
-
-    Raises
-    ------
-    PluginError
-        pysindy is not installed.
-    """
-    try:
-        import pysindy
-    except ImportError as why:
-        raise PluginError(f"the fit sparse needs pysindy: pip install coeflab[sparse] ({why}).") from why
+    """An optimizer of pysindy as a function of matrix, response and threshold."""
+    import pysindy
 
     def run(matrix: Array, y: Array, threshold: float) -> Array:
         if kind == "sr3":
@@ -208,8 +199,6 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     ------
     InputError
         Unknown component or variable, or too few rows for the folds.
-    PluginError
-        pysindy is not installed.
     """
     chosen = parse_options(Options, options, "sparse")
     run = scaled_optimizer(chosen.optimizer)

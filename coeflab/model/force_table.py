@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,9 @@ from coeflab.kernels.transforms import force_transfer, velocity_transfer
 from coeflab.model.frozen import locked, locked_columns
 from coeflab.model.input_uncertainty import InputUncertainty
 from coeflab.model.scaling import Conditions, Scaling
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -136,6 +140,16 @@ class ForceTable:
         power = 3 if component in "KMN" else 2
         q = 0.5 * self.conditions.density * self.speed**2 * length**power
         return np.asarray((self.forces[component] if values is None else values) / q)
+
+    def frame(self) -> pd.DataFrame:
+        """The table as a pandas DataFrame for notebooks: SI, FRD, cells that no fit may use are NaN."""
+        import pandas as pd
+
+        columns: dict[str, Array] = {f"{m} [{'m/s' if m in 'uvw' else 'rad/s'}]": a for m, a in self.motion.items()}
+        columns |= {f"{c} [rad]": a for c, a in self.controls.items()}
+        for c, values in self.forces.items():
+            columns[f"{c} [{'N*m' if c in 'KMN' else 'N'}]"] = np.where(self.usable[c], values, np.nan)
+        return pd.DataFrame(columns, index=pd.Index(self.labels, name="point"))
 
     def about(self, point: Array) -> ForceTable:
         """The same runs with velocities and moments about another point (m, FRD, from the same datum).

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import sys
 import warnings
 from functools import cache
 from importlib import import_module
 
 import numpy as np
+import pysindy
 import pytest
 
-from coeflab.core.errors import InputError, PluginError
+from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.fits import FITS
 from coeflab.importers import IMPORTERS
@@ -22,8 +22,6 @@ from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
 from coeflab.model.manoeuvring_terms import symmetric
-
-pysindy = pytest.importorskip("pysindy")
 
 TRIALS, POINTS, NOISE = 100, 200, 0.02
 SMALLEST, LARGEST = 1e-4, 1e-2
@@ -164,12 +162,6 @@ def test_covariance_is_that_of_the_intervals() -> None:
 def test_without_intercept_there_is_no_constant() -> None:
     m = model(fitted("suboff_roddy_2", components="Y", intercepts="no"), "Y")
     assert Term() not in m.terms
-
-
-def test_without_pysindy_the_way_to_get_it_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "pysindy", None)
-    with pytest.raises(PluginError, match=r"pip install coeflab\[sparse\]"):
-        fitted("suboff_roddy_2", components="Y")
 
 
 @pytest.mark.parametrize(

@@ -391,8 +391,8 @@ def test_cells_are_read_from_their_column(tmp_path: Path) -> None:
 def test_a_campaign_declares_cells_and_uncertainty_for_its_tables(tmp_path: Path) -> None:
     folder = tmp_path / "campaign"
     shutil.copytree(shipped("cfd_data") / "suboff_cfd_barehull", folder)
-    text = (folder / "campaign.toml").read_text().replace('cells = "cells"\n', "")
-    text = text.replace("select = {", 'cells = "cells"\nselect = {')
+    text = (folder / "campaign.toml").read_text()
+    assert 'cells = "cells"' in text
     (folder / "campaign.toml").write_text(text + "\n[uncertainty]\nspeed = 0.01\n")
     campaign = read_campaign(folder / "campaign.toml")
     for t in declared(read_tables(PlannedTable(folder, (), {})), campaign):

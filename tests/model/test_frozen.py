@@ -120,3 +120,11 @@ def test_campaign_is_a_noun_too(nouns: dict[str, Any]) -> None:
 def test_added_mass_is_six_by_six() -> None:
     with pytest.raises(InputError, match="6 x 6"):
         AddedMass(np.eye(3), np.zeros(3), "nose", "b", "m")
+
+
+def test_a_force_table_is_a_data_frame_for_notebooks(suboff) -> None:
+    table = next(t for t in suboff.tables if t.campaign == "suboff_roddy_1")
+    frame = table.frame()
+    assert frame.shape == (64, 6 + 1 + 6)
+    assert frame.loc["1", "Z [N]"] == table.forces["Z"][0]
+    assert frame["Z [N]"].isna().sum() == (~table.usable["Z"]).sum() > 0

@@ -23,7 +23,16 @@ def words(study, anchor):
 
 def test_sections_come_in_the_order_of_reading():
     anchors = [s.anchor for s in document(small_study(FULL, published=True)).sections]
-    assert anchors == ["verdict", "comparison", "coefficients", "budget", "campaigns", "checks", "conventions", "provenance"]
+    assert anchors == [
+        "verdict",
+        "comparison",
+        "coefficients",
+        "budget",
+        "campaigns",
+        "checks",
+        "conventions",
+        "provenance",
+    ]
 
 
 def test_without_published_values_there_is_no_verdict_and_no_comparison():

@@ -95,7 +95,7 @@ def test_links_inside_the_page_lead_somewhere():
 def test_every_figure_is_described():
     text = text_of(small_study(FULL))
     figures = re.findall(r"<figure.*?</figure>", text, flags=re.DOTALL)
-    assert len(figures) == 4
+    assert len(figures) == 6
     for figure in figures:
         assert 'role="img"' in figure
         for element in ("title", "desc", "figcaption"):
@@ -118,7 +118,8 @@ def test_the_validation_makes_a_page_of_moderate_size():
     text = text_of(study)
     assert len(text.encode()) < 3_000_000
     drawings = re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)
-    assert len(drawings) == 2 * sum(len(f.sweeps) for f in study.fits)
+    budgeted = [c for c in study.coefficients if c.symbol in study.plan.wanted and c.value is not None]
+    assert len(drawings) == 2 * sum(len(f.sweeps) for f in study.fits) + len(budgeted)
     assert max(len(d.encode()) for d in drawings) < 60_000
     assert Page(text).crossed == []
     assert text == text_of(study)
