@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,6 +140,7 @@ class FittedModel:
 
 
 COLLINEAR = 0.98
+MOST_PAIRS = 3
 FEWEST_DIGITS = 7.0
 SEEN = 0.05
 
@@ -156,13 +158,12 @@ def in_words(fit: LinearFit, symbols: tuple[str, ...]) -> tuple[str, ...]:
             mix = " ".join(f"{d:+.2g} [{s}]" for s, d in parts)
             out.append(f"{names} are determined only together: adding any multiple of {mix} (each scaled by its column) "
                        "changes no prediction.")  # fmt: skip
-    p = len(symbols)
-    for i in range(p):
-        for j in range(i + 1, p):
-            if abs(fit.correlation[i, j]) > COLLINEAR:
-                out.append(
-                    f"{symbols[i]} and {symbols[j]} are nearly collinear (correlation {fit.correlation[i, j]:.3f})."
-                )
+    pairs = [(abs(fit.correlation[i, j]), i, j) for i, j in combinations(range(len(symbols)), 2)]
+    close = sorted((pair for pair in pairs if pair[0] > COLLINEAR), reverse=True)
+    for _, i, j in close[:MOST_PAIRS]:
+        out.append(f"{symbols[i]} and {symbols[j]} are nearly collinear (correlation {fit.correlation[i, j]:.3f}).")
+    if len(close) > MOST_PAIRS:
+        out.append(f"{len(close) - MOST_PAIRS} more pairs are nearly collinear (beyond {COLLINEAR}).")
     if fit.digits < FEWEST_DIGITS:
         out.append(
             f"Only {max(fit.digits, 0):.0f} digits of the coefficients are sure: the terms are nearly dependent."

@@ -24,11 +24,9 @@ def terms(model: FittedModel) -> Table:
                 percent(float(half), float(value)) if known else ABSENT,
             )
         )
-    notes = list(model.statements)
-    if model.post_selection:
-        notes.insert(0, "The terms were selected on these data: the intervals are narrower than they claim.")
+    notes = model.statements
     title = f"{model.response} [{model.unit if model.unit != '1' else '-'}], {model.form}: {model.campaign}"
-    return Table(title, ("", "term", "value", "95 %", "95 %"), tuple(rows), tuple(notes), frozenset({0, 1}))
+    return Table(title, ("", "term", "value", "95 %", "95 %"), tuple(rows), notes, frozenset({0, 1}))
 
 
 def quality(models: tuple[FittedModel, ...]) -> Table:

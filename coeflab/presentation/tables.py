@@ -15,6 +15,7 @@ from coeflab.model.study import Study
 from coeflab.model.table import ABSENT, Table, coefficient, number, percent, probability
 
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
+SCATTER_ONLY = ("Without a form part: U95 is the scatter of the points about that one form alone.",)
 DEFINED = ("U95: 95 % half-width, from the scatter of the points and from the spread between the member estimators.",)
 
 
@@ -57,7 +58,10 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
     ]
     headers = ("", "value", "U95", "U95", "random", "form", "window", "n", "campaign", "estimator")
     statuses = sorted({c.status for c in study.coefficients if campaign is None or c.campaign == campaign})
-    notes = DEFINED + tuple(f"{s.replace('_', ' ')}: {s.advice}" for s in statuses if s.advice)
+    fitted = [c for c in study.coefficients if c.u95 is not None and c.origin == "fit"]
+    scatter_only = any(c.parts.model_form is None for c in fitted if campaign is None or c.campaign == campaign)
+    notes = DEFINED + (SCATTER_ONLY if scatter_only else ())
+    notes += tuple(f"{s.replace('_', ' ')}: {s.advice}" for s in statuses if s.advice)
     return Table("Coefficients, primed", headers, tuple(rows), notes, frozenset({0, 6, 8, 9}))
 
 
