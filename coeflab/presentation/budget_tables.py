@@ -82,20 +82,20 @@ def grids(budgets: Sequence[Budget]) -> Table:
             ", ".join(map(str, g.cells)),
             ", ".join(number(v, 5) for v in g.convergence.values),
             number(g.convergence.order, 3),
-            number(g.convergence.extrapolated, 5),
+            number(g.convergence.extrapolated if g.convergence.order is not None else None, 5),
             number(g.convergence.safety, 3),
             number(g.convergence.half_width, 3),
             percent(g.convergence.half_width, g.convergence.values[g.convergence.used]),
             g.convergence.convergence.value,
-            g.convergence.statement,
         )
         for g in found.values()
     )
     headers = (
-        "", "setting", "cells", "values", "order", "extrapolated", "factor", "95 %", "95 %", "convergence", "in words",
+        "", "setting", "cells", "values", "order", "extrapolated", "factor", "95 %", "95 %", "convergence",
     )  # fmt: skip
-    notes = ("Half-widths are those of the grid in use. SI units.",)
-    return Table("Grid convergence", headers, rows, notes, frozenset({0, 1, 2, 3, 9, 10}))
+    said = tuple(f"{g.component} at {g.setting}: {g.convergence.statement}." for g in found.values())
+    notes = ("Half-widths are those of the grid in use. SI units.", *said)
+    return Table("Grid convergence", headers, rows, notes, frozenset({0, 1, 2, 3, 9}))
 
 
 def validation(found: Sequence[Validation]) -> Table:
@@ -105,18 +105,19 @@ def validation(found: Sequence[Validation]) -> Table:
         (
             primed(v.symbol), v.simulation, v.experiment, coefficient(v.computed), coefficient(v.measured),
             coefficient(v.error), coefficient(v.u_measured), coefficient(v.u_numerical), coefficient(v.u_reduction),
-            coefficient(v.u_input), coefficient(v.u_validation), verdicts[v.within], v.statement,
+            coefficient(v.u_input), coefficient(v.u_validation), verdicts[v.within],
         )
         for v in found
     )  # fmt: skip
     headers = (
-        "", "computed", "measured", "S", "D", "E = S - D", "U_D", "U_SN", "U_red", "U_input", "U_V", "verdict", "in words",
+        "", "computed", "measured", "S", "D", "E = S - D", "U_D", "U_SN", "U_red", "U_input", "U_V", "verdict",
     )  # fmt: skip
     notes = (
         "U_SN: grid and iteration noise; U_red: model form and window of the slope drawn through computed points; a dash: "
         "not assessed. E also holds the difference of Reynolds number and rig between both.",
+        *(f"{primed(v.symbol)}: {v.statement}." for v in found),
     )
-    return Table("Validation of the computation", headers, rows, notes, frozenset({0, 1, 2, 11, 12}))
+    return Table("Validation of the computation", headers, rows, notes, frozenset({0, 1, 2, 11}))
 
 
 def derived(found: Sequence[Derived]) -> Table:
