@@ -15,6 +15,7 @@ from coeflab.fits import FITS
 from coeflab.importers import IMPORTERS
 from coeflab.model.assemble import assemble
 from coeflab.model.body import Body
+from coeflab.model.budget import Budget, budgets_of, with_budget
 from coeflab.model.campaign import FILE, read_campaign
 from coeflab.model.coefficient import Coefficient, Status
 from coeflab.model.declared import declared
@@ -48,12 +49,16 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     """
     tables: list[ForceTable] = []
     fits: list[FitResult] = []
+    budgets: list[Budget] = []
     for planned in plan.tables:
         read = [_settled(t, plan) for t in read_tables(planned)]
         progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
         scaling = plan.scaling or read[0].scaling
         for name in planned.fits:
-            fits.append(FITS.load(name).fit(read, scaling, planned.options.get(name, {})))
+            fitted = FITS.load(name).fit(read, scaling, planned.options.get(name, {}))
+            found = budgets_of(fitted, {t.name: t for t in read})
+            budgets += found
+            fits.append(with_budget(fitted, found))
             progress(f"fitted {read[0].campaign} by {name}")
         tables += read
     body = read_body(plan.body) if plan.body else None
@@ -76,6 +81,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
             g.name: assemble(g, plan.name, fits, tables, missing, references, body, conditions, inputs) for g in groups
         },
         inputs=inputs,
+        budgets=tuple(budgets),
     )
     findings = [c for name in CHECKS.names() for c in CHECKS.load(name).check(study)]
     progress(f"{len(findings)} checks")
@@ -138,6 +144,8 @@ def _missing(group: PlannedParameterFile, fits: list[FitResult], wanted: tuple[s
                 f"no campaign {shown(campaign)} in the plan", f"one of {', '.join(sorted(names))}",
                 column=f"parameter_file.{group.name}",
             )  # fmt: skip
+    if not any(f.sweeps for f in fits if f.campaign in group.campaigns):
+        return []
     have = {s for f in fits if f.campaign in group.campaigns for s in f.coefficients.symbols}
     return [
         Coefficient(s, None, None, Status.NO_TABLE, group.body, campaign=", ".join(group.campaigns))

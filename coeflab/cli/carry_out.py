@@ -41,8 +41,8 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
 
 
 def summarise(study: Study) -> None:
-    """Comparison, coefficients and grave findings."""
-    from coeflab.presentation import tables
+    """Comparison, coefficients, fitted models and grave findings."""
+    from coeflab.presentation import model_tables, tables
 
     show.text(study.plan.title)
     show.text()
@@ -53,6 +53,10 @@ def summarise(study: Study) -> None:
         show.table(tables.by_campaign(study))
     else:
         show.table(tables.coefficients(study))
+    models = tuple(m for f in study.fits for m in f.models)
+    for model in models:
+        show.table(model_tables.terms(model))
+    show.table(model_tables.quality(models))
     findings(study)
     judged = [c.passed for c in study.comparisons if c.passed is not None]
     if judged:

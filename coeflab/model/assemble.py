@@ -109,6 +109,25 @@ def _covered(tables: Sequence[ForceTable], length: float) -> tuple[CoveredRange,
     return tuple(out)
 
 
+def _owners(chosen: Sequence[FitResult]) -> tuple[dict[str, str], list[str]]:
+    """Which fit gives each force component, and notes on what the other fits give for it.
+
+    Terms of one force law belong together: a linear term of one fit beside a quadratic one of another is the law of
+    neither.
+    """
+    owner: dict[str, str] = {}
+    left: dict[tuple[str, str], list[str]] = {}
+    for f in chosen:
+        for c in f.coefficients.coefficients:
+            component = derivative(c.symbol).component
+            if c.value is not None and owner.setdefault(component, f.fit) != f.fit:
+                left.setdefault((component, f.fit), []).append(primed(c.symbol))
+    return owner, [
+        f"{component}' is that of {owner[component]}; left out, from {fit}: {', '.join(dict.fromkeys(symbols))}"
+        for (component, fit), symbols in left.items()
+    ]
+
+
 def assemble(
     group: PlannedParameterFile,
     study: str,
@@ -122,8 +141,9 @@ def assemble(
 ) -> ParameterFile:
     """Build the parameter file of a group of campaigns.
 
-    Where two campaigns give one value the earlier in the plan counts, and a note says so; a fitted value comes
-    before literature, and a symbol that neither gives is written with its status.
+    Every force component comes from one fit, the first in the plan that gives it. Where two campaigns give one value
+    the earlier in the plan counts, and a note says so; a fitted value comes before literature, and a symbol that
+    neither gives is written with its status.
 
     Raises
     ------
@@ -145,10 +165,12 @@ def assemble(
             raise ScalingMismatchError(
                 f"{f.campaign} and {chosen[0].campaign} have other reference points; give the study a reference_point."
             )
-    notes: list[str] = []
+    owner, notes = _owners(chosen)
     entries: dict[str, tuple[Coefficient, int, int]] = {}
     for k, s in enumerate(sets):
         for i, c in enumerate(s.coefficients):
+            if owner.get(derivative(c.symbol).component, chosen[k].fit) != chosen[k].fit:
+                continue
             earlier = entries[c.symbol][0] if c.symbol in entries else None
             used, other = (
                 (c, earlier) if earlier is None or (earlier.value is None and c.value is not None) else (earlier, c)

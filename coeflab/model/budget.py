@@ -1,14 +1,13 @@
 """The uncertainty budget of a coefficient: what is in its U95, by how much, and what was not assessed.
 
-Parts are joined as a root sum of squares (JCGM 100:2008, ITTC 7.5-02-06-04). They are taken as independent; the window
-part overlaps with the model-form part, as each form has its own window, which makes the sum conservative. An input error
-is one that all points of a campaign share.
+Parts are joined as a root sum of squares (JCGM 100:2008, ITTC 7.5-02-06-04) and taken as independent. An input error is
+one that all points of a campaign share.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +19,6 @@ from coeflab.model.fit_result import FitResult, Sweep
 from coeflab.model.force_table import ForceTable
 from coeflab.model.grid_study import GridStudy, gravest, grid_studies
 from coeflab.model.input_effects import InputPart, acting, moved_by
-from coeflab.model.study import Study
 
 Array = NDArray[np.float64]
 DRAWS, SEED = 2000, 1
@@ -41,7 +39,7 @@ class BudgetPart:
     Attributes
     ----------
     name : str
-        ``random``, ``model form``, ``window``, ``grid``, or the name of an input.
+        ``random``, ``model form``, ``grid``, or the name of an input.
     half_width : float
         95 %, primed.
     share : float or None
@@ -72,6 +70,9 @@ class Budget:
     monte_carlo : Propagated or None
         All inputs together, linear beside Monte Carlo; None where none was declared.
     grid : GridStudy or None
+    window : float or None
+        How far the value moves when no window may exceed a cap, 2 / sqrt 3 times the largest move; for information, as
+        each form has its own window and the model-form part holds that choice already.
     unassessed : tuple of str
     """
 
@@ -86,6 +87,7 @@ class Budget:
     inputs: tuple[InputPart, ...]
     monte_carlo: Propagated | None
     grid: GridStudy | None
+    window: float | None
     unassessed: tuple[str, ...]
 
     def part(self, name: str) -> float | None:
@@ -102,23 +104,19 @@ class Budget:
         return float(np.sqrt(sum((self.part(n) or 0.0) ** 2 for n in names)))
 
 
-def budgets(study: Study, draws: int = DRAWS, seed: int = SEED) -> tuple[Budget, ...]:
-    """Budgets of all fitted coefficients that come from a sweep and have a value.
-
-    Parameters
-    ----------
-    study : Study
-    draws, seed : int
-        Of the Monte Carlo over the inputs.
-    """
-    tables = {t.name: t for t in study.tables}
-    return tuple(b for fit in study.fits for b in budgets_of(fit, tables, draws, seed))
-
-
 def budgets_of(
     fit: FitResult, tables: Mapping[str, ForceTable], draws: int = DRAWS, seed: int = SEED
 ) -> tuple[Budget, ...]:
-    """Budgets of one fit; ``tables`` by name."""
+    """Budgets of the coefficients of one fit that come from a sweep and have a value.
+
+    Parameters
+    ----------
+    fit : FitResult
+        As the fit made it, before `with_budget`.
+    tables : mapping of name to ForceTable
+    draws, seed : int
+        Of the Monte Carlo over the inputs.
+    """
     sweeps = [s for s in fit.sweeps if s.recommendation.value is not None and s.table in tables]
     if not sweeps:
         return ()
@@ -145,7 +143,7 @@ def _budget(
         fitted = {"random and model form": c.u95}
     found: dict[str, float] = {}
     lacking: list[str] = []
-    for name, part in (fitted | {"window": 2.0 * max(apart) / 3.0**0.5 if apart else None}).items():
+    for name, part in fitted.items():
         if part is None:
             lacking.append(name)
         else:
@@ -162,7 +160,7 @@ def _budget(
     parts = tuple(BudgetPart(n, h, (h / u95) ** 2 if u95 else None) for n, h in found.items())
     return Budget(
         c.symbol, sweep.campaign, sweep.body, sweep.table, table.source.kind, value, parts, u95, inputs, total, study,
-        tuple(lacking),
+        2.0 * max(apart) / 3.0**0.5 if apart else None, tuple(lacking),
     )  # fmt: skip
 
 
@@ -178,17 +176,35 @@ def _undeclared(sweep: Sweep, table: ForceTable, inputs: tuple[InputPart, ...]) 
     return [n.replace("_", " ") for n in wanted if n not in known] + coupled
 
 
+def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
+    """The fit with the grid and input parts in the U95 and covariance of its coefficients."""
+    mine = {b.symbol: b for b in found if b.campaign == fit.campaign}
+    if not fit.sweeps or not any(b.u95 is not None for b in mine.values()):
+        return fit
+    among = fit.coefficients
+    changed = []
+    for c in among.coefficients:
+        b = mine.get(c.symbol)
+        outside = None if b is None else float(np.hypot(b.input or 0.0, b.part("grid") or 0.0))
+        if b is None or b.u95 is None or not outside:
+            changed.append(c)
+        else:
+            changed.append(replace(c, u95=b.u95, parts=replace(c.parts, input=outside)))
+    wider = replace(among, coefficients=tuple(changed), covariance=covariance(among, tuple(mine.values())))
+    return replace(fit, coefficients=wider)
+
+
 def covariance(among: CoefficientSet, found: Sequence[Budget]) -> Array:
     """Covariance of standard uncertainties of a set with the budgets' further parts, shape (k, k).
 
-    Random parts keep the correlation of the set; window and grid parts are taken as independent; an input error is
+    Random parts keep the correlation of the set; grid parts are taken as independent; an input error is
     common to the coefficients of a campaign, so that it cancels where a ratio does not feel it.
     """
     return np.asarray(among.covariance + further(among.symbols, [c.campaign for c in among.coefficients], found))
 
 
 def further(symbols: Sequence[str], campaigns: Sequence[str | None], found: Sequence[Budget]) -> Array:
-    """Covariance that the window, grid and input parts add, shape (k, k); symbols with or without prime."""
+    """Covariance that the grid and input parts add, shape (k, k); symbols with or without prime."""
     by = {(primed(b.symbol), b.campaign): b for b in found}
     chosen = [by.get((primed(s), c or "")) for s, c in zip(symbols, campaigns, strict=True)]
     out = np.zeros((len(symbols), len(symbols)))
@@ -199,5 +215,5 @@ def further(symbols: Sequence[str], campaigns: Sequence[str | None], found: Sequ
             other = {p.name: p.sensitivity for p in b.inputs}
             out[i, j] += sum(p.sensitivity * other.get(p.name, 0.0) * p.half_width**2 for p in a.inputs) / 4.0
             if i == j:
-                out[i, i] += a.joined("window", "grid") ** 2 / 4.0
+                out[i, i] += a.joined("grid") ** 2 / 4.0
     return out

@@ -56,7 +56,8 @@ class Parts:
     window : float or None
         Reserved for a separately assessed window part.
     input : float or None
-        Uncertainty of angle, speed, force calibration and lengths.
+        What enters from outside the points: declared uncertainty of angle, speed, calibration, lengths, and the grid
+        error of a computation with a grid study.
     """
 
     random: float | None = None

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.provenance import InputFile
 from coeflab.model.body import Body
+from coeflab.model.budget import Budget
 from coeflab.model.check import Check, Severity
 from coeflab.model.coefficient import Coefficient
 from coeflab.model.fit_result import FitResult
@@ -104,6 +105,7 @@ class Study:
     comparisons: tuple[Comparison, ...]
     parameter_files: Mapping[str, ParameterFile]
     inputs: tuple[InputFile, ...]
+    budgets: tuple[Budget, ...] = ()
     checks: tuple[Check, ...] = ()
 
     def __post_init__(self) -> None:

@@ -16,7 +16,7 @@ from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.study import Study
 
 NUMERICAL = ("random", "grid")
-REDUCTION = ("model form", "random and model form", "window")
+REDUCTION = ("model form", "random and model form")
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Validation:
     u_numerical : float
         U_SN: grid and iteration noise of the computation, as far as they were assessed.
     u_reduction : float
-        Of drawing a slope through computed points: model form and window.
+        Of drawing a slope through computed points: the model form.
     u_input : float or None
         Inputs of the computation.
     lacking, lacking_measured : tuple of str

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from coeflab.core.symbols import primed
-from coeflab.model.budget import budgets
 from coeflab.model.derived import centre_of_pressure, stability
 from coeflab.model.study import Study
 from coeflab.model.table import Table
@@ -15,11 +14,11 @@ from coeflab.presentation.tornado_figure import tornado_figure
 
 def budget_sections(study: Study) -> tuple[Section, ...]:
     """One section, or none where no coefficient has a budget."""
-    found = budgets(study)
+    found = study.budgets
     if not found:
         return ()
-    derived = [d for f in study.fits for d in centre_of_pressure(f.coefficients, found, f.campaign)]
-    derived += [d for p in study.parameter_files.values() for d in stability(p, found)]
+    derived = [d for f in study.fits for d in centre_of_pressure(f.coefficients, (), f.campaign)]
+    derived += [d for p in study.parameter_files.values() for d in stability(p, ())]
     tables = (
         budget_tables.overview(found),
         budget_tables.grids(found),
@@ -27,9 +26,9 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         budget_tables.derived(derived),
     )
     text = (
-        "The verdict above uses the scatter of the points and the model form alone. Here every assessed part is joined as "
-        "a root sum of squares: the window, the grid where a campaign has a grid study, and the inputs that a campaign "
-        "declares (angle, speed, calibration, reference point, length). A part that was not assessed is named, never zero.",
+        "U95 joins every assessed part as a root sum of squares: the scatter of the points, the model form, the grid where "
+        "a campaign has a grid study, and the inputs that a campaign declares under [uncertainty] (angle, speed, "
+        "calibration, reference point, length). A part that was not assessed is named, never zero.",
     )
     wanted = [b for b in found if b.symbol.removesuffix("'") in study.plan.wanted]
     parts = tuple(

@@ -28,8 +28,8 @@ def overview(budgets: Sequence[Budget]) -> Table:
         )  # fmt: skip
     headers = ("", "campaign", "value", "U95", "U95", *names, "not assessed")
     notes = (
-        "Columns of parts: share of the variance. U95: root sum of squares of the parts, taken as independent; window and "
-        "model form overlap, which makes the sum conservative. A dash: not assessed or not acting, never zero.",
+        "Columns of parts: share of the variance. U95: root sum of squares of the parts, taken as independent. A dash: "
+        "not assessed or not acting, never zero.",
     )
     return Table("Uncertainty budgets", headers, tuple(rows), notes, frozenset({0, 1, len(headers) - 1}))
 
@@ -113,7 +113,7 @@ def validation(found: Sequence[Validation]) -> Table:
         "", "computed", "measured", "S", "D", "E = S - D", "U_D", "U_SN", "U_red", "U_input", "U_V", "verdict",
     )  # fmt: skip
     notes = (
-        "U_SN: grid and iteration noise; U_red: model form and window of the slope drawn through computed points; a dash: "
+        "U_SN: grid and iteration noise; U_red: model form of the slope drawn through computed points; a dash: "
         "not assessed. E also holds the difference of Reynolds number and rig between both.",
         *(f"{primed(v.symbol)}: {v.statement}." for v in found),
     )

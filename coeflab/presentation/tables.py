@@ -16,7 +16,10 @@ from coeflab.model.table import ABSENT, Table, coefficient, number, percent, pro
 
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
 SCATTER_ONLY = ("Without a form part: U95 is the scatter of the points about that one form alone.",)
-DEFINED = ("U95: 95 % half-width, from the scatter of the points and from the spread between the member estimators.",)
+DEFINED = (
+    "U95: 95 % half-width, from the scatter of the points (random), the spread between the member estimators (form) and "
+    "what enters from outside, declared inputs and grid (input).",
+)
 
 
 def window_text(c: Coefficient) -> str:
@@ -48,6 +51,7 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
             percent(c.u95, c.value),
             percent(c.parts.random, c.value),
             percent(c.parts.model_form, c.value),
+            percent(c.parts.input, c.value),
             window_text(c),
             str(c.n_points) if c.n_points else ABSENT,
             c.campaign or ABSENT,
@@ -56,13 +60,13 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
         for c in study.coefficients
         if campaign is None or c.campaign == campaign
     ]
-    headers = ("", "value", "U95", "U95", "random", "form", "window", "n", "campaign", "estimator")
+    headers = ("", "value", "U95", "U95", "random", "form", "input", "window", "n", "campaign", "estimator")
     statuses = sorted({c.status for c in study.coefficients if campaign is None or c.campaign == campaign})
     fitted = [c for c in study.coefficients if c.u95 is not None and c.origin == "fit"]
     scatter_only = any(c.parts.model_form is None for c in fitted if campaign is None or c.campaign == campaign)
     notes = DEFINED + (SCATTER_ONLY if scatter_only else ())
     notes += tuple(f"{s.replace('_', ' ')}: {s.advice}" for s in statuses if s.advice)
-    return Table("Coefficients, primed", headers, tuple(rows), notes, frozenset({0, 6, 8, 9}))
+    return Table("Coefficients, primed", headers, tuple(rows), notes, frozenset({0, 7, 9, 10}))
 
 
 def verdicts(study: Study) -> Table:

@@ -13,7 +13,7 @@ from coeflab.presentation.svg import COLOURS, POINTS, power_of_ten, settings, sv
 
 WIDTH, LEFT, RIGHT, BOTTOM, TOP = 340.0, 112.0, 44.0, 34.0, 8.0
 ROW, THICK = 17.0, 0.62
-MEASURED = ("random", "model form", "random and model form", "window")
+MEASURED = ("random", "model form", "random and model form")
 
 
 def tornado_figure(b: Budget, anchor: str) -> Figure:

@@ -16,7 +16,7 @@ from coeflab.core.provenance import Source
 from coeflab.core.toml import read_toml
 from coeflab.fits.slope_at_origin import fit
 from coeflab.kernels.grid_convergence import Convergence
-from coeflab.model.budget import Budget, BudgetPart, budgets, budgets_of, covariance
+from coeflab.model.budget import Budget, BudgetPart, budgets_of, covariance
 from coeflab.model.campaign import read_campaign
 from coeflab.model.declared import declared, with_declarations
 from coeflab.model.derived import centre_of_pressure, stability
@@ -28,7 +28,7 @@ from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.study import PlannedTable
 from coeflab.model.validation import validation
 from coeflab.workbench import read_tables
-from tests.presentation.studies import FULL, HALF, LENGTH, small_study, small_table
+from tests.presentation.studies import FULL, HALF, LENGTH, budgets, small_study, small_table
 
 ONE = 0.01
 EXPERIMENT = Source("tank", kind="experiment")
@@ -181,7 +181,7 @@ def test_a_coefficient_without_interval_has_parts_but_no_u95() -> None:
 def test_the_window_part_is_the_largest_move_under_a_cap() -> None:
     for b, s in zip(budgets(small_study(FULL)), small_study(FULL).fits[0].sweeps, strict=True):
         largest = max(abs(float(k.value or 0.0) - b.value) for k in s.sensitivity)
-        assert b.part("window") == pytest.approx(2.0 * largest / 3.0**0.5)
+        assert b.window == pytest.approx(2.0 * largest / 3.0**0.5)
 
 
 def gridded(error: float = 0.05, **changes: object) -> ForceTable:

@@ -6,6 +6,7 @@ import numpy as np
 
 from coeflab.core.provenance import InputFile, Source
 from coeflab.fits.slope_at_origin import fit
+from coeflab.model.budget import budgets_of
 from coeflab.model.coefficient import Coefficient, Status
 from coeflab.model.force_table import Exclusion, ForceTable
 from coeflab.model.reference import Comparison, Relation
@@ -75,9 +76,16 @@ def small_study(angles: list[float], *, named: str = "tow", errors: bool = False
         comparisons=tuple(comparisons),
         parameter_files={},
         inputs=table.files,
+        budgets=budgets_of(result, {table.name: table}),
     )
 
 
 FULL = [-12.0, -10.0, -8.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0]
 HALF = [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]
 FEW = [0.0, 5.0]
+
+
+def budgets(study):
+    """Budgets of a small study, as the workbench makes them before they enter the coefficients."""
+    tables = {t.name: t for t in study.tables}
+    return tuple(b for fit in study.fits for b in budgets_of(fit, tables))

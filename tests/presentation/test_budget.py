@@ -7,14 +7,13 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from coeflab.model.budget import budgets
 from coeflab.model.derived import centre_of_pressure
 from coeflab.model.input_uncertainty import InputUncertainty
 from coeflab.model.validation import validation
 from coeflab.presentation import budget_tables
 from coeflab.presentation.svg import COLOURS
 from coeflab.presentation.tornado_figure import tornado_figure
-from tests.presentation.studies import FULL, HOSTILE, small_study
+from tests.presentation.studies import FULL, HOSTILE, budgets, small_study
 
 DECLARED = InputUncertainty(angle=float(np.radians(0.1)), speed=0.005, reference_point=0.01)
 
