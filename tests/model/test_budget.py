@@ -317,7 +317,7 @@ def test_a_stability_index_that_cannot_be_bounded() -> None:
 def sided(kind: str, value: float, u95: float | None, **parts: float) -> Budget:
     return Budget(
         "Yv", kind, "b", "t", kind, value, tuple(BudgetPart(n.replace("_", " "), h, None) for n, h in parts.items()), u95,
-        (), None, None, ("turbulence model",) if kind == "cfd" else (),
+        (), None, None, None, ("turbulence model",) if kind == "cfd" else (),
     )  # fmt: skip
 
 
