@@ -40,7 +40,7 @@ def set_up(groups: tuple[str, ...]) -> None:
         made = subprocess.run([sys.executable, "-m", "venv", str(ENVIRONMENT)], check=False)
         if made.returncode:
             raise SystemExit("This Python cannot make virtual environments; install its venv module (python3-venv).")
-    install = [str(PYTHON), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    install = [str(PYTHON), "-m", "pip", "install", "-qq", "--disable-pip-version-check"]
     packages = ["-c", str(ROOT / "constraints.txt"), "-e", str(ROOT), *requirements(groups)]
     if subprocess.run(install + packages, check=False).returncode:
         raise SystemExit("The packages could not be installed; pip says why above.")

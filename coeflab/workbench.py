@@ -9,6 +9,7 @@ from coeflab.bodies import BODIES
 from coeflab.checks import CHECKS
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.symbols import MOTIONS
 from coeflab.core.toml import read_toml
 from coeflab.exporters import EXPORTERS
 from coeflab.fits import FITS
@@ -21,11 +22,12 @@ from coeflab.model.coefficient import Coefficient, Status
 from coeflab.model.declared import declared
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
-from coeflab.model.reference import compare, read_references
+from coeflab.model.reference import compare, compare_set, read_references
 from coeflab.model.study import Plan, PlannedParameterFile, PlannedTable, Study
 from coeflab.reporting import REPORTERS
 
 Progress = Callable[[str], None]
+FEWEST = 3
 
 
 def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
@@ -56,6 +58,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         scaling = plan.scaling or read[0].scaling
         for name in planned.fits:
             fitted = FITS.load(name).fit(read, scaling, planned.options.get(name, {}))
+            _refuse_starved(fitted)
             found = budgets_of(fitted, {t.name: t for t in read})
             budgets += found
             fits.append(with_budget(fitted, found))
@@ -65,7 +68,6 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     references = tuple(r for path in plan.references for r in read_references(path))
     groups = plan.parameter_files or _groups(fits)
     missing = tuple(c for g in groups for c in _missing(g, fits, plan.wanted))
-    coefficients = tuple(c for f in fits for c in f.coefficients.coefficients)
     first = plan.scaling or fits[0].coefficients.scaling
     conditions = plan.conditions or tables[0].conditions
     inputs = _inputs(plan, tables, body)
@@ -76,7 +78,8 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         missing=missing,
         body=body,
         references=references,
-        comparisons=compare(coefficients + missing, references, first),
+        comparisons=tuple(c for f in fits for c in compare_set(f.coefficients, references))
+        + compare(missing, references, first),
         parameter_files={
             g.name: assemble(g, plan.name, fits, tables, missing, references, body, conditions, inputs) for g in groups
         },
@@ -86,6 +89,20 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     findings = [c for name in CHECKS.names() for c in CHECKS.load(name).check(study)]
     progress(f"{len(findings)} checks")
     return study.with_checks(tuple(findings))
+
+
+def _refuse_starved(fit: FitResult) -> None:
+    """Refuse a sweep in which no force component has more points than the simplest form has parameters."""
+    sweeps = [s for s in fit.sweeps if s.parity == "odd" and s.variable in MOTIONS]
+    for table, variable in dict.fromkeys((s.table, s.variable) for s in sweeps):
+        points = max(len(s.x) for s in sweeps if (s.table, s.variable) == (table, variable))
+        if points < FEWEST:
+            raise InputError(
+                f"{points} usable points of the sweep over {variable}'",
+                f"at least {FEWEST} for an intercept, a slope and an error",
+                file=table,
+                advice="Run more settings, or leave the table out of the plan.",
+            )
 
 
 def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
@@ -128,7 +145,10 @@ def _groups(fits: list[FitResult]) -> tuple[PlannedParameterFile, ...]:
     bodies: dict[str, list[str]] = {}
     for f in fits:
         bodies.setdefault(f.body, []).append(f.campaign)
-    return tuple(PlannedParameterFile(_file_name(b), b, tuple(dict.fromkeys(c)), ()) for b, c in bodies.items())
+    names = [_file_name(b) for b in bodies]
+    numbered = [n if names.count(n) == 1 else f"{n}_{names[:i].count(n) + 1}" for i, n in enumerate(names)]
+    groups = zip(numbered, bodies.items(), strict=True)
+    return tuple(PlannedParameterFile(n, b, tuple(dict.fromkeys(c)), ()) for n, (b, c) in groups)
 
 
 def _file_name(body: str) -> str:

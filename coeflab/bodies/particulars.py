@@ -70,7 +70,7 @@ def read(path: Path) -> Body:
             source.text("kind", ""),
             source.text("stated_uncertainty", ""),
         ),
-        files=(InputFile(f"{path.parent.name}/{path.name}", sha256_of(path)),),
+        files=(InputFile(f"{head.text('name')}/{path.name}", sha256_of(path)),),
     )
     for section in (head, source, prime, root):
         section.finish()

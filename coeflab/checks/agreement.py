@@ -19,14 +19,16 @@ def check(study: Study) -> Sequence[Check]:
     """One finding per pair of campaigns and coefficient."""
     out = []
     for a, b in combinations(study.fits, 2):
-        if a.body != b.body or not np.allclose(
-            a.coefficients.reference_point, b.coefficients.reference_point, atol=1e-9
-        ):
+        if a.campaign == b.campaign or a.body != b.body or a.coefficients.datum != b.coefficients.datum:
+            continue
+        if not np.allclose(a.coefficients.reference_point, b.coefficients.reference_point, atol=1e-9):
             continue
         for c in a.coefficients.coefficients:
             if c.symbol not in b.coefficients:
                 continue
-            d = b.coefficients[c.symbol]
+            d = b.coefficients.to_length(a.coefficients.scaling)[c.symbol]
+            if c.parts.model_form is None or d.parts.model_form is None:
+                continue
             if c.value is None or d.value is None or c.u95 is None or d.u95 is None:
                 continue
             difference, combined = abs(c.value - d.value), float(np.hypot(c.u95, d.u95))

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isfinite
 
 from coeflab.core.symbols import primed
-from coeflab.kernels.robust import t_factor
+from coeflab.kernels.robust import bell_mccaffrey, hc_variance, t_factor
 from coeflab.model.check import Check, Severity
 from coeflab.model.fit_result import Sweep
 from coeflab.model.study import Study
@@ -20,8 +21,9 @@ def _intercept(sweep: Sweep) -> Check | None:
     e = max(sweep.recommendation.members, key=lambda m: len(m.rows))
     value = float(e.coefficients[e.terms.index("1")])
     at = e.terms.index("1")
-    inflated = e.residuals**2 / (1.0 - e.factorised.leverage).clip(1e-9)
-    error = float((e.factorised.estimator[at] ** 2 @ inflated) ** 0.5) * float(t_factor(e.factorised.freedom))
+    error = float(hc_variance(e.factorised, e.residuals, 2)[at] ** 0.5 * t_factor(bell_mccaffrey(e.factorised)[at]))
+    if not isfinite(error):
+        return None
     reach = float(abs(sweep.y).max())
     share = abs(value) / reach if reach else 0.0
     if abs(value) <= error or share < 1e-3:

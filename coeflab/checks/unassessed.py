@@ -10,25 +10,21 @@ from coeflab.model.study import Study
 summary = "uncertainties that no part of U95 covers"
 citations = ("ittc_uncertainty",)
 
-LACKING = {
-    "cfd": "grid, turbulence model and domain errors",
-    "experiment": "angle, speed, force calibration and rig interference",
-    "literature": "whatever the source left out",
-    "synthetic": "nothing: the data are synthetic",
-}
-
 
 def check(study: Study) -> Sequence[Check]:
-    """One note per campaign."""
+    """One note per campaign that has budgets: what none of them assessed."""
     out = []
     for t in {t.campaign: t for t in study.tables}.values():
+        open_parts = dict.fromkeys(u for b in study.budgets if b.campaign == t.campaign for u in b.unassessed)
+        if not open_parts:
+            continue
         stated = t.source.stated_uncertainty
         out.append(
             Check(
                 "unassessed",
                 t.campaign,
                 Severity.NOTE,
-                f"U95 holds the scatter of the points and the model form, not {LACKING[t.source.kind]}",
+                f"not in U95 of every coefficient: {', '.join(open_parts)}",
                 "a full budget",
                 f"The source states: {stated}." if stated else "The source states no uncertainty.",
             )

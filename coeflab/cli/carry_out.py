@@ -58,6 +58,9 @@ def summarise(study: Study) -> None:
         show.table(model_tables.terms(model))
     show.table(model_tables.quality(models))
     findings(study)
+    for c in study.checks:
+        if c.name == "stability" and "not determined" not in c.statistic:
+            show.text(f"{c.subject.split()[0]}: {c.statistic}. {c.comment}")
     judged = [c.passed for c in study.comparisons if c.passed is not None]
     if judged:
         show.text(f"Verdict: {sum(judged)} of {len(judged)} re-analysed coefficients agree within U95.")

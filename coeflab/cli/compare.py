@@ -1,4 +1,4 @@
-"""``coeflab compare``: two parameter files, coefficient by coefficient."""
+"""``coeflab compare``: two parameter files, coefficient by coefficient and fitted table by fitted table."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from coeflab.cli import show
 
 if TYPE_CHECKING:
     from coeflab.studies.compare import Comparison
+    from coeflab.studies.compare_models import ComparedModel
 
 EXAMPLE = "coeflab compare a.parameters.json b.parameters.json"
 
@@ -20,7 +21,11 @@ def command(
     second: Path = typer.Argument(..., help="The parameter file that is held against it."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Compare two parameter files: differences against the combined U95, lengths and reference points converted."""
+    """Compare two parameter files: differences against the combined U95, lengths and reference points converted.
+
+    Fitted tables of one response over the same variables are held together on a grid inside the data of both: "within"
+    means that at 95 % of its points the difference is inside the combined 95 % half-width.
+    """
     from coeflab.model.parameter_file import read_parameter_file
     from coeflab.studies.compare import compare
 
@@ -50,15 +55,32 @@ def as_json(found: Comparison) -> dict[str, Any]:
                 "ratio": r.ratio,
                 "verdict": r.verdict.value,
                 "reason": r.reason,
+                "shared_tables": list(r.shared),
             }
             for r in found.rows
+        ],
+        "models": [
+            {
+                "response": m.response,
+                "variables": list(m.variables),
+                "n_points": m.n_points,
+                "rms_difference": m.rms,
+                "largest_difference": m.largest,
+                "largest_at": m.at,
+                "rms_combined_half_width_95": m.combined,
+                "share_within": m.share,
+                "verdict": m.verdict.value,
+                "reason": m.reason,
+                "shared_tables": list(m.shared),
+            }
+            for m in found.models
         ],
     }
 
 
 def _print(found: Comparison) -> None:
     from coeflab.model.table import Table, coefficient, number
-    from coeflab.studies.compare import Verdict
+    from coeflab.studies.shared_tables import Verdict
 
     rows = tuple(
         (
@@ -69,6 +91,30 @@ def _print(found: Comparison) -> None:
     )  # fmt: skip
     headers = ("", "first", "U95", "second", "U95", "difference", "combined", "ratio", "verdict", "")
     title = f"{found.b} against {found.a}"
-    show.table(Table(title, headers, rows, found.statements, frozenset({0, 8, 9})))
-    counts = {v: sum(r.verdict is v for r in found.rows) for v in Verdict}
-    show.text(", ".join(f"{n} {v.value}" for v, n in counts.items()) + ".")
+    show.table(Table(title, headers, rows, () if found.models else found.statements, frozenset({0, 8, 9})))
+    models = tuple(
+        (
+            m.name, str(m.n_points) if m.n_points else "-", number(m.rms, 3), number(m.largest, 3), _place(m),
+            number(m.combined, 3), number(None if m.share is None else 100.0 * m.share, 3), m.verdict.value, m.reason,
+        )
+        for m in found.models
+    )  # fmt: skip
+    headers = ("", "points", "rms diff.", "largest", "at", "combined", "% within", "verdict", "")
+    show.table(Table("Fitted tables", headers, models, found.statements, frozenset({0, 4, 7, 8})))
+    if not rows and not models:
+        show.text("Neither file has coefficients or fitted tables.")
+    for what, verdicts in (("", [r.verdict for r in found.rows]), ("Tables: ", [m.verdict for m in found.models])):
+        if verdicts:
+            show.text(what + ", ".join(f"{verdicts.count(v)} {v.value}" for v in Verdict) + ".")
+
+
+def _place(m: ComparedModel) -> str:
+    """Where the largest difference is: angles in degrees, primes as such."""
+    from math import degrees
+
+    from coeflab.core.symbols import CONTROLS
+
+    angles = ("alpha", "beta", *CONTROLS)
+    return ", ".join(
+        f"{v} {degrees(x) + 0.0:.3g} deg" if v in angles else f"{v} {x + 0.0:.3g}" for v, x in (m.at or {}).items()
+    )

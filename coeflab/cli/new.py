@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import typer
@@ -24,4 +25,4 @@ def command(folder: Path = typer.Argument(..., help="A folder that does not exis
     for name in ("plan.toml", "body.toml", "campaign/campaign.toml", "campaign/drift.csv", "campaign/rotating_arm.csv"):
         write_atomically(folder / name, template.joinpath(*name.split("/")).read_bytes())
         show.text(f"  {folder / name}")
-    show.text(f"Run it: coeflab run {folder / 'plan.toml'}")
+    show.text(f"Run it: coeflab run {shlex.quote(str(folder / 'plan.toml'))}")

@@ -27,10 +27,21 @@ def table(content: Table) -> None:
     """A table for a person on a terminal, or aligned plain text in a pipe."""
     if not content.rows:
         return
-    if sys.stdout.isatty():
+    if sys.stdout.isatty() and _fits(content):
         _rich(content)
     else:
         _plain(content)
+
+
+def _fits(content: Table) -> bool:
+    """Whether the terminal is wide enough to keep every number on one line; text columns may fold to 12 characters."""
+    import shutil
+
+    rows = [content.headers, *content.rows]
+    longest = [max(len(word) for row in rows for word in (row[i].split() or [""])) for i in range(len(content.headers))]
+    whole = [max(len(row[i]) for row in content.rows) for i in range(len(content.headers))]
+    widths = [max(longest[i], 12) if i in content.left else max(whole[i], longest[i]) for i in range(len(whole))]
+    return sum(min(w, 40) for w in widths) + 3 * len(widths) <= shutil.get_terminal_size().columns
 
 
 def _rich(content: Table) -> None:
@@ -41,7 +52,12 @@ def _rich(content: Table) -> None:
 
     out = RichTable(title=content.title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
     for i, header in enumerate(content.headers):
-        out.add_column(Text(header), justify="left" if i in content.left else "right", overflow="fold")
+        out.add_column(
+            Text(header),
+            justify="left" if i in content.left else "right",
+            overflow="fold",
+            no_wrap=i not in content.left and " " not in header,
+        )
     for row in content.rows:
         out.add_row(*(Text(cell, style=COLOURS.get(cell, "")) for cell in row))
     console = Console()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,8 +32,9 @@ def command(
 ) -> None:
     """Evaluate a fitted table and print it as CSV.
 
-    Give every variable as --NAME=LOW:HIGH:STEP, a number or a comma list: angles in degrees, primes as such. The column
-    "inside" is 1 within the convex hull of the data; cells that the file's rule refuses stay blank.
+    Give every variable as --NAME=LOW:HIGH:STEP, a number or a comma list: angles in degrees, primes as such. --beta and
+    --alpha also serve tables over v' = sin(beta) and w' = sin(alpha) cos(beta). The column "inside" is 1 within the
+    convex hull of the data; cells that the file's rule refuses stay blank.
     """
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import write_atomically
@@ -43,13 +45,55 @@ def command(
         raise InputError(shown(params), "the parameter file first, then --NAME=VALUES")
     given = wanted(ctx.args)
     models = chosen(read_parameter_file(params).models, response, tuple(given))
-    lines = _lines(models, given)
+    tally = Tally()
+    lines = _lines(models, given, tally)
     if out is not None:
         changed = write_atomically(out, "".join(lines).encode())
         typer.echo(f"{out}: {'written' if changed else 'unchanged'}", err=True)
-        return
-    for chunk in lines:
-        typer.echo(chunk, nl=False)
+    else:
+        for chunk in lines:
+            typer.echo(chunk, nl=False)
+    for line in outside_in_words(models, tally):
+        typer.echo(line, err=True)
+
+
+@dataclass(slots=True)
+class Tally:
+    """How many points a table has and how many of them lie outside, counted while it is written."""
+
+    points: int = 0
+    outside: int = 0
+
+
+def outside_in_words(models: tuple[ParameterModel, ...], tally: Tally) -> list[str]:
+    """What standard error says of points outside the data; with the limits of the data where no point is inside."""
+    if not tally.outside:
+        return []
+    what = "every domain" if len(models) > 1 else "the domain"
+    if tally.outside < tally.points:
+        return [f"{tally.outside:,} of {tally.points:,} points lie outside {what} (inside = 0)"]
+    domains: dict[str, list[str]] = {}
+    for m in models:
+        limits = zip(m.variables, m.domain.low, m.domain.high, strict=True)
+        text = ", ".join(_limits(v.name, v.unit, low, high) for v, low, high in limits)
+        domains.setdefault(text, []).append(m.response)
+    return [f"all {tally.points:,} points lie outside {what}, the convex hull of the data within these limits:"] + [
+        f"  {', '.join(names)}: {text}" for text, names in domains.items()
+    ]
+
+
+def _limits(name: str, unit: str, low: float, high: float) -> str:
+    """Limits as the command line reads them: angles in degrees; v' and w' also as angles."""
+    if unit == "rad":
+        return f"{name} {math.degrees(low) + 0.0:.6g} to {math.degrees(high) + 0.0:.6g} deg"
+    if unit != "1":
+        return f"{name} {low:.6g} to {high:.6g} {unit}"
+    text = f"{name}' {low:.6g} to {high:.6g}"
+    angle = {"v": "beta", "w": "alpha at beta = 0:"}.get(name)
+    if angle is None or max(abs(low), abs(high)) > 1.0:
+        return text
+    ends = [math.degrees(math.asin(x)) + 0.0 for x in (low, high)]
+    return f"{text} ({angle} {ends[0]:.6g} to {ends[1]:.6g} deg)"
 
 
 def wanted(arguments: list[str]) -> dict[str, NDArray[np.float64]]:
@@ -112,11 +156,13 @@ def _header(name: str, unit: str) -> str:
     return f"{name}' [-]" if unit == "1" and len(name) == 1 else f"{name} [{angle}]"
 
 
-def _lines(models: tuple[ParameterModel, ...], given: dict[str, NDArray[np.float64]]) -> Iterator[str]:
+def _lines(models: tuple[ParameterModel, ...], given: dict[str, NDArray[np.float64]], tally: Tally) -> Iterator[str]:
     """The CSV in pieces: header, then rows, the last variable fastest."""
     import numpy as np
 
-    units = {v.name: v.unit for v in models[0].variables}
+    from coeflab.model.parameter_model import ANGLE_OF, from_angles
+
+    units = dict.fromkeys(ANGLE_OF, "rad") | {v.name: v.unit for m in models for v in m.variables}
     yield (
         ",".join(
             [_header(v, units[v]) for v in given]
@@ -134,9 +180,11 @@ def _lines(models: tuple[ParameterModel, ...], given: dict[str, NDArray[np.float
         inside = np.ones(len(index[0]), dtype=bool)
         cells = [_text(x) for x in typed.values()]
         for m in models:
-            values, half, within = m.evaluate({v: columns[v] for v in m.names})
+            values, half, within = m.evaluate(from_angles(m, columns))
             cells += [_text(values), _text(half)]
             inside &= within
+        tally.points += len(inside)
+        tally.outside += int(np.sum(np.logical_not(inside)))
         cells.append(["1" if w else "0" for w in inside])
         yield "".join(",".join(row) + "\n" for row in zip(*cells, strict=True))
 

@@ -68,7 +68,8 @@ def parse_axes(declared: Any, file: str | Path | None = None, key: str = "axes.f
     elif isinstance(declared, list) and len(declared) == 3 and all(d in DIRECTIONS for d in declared):
         directions = (declared[0], declared[1], declared[2])
     else:
-        raise AxesError(shown(declared), expected, file=file, column=key)
+        found = "nothing" if declared is None else shown(declared)
+        raise AxesError(found, expected, file=file, column=key)
     axes = Axes(directions)
     determinant = round(float(np.linalg.det(axes.rotation)))
     if determinant == 0:

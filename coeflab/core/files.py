@@ -70,5 +70,5 @@ def write_atomically(path: Path, content: bytes) -> bool:
             Path(temporary).unlink(missing_ok=True)
             raise
     except OSError as why:
-        raise OutputError(f"cannot write {path}: {why.strerror or why}. Choose another folder with --out.") from None
+        raise OutputError(f"cannot write {path}: {why.strerror or why}. Choose another folder.") from None
     return True

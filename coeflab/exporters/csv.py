@@ -12,7 +12,7 @@ summary = "coefficients.csv: primed and SI values, U95 and its parts, status, or
 citations = ("sname1950",)
 
 HEADER = (
-    "symbol", "value [-]", "u95 [-]", "random [-]", "model_form [-]", "value_si", "unit_si", "status", "origin",
+    "symbol", "value [-]", "u95 [-]", "random [-]", "model_form [-]", "input [-]", "value_si", "unit_si", "status", "origin",
     "table", "estimator", "window_low", "window_high", "n_points", "citation",
 )  # fmt: skip
 
@@ -32,10 +32,10 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     for c in parameters.coefficients:
         low, high = c.window or (None, None)
         cells = (
-            c.symbol, c.value, c.u95, c.parts.random, c.parts.model_form, c.value_si, c.unit_si, c.status, c.origin,
+            c.symbol, c.value, c.u95, c.parts.random, c.parts.model_form, c.parts.input, c.value_si, c.unit_si, c.status, c.origin,
             c.table, c.estimator, low, high, c.n_points, c.citation,
         )  # fmt: skip
         writer.writerow(
-            ["'" + t if isinstance(v, str) and t[:1] in "=+@\t\r" and t else t for v in cells for t in [_cell(v)]]
+            ["'" + t if isinstance(v, str) and t[:1] in "=+-@\t\r" and t else t for v in cells for t in [_cell(v)]]
         )
     return {f"{parameters.name}.coefficients.csv": out.getvalue().encode()}

@@ -33,6 +33,7 @@ from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
+from coeflab.model.misfit import residuals_in_words
 from coeflab.model.regression import Area, Rows, collect, model_of
 from coeflab.model.scaling import Scaling
 from coeflab.model.swept import AREAS, PRIMES, area_of, area_settings, only_moving
@@ -169,7 +170,11 @@ def _fitted(rows: Rows, area: Area, chosen: Options) -> tuple[FittedModel, Fitte
     if rows.response == "C_L":
         said.insert(0, _lifts(listing))
     tied = tuple(x for x in model.statements if "collinear" not in x)
-    return replace(model, statements=tied), replace(listing, statements=(*said, *listing.statements))
+    freer = "Fit a narrower range of angles, or a surface over delta and alpha."
+    if len(powers) == 1:
+        freer = "Try cubic = yes."
+    model = replace(model, statements=(*residuals_in_words(model, freer), *tied))
+    return model, replace(listing, statements=(*said, *residuals_in_words(listing, freer), *listing.statements))
 
 
 def _coefficient(model: FittedModel, area: Area, scaling: Scaling, surface: str, citation: str) -> Coefficient | None:

@@ -26,9 +26,11 @@ from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import Domain, FittedModel
 from coeflab.model.force_table import ForceTable
+from coeflab.model.misfit import residuals_in_words
+from coeflab.model.printed import at_no_angle, read_printed
 from coeflab.model.regression import Rows, model_of, variable
 from coeflab.model.scaling import Scaling
-from coeflab.model.swept import only_moving
+from coeflab.model.swept import only_moving, without_blanks
 
 summary = "lift, drag and pitching moment of a glider over angle of attack and speed, per degree and per radian"
 citations = ("thauv", "fossen2011", "mackinnon1985", "bell2002")
@@ -39,6 +41,7 @@ NEAR_ZERO = float(np.radians(0.3))
 SAME_SPEED = 1e-3
 UNLIKELY = 0.01
 SLOPES = ("K_L", "K_D", "K_M")
+FREER = "Fit a narrower range of angles, or a polynomial over alpha."
 PRINTABLE = ("K_L0", "K_L", "K_D0", "K_D", "K_M0", "K_M")
 
 
@@ -72,7 +75,7 @@ class AngleUnit:
     unit : {"deg", "rad", ""}
         Empty where the printed coefficients do not say one and the same.
     statements : tuple of str
-        One per slope compared.
+        One per coefficient compared.
     """
 
     unit: str
@@ -147,7 +150,8 @@ def _fitted(rows: Rows, name: str, unit: str) -> FittedModel:
     form = f"{name} = (K_{name}0 + K_{name} a{squared}) V^2, a in {unit}, V in m/s"
     terms = (Term(), Term(((angle, power, False),)))
     model = model_of(used, terms, symbols, form, unit="N*m/(m/s)^2" if name == "M" else "N/(m/s)^2")
-    return replace(model, domain=Domain.of(rows.x), x=used.x)
+    said = (*residuals_in_words(model, FREER), *model.statements)
+    return replace(model, domain=Domain.of(rows.x), x=used.x, statements=said)
 
 
 def _said(model: FittedModel, name: str, speed: Array, errors: Array | None) -> tuple[str, ...]:
@@ -187,7 +191,7 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
     Parameters
     ----------
     printed : mapping of symbol to float
-        Some of K_L0 K_L K_D0 K_D K_M0 K_M; only slopes tell anything.
+        Some of K_L0 K_L K_D0 K_D K_M0 K_M; only slopes tell the unit, the others are compared with their intervals.
     result : FitResult
         Of this fit.
 
@@ -205,7 +209,10 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
         raise InputError(shown(wrong[0]), f"one of {', '.join(PRINTABLE)}", column="glide_polar.printed")
     votes: set[str] = set()
     said = []
-    for slope in (s for s in SLOPES if s in printed):
+    for slope in (s for s in PRINTABLE if s in printed):
+        if slope not in SLOPES:
+            said.append(at_no_angle(slope, printed[slope], result))
+            continue
         fitted = _per_unit(result, slope)
         if fitted is None:
             said.append(f"{slope}: not fitted, so the printed {printed[slope]:g} is not compared.")
@@ -226,20 +233,6 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
         return AngleUnit(next(iter(votes)), tuple(said))
     why = "The slopes disagree about the unit of the angle." if votes else "No slope tells the unit of the angle."
     return AngleUnit("", (*said, why))
-
-
-def _printed(items: Sequence[str]) -> dict[str, float]:
-    """``K_L=9.5`` as numbers."""
-    out = {}
-    for item in items:
-        symbol, _, text = item.partition("=")
-        try:
-            out[symbol] = float(text)
-        except ValueError:
-            raise InputError(shown(item), "SYMBOL=NUMBER such as K_L=9.5281", column="glide_polar.printed") from None
-        if not np.isfinite(out[symbol]):
-            raise InputError(shown(item), "a finite number", column="glide_polar.printed")
-    return out
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
@@ -266,8 +259,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     InputError
         No X or Z, no row that can be used, one angle of attack only, or no more rows than terms.
     """
-    chosen = parse_options(Options, options, "glide_polar")
-    printed = _printed(chosen.printed)
+    chosen = parse_options(Options, without_blanks(options, "printed"), "glide_polar")
+    printed = read_printed(chosen.printed, "glide_polar.printed")
     first = tables[0]
     used, left_out = only_moving(tables, ("alpha",), scaling.length)
     radians, degrees = [], []

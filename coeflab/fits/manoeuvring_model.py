@@ -22,7 +22,16 @@ from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
 from coeflab.model.joint_model import Component, joint_models
 from coeflab.model.joint_rows import joint_rows, measured, moving
-from coeflab.model.manoeuvring_terms import SETS, NamedTerm, canonical, read_equation, read_term, read_terms
+from coeflab.model.manoeuvring_terms import (
+    SETS,
+    NamedTerm,
+    canonical,
+    read_equation,
+    read_term,
+    read_terms,
+    split_equations,
+)
+from coeflab.model.misfit import next_terms_in_words, residuals_in_words
 from coeflab.model.scaling import Scaling
 from coeflab.model.secant import secant
 
@@ -32,6 +41,7 @@ summary = (
 citations = ("gertler1967", "feldman1979", "mackinnon1985", "bell2002")
 
 SCATTER_ONLY = "U95 holds the scatter of the points about this form; the error of the form itself is not in it."
+MORE_TERMS = "Add terms of a higher power or of two motions, or fit a narrower range."
 UNWEIGHTED = (
     "Rows weigh alike: their stated standard errors are noise of one run, not the error of the model. weights = yes "
     "uses them."
@@ -55,7 +65,8 @@ class Options:
     intercepts : str
         ``yes`` adds Y0, N0 ... to every component; ``no`` leaves only those that the terms name.
     constraints : tuple of str
-        Linear equations, kept exactly: ``Mw = -Nv``.
+        Linear equations, kept exactly and tested against the free fit: ``Mw = -Nv``; a text is split at commas and
+        semicolons.
     weights : str
         ``yes`` weighs rows by their standard errors.
     """
@@ -71,7 +82,7 @@ class Options:
 def _asked(options: Options, tables: Sequence[ForceTable]) -> tuple[tuple[NamedTerm, ...], tuple[NamedTerm, ...]]:
     """Terms to fit, and terms of the set that no row excites."""
     named = read_terms(options.terms, "manoeuvring_model.terms")
-    chosen = options.set or ("none" if named else "horizontal")
+    chosen = _set_of(options) or "none"
     if chosen == "none" and not named:
         raise InputError("no terms", "terms, or a set", column="manoeuvring_model.terms",
                          advice="For example terms = Yv,Yv|v|,Nv or set = horizontal.")  # fmt: skip
@@ -158,7 +169,12 @@ def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
             continue
         u95 = half if np.isfinite(half) else None
         status = Status.OK if u95 is not None else Status.SINGLE_ESTIMATOR
-        out.append(Coefficient(symbol, value, u95, status, parts=Parts(random=u95), window=_window(model, i), **shared))
+        at_rest = not np.any(model.terms[i].evaluate(model.x))
+        own = {"n_points": 0, "estimator": f"from the equations alone, no motion of {symbol} in its rows"}
+        out.append(
+            Coefficient(symbol, value, u95, status, parts=Parts(random=u95),
+                        window=None if at_rest else _window(model, i), **(shared | (own if at_rest else {})))
+        )  # fmt: skip
     return out
 
 
@@ -194,7 +210,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     InputError
         Unknown, repeated or unexcited terms; more terms than rows; equations that are unreadable or cannot hold.
     """
-    chosen = parse_options(Options, options, "manoeuvring_model")
+    given = {k: split_equations(o) if k == "constraints" and isinstance(o, str) else o for k, o in options.items()}
+    chosen = parse_options(Options, given, "manoeuvring_model")
     equations = [read_equation(c, "manoeuvring_model.constraints") for c in chosen.constraints]
     terms, idle = _asked(chosen, tables)
     components = {}
@@ -211,12 +228,19 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     n_runs = sum(map(len, tables))
     models, spread = joint_models(components, equations, "manoeuvring model", weighted=weighted, n_runs=n_runs)
     weights_said = {c: [WEIGHTED] if weighted else [UNWEIGHTED] if known else [] for c, known in stated.items()}
-    finished = tuple(_finished(m, weights_said[m.response], idle) for m in models)
+    tied = {symbol[0] for e in equations for symbol, _ in e.weights}
+    missed = {
+        m.response: ()
+        if m.response in tied
+        else next_terms_in_words(m, components[m.response].data.rows.errors if weighted else None, _set_of(chosen))
+        for m in models
+    }
+    finished = tuple(_finished(m, (*missed[m.response], *weights_said[m.response]), idle) for m in models)
     first = tables[0]
     coefficients = [c for m in finished for c in _coefficients(m, first.source.citation)]
     open_ones = [
         Coefficient(t.symbol, None, None, Status.NOT_DETERMINED, first.body, origin="fit", campaign=first.campaign,
-                    estimator="its motion does not occur in the tables")
+                    estimator="no motion in the tables")
         for t in idle
     ]  # fmt: skip
     every = tuple(coefficients + open_ones)
@@ -243,10 +267,16 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     )
 
 
-def _finished(model: FittedModel, weights: Sequence[str], idle: Sequence[NamedTerm]) -> FittedModel:
+def _set_of(chosen: Options) -> str:
+    """The set whose terms are fitted; empty for none."""
+    used = chosen.set or ("none" if chosen.terms else "horizontal")
+    return "" if used == "none" else used
+
+
+def _finished(model: FittedModel, more: Sequence[str], idle: Sequence[NamedTerm]) -> FittedModel:
     """The model with what a reader must know about it, in words."""
     absent = [t.symbol for t in idle if t.component == model.response]
-    said = [*model.statements, *_with_secants(model), *weights, SCATTER_ONLY]
+    said = [*residuals_in_words(model, MORE_TERMS), *model.statements, *_with_secants(model), *more, SCATTER_ONLY]
     if absent:
         said.insert(0, f"Not determined, as the tables do not hold their motion: {', '.join(absent)}.")
     return replace(model, statements=tuple(said))

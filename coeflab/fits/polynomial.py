@@ -18,6 +18,7 @@ from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import Extrapolation, FittedModel, in_words
 from coeflab.model.force_table import ForceTable
+from coeflab.model.misfit import residuals_in_words
 from coeflab.model.regression import ANGLES, Area, collect, model_of
 from coeflab.model.scaling import Scaling
 from coeflab.model.swept import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
@@ -79,8 +80,10 @@ def _model(
         rule=Extrapolation(chosen.extrapolation),
     )
     exact = sharpened(model.fit, terms, rows.x, rows.y, rows.errors)
-    words_ = (*said, *in_words(exact, symbols))
-    return replace(model, response=named_response(name, area), fit=exact, statements=words_)
+    found = replace(model, response=named_response(name, area), fit=exact)
+    freer = f"Try a higher degree, such as degree = {chosen.degree + (1 if chosen.parity == 'full' else 2)}"
+    freer += "." if chosen.parity == "full" else ", or parity = full."
+    return replace(found, statements=(*said, *residuals_in_words(found, freer), *in_words(exact, symbols)))
 
 
 def _coefficients(

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from coeflab.core.options import bounded, parse_options
 from coeflab.kernels import families, slopes
 from coeflab.kernels.bootstrap import draw_counts, pairs, percentile_interval, wild
+from coeflab.kernels.diagnostics import levels
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.model.fit_result import BootstrapInterval, FitResult, Sensitivity, Sweep
 from coeflab.model.force_table import ForceTable
@@ -27,7 +28,7 @@ summary = "slopes at the origin by several forms and windows, with random and mo
 citations = ("mackinnon1985", "bell2002", "imbens2016", "davidson2008", "hurvich1989")
 
 Array = NDArray[np.float64]
-ODD = {"v": "YNK", "w": "ZM", "r": "YNK", "q": "ZM", "p": "K", "dr": "YNK", "ds": "ZM"}
+ODD = {"v": "YNK", "w": "ZM", "r": "YNK", "q": "ZM", "p": "K", "dr": "YNK", "ds": "ZM", "db": "ZM"}
 EVEN = {"v": "X", "w": "X", "r": "X", "q": "X"}
 SMALLEST_ANGLE = np.sin(np.radians(3.0))
 ANGLE_CAPS = (10.0, 12.0, 18.0)
@@ -124,6 +125,7 @@ def _sweep(
         campaign=rows.table.campaign,
         body=rows.table.body,
         offset=offset,
+        borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces else "",
     )
 
 
@@ -137,8 +139,9 @@ def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
     r = sweep.recommendation
     if r.value is None:
         return Coefficient(
-            sweep.symbol, None, None, Status.TOO_FEW_POINTS, sweep.body, origin="fit", table=sweep.table,
-            campaign=sweep.campaign, n_points=len(sweep.x), citation=citation,
+            sweep.symbol, None, None, Status.NOT_DETERMINED if r.panel else Status.TOO_FEW_POINTS, sweep.body,
+            origin="fit", table=sweep.table, campaign=sweep.campaign, n_points=len(sweep.x), citation=citation,
+            estimator="no form stands its next-term test or has an interval" if r.panel else "",
         )  # fmt: skip
     widest = max(r.members, key=lambda e: e.window)
     return Coefficient(
@@ -152,7 +155,8 @@ def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
         table=sweep.table,
         campaign=sweep.campaign,
         estimator=("median of " if len(r.members) > 1 else "")
-        + ", ".join(e.family.name.format(x=f"{sweep.variable}'") for e in r.members),
+        + ", ".join(e.family.name.format(x=f"{sweep.variable}'") for e in r.members)
+        + (f", with the rest row of {sweep.borrowed}" if sweep.borrowed else ""),
         window=sweep.window_of(widest),
         n_points=len(widest.rows),
         citation=citation,
@@ -200,6 +204,26 @@ def _covariance(sweeps: list[Sweep], coefficients: list[Coefficient]) -> Array:
     return out
 
 
+def _jobs(tables: Sequence[ForceTable], length: float) -> dict[str, tuple[SweepRows, str, str, str]]:
+    """Which table gives which coefficient: the one whose sweep has the most settings, the first among equals."""
+    out: dict[str, tuple[SweepRows, str, str, str]] = {}
+    most: dict[str, int] = {}
+    for variable, odd in ODD.items():
+        for table in (t for t in tables if variable in t.varies):
+            rows = sweep_rows(table, variable, tables, length)
+            wanted = [(c, f"{c}{variable}", "odd") for c in odd]
+            for c in EVEN.get(variable, ""):
+                wanted += [(c, f"{c}0", "even"), (c, f"{c}{variable}{variable}", "even")]
+            for component, symbol, parity in wanted:
+                if component not in table.forces:
+                    continue
+                usable = table.usable[component][rows.rows]
+                settings = len(np.unique(levels(rows.x[rows.rows][usable])))
+                if settings > most.get(symbol, -1):
+                    out[symbol], most[symbol] = (rows, variable, component, parity), settings
+    return out
+
+
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
     """Fit every coefficient that the tables of one campaign give.
 
@@ -223,19 +247,11 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     shift = arm_shift(tables)
     tables = [t.about(wanted + np.array([shift, 0.0, 0.0])) for t in tables]
     sweeps: list[Sweep] = []
-    for table in tables:
-        for variable in (v for v in (*ODD,) if v in table.varies):
-            rows = sweep_rows(table, variable, tables, length)
-            jobs = [(c, f"{c}{variable}", "odd") for c in ODD[variable]]
-            for c in EVEN.get(variable, ""):
-                jobs += [] if any(s.symbol == f"{c}0" for s in sweeps) else [(c, f"{c}0", "even")]
-                jobs += [(c, f"{c}{variable}{variable}", "even")]
-            for component, symbol, parity in jobs:
-                if component in table.forces and not any(s.symbol == symbol for s in sweeps):
-                    static = f"{component}{INCIDENCE.get(variable, '')}"
-                    known = [s.recommendation.value for s in sweeps if s.symbol == static and s.table == table.name]
-                    slope = known[0] if known and known[0] is not None else 0.0
-                    sweeps.append(_sweep(rows, variable, component, symbol, parity, length, chosen, slope))
+    for symbol, (rows, variable, component, parity) in _jobs(tables, length).items():
+        static = f"{component}{INCIDENCE.get(variable, '')}"
+        known = [s.recommendation.value for s in sweeps if s.symbol == static and s.table == rows.table.name]
+        slope = known[0] if known and known[0] is not None else 0.0
+        sweeps.append(_sweep(rows, variable, component, symbol, parity, length, chosen, slope))
     first = tables[0]
     coefficients = [_coefficient(s, first.source.citation) for s in sweeps]
     return FitResult(

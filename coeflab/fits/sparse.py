@@ -30,6 +30,7 @@ from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
 from coeflab.model.joint_rows import JointRows, joint_rows, measured, moving
 from coeflab.model.manoeuvring_terms import symmetric
+from coeflab.model.misfit import residuals_in_words
 from coeflab.model.out_of_sample import every_third_point
 from coeflab.model.regression import model_of
 from coeflab.model.scaling import Scaling
@@ -39,7 +40,8 @@ citations = ("brunton2016", "kaptanoglu2022", "fasel2022", "chen2008", "mackinno
 
 RIDGE = 1e-8
 FEWEST_A_FOLD = 2
-AFTER_SELECTION = "The terms were chosen on these rows; U95 is that of a refit which does not know this, and too small."
+AFTER_SELECTION = "The terms were chosen on these rows, so U95 and the error of left-out rows are too small."
+WIDER = "Allow a larger library: a higher degree, or more variables."
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +134,8 @@ def _model(data: JointRows, component: str, terms: tuple[Term, ...], chosen: Opt
         *_alike(matrix, rows.y, component, terms, intercept),
         *describe(selection, _names(component, terms, selection)),
         *model.statements,
-        str(every_third_point(model)) + " The choice of terms has seen these rows.",
+        *residuals_in_words(model, WIDER),
+        str(every_third_point(model)),
         AFTER_SELECTION,
     )
     return replace(model, statements=said), short

@@ -23,9 +23,20 @@ from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import Extrapolation, FittedModel, in_words
 from coeflab.model.force_table import ForceTable
+from coeflab.model.misfit import residuals_in_words
 from coeflab.model.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
 from coeflab.model.scaling import Scaling
-from coeflab.model.swept import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
+from coeflab.model.swept import (
+    AREAS,
+    PRIMES,
+    allowed,
+    area_of,
+    area_settings,
+    check_varies,
+    named_response,
+    only_moving,
+    without_blanks,
+)
 
 summary = "polynomial surfaces in two variables, additive or with interaction, each measured against the other"
 citations = ("huuv2025", "allen1974", "hurvich1989", "mackinnon1985", "bell2002")
@@ -51,8 +62,9 @@ class Options:
         Of each variable (``tensor``, ``additive``) or of the product (``total``).
     form : str
     parity : tuple of str
-        ``variable=odd|even|full|symmetric``, full where not named. ``symmetric`` takes the parity of each response
-        from port-starboard symmetry: side force, roll and yaw odd in beta, the others even.
+        ``variable=odd|even|full|symmetric``. ``symmetric`` takes the parity of each response from port-starboard
+        symmetry: side force, roll and yaw odd in beta, the others even. That is the default of the variables which the
+        symmetry turns around (beta, v, p, r, dr; of two such variables their product counts); others are full.
     extrapolation : str
         What a reader outside the data is to do.
     area : float
@@ -71,10 +83,24 @@ class Options:
     area_name: str = one_of(PRIMES, *AREAS)
 
 
+def _sided(chosen: Options) -> list[str]:
+    """Variables that port-starboard symmetry turns around."""
+    return [v for v in chosen.variables if v == "beta" or v in PORT_STARBOARD]
+
+
+def _mirrored(terms: tuple[Term, ...], chosen: Options, name: str) -> tuple[Term, ...]:
+    """The terms that symmetry allows, unless the parity of a variable that it turns around is asked for."""
+    sided = _sided(chosen)
+    if not sided or any(word.partition("=")[0] in sided for word in chosen.parity):
+        return terms
+    odd = name in ODD_RESPONSES
+    return tuple(t for t in terms if sum(t.odd_in(v) for v in sided) % 2 == odd)
+
+
 def _parities(chosen: Options, name: str) -> dict[str, str]:
     """Parity of every variable for one response."""
     out: dict[str, str] = {}
-    sided = [v for v in chosen.variables if v == "beta" or v in PORT_STARBOARD]
+    sided = _sided(chosen)
     for word in chosen.parity:
         variable, _, rule = word.partition("=")
         if variable not in chosen.variables or rule not in PARITIES:
@@ -97,12 +123,16 @@ def _fitted(rows: Rows, chosen: Options, form: str, area: Area) -> FittedModel |
     """One form; None where it has no terms or more than the rows can carry."""
     variables = tuple(rows.x)
     rule = _parities(chosen, rows.response)
-    terms = power_terms(variables, chosen.degree, form, rule)
+    check_varies(rows)
+    every = power_terms(variables, chosen.degree, form, rule)
+    terms = _mirrored(every, chosen, rows.response)
     if not terms or len(terms) >= len(rows.y):
         return None
     name = named_response(rows.response, area)
     symbols = tuple(f"{name}_{t if t.factors else 0}" for t in terms)
     parities = "".join(f", {r} in {v}" for v, r in rule.items() if r != "full")
+    if len(terms) < len(every):
+        parities += f", {'odd' if rows.response in ODD_RESPONSES else 'even'} in {' times '.join(_sided(chosen))}"
     shape = {
         "tensor": f"surface of degree {chosen.degree} in each of {' and '.join(variables)}",
         "total": f"surface of total degree {chosen.degree} in {' and '.join(variables)}",
@@ -167,17 +197,17 @@ def sum_of_slices(model: FittedModel, columns: Mapping[str, Array]) -> tuple[Arr
 
 
 def _slices_in_words(model: FittedModel) -> tuple[str, ...]:
-    """A warning where the terms hold a value at rest that a sum of slices would count twice."""
+    """By how much the printed sum of slices is wrong, where the value at rest can be told from zero."""
     if Term() not in model.terms:
         return ()
-    i = model.terms.index(Term())
-    value = float(model.fit.coefficients[i])
-    if not np.isfinite(value):
+    symbol = model.symbols[model.terms.index(Term())]
+    value, half = model.named(symbol)
+    if not (np.isfinite(half) and abs(value) > half):
         return ()
     first, second = model.domain.variables
     return (
-        f"The slices over {first} and over {second} both hold {model.symbols[i]} = {value:.4g}: their plain sum counts it "
-        "twice, so subtract it once.",
+        f"The printed form {model.response}({first}) + {model.response}({second}) counts {symbol} = {value:.4g} +- {half:.2g} twice and is wrong "
+        f"by that much everywhere; this fit holds it once.",
     )
 
 
@@ -192,8 +222,12 @@ def _model(tables: Sequence[ForceTable], name: str, chosen: Options, area: Area,
             column="surface.degree", advice="Run more points, ask for a lower degree or another parity.",
         )  # fmt: skip
     full = fitted["tensor"] or fitted["total"] if chosen.form == "additive" else model
+    freer = f"Try a higher degree, such as degree = {chosen.degree + 1}"
+    freer += ", or form = tensor" if chosen.form == "additive" else ""
+    freer += "." if chosen.parity or not _sided(chosen) else f", or parity = {_sided(chosen)[0]}=full."
     words_ = (
         *said,
+        *residuals_in_words(model, freer),
         compared(fitted["additive"], full, rows),
         *(_slices_in_words(model) if chosen.form == "additive" else ()),
         *in_words(model.fit, model.symbols),
@@ -226,7 +260,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     InputError
         No such rows, a response that the tables lack, more terms than rows, or an area without its name.
     """
-    chosen = parse_options(Options, options, "surface")
+    chosen = parse_options(Options, without_blanks(options, "parity"), "surface")
     if len(set(chosen.variables)) != 2 or len(chosen.variables) != 2:
         raise InputError(
             f"the variables {', '.join(chosen.variables) or 'none'}", "two different ones", column="surface.variables"
@@ -248,7 +282,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
             "variables": " ".join(chosen.variables),
             "degree": str(chosen.degree),
             "form": chosen.form,
-            "parity": " ".join(chosen.parity) or "full",
+            "parity": " ".join(chosen.parity) or "port-starboard symmetry",
             "extrapolation": chosen.extrapolation,
             **area_settings(area),
         },

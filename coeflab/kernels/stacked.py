@@ -8,14 +8,37 @@ responses: CR2 with the degrees of freedom of Bell & McCaffrey (2002), which is 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.kernels.cross_validation import constrained_space
 from coeflab.kernels.least_squares import Array, Factorised, Index, factorise
 from coeflab.kernels.linear_model import LinearFit, fit_linear, runs_probability
-from coeflab.kernels.robust import FULL_LEVERAGE, t_factor
+from coeflab.kernels.robust import FULL_LEVERAGE, t_factor, t_probability
+
+OPEN = 1e-7
+ROUNDING = 1e-10
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Freed:
+    """The fit without its equations, against them.
+
+    Attributes
+    ----------
+    probability : (k,) array
+        Of so large a violation of each equation by noise alone; NaN where the rows do not tell.
+    together : float
+        The same for the equations that the rows test only in combination, by Bonferroni; NaN where there is none.
+    open : (p,) bool array
+        Coefficients that the rows alone leave open.
+    """
+
+    probability: Array
+    together: float
+    open: NDArray[np.bool_]
 
 
 def influence(design: Array, errors: Array | None = None) -> Array:
@@ -79,14 +102,82 @@ def _by_run(f: Factorised, back: Array, residuals: Array, run: Index, n_runs: in
 
 
 def scatter(design: Array, response: Array, errors: Array | None) -> float:
-    """Residual standard deviation of one response by itself; the response's own size where nothing is left over."""
+    """Residual standard deviation of one response by itself; the response's own size where nothing is left over.
+
+    1 for a response of zeros, which has no size.
+    """
     f = factorise(design, None if errors is None else errors**-2.0)
     weighted = response * f.root_weights
     rest = float(np.linalg.norm(weighted - f.basis @ (f.basis.T @ weighted)))
     size = float(np.linalg.norm(weighted))
     if f.freedom < 1 or rest <= 1e-12 * size:
-        return float(max(size / np.sqrt(len(response)), 1e-300))
+        return float(size / np.sqrt(len(response))) or 1.0
     return float(rest / np.sqrt(f.freedom))
+
+
+def _stack(designs: Sequence[Array], responses: Sequence[Array], errors: Sequence[Array | None]) -> tuple[Array, Array]:
+    """Block design (n, p) of all responses, and the scatter (n,) that weighs its rows."""
+    design = np.zeros((sum(map(len, responses)), sum(d.shape[1] for d in designs)))
+    noise, row, column = [], 0, 0
+    for d, y, e in zip(designs, responses, errors, strict=True):
+        design[row : row + len(y), column : column + d.shape[1]] = d
+        relative = np.ones(len(y)) if e is None else e / float(np.sqrt(np.mean(e**2)))
+        noise.append(relative * scatter(d, y, e))
+        row, column = row + len(y), column + d.shape[1]
+    return design, np.concatenate(noise)
+
+
+def freed(
+    designs: Sequence[Array],
+    responses: Sequence[Array],
+    runs: Sequence[Index],
+    constraint: tuple[Array, Array],
+    errors: Sequence[Array | None],
+    n_runs: int,
+) -> Freed:
+    """Test every equation c b = d by the coefficients of the fit that has none of them.
+
+    A t test of c b - d, its error by run (CR2), degrees of freedom of Bell & McCaffrey (2002) for that contrast; both
+    stand unequal noise, and errors of one run that are correlated between responses.
+
+    Parameters
+    ----------
+    designs, responses, runs, constraint, errors, n_runs
+        Of `fit_stacked`.
+    """
+    design, sigma = _stack(designs, responses, errors)
+    y, (c, d) = np.concatenate(responses), constraint
+    size = np.linalg.norm(design / sigma[:, None], axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    f = factorise(design / size, sigma**-2.0)
+    norms = np.linalg.norm(f.design, axis=0)
+    null = f.null / np.where(norms > 0.0, norms, 1.0)[:, None]
+    null = null / np.maximum(np.linalg.norm(null, axis=0), 1e-300)
+    lengths = np.linalg.norm(c / size, axis=1)
+    contrast, right = c / size / lengths[:, None], d / lengths
+    hidden = contrast @ null
+    told = np.linalg.norm(hidden, axis=1) <= OPEN
+    probability = np.full(len(d), np.nan)
+    stack = np.concatenate(runs)
+    probability[told] = _violated(f, contrast[told], right[told], y, stack, n_runs)
+    left, singular, _ = np.linalg.svd(hidden[~told])
+    mixed = left[:, int(np.sum(singular > OPEN)) :].T
+    combined = _violated(f, mixed @ contrast[~told], mixed @ right[~told], y, stack, n_runs)
+    known = combined[np.isfinite(combined)]
+    together = float(min(1.0, len(known) * known.min())) if len(known) else float("nan")
+    return Freed(probability, together, np.any(np.abs(null) > OPEN, axis=1))
+
+
+def _violated(f: Factorised, contrast: Array, right: Array, y: Array, run: Index, n_runs: int) -> Array:
+    """Probability of contrast @ b - right by noise alone, shape (k,); NaN where it hangs on single rows."""
+    weighted = f.root_weights * y
+    inner = f.back @ (f.basis.T @ weighted)
+    spread, freedom = _by_run(f, contrast @ f.back, weighted - f.basis @ (f.basis.T @ weighted), run, n_runs)
+    error, violation = np.linalg.norm(spread, axis=1), np.abs(contrast @ inner - right)
+    rounding = ROUNDING * (np.abs(contrast) @ np.abs(inner) + np.abs(right))
+    by_chance = t_probability(violation / np.where(error > rounding, error, 1.0), np.maximum(freedom, 1e-3))
+    exact = np.where(violation <= 10.0 * rounding, 1.0, 0.0)
+    return np.where(freedom > 0.0, np.where(error > rounding, by_chance, exact), np.nan)
 
 
 def fit_stacked(
@@ -122,14 +213,8 @@ def fit_stacked(
     ValueError
         The constraint cannot hold.
     """
-    design = np.zeros((sum(map(len, responses)), sum(d.shape[1] for d in designs)))
-    noise, row, column = [], 0, 0
-    for d, y, e in zip(designs, responses, errors, strict=True):
-        design[row : row + len(y), column : column + d.shape[1]] = d
-        relative = np.ones(len(y)) if e is None else e / float(np.sqrt(np.mean(e**2)))
-        noise.append(relative * scatter(d, y, e))
-        row, column = row + len(y), column + d.shape[1]
-    sigma, y = np.concatenate(noise), np.concatenate(responses)
+    design, sigma = _stack(designs, responses, errors)
+    y = np.concatenate(responses)
     size = np.linalg.norm(design / sigma[:, None], axis=0)
     size = np.where(size > 0.0, size, 1.0)
     scaled = (constraint[0] / size, constraint[1])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +12,8 @@ from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import derivative, primed
 from coeflab.core.version import VERSION
-from coeflab.model.body import Body
-from coeflab.model.coefficient import Coefficient, Status
+from coeflab.model.body import Body, MassProperties
+from coeflab.model.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
 from coeflab.model.model_record import recorded
@@ -99,12 +100,12 @@ def _covered(tables: Sequence[ForceTable], length: float) -> tuple[CoveredRange,
     for t in tables:
         for variable in t.varies:
             x = t.primed_motion(variable, length)
-            angle = variable in ("v", "w")
             low, high = float(np.min(x)), float(np.max(x))
+            angle = variable in ("v", "w") and max(-low, high) <= 1.0
             if angle:
                 low, high = float(np.arcsin(low)), float(np.arcsin(high))
-            unit = "1" if variable in "pqr" else "rad"
-            name = {"v": "asin(v/U)", "w": "asin(w/U)"}.get(variable, variable + "'" if variable in "pqr" else variable)
+            unit: Literal["rad", "1"] = "rad" if angle or variable in t.controls else "1"
+            name = f"asin({variable}/U)" if angle else variable if variable in t.controls else f"{variable}'"
             out.append(CoveredRange(variable=name, low=low, high=high, unit=unit, campaign=t.campaign))
     return tuple(out)
 
@@ -126,6 +127,19 @@ def _owners(chosen: Sequence[FitResult]) -> tuple[dict[str, str], list[str]]:
         f"{component}' is that of {owner[component]}; left out, from {fit}: {', '.join(dict.fromkeys(symbols))}"
         for (component, fit), symbols in left.items()
     ]
+
+
+def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tuple[MassProperties | None, list[str]]:
+    """Mass properties about the set's reference point; none where only another datum or another axis leads there."""
+    shift = among.reference_point - body.reference_point
+    if body.datum != among.datum or np.any(np.abs(shift[1:]) > 1e-6):
+        return None, ["mass properties left out: the body states them about a point that no shift along x leads from"]
+    if abs(shift[0]) <= 1e-6:
+        return mass, []
+    dx = float(shift[0])
+    inertia = None if mass.inertia is None else mass.inertia - 2.0 * mass.mass_moment * dx + mass.mass * dx**2
+    moved = MassProperties(mass.mass, mass.mass_moment - mass.mass * dx, inertia)
+    return moved, [f"mass properties moved by {dx:+.6g} m along x to the reference point"]
 
 
 def assemble(
@@ -201,9 +215,9 @@ def assemble(
     notes += repeated
     configuration = body.configuration(group.body) if body else None
     mass = configuration.mass if configuration else None
-    if mass and body and not np.allclose(body.reference_point, first.reference_point, atol=1e-6):
-        notes.append("mass properties left out: the body states them about another point")
-        mass = None
+    if mass and body:
+        mass, note = _mass_about(mass, body, first)
+        notes += note
     prime = mass.primed(first.scaling, conditions.density) if mass else (1.0, 0.0)
     return ParameterFile(
         name=group.name,
@@ -233,7 +247,11 @@ def assemble(
             coeflab_version=VERSION,
             study=study,
             inputs=tuple(InputRecord(name=i.name, sha256=i.sha256) for i in inputs),
-            citations=tuple(dict.fromkeys([c.citation for c in coefficients if c.citation] + [*chosen[0].citations])),
+            citations=tuple(
+                dict.fromkeys(
+                    [c.citation for c in coefficients if c.citation] + [k for f in chosen for k in f.citations]
+                )
+            ),
             notes=tuple(notes),
         ),
     )

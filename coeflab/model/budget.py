@@ -22,6 +22,7 @@ from coeflab.model.input_effects import InputPart, acting, moved_by
 
 Array = NDArray[np.float64]
 DRAWS, SEED = 2000, 1
+TELLING = 0.05
 ALWAYS_OPEN = {
     "cfd": ("turbulence model", "domain and boundary conditions"),
     "experiment": ("rig interference and blockage",),
@@ -148,7 +149,7 @@ def _budget(
             lacking.append(name)
         else:
             found[name] = part
-    study = gravest(grid_studies(table, sweep.component)) if table.source.kind == "cfd" else None
+    study = _grid_study(table, sweep.component) if table.source.kind == "cfd" else None
     relative = None if study is None else study.convergence.relative
     if relative is not None:
         found["grid"] = relative * abs(value)
@@ -162,6 +163,14 @@ def _budget(
         c.symbol, sweep.campaign, sweep.body, sweep.table, table.source.kind, value, parts, u95, inputs, total, study,
         2.0 * max(apart) / 3.0**0.5 if apart else None, tuple(lacking),
     )  # fmt: skip
+
+
+def _grid_study(table: ForceTable, component: str) -> GridStudy | None:
+    """The gravest grid study of a component; one where the force is next to nothing has no relative error to carry on."""
+    force = table.forces[component][table.usable[component]]
+    least = TELLING * float(np.max(np.abs(force), initial=0.0))
+    studies = grid_studies(table, component)
+    return gravest(tuple(g for g in studies if abs(g.convergence.values[g.convergence.used]) >= least))
 
 
 def _undeclared(sweep: Sweep, table: ForceTable, inputs: tuple[InputPart, ...]) -> list[str]:

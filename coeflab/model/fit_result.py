@@ -70,6 +70,8 @@ class Sweep:
     table, campaign, body : str
     offset : str
         What was subtracted before the fit, if anything.
+    borrowed : str
+        Table that lent its row at rest, if any.
     """
 
     symbol: str
@@ -91,6 +93,7 @@ class Sweep:
     campaign: str
     body: str
     offset: str = ""
+    borrowed: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "x", locked(self.x))

@@ -129,9 +129,11 @@ class FittedModel:
         rows = design(self.terms, columns)
         known = np.isfinite(self.fit.coefficients)
         values = np.where(np.any(rows[:, ~known] != 0.0, axis=1), np.nan, rows[:, known] @ self.fit.coefficients[known])
+        bare = known & ~np.isfinite(self.fit.half_width)
         half = np.nan_to_num(self.fit.half_width)
         spread = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", rows * half, self.fit.correlation, rows * half), 0.0))
-        return values, np.where(np.isfinite(values), spread, np.nan), self.domain.contains(columns)
+        sure = np.isfinite(values) & ~np.any(rows[:, bare] != 0.0, axis=1)
+        return values, np.where(sure, spread, np.nan), self.domain.contains(columns)
 
     def named(self, symbol: str) -> tuple[float, float]:
         """Value and 95 % half-width of one coefficient."""

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
+AT_REST = float(np.sin(np.radians(0.05)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,9 +125,10 @@ class ForceTable:
 
     @property
     def varies(self) -> tuple[str, ...]:
-        """Motion variables and control angles that change in the table (surge does not count)."""
-        names = [m for m in MOTIONS if m != "u" and np.any(self.motion[m] != 0.0)]
-        return tuple(names + [c for c, a in self.controls.items() if np.any(a != 0.0)])
+        """Motion variables and control angles that a row of the table holds, beyond rounding (surge does not count)."""
+        names = [m for m in MOTIONS if m != "u"] + list(self.controls)
+        length = self.scaling.length
+        return tuple(m for m in names if np.any(np.abs(self.primed_motion(m, length)) > AT_REST))
 
     def primed_motion(self, variable: str, length: float) -> Array:
         """v/U, r L/U or a control angle, shape (n,)."""

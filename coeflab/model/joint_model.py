@@ -11,11 +11,12 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.kernels.cross_validation import predict_left_out, thirds
 from coeflab.kernels.least_squares import Array, Index
-from coeflab.kernels.stacked import fit_stacked, influence, part_of, scatter, spread_by_run
+from coeflab.kernels.stacked import fit_stacked, freed, influence, part_of, scatter, spread_by_run
 from coeflab.kernels.terms import design
 from coeflab.model.fitted_model import Domain, FittedModel, in_words
 from coeflab.model.joint_rows import JointRows
 from coeflab.model.manoeuvring_terms import Equation, NamedTerm, read_term
+from coeflab.model.misfit import UNLIKELY, chance
 from coeflab.model.out_of_sample import errors_of
 from coeflab.model.regression import model_of
 
@@ -116,6 +117,61 @@ def _one(part: Component, form: str, errors: Array | None, n_runs: int) -> tuple
     return model, spread_by_run(model.fit, moves, part.data.run, n_runs)
 
 
+def _equations_in_words(
+    parts: Sequence[Component],
+    equations: Sequence[Equation],
+    constraint: Constraint,
+    errors: Sequence[Array | None],
+    n_runs: int,
+) -> list[list[str]]:
+    """Per component: whether the data stand the equations, how components are weighed, what comes from equations alone."""
+    found = freed(
+        [p.matrix for p in parts],
+        [p.data.rows.y for p in parts],
+        [p.data.run for p in parts],
+        constraint,
+        errors,
+        n_runs,
+    )
+    spoken, tested = [e.spoken for e in equations], int(np.isfinite(found.probability).sum())
+    said = [f"Kept exactly: {', '.join(spoken)}."]
+    rejected, how = found.together < UNLIKELY, " by t tests of the free fit (errors by run, CR2)"
+    how += f", p times {tested} for that many equations" if tested > 1 else ""
+    for text, p in zip(spoken, np.minimum(found.probability * tested, 1.0), strict=True):
+        if np.isfinite(p):
+            verb = "reject" if p < UNLIKELY else "do not contradict"
+            said.append(f"The data {verb} {text} ({chance(p)}){how}.")
+            how = ""
+            rejected |= p < UNLIKELY
+    untold = [t for t, p in zip(spoken, found.probability, strict=True) if not np.isfinite(p)]
+    if untold and np.isfinite(found.together):
+        verb = "reject" if found.together < UNLIKELY else "do not contradict"
+        said.append(f"The data {verb} {' with '.join(untold)} ({chance(found.together)}){how}.")
+    elif untold:
+        said.append(f"Not tested, as the rows without equations leave a coefficient open: {', '.join(untold)}.")
+    if rejected:
+        said.append("U95 does not hold the error that a rejected equation puts into the values.")
+    if len(parts) > 1:
+        sizes = [scatter(p.matrix, p.data.rows.y, e) for p, e in zip(parts, errors, strict=True)]
+        listed = ", ".join(f"{p.name}' {s:.2g}" for p, s in zip(parts, sizes, strict=True))
+        low, high = int(np.argmin(sizes)), int(np.argmax(sizes))
+        said.append(
+            f"Components are combined with weights 1 / scatter^2 of their own free residuals ({listed}; the size of the "
+            f"response where no residual is left): a row of {parts[low].name} counts as "
+            f"{(sizes[high] / sizes[low]) ** 2:.3g} rows of {parts[high].name}."
+        )
+    out, at = [], 0
+    for p in parts:
+        free = [s for s, lost in zip(p.symbols, found.open[at : at + len(p.terms)], strict=True) if lost]
+        at += len(p.terms)
+        idle = [s for s, column in zip(p.symbols, p.matrix.T, strict=True) if not np.any(column)]
+        own = [f"{s} comes from the equations alone: its motion does not occur in the rows of {p.name}." for s in idle]
+        if rest := [s for s in free if s not in idle]:
+            own.append(f"Without the equations the rows leave open: {', '.join(rest)}.")
+        out.append([*said, *own])
+    return out
+
+
 def _several(
     parts: Sequence[Component], constraint: Constraint, form: str, errors: Sequence[Array | None], n_runs: int
 ) -> tuple[list[FittedModel], Array]:
@@ -205,10 +261,10 @@ def joint_models(
         else:
             fitted, spread = _several(parts, constraint, form, errors, n_runs)
         said, at = _left_out(parts, constraint, errors), 0
-        kept = [str(e) for e in own]
-        for c, model, more in zip(names, fitted, said, strict=True):
-            extra = [f"Kept exactly: {', '.join(kept)}."] if kept else []
-            models[c] = replace(model, statements=(*components[c].data.statements, *extra, *model.statements, *more))
+        extras = _equations_in_words(parts, own, constraint, errors, n_runs) if constraint else [[]]
+        for c, model, extra, more in zip(names, fitted, extras, said, strict=True):
+            words = (*components[c].data.statements, *extra, *model.statements, *more)
+            models[c] = replace(model, statements=words)
             spreads[c] = spread[at : at + len(model.symbols)]
             at += len(model.symbols)
     return [models[c] for c in components], np.vstack([spreads[c] for c in components])

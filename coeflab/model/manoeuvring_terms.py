@@ -162,6 +162,15 @@ class Equation:
             text += f"{' ' if text else ''}{sign}{size}{symbol}"
         return f"{text} = {self.right!r}"
 
+    @property
+    def spoken(self) -> str:
+        """As a person writes it: ``Mw = -Nv`` where two coefficients are multiples of each other."""
+        if self.right != 0.0 or len(self.weights) != 2:
+            return str(self)
+        (first, a), (second, b) = self.weights
+        ratio = -b / a
+        return f"{first} = {'-' if ratio < 0.0 else ''}{'' if abs(ratio) == 1.0 else f'{abs(ratio):.6g} '}{second}"
+
 
 def _side(text: str, whole: str, place: str) -> tuple[dict[Key, tuple[str, float]], float]:
     """Weights by term and the sum of the plain numbers of one side."""
@@ -193,8 +202,13 @@ def _side(text: str, whole: str, place: str) -> tuple[dict[Key, tuple[str, float
 def _not_an_equation(text: str, place: str) -> InputError:
     return InputError(
         shown(text), 'a linear equation such as "Mw = -Nv" or "2 Yr + Nv = 0.01"', column=place,
-        advice="On a command line write it without blanks: Mw=-Nv,Zw=Yv.",
+        advice="Separate several equations by commas: Mw = -Nv, Zw = Yv.",
     )  # fmt: skip
+
+
+def split_equations(text: str) -> list[str]:
+    """The equations of one text, separated by commas or semicolons; blanks inside them do not matter."""
+    return [part.strip() for part in re.split("[,;]", text) if part.strip()]
 
 
 def read_equation(text: str, place: str) -> Equation:

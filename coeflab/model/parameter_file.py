@@ -16,6 +16,7 @@ from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.symbols import derivative
 from coeflab.core.toml import read_text
 from coeflab.model.parameter_model import ParameterModel
+from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.schema_types import Finite, Name, NotNegative, Positive, Strict
 
 SCHEMA_VERSION = "1.1"
@@ -180,6 +181,14 @@ class ParameterFile(Strict):
         twice = sorted({s for s in symbols if symbols.count(s) > 1})
         if twice:
             raise ValueError(f"{', '.join(twice)} stands more than once")
+        primes = Scaling(self.scaling.length, self.scaling.length_name)
+        at = Conditions(self.conditions.density, self.conditions.speed)
+        for c in self.coefficients:
+            if c.value is None or c.value_si is None:
+                continue
+            si = c.value * primes.factor(c.symbol, at)
+            if not math.isclose(c.value_si, si, rel_tol=1e-6, abs_tol=1e-12 * abs(si)):
+                raise ValueError(f"{c.symbol}: value_si {c.value_si:g} is not its value at these conditions, {si:g}")
         unknown = sorted(set(self.covariance.symbols) - set(symbols))
         if unknown:
             raise ValueError(f"the covariance names {', '.join(unknown)}, which are no coefficients")

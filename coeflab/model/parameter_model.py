@@ -18,6 +18,7 @@ from coeflab.model.fitted_model import Extrapolation
 from coeflab.model.schema_types import Finite, Name, NotNegative, Positive, Strict
 
 Array = NDArray[np.float64]
+ANGLE_OF = {"alpha": "w", "beta": "v"}
 
 
 class ModelVariable(Strict):
@@ -119,9 +120,10 @@ class ParameterModel(Strict):
         """Values, 95 % half-widths of the mean, and whether each point lies inside the convex hull of the data.
 
         Outside the hull the model's rule decides. ``refuse`` gives NaN. ``clamp`` gives the value at the nearest
-        point of the hull's bounding box. ``taper`` blends the free continuation into that value within a tenth of the
-        box (`coeflab.kernels.extrapolation.taper_weight`). Inside the box but outside the hull, both give the model's
-        own value. A point at which an undetermined term counts is NaN, and so is a half-width without covariance.
+        point of the hull, in coordinates divided by the widths of its bounding box
+        (`coeflab.kernels.extrapolation.clamped`). ``taper`` blends the free continuation into that value within a
+        tenth of a box width from the hull (`coeflab.kernels.extrapolation.taper_weight`). A point at which an
+        undetermined term counts is NaN, and so are one without a nearest point and a half-width without covariance.
 
         Parameters
         ----------
@@ -140,13 +142,16 @@ class ParameterModel(Strict):
             )  # fmt: skip
         points = np.column_stack([np.asarray(columns[v], dtype=np.float64) for v in self.names])
         domain = self.domain
-        within = np.asarray(inside(np.array(domain.half_spaces).reshape(-1, len(self.names) + 1), points), dtype=bool)
+        spaces = np.array(domain.half_spaces, dtype=np.float64).reshape(-1, len(self.names) + 1)
+        within = np.asarray(inside(spaces, points), dtype=bool)
         rule = Extrapolation(domain.extrapolation)
         rows = self._rows(points)
         if rule is not Extrapolation.REFUSE:
             low, high = np.array(domain.low), np.array(domain.high)
-            edge = self._rows(clamped(points, low, high))
-            free = taper_weight(points, low, high) if rule is Extrapolation.TAPER else np.zeros(len(points))
+            nearest = clamped(points, spaces, low, high)
+            edge = self._rows(nearest)
+            tapers = rule is Extrapolation.TAPER
+            free = taper_weight(points, nearest, low, high) if tapers else np.zeros(len(points))
             some = free[:, None] > 0.0
             rows = np.where(some, edge + free[:, None] * np.where(some, rows - edge, 0.0), edge)
         values = rows @ np.array([0.0 if t.value is None else t.value for t in self.terms])
@@ -174,6 +179,8 @@ def _same(a: float | None, b: float | None) -> bool:
 def chosen(models: tuple[ParameterModel, ...], response: str, variables: tuple[str, ...]) -> tuple[ParameterModel, ...]:
     """The models of a response (empty: of all) over exactly these variables.
 
+    Where there is none, alpha may stand for w' and beta for v'; `from_angles` then gives the columns.
+
     Raises
     ------
     InputError
@@ -191,10 +198,45 @@ def chosen(models: tuple[ParameterModel, ...], response: str, variables: tuple[s
         raise InputError(f"no fitted table of {shown(response)}", f"one of {', '.join(known)}", column="--response")
     names = dict.fromkeys(v for m in found for v in m.names)
     for v in variables:
-        if v not in names:
+        if v not in names and not any(_by_angle(m, v) for m in found):
             raise InputError(f"the unknown variable {shown(v)}", f"one of {', '.join(names)}")
-    matching = tuple(m for m in found if set(m.names) == set(variables))
+    exact = tuple(m for m in found if set(m.names) == set(variables))
+    matching = exact or tuple(m for m in found if {_by_angle(m, v) or v for v in variables} == set(m.names))
+    matching = tuple(m for m in matching if len(m.names) == len(variables))
     if not matching:
-        forms = ", or for ".join(dict.fromkeys(" and ".join(m.names) for m in found))
+        forms = ", or for ".join(dict.fromkeys(" and ".join(map(_spoken, m.variables)) for m in found))
         raise InputError(f"values for {' and '.join(variables) or 'no variable'}", f"values for {forms}")
     return matching
+
+
+def _by_angle(model: ParameterModel, angle: str) -> str:
+    """The primed velocity of a model that an angle stands for; empty where none does."""
+    velocity = ANGLE_OF.get(angle, "")
+    primed = any(v.name == velocity and v.unit == "1" for v in model.variables)
+    return velocity if primed and angle not in model.names else ""
+
+
+def _spoken(variable: ModelVariable) -> str:
+    angle = next((a for a, v in ANGLE_OF.items() if v == variable.name), "")
+    return f"{variable.name} (or {angle})" if angle and variable.unit == "1" else variable.name
+
+
+def from_angles(model: ParameterModel, columns: Mapping[str, Array]) -> dict[str, Array]:
+    """Columns of a model's variables, where v' = sin(beta) and w' = sin(alpha) cos(beta) may stand as angles.
+
+    Where the model has w' but not v', beta is zero; where v' is given as such, cos(beta) = sqrt(1 - v'^2).
+
+    Parameters
+    ----------
+    model : ParameterModel
+        As `chosen` for the names of `columns`.
+    columns : mapping of variable to (n,) array
+        Angles in radians.
+    """
+    out = {v: x for v, x in columns.items() if v in model.names}
+    if "v" in model.names and "v" not in out:
+        out["v"] = np.sin(columns["beta"])
+    if "w" in model.names and "w" not in out:
+        v = out.get("v", np.sin(columns["beta"]) if "beta" in columns else np.zeros_like(columns["alpha"]))
+        out["w"] = np.sin(columns["alpha"]) * np.sqrt(np.maximum(1.0 - v**2, 0.0))
+    return out

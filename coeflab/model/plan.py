@@ -18,7 +18,7 @@ _NAME = re.compile(r"^[\w][\w .+-]{0,79}$")
 def safe_name(section: Section, key: str, default: str | None = None) -> str:
     """A name that is also a file name."""
     name = section.text(key, default)
-    if not _NAME.match(name) or name.strip(". ") != name:
+    if not _NAME.fullmatch(name) or name.strip(". ") != name:
         raise section.fail(key, shown(name), "letters, digits, blank, . + - _ (it names files), at most 80")
     return name
 
@@ -68,6 +68,8 @@ def read_plan(path: Path) -> Plan:
     for s in root.sections("parameter_file"):
         name, group = safe_name(s, "name"), s.texts("campaigns")
         files.append(PlannedParameterFile(name, s.text("body"), group, s.texts("literature")))
+        if name.casefold() in {f.name.casefold() for f in files[:-1]}:
+            raise s.fail("name", f"the parameter file {shown(name)} twice", "a name of its own for each")
         s.finish()
     references = []
     for s in root.sections("references"):

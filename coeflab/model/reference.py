@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.toml import Section, read_toml
 from coeflab.core.units import quantity
-from coeflab.model.coefficient import Coefficient
+from coeflab.model.coefficient import Coefficient, CoefficientSet
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Scaling, read_scaling
 
@@ -127,8 +127,26 @@ class Comparison:
     passed: bool | None
 
 
+def compare_set(among: CoefficientSet, references: tuple[Reference, ...]) -> tuple[Comparison, ...]:
+    """Hold a set against published values, each about the point and by the length of its own source."""
+    out: list[Comparison] = []
+    points = {None if r.reference_point is None else tuple(map(float, r.reference_point)) for r in references}
+    for point in sorted(points, key=str, reverse=True):
+        here = [
+            r
+            for r in references
+            if (None if r.reference_point is None else tuple(map(float, r.reference_point))) == point
+        ]
+        moved = among if point is None else among.about(np.array(point))
+        out += compare(moved.coefficients, tuple(here), among.scaling, references)
+    return tuple(out)
+
+
 def compare(
-    coefficients: tuple[Coefficient, ...], references: tuple[Reference, ...], scaling: Scaling
+    coefficients: tuple[Coefficient, ...],
+    references: tuple[Reference, ...],
+    scaling: Scaling,
+    beside: tuple[Reference, ...] | None = None,
 ) -> tuple[Comparison, ...]:
     """Hold every coefficient against the published values that have its symbol and belong beside it.
 
@@ -140,7 +158,7 @@ def compare(
         for r in references:
             if r.relation is Relation.RE_ANALYSIS and c.campaign not in r.campaigns:
                 continue
-            if r.relation is not Relation.RE_ANALYSIS and not _beside(c, r, references):
+            if r.relation is not Relation.RE_ANALYSIS and not _beside(c, r, beside or references):
                 continue
             for reading, published in r.readings(c.symbol, scaling):
                 difference = None if c.value is None else c.value - published

@@ -10,22 +10,26 @@ from numpy.typing import NDArray
 
 from coeflab.kernels.slopes import is_one_sided
 from coeflab.model.fit_result import LeftOut
-from coeflab.model.force_table import ForceTable
+from coeflab.model.force_table import AT_REST, ForceTable
 
 Array = NDArray[np.float64]
-INCIDENCE = {"dr": "v", "ds": "w"}
-AT_REST = np.sin(np.radians(0.05))
+INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
+ASTERN = "does not run ahead (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
 NEAR_ZERO = np.sin(np.radians(0.3))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SweepRows:
-    """Rows of one sweep, with rest rows of the same campaign where a one-sided sweep has none of its own."""
+    """Rows of one sweep, with rest rows of the same campaign where a one-sided sweep has none of its own.
+
+    ``astern`` rows do not run ahead: sin(beta) is the same at 10 and at 170 degrees, the force is not.
+    """
 
     table: ForceTable
     x: Array
     rows: NDArray[np.intp]
     rest: tuple[ForceTable, NDArray[np.intp]] | None
+    astern: NDArray[np.intp]
 
 
 def _others_at_rest(table: ForceTable, variable: str, length: float) -> NDArray[np.bool_]:
@@ -44,6 +48,9 @@ def sweep_rows(table: ForceTable, variable: str, tables: Sequence[ForceTable], l
     A one-sided sweep without a row at rest borrows those of the first other table at the same speed.
     """
     keep = _others_at_rest(table, variable, length)
+    ahead = table.motion["u"] > 0.0
+    astern = np.flatnonzero(keep & ~ahead)
+    keep &= ahead
     x = table.primed_motion(variable, length)
     rest = None
     if is_one_sided(x[keep]) and not np.any(keep & (np.abs(x) <= AT_REST)):
@@ -52,7 +59,7 @@ def sweep_rows(table: ForceTable, variable: str, tables: Sequence[ForceTable], l
             if other is not table and np.any(still) and np.allclose(other.speed[still], table.speed.mean(), rtol=0.01):
                 rest = (other, np.flatnonzero(still))
                 break
-    return SweepRows(table, x, np.flatnonzero(keep), rest)
+    return SweepRows(table, x, np.flatnonzero(keep), rest, astern)
 
 
 def collect_points(
@@ -69,6 +76,9 @@ def collect_points(
         parts.append((*rows.rest, np.zeros(len(rows.rest[1]))))
     x, y, se, labels = [], [], [], []
     left: list[LeftOut] = []
+    if len(rows.astern):
+        away = table.primed_force(component, length)
+        left += [LeftOut(float(rows.x[i]), float(away[i]), table.labels[i], ASTERN) for i in rows.astern]
     for source, index, at in parts:
         force = source.primed_force(component, length) - (taken_out if source is table else 0.0)
         error = source.primed_force(component, length, source.errors[component]) if component in source.errors else None
@@ -77,7 +87,7 @@ def collect_points(
                 x.append(xi)
                 y.append(force[i])
                 se.append(np.nan if error is None else error[i])
-                labels.append(source.labels[i])
+                labels.append(source.labels[i] if source is table else f"{source.name} {source.labels[i]}")
             elif source is table:
                 why = reasons.get((int(i), component)) or reasons.get((int(i), ""), "excluded")
                 left.append(LeftOut(float(xi), float(force[i]), source.labels[i], why))

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import COMPONENTS, FORCES
 from coeflab.model.force_table import Exclusion, ForceTable
-from coeflab.model.regression import WIND, Area, response
+from coeflab.model.regression import WIND, Area, Rows, response
 from coeflab.model.scaling import Scaling
 
 AT_REST = np.sin(np.radians(0.05))
@@ -47,6 +49,23 @@ def area_of(value: float, name: str, scaling: Scaling) -> Area:
 def area_settings(area: Area) -> dict[str, str]:
     """The area among the settings of a fit, from which the parameter file takes it."""
     return {"area": repr(area.area), "area_name": area.name}
+
+
+def without_blanks(options: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """Options in which one text of ``key=value`` words may have blanks around the equals sign."""
+    text = options.get(name)
+    return {**options, name: re.sub(r"\s*=\s*", "=", text)} if isinstance(text, str) else dict(options)
+
+
+def check_varies(rows: Rows) -> None:
+    """Raise where a variable of two stands still, within `AT_REST`."""
+    for name, x in rows.x.items():
+        if np.ptp(x) <= AT_REST:
+            others = ", ".join(v for v in rows.x if v != name)
+            raise InputError(
+                f"{name} never varies in the rows of {rows.response} ({rows.campaign})", "variables that all vary",
+                column="variables", advice=f"The fit polynomial takes {others} alone.",
+            )  # fmt: skip
 
 
 def named_response(name: str, area: Area) -> str:

@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from enum import StrEnum
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from coeflab.core.symbols import primed
-from coeflab.model.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.model.coefficient import Coefficient, CoefficientSet, Status, transfer_matrix
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.scaling import Scaling
+from coeflab.studies.compare_models import ComparedModel, compare_models
+from coeflab.studies.shared_tables import Verdict, shared_tables
 
 SAME_POINT = 1e-9
-
-
-class Verdict(StrEnum):
-    """What the difference of two coefficients says."""
-
-    WITHIN = "within"
-    APART = "apart"
-    NOT_COMPARABLE = "not comparable"
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +32,8 @@ class Compared:
     verdict : Verdict
     reason : str
         Why not comparable, or what to keep in mind.
+    shared : tuple of str
+        Tables behind both values.
     """
 
     symbol: str
@@ -50,6 +45,7 @@ class Compared:
     combined: float | None
     verdict: Verdict
     reason: str
+    shared: tuple[str, ...] = ()
 
     @property
     def ratio(self) -> float | None:
@@ -68,7 +64,9 @@ class Comparison:
     same_body : bool
     rows : tuple of Compared
     statements : tuple of str
-        What was converted and what else differs.
+        What was converted, what else differs, and which data are behind both.
+    models : tuple of ComparedModel
+        Fitted tables.
     """
 
     a: str
@@ -76,6 +74,7 @@ class Comparison:
     same_body: bool
     rows: tuple[Compared, ...]
     statements: tuple[str, ...]
+    models: tuple[ComparedModel, ...] = ()
 
 
 def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
@@ -95,7 +94,7 @@ def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
         tuple(
             Coefficient(
                 c.symbol.removesuffix("'"), c.value, c.u95, Status(c.status), parameters.body, origin=c.origin,
-                campaign=c.campaign, citation=c.citation,
+                table=c.table, campaign=c.campaign, citation=c.citation,
             )
             for c in parameters.coefficients
         ),
@@ -131,12 +130,38 @@ def compare(a: ParameterFile, b: ParameterFile) -> Comparison:
         at = ", ".join(f"{x:g}" for x in ours.reference_point)
         said.append(f"{b.name} moved to the reference point of {a.name}, ({at}) m")
         moved = theirs.about(ours.reference_point)
-    shared = sorted({i.name for i in a.provenance.inputs if i.sha256 in {j.sha256 for j in b.provenance.inputs}})
-    if shared:
-        said.append(f"both files rest on {', '.join(shared)}: their errors are not independent")
-    symbols = dict.fromkeys((*ours.symbols, *theirs.symbols))
-    rows = tuple(_row(s, ours, theirs, moved, same_datum) for s in symbols)
-    return Comparison(a.name, b.name, a.body == b.body, rows, tuple(said))
+    behind = _contributors(theirs, moved)
+    rows = []
+    for symbol in dict.fromkeys((*ours.symbols, *theirs.symbols)):
+        row = _row(symbol, ours, theirs, moved, same_datum)
+        if row.difference is not None:
+            first = ours[symbol]
+            pairs = [shared_tables(first, c, a.provenance, b.provenance) for c in behind[symbol] if c.origin == "fit"]
+            shared = tuple(sorted({t for p in pairs for t in p})) if first.origin == "fit" else ()
+            row = replace(
+                row, shared=shared, reason=row.reason or (f"both rest on {', '.join(shared)}" if shared else "")
+            )
+        rows.append(row)
+    models = compare_models(a, b)
+    alike: dict[str, list[str]] = {}
+    for name, tables in [(r.symbol, r.shared) for r in rows] + [(m.name, m.shared) for m in models]:
+        for table in tables:
+            alike.setdefault(table, []).append(name)
+    said += [
+        f"{table} is behind {'; '.join(names)} of both files: their errors are not independent"
+        for table, names in alike.items()
+    ]
+    return Comparison(a.name, b.name, a.body == b.body, tuple(rows), tuple(said), models)
+
+
+def _contributors(before: CoefficientSet, moved: CoefficientSet) -> dict[str, list[Coefficient]]:
+    """The coefficients that each one consists of after a move of the reference point."""
+    shift = (moved.reference_point - before.reference_point) / before.scaling.length
+    matrix, _ = transfer_matrix(before.symbols, before.available, shift)
+    return {
+        s: [c for c, weight in zip(before.coefficients, row, strict=True) if weight != 0.0 or c.symbol == s]
+        for s, row in zip(before.symbols, matrix, strict=True)
+    }
 
 
 def _row(

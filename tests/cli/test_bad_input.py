@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Run
+from tests.cli.conftest import COEFLAB, Run
 
 
 def spoil(file: Path, old: str, new: str) -> None:
@@ -100,3 +101,31 @@ def test_failed_check_is_exit_code_one(coeflab: Run, study: Path) -> None:
     assert done.returncode == 1
     assert "Yv'" in done.stdout
     assert "below zero" in done.stdout
+
+
+def test_fewer_points_than_parameters_are_refused(coeflab: Run, study: Path) -> None:
+    lines = (study / DRIFT).read_text().splitlines()
+    (study / DRIFT).write_text("\n".join(lines[:4]) + "\n")
+    done = coeflab("run", study / PLAN)
+    assert done.returncode == 2
+    assert "2 usable points of the sweep over v'" in done.stderr
+    assert "at least 3" in done.stderr
+    assert not (study.parent / "reports").exists()
+
+
+def test_rows_that_do_not_run_ahead_are_left_out_with_a_reason(coeflab: Run, study: Path) -> None:
+    """170 degrees have the sine of 10 degrees; fitted as such they would change Yv' without a word."""
+    before = coeflab("fit", study / "campaign" / "drift.csv", "--symbol", "Yv").stdout
+    text = (study / DRIFT).read_text()
+    (study / DRIFT).write_text(text + "99,170,10.0,5.0,1.0,\n")
+    after = coeflab("fit", study / "campaign" / "drift.csv", "--symbol", "Yv").stdout
+    assert "does not run ahead" in after
+    value = [line for line in before.splitlines() if line.startswith("  Yv'")][0]
+    assert value in after
+
+
+def test_output_to_a_full_device_is_one_message(study: Path) -> None:
+    command = f"{COEFLAB} inspect {study / 'campaign'} > /dev/full"
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr

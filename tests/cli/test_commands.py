@@ -50,7 +50,7 @@ def test_json_is_one_object_that_keeps_the_contract(coeflab: Run) -> None:
         assert set(c) == CONTRACT
         assert c["symbol"].endswith("'")
         assert set(c["parts"]) == {"random", "model_form", "window", "input"}
-        assert (c["value"] is None) == (c["status"] in ("no_table", "too_few_points"))
+        assert (c["value"] is None) == (c["status"] in ("no_table", "too_few_points", "not_determined"))
     assert {c["symbol"] for c in content["coefficients"]} >= SIX
     by = {(c["symbol"], c["campaign"]): c for c in content["coefficients"]}
     yv = by["Yv'", "suboff_roddy_2"]

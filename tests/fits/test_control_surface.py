@@ -258,3 +258,20 @@ def test_fewer_rows_than_terms_are_refused() -> None:
 def test_an_area_and_its_name_go_together(options: dict[str, object]) -> None:
     with pytest.raises(InputError, match="an area above zero with its name, or neither"):
         fitted(table(), **options)
+
+
+def test_a_line_through_curved_data_says_so_and_names_the_cubic() -> None:
+    """C_L3 of the synthetic table is left out by default."""
+    for response in ("C_L", "C_m"):
+        for pick in (listing, over_both):
+            line, cubic = (pick(fitted(table(), cubic=c, **BY_AREA), response) for c in ("no", "yes"))
+            said = next(s for s in line.statements if "not random" in s)
+            assert "intervals cannot be trusted" in said
+            assert said.endswith("Try cubic = yes.")
+            assert not any("not random" in s for s in cubic.statements)
+    assert not any("not random" in s for s in listing(fitted(table()), "C_D").statements)
+
+
+def test_rounding_is_no_misfit() -> None:
+    for m in fitted(exact(), cubic="yes", **BY_AREA).models:
+        assert not any("not random" in s for s in m.statements)

@@ -136,8 +136,9 @@ def test_the_parameter_file_keeps_the_law_per_radian() -> None:
 def test_the_printed_forms_are_recognised_as_degrees(case: str) -> None:
     answer = angle_unit_of(printed(case), fitted(table(case)))
     assert answer.unit == "deg"
-    assert len(answer.statements) == 3
-    assert all(" is per deg, " in s for s in answer.statements)
+    assert [s.partition(":")[0] for s in answer.statements] == ["K_L0", "K_L", "K_D0", "K_D", "K_M0", "K_M"]
+    assert all(" is per deg, " in s for s in answer.statements[1::2])
+    assert all("it has no unit of the angle" in s for s in answer.statements[::2])
 
 
 def test_the_same_law_printed_per_radian_is_recognised_as_radians() -> None:
@@ -147,7 +148,7 @@ def test_the_same_law_printed_per_radian_is_recognised_as_radians() -> None:
     values["K_D"] *= DEGREES**2
     answer = angle_unit_of(values, fitted(table("02"), angle_unit="rad"))
     assert answer.unit == "rad"
-    assert all(" is per rad, " in s for s in answer.statements)
+    assert all(" is per rad, " in s for s in answer.statements[1::2])
 
 
 def test_slopes_that_disagree_or_do_not_speak_leave_the_unit_open() -> None:
@@ -166,9 +167,18 @@ def test_a_printed_slope_outside_the_interval_is_said_to_be() -> None:
     assert "outside the fitted" in answer.statements[0]
 
 
+def test_a_printed_value_at_zero_angle_is_held_against_its_interval() -> None:
+    result = fitted(table("01"))
+    value, half = law(result, "L", "rad").named("K_L0")
+    for printed_value, place in ((value + 0.9 * half, "inside"), (value + 1.1 * half, "outside")):
+        said = angle_unit_of({"K_L0": printed_value}, result).statements[0]
+        assert f"is {place} the fitted" in said
+
+
 def test_printed_coefficients_as_an_option() -> None:
     result = fitted(table("01"), printed="K_L=9.5281, K_D=0.215")
     assert result.models[0].statements[-1] == "The printed coefficients are per deg."
+    assert fitted(table("01"), printed="K_L = 9.5281, K_D =0.215").models[0].statements == result.models[0].statements
     for wrong in ("K_L", "K_L=nine", "K_L=nan", "K_X=1"):
         with pytest.raises(InputError, match=r"glide_polar\.printed"):
             fitted(table("01"), printed=wrong)
@@ -263,7 +273,8 @@ def test_a_table_without_a_moment_gives_lift_and_drag() -> None:
     assert [m.response for m in result.models] == ["L/V^2", "D/V^2"]
     answer = angle_unit_of(printed("01"), result)
     assert answer.unit == "deg"
-    assert "K_M: not fitted" in answer.statements[2]
+    assert "K_M0: not fitted" in answer.statements[4]
+    assert "K_M: not fitted" in answer.statements[5]
 
 
 def test_a_table_without_angles_is_refused() -> None:

@@ -181,3 +181,20 @@ def test_a_table_without_forces_of_use_is_refused():
     object.__setattr__(table, "usable", {"Y": np.zeros(15, dtype=bool)})
     with pytest.raises(InputError, match="no usable force"):
         fit(table, variable="v")
+
+
+def test_a_degree_that_is_too_low_is_said_to_be_and_the_right_one_is_not():
+    x = np.linspace(-0.3, 0.3, 41)
+    y = x - 5.0 * x**3 + 1e-3 * np.random.default_rng(8).standard_normal(41)
+    low, right = (fit(sweep({"Y": y}, v=x), variable="v", parity="odd", degree=d).models[0] for d in (1, 3))
+    said = next(s for s in low.statements if "not random" in s)
+    assert said.endswith("Try a higher degree, such as degree = 3, or parity = full.")
+    assert not any("not random" in s for s in right.statements)
+
+
+def test_residuals_that_change_sign_at_every_row_are_no_misfit_of_the_form():
+    x = np.linspace(-0.3, 0.3, 40)
+    y = x + 1e-3 * (-1.0) ** np.arange(40)
+    said = next(s for s in fit(sweep({"Y": y}, v=x), variable="v", degree=1).models[0].statements if "not random" in s)
+    assert "more often than by chance" in said
+    assert "form misses" not in said

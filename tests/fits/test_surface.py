@@ -53,6 +53,10 @@ def model(result: FitResult, response: str):
     return next(m for m in result.models if m.response == response)
 
 
+def interaction(result: FitResult) -> str:
+    return next(s for s in result.models[0].statements if "dditive" in s or "not tested" in s)
+
+
 def planted(values: np.ndarray, noise: np.ndarray) -> ForceTable:
     """The synthetic campaign's angles with M = q A L values, plus noise."""
     table = campaign()
@@ -114,7 +118,7 @@ def test_the_symmetry_of_the_hull_gives_every_response_its_parity():
 def test_planted_surfaces_come_back_exactly(form, terms):
     a, b = angles()
     values = 0.3 - 0.2 * a + 1.1 * a**2 + 0.4 * b + 0.7 * b**2
-    found = model(fit(planted(values, 0.0), degree=2, form=form, responses="C_m", **FRONTAL), "C_m")
+    found = model(fit(planted(values, 0.0), degree=2, form=form, parity="beta=full", responses="C_m", **FRONTAL), "C_m")
     assert len(found.terms) == terms
     wanted = {"C_m_0": 0.3, "C_m_alpha": -0.2, "C_m_alpha^2": 1.1, "C_m_beta": 0.4, "C_m_beta^2": 0.7}
     for symbol, value in zip(found.symbols, found.fit.coefficients, strict=True):
@@ -133,7 +137,7 @@ def test_random_intervals_cover_the_truth_as_often_as_they_say(form):
     clean = 0.3 - 0.2 * a + 1.1 * a**2 + 0.4 * b + 0.7 * b**2
     mask = np.arange(len(a)) % 3 == 0
     noise = (0.002 * (1.0 + np.abs(a) + b))[:, None] * rng.standard_normal((len(a), 20_000))
-    options = {"degree": 2, "form": form, "responses": "C_m", **FRONTAL}
+    options = {"degree": 2, "form": form, "parity": "beta=full", "responses": "C_m", **FRONTAL}
     usable = {**campaign().usable, "M": mask}
     fitted = [fit(replace(planted(clean, e), usable=usable), **options).models[0] for e in noise.T[:10]]
     f = factorise(design(fitted[0].terms, {"alpha": a[mask], "beta": b[mask]}))
@@ -164,7 +168,7 @@ def test_the_interaction_test_is_right_as_often_as_it_says():
     found = []
     for _ in range(200):
         table = planted(0.3 + a**2 + b, 0.002 * rng.standard_normal(len(a)))
-        said = fit(table, degree=2, form="additive", responses="C_m", **FRONTAL).models[0].statements[0]
+        said = interaction(fit(table, degree=2, form="additive", parity="beta=full", responses="C_m", **FRONTAL))
         found.append(float(said.rpartition(" ")[2].rstrip(".")))
     deciles = np.histogram(found, bins=10, range=(0.0, 1.0))[0]
     assert np.sum((deciles - 20.0) ** 2 / 20.0) < 27.9
@@ -184,8 +188,55 @@ def test_the_printed_sum_of_two_slices_counts_the_value_at_rest_twice():
     printed, error = sum_of_slices(full, origin)
     assert error[0] == pytest.approx(full.named("C_D_0")[0], rel=1e-12)
     assert printed[0] == pytest.approx(2.0 * full.named("C_D_0")[0], rel=1e-12)
-    assert any("counts it twice" in s for s in additive.statements)
-    assert not any("counts it twice" in s for s in full.statements)
+    half = additive.named("C_D_0")[1]
+    said = [s for s in additive.statements if "twice" in s]
+    assert said == [
+        f"The printed form C_D(alpha) + C_D(beta) counts C_D_0 = {at_rest:.4g} +- {half:.2g} twice and is wrong by that "
+        "much everywhere; this fit holds it once."
+    ]
+    assert not any("twice" in s for s in full.statements)
+
+
+def test_a_value_at_rest_that_is_not_told_from_zero_is_no_matter():
+    a, b = angles()
+    noise = 0.002 * np.random.default_rng(2).standard_normal(len(a))
+    found = fit(planted(a**2 + b**2, noise), form="additive", degree=2, responses="C_m", **FRONTAL).models[0]
+    value, half = found.named("C_m_0")
+    assert abs(value) < half
+    assert not any("twice" in s for s in found.statements)
+
+
+def test_terms_keep_the_symmetry_of_the_hull_unless_asked_otherwise():
+    default, asked, free = (fit(campaign(), degree=3, **FRONTAL, **o) for o in (
+        {}, {"parity": "beta=symmetric"}, {"parity": "beta = full"}))  # fmt: skip
+    for m, n, f in zip(default.models, asked.models, free.models, strict=True):
+        assert m.terms == n.terms
+        assert len(f.terms) == 2 * len(m.terms) == 16
+        assert m.form.endswith("odd in beta" if m.response in ("C_S", "C_n") else "even in beta")
+    assert default.settings["parity"] == "port-starboard symmetry"
+
+
+def test_two_variables_that_the_symmetry_turns_around_count_by_their_product():
+    table = campaign()
+    turning = replace(
+        table, motion={**table.motion, "r": 0.3 * np.sin(np.arange(len(table)) * 1.0), "w": table.motion["w"] * 0}
+    )
+    even, odd = (fit(turning, variables="v r", responses=r, degree=2, form="total").models[0] for r in ("X", "Y"))
+    assert [str(t) for t in even.terms] == ["1", "r^2", "v r", "v^2"]
+    assert [str(t) for t in odd.terms] == ["r", "v"]
+
+
+def test_a_variable_that_never_varies_is_named():
+    table = campaign()
+    flat = replace(table, motion={**table.motion, "w": np.zeros(len(table))})
+    with pytest.raises(InputError, match=r"found alpha never varies in the rows of C_D .*polynomial takes beta alone"):
+        fit(flat, degree=3, responses="C_D")
+
+
+def test_a_degree_that_is_too_low_is_said_to_be():
+    said = " ".join(model(fit(campaign(), degree=1, responses="C_D", **FRONTAL), "C_D").statements)
+    assert "The residuals are not random" in said
+    assert "Try a higher degree, such as degree = 2, or parity = beta=full." in said
 
 
 def test_only_the_responses_that_the_table_allows():
@@ -241,8 +292,8 @@ def test_more_terms_than_rows_is_refused_and_the_comparison_says_so():
     table = campaign()
     few = replace(table, usable={**table.usable, "M": np.arange(len(table)) % 16 == 0})
     with pytest.raises(InputError, match="15 usable rows of C_m"):
-        fit(few, degree=4, responses="C_m")
-    said = fit(few, degree=3, form="additive", responses="C_m").models[0].statements[0]
+        fit(few, degree=4, parity="beta=full", responses="C_m")
+    said = interaction(fit(few, degree=3, form="additive", parity="beta=full", responses="C_m"))
     assert said.startswith("Additive against full")
     assert "full: 10 terms" in said
-    assert "not tested" in fit(few, degree=6, form="additive", responses="C_m").models[0].statements[0]
+    assert "not tested" in interaction(fit(few, degree=6, form="additive", parity="beta=full", responses="C_m"))
