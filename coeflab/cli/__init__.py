@@ -7,7 +7,7 @@ import sys
 
 import typer
 
-from coeflab.cli import compare, fit, formats, inspect, new, params, run, table, validate
+from coeflab.cli import added_mass, compare, fit, formats, inspect, new, params, run, table, validate
 
 app = typer.Typer(
     name="coeflab",
@@ -19,9 +19,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-for module in (validate, run, fit, inspect, new, formats, table, compare):
+for module in (validate, run, fit, inspect, new, formats, table, compare, added_mass):
     app.command(
-        name=module.__name__.rpartition(".")[2],
+        name=module.__name__.rpartition(".")[2].replace("_", "-"),
         epilog=f"Example: {module.EXAMPLE}",
         context_settings=getattr(module, "CONTEXT", None),
     )(module.command)

@@ -99,8 +99,8 @@ def _print(found: Comparison) -> None:
         )
         for m in found.models
     )  # fmt: skip
-    headers = ("", "points", "rms diff.", "largest", "at", "combined", "% within", "verdict", "")
-    show.table(Table("Fitted tables", headers, models, found.statements, frozenset({0, 4, 7, 8})))
+    columns = ("", "points", "rms diff.", "largest", "at", "combined", "% within", "verdict", "")
+    show.table(Table("Fitted tables", columns, models, found.statements, frozenset({0, 4, 7, 8})))
     if not rows and not models:
         show.text("Neither file has coefficients or fitted tables.")
     for what, verdicts in (("", [r.verdict for r in found.rows]), ("Tables: ", [m.verdict for m in found.models])):

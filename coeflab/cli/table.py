@@ -77,7 +77,8 @@ def outside_in_words(models: tuple[ParameterModel, ...], tally: Tally) -> list[s
         limits = zip(m.variables, m.domain.low, m.domain.high, strict=True)
         text = ", ".join(_limits(v.name, v.unit, low, high) for v, low, high in limits)
         domains.setdefault(text, []).append(m.response)
-    return [f"all {tally.points:,} points lie outside {what}, the convex hull of the data within these limits:"] + [
+    all_points = f"all {tally.points:,} points lie" if tally.points > 1 else "the point lies"
+    return [f"{all_points} outside {what}, the convex hull of the data within these limits:"] + [
         f"  {', '.join(names)}: {text}" for text, names in domains.items()
     ]
 

@@ -52,6 +52,12 @@ WORKS: dict[str, str] = {
     "fasel2022": "U. Fasel, J. N. Kutz, B. W. Brunton, S. L. Brunton, Ensemble-SINDy, Proc. Royal Society A 478, 2022.",
     "chen2008": "J. Chen, Z. Chen, Extended Bayesian information criteria for model selection with large model spaces, "
     "Biometrika 95(3), 2008.",
+    "lamb1932": "H. Lamb, Hydrodynamics, 6th edition, Cambridge, 1932, sections 114, 115 and 121 a.",
+    "carlson1995": "B. C. Carlson, Numerical computation of real or complex elliptic integrals, Numerical Algorithms 10, "
+    "1995.",
+    "newman1977": "J. N. Newman, Marine Hydrodynamics, MIT Press, 1977, sections 4.13-4.16.",
+    "coeflab_plates": "Added mass of rectangular plates at aspect 1, 2, 3 and 5, computed for this project with a panel "
+    "code, to 1 %.",
 }
 
 

@@ -24,6 +24,7 @@ from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
+from coeflab.model.misfit import residuals_in_words
 from coeflab.model.regression import Rows, model_of
 from coeflab.model.scaling import Scaling
 
@@ -129,7 +130,7 @@ def _fitted(rows: Rows, axis: str, chosen: Options) -> FittedModel:
     law = " + ".join(f"{s} {t}" if t.factors else s for s, t in zip(symbols, terms, strict=True))
     unit = "N*m" if rows.response in MOMENTS else "N"
     model = model_of(rows, terms, symbols, f"{rows.response} = {law}", unit=unit)
-    return replace(model, statements=(*_said(model, axis), *model.statements))
+    return replace(model, statements=(*_said(model, axis), *residuals_in_words(model), *model.statements))
 
 
 def _coefficients(model: FittedModel, axis: str, citation: str) -> tuple[list[Coefficient], Array]:

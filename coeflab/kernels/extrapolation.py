@@ -43,6 +43,9 @@ def clamped(points: Array, spaces: Array, low: Array, high: Array) -> Array:
     normals, bounds = _in_widths(spaces, low, size)
     held = np.full_like(scaled, np.nan)
     left = np.flatnonzero(np.all(np.isfinite(scaled), axis=1))
+    if not len(left) or not len(normals):
+        out[outside] = held
+        return out
     beyond = scaled[left] @ normals.T - bounds
     worst = np.argmax(beyond, axis=1)
     # A point whose foot on some face lies in the hull has that face as its most violated one.

@@ -132,7 +132,7 @@ def fit_linear(
     spread = f.back @ moved
     covariance = free @ (spread @ spread.T) @ free.T
     freedom = _freedom(f, free, constraint is not None)
-    deviation = np.sqrt(np.diag(covariance))
+    deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
     open_directions = _open_directions(f, free, np.linalg.norm(design * f.root_weights[:, None], axis=0))
     undetermined = np.any(np.abs(open_directions) > 1e-6, axis=0) if f.null.size else np.zeros(p, dtype=bool)
     coefficients = np.where(undetermined, np.nan, coefficients)

@@ -8,7 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.kernels.composition import Definiteness, definiteness, moved
 from coeflab.model.frozen import locked
+from coeflab.model.scaling import Scaling
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,6 +25,8 @@ class AddedMass:
     reference_point : (3,) array
         m, FRD, from the datum.
     datum, body, method : str
+    statements : tuple of str
+        What the method assumed, in words.
     """
 
     matrix: NDArray[np.float64]
@@ -29,9 +34,45 @@ class AddedMass:
     datum: str
     body: str
     method: str
+    statements: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", locked(self.matrix))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
         if self.matrix.shape != (6, 6):
             raise InputError(f"a matrix of shape {self.matrix.shape}", "6 x 6")
+
+    @property
+    def definiteness(self) -> Definiteness:
+        """Whether the matrix is symmetric and positive semidefinite."""
+        return definiteness(self.matrix)
+
+    @property
+    def verdict(self) -> str:
+        """The same in words."""
+        found = self.definiteness
+        if found.holds:
+            return "symmetric, positive semidefinite"
+        if not np.isfinite(found.smallest):
+            return "no kinetic energy: a zero, negative or infinite diagonal entry; do not use it"
+        return (
+            f"asymmetric by {found.asymmetry:.1e}, smallest scaled eigenvalue {found.smallest:.1e}: no kinetic energy; "
+            "do not use it"
+        )
+
+    def about(self, point: NDArray[np.float64]) -> AddedMass:
+        """The same about another point, m, FRD, from the datum."""
+        matrix = moved(self.matrix, np.asarray(point, dtype=float) - self.reference_point)
+        return AddedMass(matrix, np.asarray(point), self.datum, self.body, self.method, self.statements)
+
+    def derivatives(self) -> dict[str, float]:
+        """All 36 acceleration derivatives, SI: Xudot, ..., Nrdot."""
+        return {
+            f"{force}{motion}dot": -float(self.matrix[i, j])
+            for i, force in enumerate(COMPONENTS)
+            for j, motion in enumerate(MOTIONS)
+        }
+
+    def primed(self, symbol: str, scaling: Scaling, density: float) -> float:
+        """One acceleration derivative, primed: Yvdot' by 1/2 rho L^3, Nrdot' by 1/2 rho L^5 (SNAME 1950)."""
+        return self.derivatives()[symbol] * Scaling(1.0, "1 m").ratio(symbol, scaling) / (0.5 * density)

@@ -13,6 +13,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Scaling
+from coeflab.model.shape import Shape
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,6 +56,37 @@ class Configuration:
             object.__setattr__(self, "centre_of_buoyancy", locked(self.centre_of_buoyancy))
 
 
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """An acceleration derivative that somebody measured, primed by the body's length, about its reference point.
+
+    Attributes
+    ----------
+    symbol : str
+    printed : str
+        As it stands in the source; a closing question mark is a last digit that cannot be read.
+    citation, place : str
+    """
+
+    symbol: str
+    printed: str
+    citation: str
+    place: str
+
+    def __post_init__(self) -> None:
+        try:
+            finite = all(np.isfinite(v) and v != 0.0 for v in self.bounds)
+        except ValueError:
+            finite = False
+        if not finite:
+            raise InputError(shown(self.printed), 'a number other than zero, ending in "?" where a digit is illegible')
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """The value twice, or with the illegible digit at 0 and at 9."""
+        return float(self.printed.replace("?", "0")), float(self.printed.replace("?", "9"))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
     """A body with one or more configurations.
@@ -69,6 +101,12 @@ class Body:
     configurations : tuple of Configuration
     source : Source
     files : tuple of InputFile
+    shape : Shape, optional
+        What the body looks like, where its file says so.
+    scaling : Scaling, optional
+        The length that primes are made with, where the file names one.
+    measured : tuple of Measured
+        Acceleration derivatives from elsewhere, to be shown beside computed ones.
     """
 
     name: str
@@ -79,6 +117,9 @@ class Body:
     configurations: tuple[Configuration, ...]
     source: Source
     files: tuple[InputFile, ...]
+    shape: Shape | None = None
+    scaling: Scaling | None = None
+    measured: tuple[Measured, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))
@@ -87,6 +128,22 @@ class Body:
     def configuration(self, name: str) -> Configuration | None:
         """The configuration of that name, if the body has it."""
         return next((c for c in self.configurations if c.name == name), None)
+
+    def require_shape(self) -> Shape:
+        """The shape.
+
+        Raises
+        ------
+        InputError
+            The body's file gives particulars only.
+        """
+        if self.shape is None:
+            raise InputError(
+                f"{self.name}, a body of particulars without a shape",
+                "a body that says what it looks like",
+                advice="Give its body.toml parts ([[part]], reader primitives), or name another body.",
+            )
+        return self.shape
 
     def require(self, name: str) -> Configuration:
         """The configuration of that name.

@@ -120,7 +120,7 @@ def test_rows_that_do_not_run_ahead_are_left_out_with_a_reason(coeflab: Run, stu
     (study / DRIFT).write_text(text + "99,170,10.0,5.0,1.0,\n")
     after = coeflab("fit", study / "campaign" / "drift.csv", "--symbol", "Yv").stdout
     assert "does not run ahead" in after
-    value = [line for line in before.splitlines() if line.startswith("  Yv'")][0]
+    value = next(line for line in before.splitlines() if line.startswith("  Yv'"))
     assert value in after
 
 

@@ -34,7 +34,7 @@ def made(values: dict[str, tuple[float | None, float | None]], **changes: Any) -
         "mass": None,
         "coefficients": [
             {
-                "symbol": s, "value": v, "u95": u, "unit": "1", "value_si": v, "unit_si": derivative(s).unit,
+                "symbol": s, "value": v, "u95": u, "unit": "1", "value_si": None, "unit_si": derivative(s).unit,
                 "status": "no_table" if v is None else "ok", "origin": "none" if v is None else "fit", "parts": {},
             }
             for s, (v, u) in values.items()
@@ -134,13 +134,53 @@ def test_what_has_no_value_or_no_interval_is_not_compared() -> None:
     assert found.rows[0].ratio is None
 
 
-def test_files_that_share_their_inputs_say_so() -> None:
-    shared = {
-        "coeflab_version": "0", "study": "s", "citations": [],
-        "inputs": [{"name": "tow/table.csv", "sha256": "0" * 64}],
+def resting(on: dict[str, str], inputs: dict[str, str], campaign: str = "tow", **changes: Any) -> ParameterFile:
+    """A file whose coefficients rest on tables, among inputs with a hash each."""
+    content = made(VALUES, **changes).model_dump(mode="json")
+    for c in content["coefficients"]:
+        c.update(table=on.get(c["symbol"]), campaign=campaign)
+    content["provenance"]["inputs"] = [{"name": n, "sha256": h * 64} for n, h in inputs.items()]
+    return ParameterFile.model_validate(content)
+
+
+INPUTS = {"plan.toml": "a", "published.toml": "b", "tow/campaign.toml": "c", "tow/drift.csv": "d", "tow/arm.csv": "e"}
+TABLES = {"Yv'": "tow/drift.csv", "Nv'": "tow/drift.csv", "Yr'": "tow/arm.csv", "Nr'": "tow/arm.csv, tow/drift.csv"}
+
+
+def test_only_tables_behind_both_values_are_named() -> None:
+    other = {"Yv'": "tank/sway.csv", "Nv'": "tow/arm.csv", "Yr'": "tow/arm.csv", "Nr'": "tow/arm.csv"}
+    found = compare(resting(TABLES, INPUTS), resting(other, {**INPUTS, "tank/sway.csv": "d"}, name="second"))
+    assert {r.symbol: r.shared for r in found.rows} == {
+        "Yv'": ("tow/drift.csv",), "Nv'": (), "Yr'": ("tow/arm.csv",), "Nr'": ("tow/arm.csv",),
     }  # fmt: skip
-    found = compare(made(VALUES, provenance=shared), made(VALUES, provenance=shared))
-    assert any("tow/table.csv" in s and "not independent" in s for s in found.statements)
+    assert found.statements == (
+        "tow/drift.csv is behind Yv' of both files: their errors are not independent",
+        "tow/arm.csv is behind Yr'; Nr' of both files: their errors are not independent",
+    )
+    assert [r.reason for r in found.rows][:2] == ["both rest on tow/drift.csv", ""]
+
+
+def test_inputs_of_the_study_that_no_value_rests_on_are_not_named() -> None:
+    first, second = dict.fromkeys(VALUES, "tow/drift.csv"), dict.fromkeys(VALUES, "tow/arm.csv")
+    assert compare(resting(first, INPUTS), resting(second, INPUTS)).statements == ()
+    values = dict.fromkeys(VALUES, (None, None))
+    both = resting(first, INPUTS), ParameterFile.model_validate(made(values).model_dump())
+    assert compare(*both).statements == ()
+
+
+def test_without_a_table_the_campaign_counts_but_not_its_declaration() -> None:
+    ours = resting({}, INPUTS)
+    assert {r.shared for r in compare(ours, ours).rows} == {("tow/arm.csv", "tow/drift.csv")}
+    assert {r.shared for r in compare(ours, resting({}, INPUTS, campaign="other")).rows} == {()}
+
+
+def test_a_moved_coefficient_rests_on_those_it_is_made_of() -> None:
+    tables = {"Yv'": "tow/drift.csv", "Nv'": "tow/arm.csv", "Yr'": "tow/arm.csv", "Nr'": "tow/arm.csv"}
+    ours = resting(dict.fromkeys(VALUES, "tow/drift.csv"), INPUTS)
+    point = {"point": [-1.5, 0.0, 0.0], "datum": "nose"}
+    assert [bool(r.shared) for r in compare(ours, resting(tables, INPUTS)).rows] == [True, False, False, False]
+    found = compare(ours, resting(tables, INPUTS, reference_point=point))
+    assert [bool(r.shared) for r in found.rows] == [True, True, True, True]
 
 
 def test_the_command_prints_a_table_and_exits_zero_even_when_apart(

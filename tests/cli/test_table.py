@@ -114,3 +114,32 @@ def test_the_largest_grid_is_allowed() -> None:
     assert math.prod(len(x) for x in given.values()) == 5_000_000
     with pytest.raises(InputError, match="5,000,000"):
         wanted(["--alpha=0:5000000:1"])
+
+
+def test_a_table_over_sway_takes_the_drift_angle(coeflab: Run) -> None:
+    done = coeflab("table", PARAMS, "--beta=0:20:5", "--response=Y")
+    assert (done.returncode, done.stderr) == (0, "")
+    header, body = rows(done.stdout)
+    assert header == ["beta [deg]", "Y' [-]", "Y' U95 [-]", "inside"]
+    v = np.sin(np.radians(np.arange(0.0, 21.0, 5.0)))
+    wanted_ = read_parameter_file(PARAMS).models[2].evaluate({"v": v})[0]
+    np.testing.assert_allclose([float(r[1]) for r in body], wanted_, rtol=1e-8)
+
+
+def test_standard_error_counts_the_points_outside(coeflab: Run, tmp_path: Path) -> None:
+    done = coeflab("table", PARAMS, "--alpha=0,30,40", "--beta=5", "--response=C_D")
+    assert done.returncode == 0
+    assert done.stderr == "2 of 3 points lie outside the domain (inside = 0)\n"
+    done = coeflab("table", PARAMS, "--alpha=0,30,40", "--beta=5", "--out", "t.csv")
+    assert "2 of 3 points lie outside every domain (inside = 0)\n" in done.stderr
+
+
+def test_with_no_point_inside_standard_error_gives_the_limits(coeflab: Run) -> None:
+    done = coeflab("table", PARAMS, "--alpha=30:40:5", "--beta=5")
+    assert done.returncode == 0
+    assert len(rows(done.stdout)[1]) == 3
+    assert "all 3 points lie outside every domain" in done.stderr
+    assert "C_D, C_n: alpha -25 to 25 deg, beta 0 to 25 deg\n" in done.stderr
+    done = coeflab("table", PARAMS, "--v=0.5")
+    assert "the point lies outside the domain" in done.stderr
+    assert "Y': v' 0 to 0.422618 (beta 0 to 25 deg)\n" in done.stderr

@@ -277,7 +277,7 @@ def parameters(values: dict[str, tuple[float, float]], mass: bool = True) -> Par
             "conditions": {"density": 1000.0, "speed": 1.5},
             "mass": {"mass": 72.0, "mass_moment": 0.0, "mass_prime": 0.018, "mass_moment_prime": 0.0} if mass else None,
             "coefficients": [
-                {"symbol": s, "value": v, "u95": u, "unit": "1", "value_si": v, "unit_si": "N", "status": "ok",
+                {"symbol": s, "value": v, "u95": u, "unit": "1", "value_si": None, "unit_si": "N", "status": "ok",
                  "origin": "fit", "parts": {}, "campaign": "tow"}
                 for s, (v, u) in values.items()
             ],

@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.kernels.extrapolation import TAPER
-from coeflab.model.fitted_model import Extrapolation, FittedModel
+from coeflab.model.fitted_model import Domain, Extrapolation, FittedModel
 from coeflab.model.model_record import record, recorded
 from coeflab.model.parameter_file import SCHEMA_FILE, ParameterFile, read_parameter_file, schema
-from coeflab.model.parameter_model import ParameterModel, chosen
+from coeflab.model.parameter_model import ParameterModel, chosen, from_angles
 from coeflab.model.study import Plan, PlannedTable, Study
 from coeflab.workbench import run
 
@@ -100,6 +100,37 @@ def test_clamped_points_have_the_value_of_the_nearest_edge():
     assert values[0] == pytest.approx(values[1], rel=1e-12)
     assert values[2] == pytest.approx(values[3], rel=1e-12)
     assert half[0] == pytest.approx(half[1], rel=1e-12)
+
+
+@cache
+def diamond(rule: Extrapolation) -> ParameterModel:
+    """The synthetic table's drag, with the hull of its rows within alpha + beta of 25 degrees in size."""
+    model = fitted()
+    near = np.abs(model.x["alpha"]) + model.x["beta"] <= np.radians(25.0) + 1e-12
+    return record(replace(model, domain=Domain.of({v: x[near] for v, x in model.x.items()}, rule)))
+
+
+def test_a_corner_of_the_box_outside_the_hull_has_the_value_of_the_nearest_point_of_the_hull():
+    """In box widths a' = a / 50 + 0.5, b' = b / 25 the slope is a' + b' / 2 = 1; (25, 25) falls on (5, 20) degrees."""
+    model = diamond(Extrapolation.CLAMP)
+    values, half, inside = model.evaluate(points([25, -25, 5, 60, 25, 0, 0], [25, 25, 20, 5, 0, 90, 25]))
+    assert inside.tolist() == [False, False, True, False, True, False, True]
+    for outside, edge in ((0, 2), (3, 4), (5, 6)):
+        assert values[outside] == pytest.approx(values[edge], rel=1e-12)
+        assert half[outside] == pytest.approx(half[edge], rel=1e-9)
+    corner = record(fitted()).evaluate(points([25], [25]))[0][0]
+    assert abs(values[0] - corner) > 0.1
+
+
+def test_between_hull_and_box_the_taper_ends_at_the_nearest_point_too():
+    model = diamond(Extrapolation.TAPER)
+    normal = np.array([1.0, 0.5]) / np.hypot(1.0, 0.5) * np.array([50.0, 25.0])
+    track = np.array([5.0, 20.0]) + np.outer([0.0, 0.5 * TAPER, TAPER, 0.3], normal)
+    values = model.evaluate(points(list(track[:, 0]), list(track[:, 1])))[0]
+    free = fitted().evaluate(points(list(track[:, 0]), list(track[:, 1])))[0]
+    wanted = [free[0], 0.5 * (free[0] + free[1]), free[0], free[0]]
+    np.testing.assert_allclose(values, wanted, rtol=1e-9)
+    assert abs(free[1] - free[0]) > 0.01
 
 
 def test_the_taper_joins_with_its_slope_and_ends_at_the_edge():
@@ -249,3 +280,48 @@ def test_choosing_models(response, variables, said):
     assert [m.response for m in chosen(models, "", ("beta", "alpha"))] == ["C_D", "C_n"]
     with pytest.raises(InputError, match="without fitted tables"):
         chosen((), "", ("v",))
+
+
+def over(*variables: str) -> ParameterModel:
+    """A synthetic model over primed velocities: the sum of its variables."""
+    content = json.loads(record(fitted("Y'")).model_dump_json())
+    term = {"value": 1.0, "half_width_95": 0.0}
+    k = len(variables)
+    content.update(
+        variables=[{"name": v, "unit": "1"} for v in variables],
+        terms=[
+            {"symbol": f"Y{v}", "factors": [{"variable": v, "power": 1, "absolute": False}], **term} for v in variables
+        ],
+        covariance=[[0.0] * k for _ in range(k)],
+        domain={"low": [-1.0] * k, "high": [1.0] * k, "half_spaces": [], "extrapolation": "refuse"},
+    )
+    return ParameterModel.model_validate(content)
+
+
+def test_angles_stand_for_primed_velocities():
+    given = {"alpha": np.radians([20.0]), "beta": np.radians([30.0])}
+    both = over("v", "w")
+    assert chosen((both,), "", ("alpha", "beta")) == (both,)
+    found = from_angles(both, given)
+    assert found["v"][0] == pytest.approx(0.5)
+    assert found["w"][0] == pytest.approx(np.sin(np.radians(20.0)) * np.cos(np.radians(30.0)))
+    mixed = from_angles(both, {"alpha": given["alpha"], "v": np.array([0.5])})
+    assert mixed["w"][0] == pytest.approx(found["w"][0])
+    assert from_angles(over("w"), {"alpha": given["alpha"]})["w"][0] == pytest.approx(np.sin(np.radians(20.0)))
+    r = {"r": np.array([0.2])}
+    assert from_angles(over("v", "r"), {"beta": given["beta"], **r}).keys() == {"v", "r"}
+
+
+@pytest.mark.parametrize("variables", [("beta",), ("v", "beta"), ("alpha", "beta", "r"), ("v", "w", "alpha")])
+def test_angles_that_are_too_few_or_too_many_are_refused(variables):
+    with pytest.raises(InputError):
+        chosen((over("v", "w"),), "", variables)
+
+
+def test_an_angle_is_itself_where_a_table_has_it_and_never_a_velocity_in_metres_per_second():
+    models = read_parameter_file(NEW).models
+    assert [m.response for m in chosen(models, "", ("alpha", "beta"))] == ["C_D", "C_n"]
+    assert [m.response for m in chosen(models, "", ("beta",))] == ["Y'"]
+    dimensional = record(replace(fitted("Y'"), unit="N"))
+    with pytest.raises(InputError, match="unknown variable"):
+        chosen((dimensional,), "", ("beta",))

@@ -1,0 +1,62 @@
+"""Lamb's closed form for the ellipsoid that stands for the body."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError
+from coeflab.kernels.composition import composed
+from coeflab.kernels.ellipsoid import ellipsoid_added_mass
+from coeflab.model.added_mass import AddedMass
+from coeflab.model.body import Body
+from coeflab.model.shape import Ellipsoid, Parts, Shape
+
+summary = "Lamb's exact values for the ellipsoid of the body's length, volume and breadth-to-depth ratio"
+citations = ("lamb1932", "carlson1995")
+
+
+def _axes(shape: Shape) -> NDArray[np.float64]:
+    bc = 3.0 * shape.volume / (2.0 * np.pi * shape.length)
+    ratio = shape.breadth_over_depth
+    return np.array([shape.length / 2.0, np.sqrt(bc * ratio), np.sqrt(bc / ratio)])
+
+
+def added_mass(body: Body, density: float) -> AddedMass:
+    """Added mass of the equivalent ellipsoid, about the body's reference point.
+
+    Parameters
+    ----------
+    body : Body
+        With a shape.
+    density : float
+        kg/m^3.
+
+    Raises
+    ------
+    InputError
+        No shape, or one that displaces nothing.
+
+    Notes
+    -----
+    Length (of the parts that displace water) and volume are the body's; breadth over depth is the root of the ratio of
+    its second moments of volume along y and z, and the centre is its centre of volume. A body that is a single ellipsoid is taken as it is, in its own pose, and the result is exact.
+    Lamb, Hydrodynamics (1932), sections 114-115 and 121 a.
+    """
+    shape = body.require_shape()
+    if not shape.volume > 0.0:
+        raise InputError(
+            f"{body.name}, whose parts displace nothing", "a body with a volume", advice="Use the method primitives."
+        )
+    axes, centre, turn = _axes(shape), shape.centre_of_volume, np.eye(3)
+    statement = "equivalent ellipsoid: the body's length and volume, breadth over depth by its second moments"
+    if isinstance(shape, Parts) and len(shape.parts) == 1:
+        only = shape.parts[0]
+        if isinstance(only.form, Ellipsoid):
+            axes, turn = only.form.axes, only.rotation
+            statement = "the body is an ellipsoid: exact"
+    matrix = composed([ellipsoid_added_mass(axes, density)], [turn], [centre], body.reference_point)
+    size = " x ".join(f"{a:.5g}" for a in axes)
+    return AddedMass(
+        matrix, body.reference_point, body.datum, body.name, "ellipsoid", (f"{statement}; semi-axes {size} m",)
+    )

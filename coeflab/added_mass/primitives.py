@@ -1,0 +1,118 @@
+"""Closed forms of the parts of a body, each about its own centre, moved to the reference point and summed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError
+from coeflab.core.options import one_of, parse_options
+from coeflab.kernels.composition import composed
+from coeflab.kernels.ellipsoid import ellipsoid_added_mass
+from coeflab.kernels.parts import (
+    PLATE_ASPECTS,
+    box_added_mass,
+    cylinder_added_mass,
+    cylinder_with_ends,
+    plate_added_mass,
+)
+from coeflab.model.added_mass import AddedMass
+from coeflab.model.body import Body
+from coeflab.model.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate
+
+summary = "closed forms of cylinders, plates, ellipsoids and boxes, composed by the 6 x 6 transform"
+citations = ("huuv2025", "coeflab_plates", "lamb1932", "fossen2011")
+presets: Mapping[str, Mapping[str, str]] = {"lamb": {"cylinder_ends": "lamb"}}
+
+COMPOSED = "parts do not feel each other's flow"
+CYLINDERS = {
+    "huuv": "cylinders by HUUV equations 28-31 as corrected: 0.1 along, 1 across, ends not corrected",
+    "lamb": "cylinders with Lamb's k1, k2, k' of the spheroid of equal length and volume",
+}
+PLATES = (
+    "plates: k(aspect) pi/4 rho c^2 b along the normal, k by panel code to 1 % at aspect 1, 2, 3, 5; own turning terms "
+    "of the elliptic disc of equal area and aspect, an estimate"
+)
+BOXES = "boxes: Lamb's ellipsoid of equal volume and proportions, an estimate"
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """Options of the method.
+
+    Attributes
+    ----------
+    cylinder_ends : str
+        ``huuv``: HUUV equations 28-31 as corrected. ``lamb``: end-corrected.
+    """
+
+    cylinder_ends: str = one_of("huuv", "huuv", "lamb")
+
+
+def _own(form: Form, density: float, ends: str) -> NDArray[Any]:
+    if isinstance(form, Cylinder):
+        cylinder = cylinder_with_ends if ends == "lamb" else cylinder_added_mass
+        return cylinder(form.radius, form.length, density)
+    if isinstance(form, Plate):
+        return plate_added_mass(form.chord, form.span, density)
+    if isinstance(form, Ellipsoid):
+        return ellipsoid_added_mass(form.axes, density)
+    return box_added_mass(form.sides, density)
+
+
+def _statements(parts: tuple[Part, ...], ends: str) -> tuple[str, ...]:
+    forms = [p.form for p in parts]
+    out = [COMPOSED] if len(parts) > 1 else []
+    if any(isinstance(f, Cylinder) for f in forms):
+        out.append(CYLINDERS[ends])
+    if any(isinstance(f, Plate) for f in forms):
+        out.append(PLATES)
+    if any(isinstance(f, Box) for f in forms):
+        out.append(BOXES)
+    for part in parts:
+        form = part.form
+        if isinstance(form, Cylinder) and form.length < 2.0 * form.radius:
+            out.append(f"{part.name}: shorter than its diameter, sections say little about it")
+        if isinstance(form, Plate) and form.aspect > PLATE_ASPECTS[-1]:
+            out.append(
+                f"{part.name}: aspect {form.aspect:.3g}, interpolated between {PLATE_ASPECTS[-1]:g} and infinity"
+            )
+    return tuple(out)
+
+
+def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = None) -> AddedMass:
+    """Added mass of a body of parts, about its reference point.
+
+    Parameters
+    ----------
+    body : Body
+        With parts.
+    density : float
+        kg/m^3.
+    options : mapping, optional
+        See `Options`.
+
+    Raises
+    ------
+    InputError
+        No shape, or a body that is not made of parts.
+    """
+    chosen = parse_options(Options, options or {}, "primitives")
+    shape = body.require_shape()
+    if not isinstance(shape, Parts):
+        raise InputError(
+            f"{body.name}, which is not made of parts", "a body of parts", advice="Use the method ellipsoid or strip."
+        )
+    ends = chosen.cylinder_ends
+    matrix = composed(
+        [_own(p.form, density, ends) for p in shape.parts],
+        [p.rotation for p in shape.parts],
+        [p.centre for p in shape.parts],
+        body.reference_point,
+    )
+    method = "primitives" if ends == "huuv" else f"primitives:{ends}"
+    statements = _statements(shape.parts, ends)
+    return AddedMass(matrix, body.reference_point, body.datum, body.name, method, statements)

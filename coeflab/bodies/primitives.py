@@ -1,0 +1,92 @@
+"""Bodies as named cylinders, plates, spheroids, ellipsoids, spheres and boxes, each with its pose."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError
+from coeflab.core.toml import Section
+from coeflab.model.body import Body, Configuration
+from coeflab.model.body_file import open_body_file
+from coeflab.model.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate
+
+summary = "named cylinders, plates, spheroids, ellipsoids, spheres and boxes from a body.toml, each with its pose"
+citations = ("fossen2011",)
+
+FORMS = ("cylinder", "plate", "spheroid", "ellipsoid", "sphere", "box")
+
+
+def rotation(roll: float, pitch: float, yaw: float) -> NDArray[np.float64]:
+    """(3, 3) matrix from the part's axes to the body's: yaw, then pitch, then roll, rad (Fossen 2011, equation 2.18)."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
+    about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
+    about_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
+    about_z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
+    return np.asarray(about_z @ about_y @ about_x)
+
+
+def _form(section: Section) -> Form:
+    kind = section.text("form", choices=FORMS)
+    size = {
+        "cylinder": ("radius", "length"),
+        "plate": ("chord", "span"),
+        "spheroid": ("length", "diameter"),
+        "ellipsoid": ("semi_axis_x", "semi_axis_y", "semi_axis_z"),
+        "sphere": ("radius",),
+        "box": ("length", "width", "height"),
+    }[kind]
+    values = [section.positive(key, "length") for key in size]
+    if kind == "cylinder":
+        return Cylinder(*values)
+    if kind == "plate":
+        return Plate(*values)
+    if kind == "box":
+        return Box(*values)
+    if kind == "sphere":
+        return Ellipsoid(values[0], values[0], values[0])
+    if kind == "spheroid":
+        return Ellipsoid(values[0] / 2.0, values[1] / 2.0, values[1] / 2.0)
+    return Ellipsoid(*values)
+
+
+def _part(section: Section) -> Part:
+    name, form = section.text("name"), _form(section)
+    centre = section.point("centre")
+    turn = section.triple("rotation", "angle") if section.has("rotation") else (0.0, 0.0, 0.0)
+    section.finish()
+    return Part(name, form, centre, rotation(*turn))
+
+
+def read(path: Path) -> Body:
+    """Read a body.toml of parts.
+
+    Lengths are in metres unless a unit is written. ``rotation`` is [roll, pitch, yaw]; a bare number is in rad. Along
+    its own axes a cylinder and a spheroid lie along x, a plate has its chord along x, its span along y and its normal
+    along z.
+
+    Raises
+    ------
+    InputError
+        Anything missing, unknown, of the wrong unit or not above zero, by file and key.
+    """
+    opened = open_body_file(path, "primitives")
+    sections = opened.root.sections("part")
+    if not sections:
+        raise InputError("no [[part]]", f"at least one part, with form {', '.join(FORMS)}", file=path, column="part")
+    made = tuple(_part(s) for s in sections)
+    try:
+        shape = Parts(made)
+    except InputError as why:
+        raise InputError(why.found, why.expected, file=path, column="part") from None
+    computed = Configuration(
+        name="by_parts",
+        title="sum of the parts; overlaps count twice",
+        volume=shape.volume or None,
+        wetted_surface=None,
+        centre_of_buoyancy=shape.centre_of_volume,
+        mass=None,
+    )
+    return opened.body(shape, computed)

@@ -1,0 +1,292 @@
+"""What a body looks like: parts of simple form, each with its pose, or a body of revolution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, shown
+from coeflab.kernels.axisymmetric import MeridianIntegrals, graded_nodes, meridian_integrals
+from coeflab.model.frozen import locked
+
+Array = NDArray[np.float64]
+STATIONS = 64
+
+
+def _positive(form: str, **dimensions: float) -> None:
+    for name, value in dimensions.items():
+        if not (np.isfinite(value) and value > 0.0):
+            raise InputError(f"{name.replace('_', ' ')} = {value:g} m of a {form}", "a length above zero", column=name)
+
+
+@dataclass(frozen=True, slots=True)
+class Cylinder:
+    """A circular cylinder with flat ends, its axis along its own x; m."""
+
+    radius: float
+    length: float
+
+    def __post_init__(self) -> None:
+        _positive("cylinder", radius=self.radius, length=self.length)
+
+    @property
+    def volume(self) -> float:
+        """m^3."""
+        return float(np.pi * self.radius**2 * self.length)
+
+    @property
+    def spread(self) -> Array:
+        """(3,) second moments of the volume along its own axes, over the volume, m^2."""
+        return np.array([self.length**2 / 12.0, self.radius**2 / 4.0, self.radius**2 / 4.0])
+
+    def half_extents(self, rotation: Array) -> Array:
+        """Half the size along the outer axes, m."""
+        along = rotation[:, 0]
+        across = np.sqrt(np.clip(1.0 - along**2, 0.0, None))
+        return np.asarray(np.abs(along) * self.length / 2.0 + across * self.radius)
+
+
+@dataclass(frozen=True, slots=True)
+class Plate:
+    """A thin rectangular plate: chord along its own x, span along its own y, normal along its own z; m."""
+
+    chord: float
+    span: float
+
+    def __post_init__(self) -> None:
+        _positive("plate", chord=self.chord, span=self.span)
+
+    @property
+    def aspect(self) -> float:
+        """Longer over shorter side."""
+        return max(self.chord, self.span) / min(self.chord, self.span)
+
+    @property
+    def volume(self) -> float:
+        """Nothing is displaced."""
+        return 0.0
+
+    @property
+    def spread(self) -> Array:
+        """(3,) second moments of the volume along its own axes, over the volume, m^2."""
+        return np.array([self.chord**2, self.span**2, 0.0]) / 12.0
+
+    def half_extents(self, rotation: Array) -> Array:
+        """Half the size along the outer axes, m."""
+        return np.asarray(np.abs(rotation) @ np.array([self.chord, self.span, 0.0]) / 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Ellipsoid:
+    """An ellipsoid of semi-axes along its own x, y, z, m; spheroids and spheres have equal ones."""
+
+    x: float
+    y: float
+    z: float
+
+    def __post_init__(self) -> None:
+        _positive("ellipsoid", semi_axis_x=self.x, semi_axis_y=self.y, semi_axis_z=self.z)
+
+    @property
+    def axes(self) -> Array:
+        """(3,) semi-axes, m."""
+        return np.array([self.x, self.y, self.z])
+
+    @property
+    def volume(self) -> float:
+        """m^3."""
+        return float(4.0 * np.pi / 3.0 * self.x * self.y * self.z)
+
+    @property
+    def spread(self) -> Array:
+        """(3,) second moments of the volume along its own axes, over the volume, m^2."""
+        return np.asarray(self.axes**2 / 5.0)
+
+    def half_extents(self, rotation: Array) -> Array:
+        """Half the size along the outer axes, m."""
+        return np.asarray(np.sqrt(rotation**2 @ self.axes**2))
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A rectangular box: length, width, height along its own x, y, z; m."""
+
+    length: float
+    width: float
+    height: float
+
+    def __post_init__(self) -> None:
+        _positive("box", length=self.length, width=self.width, height=self.height)
+
+    @property
+    def sides(self) -> Array:
+        """(3,) length, width and height, m."""
+        return np.array([self.length, self.width, self.height])
+
+    @property
+    def volume(self) -> float:
+        """m^3."""
+        return self.length * self.width * self.height
+
+    @property
+    def spread(self) -> Array:
+        """(3,) second moments of the volume along its own axes, over the volume, m^2."""
+        return np.asarray(self.sides**2 / 12.0)
+
+    def half_extents(self, rotation: Array) -> Array:
+        """Half the size along the outer axes, m."""
+        return np.asarray(np.abs(rotation) @ self.sides / 2.0)
+
+
+Form = Cylinder | Plate | Ellipsoid | Box
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """A named form somewhere on the body.
+
+    Attributes
+    ----------
+    name : str
+    form : Cylinder, Plate, Ellipsoid or Box
+    centre : (3,) array
+        m, FRD, from the datum.
+    rotation : (3, 3) array
+        Components along the part's own axes to those along the body's.
+    """
+
+    name: str
+    form: Form
+    centre: Array
+    rotation: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "centre", locked(self.centre))
+        object.__setattr__(self, "rotation", locked(self.rotation))
+        turn = self.rotation
+        proper = turn.shape == (3, 3) and np.allclose(turn @ turn.T, np.eye(3), atol=1e-9) and np.linalg.det(turn) > 0.0
+        if not proper:
+            raise InputError(f"the pose of part {shown(self.name)}, which mirrors or stretches", "a rotation")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Parts:
+    """A body as simple parts; where they overlap the overlap counts twice."""
+
+    parts: tuple[Part, ...]
+
+    def __post_init__(self) -> None:
+        names = [p.name for p in self.parts]
+        if not names:
+            raise InputError("a body without parts", "at least one part")
+        twice = sorted({n for n in names if names.count(n) > 1})
+        if twice:
+            raise InputError(f"two parts called {shown(twice[0])}", "one name for each part")
+
+    @property
+    def volume(self) -> float:
+        """Sum over the parts, m^3."""
+        return sum(p.form.volume for p in self.parts)
+
+    @property
+    def centre_of_volume(self) -> Array:
+        """(3,) array, m, FRD, from the datum; of plates alone the mean of their centres."""
+        weights = np.array([p.form.volume for p in self.parts])
+        centres = np.array([p.centre for p in self.parts])
+        return np.asarray(np.average(centres, axis=0, weights=weights if np.any(weights) else None))
+
+    @property
+    def length(self) -> float:
+        """Along x, over all parts that displace water, m; 0 where none does."""
+        solid = [p for p in self.parts if p.form.volume > 0.0]
+        half = [float(p.form.half_extents(p.rotation)[0]) for p in solid]
+        fore = max((p.centre[0] + h for p, h in zip(solid, half, strict=True)), default=0.0)
+        aft = min((p.centre[0] - h for p, h in zip(solid, half, strict=True)), default=0.0)
+        return float(fore - aft)
+
+    @property
+    def breadth_over_depth(self) -> float:
+        """Root of the ratio of the second moments of volume along y and along z; b/c of an ellipsoid exactly."""
+        middle = self.centre_of_volume
+        total = np.zeros(3)
+        for p in self.parts:
+            total += p.form.volume * (p.rotation**2 @ p.form.spread + (p.centre - middle) ** 2)
+        return float(np.sqrt(total[1] / total[2]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Revolution:
+    """A body of revolution about an axis along x, by quadrature stations.
+
+    Attributes
+    ----------
+    x, weight, radius, radius_slope : (n,) arrays
+        Stations (FRD, from the datum), their weights, radii, and R dR/dx; m.
+    axis : (2,) array
+        y and z of the axis, m, FRD, from the datum.
+    length : float
+        From end to end, m.
+    """
+
+    x: Array
+    weight: Array
+    radius: Array
+    radius_slope: Array
+    axis: Array
+    length: float
+
+    def __post_init__(self) -> None:
+        for name in ("x", "weight", "radius", "radius_slope", "axis"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+        if np.any(self.radius < 0.0) or not np.any(self.radius > 0.0):
+            raise InputError("a negative or vanishing radius", "a meridian with radii above zero")
+
+    @property
+    def integrals(self) -> MeridianIntegrals:
+        """Volume, centre, wetted surface and second moment."""
+        return meridian_integrals(self.x, self.weight, self.radius, self.radius_slope)
+
+    @property
+    def volume(self) -> float:
+        """m^3."""
+        return self.integrals.volume
+
+    @property
+    def centre_of_volume(self) -> Array:
+        """(3,) array, m, FRD, from the datum."""
+        return np.array([self.integrals.centre, *self.axis])
+
+    @property
+    def breadth_over_depth(self) -> float:
+        """One, for a circle."""
+        return 1.0
+
+
+Shape = Parts | Revolution
+
+
+def as_revolution(shape: Shape) -> Revolution | None:
+    """The body of revolution about x that a shape is, or None.
+
+    Parts are one when there is a single cylinder, or a single spheroid or sphere, whose axis lies along x.
+    """
+    if isinstance(shape, Revolution):
+        return shape
+    if len(shape.parts) > 1:
+        return None
+    part = shape.parts[0]
+    form = part.form
+    if isinstance(form, Box | Plate) or not np.isclose(abs(part.rotation[0, 0]), 1.0, rtol=1e-12):
+        return None
+    if isinstance(form, Ellipsoid) and form.y != form.z:
+        return None
+    half = form.x if isinstance(form, Ellipsoid) else form.length / 2.0
+    offset, weight = graded_nodes(-half, half, STATIONS)
+    if isinstance(form, Ellipsoid):
+        radius = form.y * np.sqrt(1.0 - (offset / half) ** 2)
+        slope = -(form.y**2) * offset / half**2
+    else:
+        radius, slope = np.full(STATIONS, form.radius), np.zeros(STATIONS)
+    return Revolution(part.centre[0] + offset, weight, radius, slope, part.centre[1:], 2.0 * half)
