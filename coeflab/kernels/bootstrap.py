@@ -6,10 +6,14 @@ QR solution of each replicate within 1e-10.
 
 from __future__ import annotations
 
+from itertools import combinations_with_replacement
+
 import numpy as np
 
 from coeflab.kernels.least_squares import Array, Factorised
 from coeflab.kernels.robust import FULL_LEVERAGE, hangs_on_one_point
+
+LEAST_PIVOT = 1e-9
 
 
 def draw_counts(n: int, replicates: int, seed: int) -> Array:
@@ -39,25 +43,53 @@ def pairs(f: Factorised, responses: Array, counts: Array) -> Array:
     weighted = responses * f.root_weights[:, None]
     upper = np.triu_indices(p)
     products = q[:, upper[0]] * q[:, upper[1]]
-    flat = counts @ products
-    gram = np.empty((counts.shape[0], p, p))
-    gram[:, upper[0], upper[1]] = flat
-    gram[:, upper[1], upper[0]] = flat
-    moments = (counts @ (q[:, :, None] * weighted[:, None, :]).reshape(len(q), -1)).reshape(len(counts), p, -1)
-    back = f.back
-    if p == 2:
-        determinant = gram[:, 0, 0] * gram[:, 1, 1] - gram[:, 0, 1] ** 2
-        poor = determinant < 1e-9 * np.maximum(gram[:, 0, 0] * gram[:, 1, 1], 1e-300)
-        safe = np.where(poor, 1.0, determinant)[:, None]
-        first = (gram[:, 1, 1, None] * moments[:, 0] - gram[:, 0, 1, None] * moments[:, 1]) / safe
-        second = (gram[:, 0, 0, None] * moments[:, 1] - gram[:, 0, 1, None] * moments[:, 0]) / safe
-        solved: Array = np.stack([first, second], axis=1)
-    else:
-        poor = np.linalg.eigvalsh(gram)[:, 0] < 1e-9
-        gram[poor] = np.eye(p)
-        solved = np.asarray(np.linalg.solve(gram, moments), dtype=np.float64)
-    solved[poor] = np.nan
-    return np.asarray(np.einsum("jp,bpm->bjm", back, solved))
+    gram = (products.T @ counts.T).astype(np.float64, copy=False)
+    moments = (q[:, :, None] * weighted[:, None, :]).reshape(len(q), -1).T @ counts.T
+    solved = _solved(gram, moments.reshape(p, weighted.shape[1], len(counts)), p)
+    return np.asarray(np.einsum("jp,pmb->bjm", f.back, solved))
+
+
+def _solved(gram: Array, moments: Array, p: int) -> Array:
+    """Solutions (p, m, B) of B small systems by one Cholesky factorisation along the batch.
+
+    Parameters
+    ----------
+    gram : (p (p + 1) / 2, B) array
+        Upper triangles, row by row.
+    moments : (p, m, B) array
+    p : int
+
+    Notes
+    -----
+    In the orthonormal basis a pivot is the share of a direction that the resample still holds; where one falls below
+    1e-9 the resample does not determine the coefficients and the answer is NaN.
+    """
+    lower: list[list[Array]] = [[] for _ in range(p)]
+    at = {(row, column): k for k, (row, column) in enumerate(combinations_with_replacement(range(p), 2))}
+    poor = np.zeros(gram.shape[1], dtype=bool)
+    for j in range(p):
+        for i in range(j, p):
+            rest = gram[at[j, i]].copy()
+            for k in range(j):
+                rest -= lower[i][k] * lower[j][k]
+            if i == j:
+                weak = rest < LEAST_PIVOT
+                poor |= weak
+                rest = np.sqrt(np.where(weak, 1.0, rest))
+            else:
+                rest /= lower[j][j]
+            lower[i].append(rest)
+    out = moments.copy()
+    for i in range(p):
+        for k in range(i):
+            out[i] -= lower[i][k] * out[k]
+        out[i] /= lower[i][i]
+    for i in reversed(range(p)):
+        for k in range(i + 1, p):
+            out[i] -= lower[k][i] * out[k]
+        out[i] /= lower[i][i]
+    out[:, :, poor] = np.nan
+    return out
 
 
 def wild(f: Factorised, coefficients: Array, residuals: Array, replicates: int, seed: int) -> Array:
