@@ -157,11 +157,10 @@ def _models(study: Study) -> tuple[Section, ...]:
         "Force laws and tables over one or more variables. What the data leave open is said below each table and has no "
         "number; a reader outside the domain follows the stated rule.",
     )
-    return (
-        Section(
-            "models", "Fitted models", text, (model_tables.quality(models), *(model_tables.terms(m) for m in models))
-        ),
+    each = tuple(
+        t for m in models for t in (model_tables.terms(m), model_tables.influence(m), model_tables.correlations(m))
     )
+    return (Section("models", "Fitted models", text, filled(model_tables.quality(models), *each)),)
 
 
 def _comparison(study: Study) -> tuple[Section, ...]:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.table import ABSENT, Table, number, percent, probability
 
@@ -60,3 +62,42 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
         "runs of one sign by chance; outside: what a reader beyond the domain is to do.",
     )
     return Table("Quality of the fitted models", headers, rows, notes, frozenset({0, 1, 11, 12}))
+
+
+MOST_POINTS = 5
+LARGEST_MATRIX = 8
+
+
+def influence(model: FittedModel) -> Table:
+    """The points that move the fit most, by Cook's distance."""
+    d = model.fit.cooks_distance
+    order = [int(i) for i in np.argsort(-np.nan_to_num(d), kind="stable")[:MOST_POINTS] if np.isfinite(d[i])]
+    rows = tuple(
+        (
+            model.labels[i],
+            number(float(d[i]), 3),
+            number(float(model.fit.leverage[i]), 3),
+            number(float(model.fit.residuals[i]), 3),
+            number(float(model.fit.left_out[i]), 3),
+        )
+        for i in order
+    )
+    headers = ("point", "Cook's distance", "leverage", "residual", "left out")
+    notes = ("left out: residual when the point is predicted from the others.",)
+    return Table(f"Most influential points of {model.response}: {model.campaign}", headers, rows, notes, frozenset({0}))
+
+
+def correlations(model: FittedModel) -> Table:
+    """Correlations of the coefficients; empty where there are too many to read."""
+    if len(model.symbols) > LARGEST_MATRIX:
+        return Table("Correlations", (), ())
+    rows = tuple(
+        (
+            symbol,
+            *(number(float(c), 2) if np.isfinite(c) else ABSENT for c in model.fit.correlation[i, : i + 1]),
+            *([""] * (len(model.symbols) - i - 1)),
+        )
+        for i, symbol in enumerate(model.symbols)
+    )
+    title = f"Correlations of the coefficients of {model.response}: {model.campaign}"
+    return Table(title, ("", *model.symbols), rows, (), frozenset({0}))
