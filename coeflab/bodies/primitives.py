@@ -39,6 +39,13 @@ def _form(section: Section) -> Form:
         "box": ("length", "width", "height"),
     }[kind]
     values = [section.positive(key, "length") for key in size]
+    try:
+        return _made(kind, values)
+    except InputError as why:
+        raise section.fail("form", why.found, why.expected, why.advice) from None
+
+
+def _made(kind: str, values: list[float]) -> Form:
     if kind == "cylinder":
         return Cylinder(*values)
     if kind == "plate":

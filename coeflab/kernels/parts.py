@@ -9,7 +9,6 @@ off-diagonal terms m / 20 of equation 33 are dropped for those that the transfor
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from coeflab.kernels.axisymmetric import lamb_end_correction
 from coeflab.kernels.ellipsoid import ellipsoid_added_mass
@@ -33,6 +32,8 @@ def plate_coefficient(aspect: float) -> float:
     Computed for this project with a panel code to 1 % at aspect 1, 2, 3 and 5. Between them and up to the
     two-dimensional limit k = 1 (aspect infinite, closed form) a monotone cubic in 1 / aspect.
     """
+    from scipy.interpolate import PchipInterpolator
+
     inverse = [0.0, *(1.0 / a for a in reversed(PLATE_ASPECTS))]
     values = [1.0, *reversed(PLATE_COEFFICIENTS)]
     return float(PchipInterpolator(inverse, values)(1.0 / aspect))

@@ -13,12 +13,15 @@ from coeflab.model.frozen import locked
 
 Array = NDArray[np.float64]
 STATIONS = 64
+SMALLEST, LARGEST = 1e-6, 1e4
 
 
 def _positive(form: str, **dimensions: float) -> None:
     for name, value in dimensions.items():
-        if not (np.isfinite(value) and value > 0.0):
-            raise InputError(f"{name.replace('_', ' ')} = {value:g} m of a {form}", "a length above zero", column=name)
+        if not SMALLEST <= value <= LARGEST:
+            found = f"{name.replace('_', ' ')} = {value:g} m of a {form}"
+            expected = f"a length above zero, from {SMALLEST:g} to {LARGEST:g} m"
+            raise InputError(found, expected, column=name, advice="Is the unit right?" if value > LARGEST else "")
 
 
 @dataclass(frozen=True, slots=True)

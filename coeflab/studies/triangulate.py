@@ -17,6 +17,7 @@ from coeflab.model.body import Body
 from coeflab.model.table import ABSENT, Table, coefficient, number
 
 SHOWN = ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot", "Yrdot", "Zqdot")
+DENSEST = 1e5
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,8 +132,10 @@ def triangulate(body: Body, density: float, method: str = "all") -> Triangulatio
     PluginError
         No plugin has that name.
     """
-    if not (np.isfinite(density) and density > 0.0):
-        raise InputError(f"a density of {density:g} kg/m^3", "a value above zero", column="density")
+    if not 0.0 < density <= DENSEST:
+        raise InputError(
+            f"a density of {density:g} kg/m^3", f"a value above zero, at most {DENSEST:g}", column="density"
+        )
     body.require_shape()
     results: list[AddedMass] = []
     refused: dict[str, str] = {}
