@@ -75,19 +75,20 @@ def test_length_and_spread_in_any_pose() -> None:
     ball *= (rng.random(len(ball)) ** (1 / 3) / np.linalg.norm(ball, axis=1))[:, None]
     cube = rng.random((200_000, 3)) - 0.5
     angle, share = 2 * np.pi * rng.random(200_000), np.sqrt(rng.random(200_000))
-    rod = np.column_stack([2.0 * cube[:, 0], 0.3 * share * np.cos(angle), 0.3 * share * np.sin(angle)])
+    rod = np.column_stack([2.0 * cube[:, 0], 0.9 * share * np.cos(angle), 0.9 * share * np.sin(angle)])
     turn = rotation(0.3, -0.7, 1.1)
     for form, points in (
         (Ellipsoid(3, 2, 1), ball * [3, 2, 1]),
         (Box(3, 2, 1), cube * [3, 2, 1]),
-        (Cylinder(0.3, 2), rod),
+        (Cylinder(0.9, 2), rod),
     ):
         shape = Parts((Part("p", form, np.array([5.0, 1.0, -2.0]), turn),))
         outer = points @ turn.T
         assert shape.length == pytest.approx(np.ptp(outer[:, 0]), rel=0.06)
         assert shape.length >= np.ptp(outer[:, 0]) - 1e-12
+        assert form.spread == pytest.approx(np.var(points, axis=0), rel=0.01)
         ratio = np.std(outer[:, 1]) / np.std(outer[:, 2])
-        assert shape.breadth_over_depth == pytest.approx(ratio, rel=0.01)
+        assert shape.breadth_over_depth == pytest.approx(ratio, rel=0.005)
 
 
 def test_sums_over_parts() -> None:
