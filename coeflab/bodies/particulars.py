@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from coeflab.core.provenance import InputFile, Source, sha256_of
+from coeflab.core.provenance import InputFile, read_source, sha256_of
 from coeflab.core.toml import Section, read_toml
 from coeflab.model.body import Body, Configuration, MassProperties, mass_from_primes
 from coeflab.model.scaling import read_scaling
@@ -63,13 +63,7 @@ def read(path: Path) -> Body:
         reference_point=head.point("reference_point"),
         lengths={k: lengths.positive(k, "length") for k in lengths.content},
         configurations=tuple(_configuration(s, prime) for s in root.sections("configuration")),
-        source=Source(
-            source.text("citation"),
-            source.text("place", ""),
-            source.text("how_obtained", ""),
-            source.text("kind", ""),
-            source.text("stated_uncertainty", ""),
-        ),
+        source=read_source(source),
         files=(InputFile(f"{head.text('name')}/{path.name}", sha256_of(path)),),
     )
     for section in (head, source, prime, root):

@@ -6,6 +6,8 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
+from coeflab.core.toml import Section
+
 
 @dataclass(frozen=True, slots=True)
 class Source:
@@ -30,6 +32,28 @@ class Source:
     how_obtained: str = ""
     kind: str = ""
     stated_uncertainty: str = ""
+
+
+def read_source(section: Section, kinds: tuple[str, ...] = ()) -> Source:
+    """A ``[source]`` table.
+
+    Parameters
+    ----------
+    section : Section
+    kinds : tuple of str, optional
+        The kinds of source that are allowed; the kind is then required.
+
+    Raises
+    ------
+    InputError
+    """
+    return Source(
+        citation=section.text("citation"),
+        place=section.text("place", ""),
+        how_obtained=section.text("how_obtained", ""),
+        kind=section.text("kind", choices=kinds) if kinds else section.text("kind", ""),
+        stated_uncertainty=section.text("stated_uncertainty", ""),
+    )
 
 
 @dataclass(frozen=True, slots=True)

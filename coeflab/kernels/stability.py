@@ -11,14 +11,15 @@ from coeflab.kernels.least_squares import Array
 
 
 def stability_index(
-    force_slope: float, moment_slope: float, force_rate: float, moment_rate: float, mass: float, mass_moment: float
-) -> float:
-    """G_h from (Yv', Nv', Yr', Nr', m', xG'm').
+    force_slope: Array, moment_slope: Array, force_rate: Array, moment_rate: Array, mass: float, mass_moment: float
+) -> Array:
+    """G_h from (Yv', Nv', Yr', Nr', m', xG'm'), numbers or arrays of one shape.
 
     For G_v pass (Zw', Mw', Zq', Mq', -m', xG'm'): there the mass term changes its sign, G_v = 1 - Mw'(Zq' + m') /
     [Zw'(Mq' - xG'm')], the limit of high speed without restoring moment.
     """
-    return 1.0 - moment_slope * (force_rate - mass) / (force_slope * (moment_rate - mass_moment))
+    lever = moment_slope * (np.asarray(force_rate) - mass)
+    return np.asarray(1.0 - lever / (force_slope * (np.asarray(moment_rate) - mass_moment)))
 
 
 def index_gradient(

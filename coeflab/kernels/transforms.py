@@ -34,11 +34,6 @@ def derivative_transfer(shift: Array) -> tuple[Array, Array]:
     return force_transfer(shift), velocity_transfer(-shift)
 
 
-def rotate6(rotation: Array, vectors: Array) -> Array:
-    """Turn rows of 6-vectors (n, 6) by a (3, 3) rotation of both halves."""
-    return np.hstack([vectors[:, :3] @ rotation.T, vectors[:, 3:] @ rotation.T])
-
-
 def rigid_body_force(mass: float, centre: Array, inertia: Array, nu: Array) -> Array:
     """C_RB(nu) nu, the force and moment that hold a body in a steady motion, shape (n, 6).
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from coeflab.core.errors import InputError
-from coeflab.core.provenance import InputFile, Source, sha256_of
+from coeflab.core.provenance import InputFile, read_source, sha256_of
 from coeflab.core.toml import Section, read_toml
 from coeflab.model.body import Body, Configuration, Measured
 from coeflab.model.scaling import Scaling, read_scaling
@@ -33,13 +33,7 @@ class BodyFile:
             reference_point=head.point("reference_point"),
             lengths={k: lengths.positive(k, "length") for k in lengths.content},
             configurations=(computed, *(_printed(s) for s in root.sections("configuration"))),
-            source=Source(
-                source.text("citation"),
-                source.text("place", ""),
-                source.text("how_obtained", ""),
-                source.text("kind", ""),
-                source.text("stated_uncertainty", ""),
-            ),
+            source=read_source(source),
             files=(InputFile(f"{head.text('name')}/{self.path.name}", sha256_of(self.path)),),
             shape=shape,
             scaling=_scaling(prime),

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.symbols import primed
 from coeflab.kernels.propagation import Propagated, propagate, reaches_zero
-from coeflab.kernels.stability import index_gradient
+from coeflab.kernels.stability import index_gradient, stability_index
 from coeflab.model.budget import Budget, covariance, further
 from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.parameter_file import ParameterFile
@@ -92,7 +92,7 @@ def stability(
 
         def index(d: Array, at: Array = values, mass: float = mass, moment: float = moment) -> Array:
             force_slope, moment_slope, force_rate, moment_rate = (at + d).T
-            return np.asarray(1.0 - moment_slope * (force_rate - mass) / (force_slope * (moment_rate - moment)))
+            return stability_index(force_slope, moment_slope, force_rate, moment_rate, mass, moment)
 
         halves = 2.0 * np.sqrt(np.diag(whole))
         denominators = [

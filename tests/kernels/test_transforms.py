@@ -13,7 +13,6 @@ from coeflab.kernels.transforms import (
     derivative_transfer,
     force_transfer,
     rigid_body_force,
-    rotate6,
     skew,
     velocity_transfer,
 )
@@ -100,15 +99,6 @@ def test_an_added_mass_matrix_stays_symmetric() -> None:
     moved = left @ (root @ root.T) @ right
     np.testing.assert_allclose(moved, moved.T, atol=1e-12)
     assert np.linalg.eigvalsh(moved).min() > 0.0
-
-
-def test_rotate6_turns_both_halves() -> None:
-    """FRD to FLU is half a turn about x: v, w, q, r and their forces change sign."""
-    turn = np.diag([1.0, -1.0, -1.0])
-    rows = np.arange(12.0).reshape(2, 6)
-    np.testing.assert_array_equal(rotate6(turn, rows), rows * [1, -1, -1, 1, -1, -1])
-    quarter = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    np.testing.assert_array_equal(rotate6(quarter, rows)[0], [-1.0, 0.0, 2.0, -4.0, 3.0, 5.0])
 
 
 def turned(omega: Array, time: float) -> Array:
