@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.kernels.axisymmetric import MeridianIntegrals, graded_nodes, meridian_integrals
 from coeflab.model.frozen import locked
+from coeflab.model.mesh import TriangleMesh
 
 Array = NDArray[np.float64]
 STATIONS = 64
@@ -267,7 +268,7 @@ class Revolution:
         return 1.0
 
 
-Shape = Parts | Revolution
+Shape = Parts | Revolution | TriangleMesh
 
 
 def as_revolution(shape: Shape) -> Revolution | None:
@@ -277,7 +278,7 @@ def as_revolution(shape: Shape) -> Revolution | None:
     """
     if isinstance(shape, Revolution):
         return shape
-    if len(shape.parts) > 1:
+    if isinstance(shape, TriangleMesh) or len(shape.parts) > 1:
         return None
     part = shape.parts[0]
     form = part.form
