@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from coeflab.bodies import BODIES
 from coeflab.checks import CHECKS
@@ -22,7 +23,9 @@ from coeflab.model.coefficient import Coefficient, Status
 from coeflab.model.declared import declared
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
+from coeflab.model.model_budget import with_model_budgets
 from coeflab.model.reference import compare, compare_set, read_references
+from coeflab.model.scaling import Scaling
 from coeflab.model.study import Plan, PlannedParameterFile, PlannedTable, Study
 from coeflab.reporting import REPORTERS
 
@@ -57,11 +60,9 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
         scaling = plan.scaling or read[0].scaling
         for name in planned.fits:
-            fitted = FITS.load(name).fit(read, scaling, planned.options.get(name, {}))
-            _refuse_starved(fitted)
-            found = budgets_of(fitted, {t.name: t for t in read})
+            fitted, found = _fitted(name, read, scaling, planned.options.get(name, {}))
             budgets += found
-            fits.append(with_budget(fitted, found))
+            fits.append(fitted)
             progress(f"fitted {read[0].campaign} by {name}")
         tables += read
     body = read_body(plan.body) if plan.body else None
@@ -89,6 +90,21 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     findings = [c for name in CHECKS.names() for c in CHECKS.load(name).check(study)]
     progress(f"{len(findings)} checks")
     return study.with_checks(tuple(findings))
+
+
+def _fitted(
+    name: str, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]
+) -> tuple[FitResult, tuple[Budget, ...]]:
+    """One fit with its budgets in it, and these."""
+
+    def once(some: Sequence[ForceTable], by: Scaling) -> FitResult:
+        return FITS.load(name).fit(some, by, options)
+
+    fit = once(tables, scaling)
+    _refuse_starved(fit)
+    found = budgets_of(fit, {t.name: t for t in tables})
+    fit, more = with_model_budgets(with_budget(fit, found), tables, scaling, once)
+    return fit, (*found, *more)
 
 
 def _refuse_starved(fit: FitResult) -> None:

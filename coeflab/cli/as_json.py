@@ -33,7 +33,7 @@ def coefficient(c: Coefficient, scaling: str) -> dict[str, Any]:
 
 def model(m: FittedModel) -> dict[str, Any]:
     """One fitted force law or table; a coefficient that the data leave open is null."""
-    rows = zip(m.symbols, m.terms, m.fit.coefficients, m.fit.half_width, strict=True)
+    rows = zip(m.symbols, m.terms, m.fit.coefficients, m.half_width, strict=True)
     return {
         "response": m.response,
         "unit": m.unit,
@@ -54,6 +54,7 @@ def model(m: FittedModel) -> dict[str, Any]:
             "high": [float(x) for x in m.domain.high],
             "outside": m.domain.rule.value,
         },
+        "holds": ["random", *m.shared],
         "post_selection": m.post_selection,
         "statements": list(m.statements),
     }

@@ -84,12 +84,13 @@ def further(arguments: list[str]) -> dict[str, int | float | str]:
 def _print(study: Study, symbols: list[str]) -> None:
     from coeflab.cli.carry_out import findings
     from coeflab.core.errors import InputError, shown
-    from coeflab.presentation import model_tables, tables
+    from coeflab.presentation import budget_tables, model_tables, tables
 
     show.table(tables.coefficients(study))
     models = tuple(m for f in study.fits for m in f.models)
     for model in models:
         show.table(model_tables.terms(model))
+        show.table(budget_tables.shared(model))
     show.table(model_tables.quality(models))
     known = {s.symbol: s for f in study.fits for s in f.sweeps}
     for symbol in symbols:

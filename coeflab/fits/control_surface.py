@@ -186,7 +186,7 @@ def _coefficient(model: FittedModel, area: Area, scaling: Scaling, surface: str,
     value, half = model.named(f"{model.response}1")
     known, sure = bool(np.isfinite(value)), bool(np.isfinite(half))
     u95 = float(half * k) if sure else None
-    status = Status.OK if sure else Status.SINGLE_ESTIMATOR if known else Status.TOO_FEW_POINTS
+    status = Status.FORM_ASSUMED if sure else Status.SINGLE_ESTIMATOR if known else Status.TOO_FEW_POINTS
     return Coefficient(
         symbol=symbol.replace("ds", surface),
         value=float(sign * value * k) if known else None,

@@ -168,7 +168,7 @@ def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
             out.append(Coefficient(symbol, None, None, Status.NOT_DETERMINED, **shared))
             continue
         u95 = half if np.isfinite(half) else None
-        status = Status.OK if u95 is not None else Status.SINGLE_ESTIMATOR
+        status = Status.FORM_ASSUMED if u95 is not None else Status.SINGLE_ESTIMATOR
         at_rest = not np.any(model.terms[i].evaluate(model.x))
         own = {"n_points": 0, "estimator": f"from the equations alone, no motion of {symbol} in its rows"}
         out.append(

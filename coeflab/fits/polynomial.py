@@ -100,7 +100,7 @@ def _coefficients(
     for i in keep:
         value, half = float(model.fit.coefficients[i]), float(model.fit.half_width[i])
         u95 = half if np.isfinite(half) else None
-        status = Status.SINGLE_ESTIMATOR if u95 is None else Status.OK
+        status = Status.SINGLE_ESTIMATOR if u95 is None else Status.FORM_ASSUMED
         out.append(
             Coefficient(
                 symbol=model.symbols[i].removesuffix("'"),

@@ -162,7 +162,7 @@ def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
     out = []
     for symbol, value, half in zip(model.symbols, model.fit.coefficients, model.fit.half_width, strict=True):
         known, sure = bool(np.isfinite(value)), bool(np.isfinite(half))
-        status = Status.OK if known and sure else Status.SINGLE_ESTIMATOR if known else Status.NOT_DETERMINED
+        status = Status.FORM_ASSUMED if known and sure else Status.SINGLE_ESTIMATOR if known else Status.NOT_DETERMINED
         u95 = float(half) if known and sure else None
         out.append(
             Coefficient(

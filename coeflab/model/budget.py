@@ -136,59 +136,100 @@ def budgets_of(
 def _budget(
     c: Coefficient, sweep: Sweep, table: ForceTable, inputs: tuple[InputPart, ...], total: Propagated | None
 ) -> Budget:
-    value = 0.0 if c.value is None else c.value
     raw = sweep.recommendation.value or 0.0
     apart = [abs(s.value - raw) for s in sweep.sensitivity if s.value is not None]
     fitted = {"random": c.parts.random, "model form": c.parts.model_form}
     if c.u95 is not None and c.parts.random is None:
         fitted = {"random and model form": c.u95}
-    found: dict[str, float] = {}
-    lacking: list[str] = []
-    for name, part in fitted.items():
-        if part is None:
-            lacking.append(name)
-        else:
-            found[name] = part
-    study = _grid_study(table, sweep.component) if table.source.kind == "cfd" else None
+    wanted = acting(sweep.component, sweep.variable in ANGULAR)
+    lacking = undeclared(wanted, (table,), inputs) + ([COUPLED] if sweep.variable in ANGULAR else [])
+    if _true_by_construction((table,)):
+        lacking = []
+    window = 2.0 * max(apart) / 3.0**0.5 if apart else None
+    return budget_of(c, sweep.component, (table,), fitted, inputs, total, lacking, window)
+
+
+def budget_of(
+    c: Coefficient,
+    component: str,
+    tables: Sequence[ForceTable],
+    fitted: Mapping[str, float | None],
+    inputs: tuple[InputPart, ...],
+    total: Propagated | None,
+    lacking: Sequence[str],
+    window: float | None = None,
+) -> Budget:
+    """The budget of a coefficient.
+
+    Parameters
+    ----------
+    c : Coefficient
+        With a value.
+    component : str
+        X .. N, for its grid studies.
+    tables : sequence of ForceTable
+        Those that it comes from.
+    fitted : mapping of part to half-width
+        What the fit assessed; None where it could have and did not.
+    inputs, total
+        See `Budget`.
+    lacking : sequence of str
+        Inputs that may act and were not assessed.
+    window : float, optional
+        See `Budget`.
+    """
+    value = 0.0 if c.value is None else c.value
+    kind = tables[0].source.kind
+    found = {name: part for name, part in fitted.items() if part is not None}
+    open_parts = [name for name, part in fitted.items() if part is None]
+    study = grid_study_of(tables, component)
     relative = None if study is None else study.convergence.relative
     if relative is not None:
         found["grid"] = relative * abs(value)
-    elif table.source.kind == "cfd":
-        lacking.append("grid" if study is None else f"grid: {study.convergence.convergence}")
+    elif kind == "cfd":
+        open_parts.append("grid" if study is None else f"grid: {study.convergence.convergence}")
     found.update({p.name.replace("_", " "): p.linear for p in inputs if p.linear > 0.0})
-    lacking += _undeclared(sweep, table, inputs) + list(ALWAYS_OPEN[table.source.kind])
+    unassessed = (*open_parts, *lacking, *ALWAYS_OPEN[kind])
     u95 = None if c.u95 is None else float(np.sqrt(sum(h * h for h in found.values())))
     parts = tuple(BudgetPart(n, h, (h / u95) ** 2 if u95 else None) for n, h in found.items())
     return Budget(
-        c.symbol, sweep.campaign, sweep.body, sweep.table, table.source.kind, value, parts, u95, inputs, total, study,
-        2.0 * max(apart) / 3.0**0.5 if apart else None, tuple(lacking),
+        c.symbol, c.campaign or "", c.body, c.table or "", kind, value, parts, u95, inputs, total, study, window, unassessed
     )  # fmt: skip
 
 
-def _grid_study(table: ForceTable, component: str) -> GridStudy | None:
-    """The gravest grid study of a component; one where the force is next to nothing has no relative error to carry on."""
-    force = table.forces[component][table.usable[component]]
-    least = TELLING * float(np.max(np.abs(force), initial=0.0))
-    studies = grid_studies(table, component)
-    return gravest(tuple(g for g in studies if abs(g.convergence.values[g.convergence.used]) >= least))
+def grid_study_of(tables: Sequence[ForceTable], component: str) -> GridStudy | None:
+    """The gravest grid study of a component in computed tables; one where the force is next to nothing has no relative
+    error to carry on.
+    """
+    studies: list[GridStudy] = []
+    for table in tables:
+        if table.source.kind != "cfd" or component not in table.forces:
+            continue
+        force = table.forces[component][table.usable[component]]
+        least = TELLING * float(np.max(np.abs(force), initial=0.0))
+        found = grid_studies(table, component)
+        studies += [g for g in found if abs(g.convergence.values[g.convergence.used]) >= least]
+    return gravest(tuple(studies))
 
 
-def _undeclared(sweep: Sweep, table: ForceTable, inputs: tuple[InputPart, ...]) -> list[str]:
-    """Inputs that may act and were not assessed, by name."""
-    if table.source.kind == "synthetic" and table.uncertainty is None:
+def _true_by_construction(tables: Sequence[ForceTable]) -> bool:
+    return all(t.source.kind == "synthetic" and t.uncertainty is None for t in tables)
+
+
+def undeclared(wanted: Sequence[str], tables: Sequence[ForceTable], inputs: Sequence[InputPart]) -> list[str]:
+    """Inputs that may act and were not assessed, by name; none where the tables are synthetic and declare none."""
+    if _true_by_construction(tables):
         return []
-    wanted = acting(sweep)
-    if table.source.kind == "cfd":
-        wanted = tuple(n for n in wanted if n not in NOT_OF_A_COMPUTATION)
-    known = {p.name for p in inputs}
-    coupled = [COUPLED] if sweep.variable in ANGULAR else []
-    return [n.replace("_", " ") for n in wanted if n not in known] + coupled
+    computed = all(t.source.kind == "cfd" for t in tables)
+    known = {p.name.split(" ")[0] for p in inputs}
+    named = [n for n in wanted if not (computed and n in NOT_OF_A_COMPUTATION)]
+    return [n.replace("_", " ") for n in named if n not in known]
 
 
 def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
     """The fit with the grid and input parts in the U95 and covariance of its coefficients."""
     mine = {b.symbol: b for b in found if b.campaign == fit.campaign}
-    if not fit.sweeps or not any(b.u95 is not None for b in mine.values()):
+    if not any(b.u95 is not None for b in mine.values()):
         return fit
     among = fit.coefficients
     changed = []

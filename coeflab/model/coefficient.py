@@ -26,6 +26,7 @@ class Status(StrEnum):
     SINGLE_ESTIMATOR = "single_estimator"
     NOT_DETERMINED = "not_determined"
     STATED = "stated"
+    FORM_ASSUMED = "form_assumed"
 
     @property
     def advice(self) -> str:
@@ -38,6 +39,7 @@ class Status(StrEnum):
             "is given. Run more angles, some on the other side.",
             Status.NOT_DETERMINED: "The data, or the derivatives that a change of reference point needs, leave it open.",
             Status.STATED: "Taken from the literature with the uncertainty stated there.",
+            Status.FORM_ASSUMED: "U95 holds for the form that was asked for; what another form would give is not in it.",
         }[self]
 
 

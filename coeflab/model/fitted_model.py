@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import combinations
 
@@ -88,6 +88,9 @@ class FittedModel:
         What the data do not determine, collinearity, accuracy: in words.
     post_selection : bool
         True when the terms were chosen by looking at the same data; intervals are then too narrow.
+    shared : mapping of str to (p,) array
+        Errors that all rows share, each as the signed 95 % shift that it gives to every coefficient: the grid, declared
+        angles, speeds, calibrations.
     """
 
     response: str
@@ -105,9 +108,11 @@ class FittedModel:
     labels: tuple[str, ...]
     statements: tuple[str, ...] = ()
     post_selection: bool = False
+    shared: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "x", locked_columns(self.x))
+        object.__setattr__(self, "shared", locked_columns(self.shared))
         object.__setattr__(self, "y", locked(self.y))
 
     @property
@@ -115,10 +120,25 @@ class FittedModel:
         """Rows used."""
         return len(self.y)
 
+    @property
+    def covariance(self) -> Array:
+        """(p, p), of standard uncertainties, half-width / 2: scatter by its correlation, every shared error in full."""
+        standard = self.fit.half_width / 2.0
+        out = self.fit.correlation * np.outer(standard, standard)
+        np.fill_diagonal(out, standard**2)
+        for shift in self.shared.values():
+            out = out + np.outer(shift, shift) / 4.0
+        return np.asarray((out + out.T) / 2.0)
+
+    @property
+    def half_width(self) -> Array:
+        """(p,) 95 % half-widths of the coefficients, scatter and shared errors; NaN where there is none."""
+        return np.asarray(np.sqrt(self.fit.half_width**2 + sum(s**2 for s in self.shared.values())))
+
     def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Values, 95 % half-widths of the mean, and whether each point lies inside the domain.
 
-        The half-widths join those of the coefficients by their correlations. A point that needs a coefficient which
+        The half-widths join those of the coefficients by their covariance, shared errors included. A point that needs a coefficient which
         the data leave open has the value NaN.
 
         Parameters
@@ -130,15 +150,15 @@ class FittedModel:
         known = np.isfinite(self.fit.coefficients)
         values = np.where(np.any(rows[:, ~known] != 0.0, axis=1), np.nan, rows[:, known] @ self.fit.coefficients[known])
         bare = known & ~np.isfinite(self.fit.half_width)
-        half = np.nan_to_num(self.fit.half_width)
-        spread = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", rows * half, self.fit.correlation, rows * half), 0.0))
+        joint = np.nan_to_num(self.covariance)
+        spread = 2.0 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", rows, joint, rows), 0.0))
         sure = np.isfinite(values) & ~np.any(rows[:, bare] != 0.0, axis=1)
         return values, np.where(sure, spread, np.nan), self.domain.contains(columns)
 
     def named(self, symbol: str) -> tuple[float, float]:
         """Value and 95 % half-width of one coefficient."""
         i = self.symbols.index(symbol)
-        return float(self.fit.coefficients[i]), float(self.fit.half_width[i])
+        return float(self.fit.coefficients[i]), float(self.half_width[i])
 
 
 COLLINEAR = 0.98

@@ -46,17 +46,22 @@ class InputPart:
         return abs(self.sensitivity) * self.half_width
 
 
-def acting(sweep: Sweep) -> tuple[str, ...]:
-    """Inputs that can act on the coefficient of a sweep and whose effect its own rows show.
+def acting(component: str, rate: bool, angle: bool | None = None) -> tuple[str, ...]:
+    """Inputs that can act on a coefficient of a component and whose effect its own rows show.
 
-    An angle error of a rotating arm is not among them: it adds a drift whose coupling with the rate a sweep of the rate
-    alone does not know.
+    Parameters
+    ----------
+    component : str
+    rate : bool
+        It multiplies a rate.
+    angle : bool, optional
+        Its rows set an angle; by default those that are no rates do. An angle error of a rotating arm adds a drift whose
+        coupling with the rate a sweep of the rate alone does not know.
     """
-    moment, rate = sweep.component in MOMENTS, sweep.variable in ANGULAR
+    moment = component in MOMENTS
     names = {
-        "angle": not rate, "rate": rate, "speed": True, "force": not moment, "moment": moment,
-        "reference_point": sweep.component in ("M", "N") or sweep.variable in ("q", "r"), "length": True,
-        "density": True,
+        "angle": not rate if angle is None else angle, "rate": rate, "speed": True, "force": not moment,
+        "moment": moment, "reference_point": component in ("M", "N") or rate, "length": True, "density": True,
     }  # fmt: skip
     return tuple(n for n, acts in names.items() if acts)
 
@@ -100,7 +105,9 @@ def moved_by(
     sample = function(normal_draws(covariance, draws, seed))
     out = []
     for i, sweep in enumerate(sweeps):
-        acts = [n for n in acting(sweep) if n != "reference_point" or transferable[i]]
+        acts = [
+            n for n in acting(sweep.component, sweep.variable in ANGULAR) if n != "reference_point" or transferable[i]
+        ]
         inputs = tuple(
             InputPart(n, float(half[k]), float(gradients[k, i]))
             for k, n in enumerate(names)

@@ -37,14 +37,9 @@ def _finite(value: float) -> float | None:
 def record(model: FittedModel, area: ModelArea | None = None) -> ParameterModel:
     """A fitted model as the parameter file holds it.
 
-    The covariance is that of standard uncertainties, half_width_95 / 2, as everywhere in the file: the correlation of
-    the fit with those on its diagonal. A half-width of a point is then twice the root of its variance, and for one term
-    alone the term's own.
+    The covariance is that of standard uncertainties, half_width_95 / 2, as everywhere in the file. A half-width of a
+    point is then twice the root of its variance, and for one term alone the term's own.
     """
-    standard = model.fit.half_width / 2.0
-    covariance = model.fit.correlation * np.outer(standard, standard)
-    np.fill_diagonal(covariance, standard**2)
-    covariance = (covariance + covariance.T) / 2.0
     names = model.domain.variables
     return ParameterModel.model_validate(
         {
@@ -61,11 +56,10 @@ def record(model: FittedModel, area: ModelArea | None = None) -> ParameterModel:
                     value=_finite(c),
                     half_width_95=_finite(h),
                 )
-                for s, t, c, h in zip(
-                    model.symbols, model.terms, model.fit.coefficients, model.fit.half_width, strict=True
-                )
+                for s, t, c, h in zip(model.symbols, model.terms, model.fit.coefficients, model.half_width, strict=True)
             ),
-            "covariance": tuple(tuple(_finite(x) for x in row) for row in covariance),
+            "holds": ("random", *model.shared),
+            "covariance": tuple(tuple(_finite(x) for x in row) for row in model.covariance),
             "domain": ModelDomain(
                 low=tuple(map(float, model.domain.low)),
                 high=tuple(map(float, model.domain.high)),

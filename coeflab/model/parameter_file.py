@@ -1,4 +1,6 @@
-"""The parameter file: JSON, one body, one scaling, one reference point. Version 1.1: 1.0 and fitted tables.
+"""The parameter file: JSON, one body, one scaling, one reference point.
+
+Version 1.1: 1.0 and fitted tables. Version 1.2: what the half-widths of these hold, and the status ``form_assumed``.
 
 The models below are the schema; ``parameter_file.schema.json`` beside them is generated from them.
 """
@@ -19,7 +21,7 @@ from coeflab.model.parameter_model import ParameterModel
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.schema_types import Finite, Name, NotNegative, Positive, Strict
 
-SCHEMA_VERSION = "1.1"
+SCHEMA_VERSION = "1.2"
 FIRST_VERSION = "1.0"
 LARGEST = 64 << 20
 SCHEMA_FILE = Path(__file__).with_name("parameter_file.schema.json")
@@ -43,7 +45,9 @@ class ParameterCoefficient(Strict):
     unit: Literal["1"] = Field(description="1: nondimensional by the prime system of `scaling`")
     value_si: Finite | None = Field(description="At the density and speed of `conditions`")
     unit_si: str
-    status: Literal["ok", "no_table", "too_few_points", "single_estimator", "not_determined", "stated"]
+    status: Literal[
+        "ok", "no_table", "too_few_points", "single_estimator", "not_determined", "stated", "form_assumed"
+    ]  # fmt: skip
     origin: Literal["fit", "literature", "none"]
     parts: UncertaintyParts
     table: str | None = None
@@ -208,9 +212,13 @@ class ParameterFile(Strict):
     def to_json(self) -> bytes:
         """The file's bytes: sorted as declared, two blanks of indent, a closing newline, never NaN.
 
-        A file of version 1.0 is written as one, without the key that came later.
+        A file of an earlier version is written as one, without the keys that came later.
         """
-        left_out = {"models"} if self.schema_version == FIRST_VERSION else set()
+        left_out: dict[str, Any] = {}
+        if self.schema_version == FIRST_VERSION:
+            left_out = {"models": True}
+        elif self.schema_version == "1.1":
+            left_out = {"models": {"__all__": {"holds"}}}
         content = self.model_dump(mode="json", exclude=left_out)
         text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
         return (text + "\n").encode()

@@ -83,6 +83,10 @@ class ParameterModel(Strict):
     post_selection: bool = Field(default=False, description="true: terms chosen on the same data, intervals too narrow")
     statements: tuple[str, ...] = ()
     area: ModelArea | None = None
+    holds: tuple[Name, ...] = Field(
+        default=("random",),
+        description="what half widths and covariance hold: the scatter, the grid, declared inputs; never the form; since 1.2",
+    )
 
     @model_validator(mode="after")
     def _consistent(self) -> ParameterModel:

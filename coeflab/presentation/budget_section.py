@@ -24,6 +24,7 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         budget_tables.grids(found),
         budget_tables.validation(validations(study, found)),
         budget_tables.derived(derived),
+        *(budget_tables.shared(m) for f in study.fits for m in f.models),
     )
     text = (
         "U95 joins every assessed part as a root sum of squares: the scatter of the points, the model form, the grid where "

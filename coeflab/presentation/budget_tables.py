@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from coeflab.core.symbols import primed
 from coeflab.model.budget import Budget
 from coeflab.model.derived import Derived
+from coeflab.model.fitted_model import FittedModel
 from coeflab.model.input_uncertainty import DIMENSIONS
 from coeflab.model.table import ABSENT, Table, coefficient, number, percent
 from coeflab.model.validation import Validation
@@ -40,7 +41,7 @@ def budget(b: Budget) -> Table:
     rows = []
     for part in b.parts:
         given = sensitivity.get(part.name)
-        unit = UNITS.get(DIMENSIONS.get(given.name, ""), "-") if given else ""
+        unit = _unit(given.name) if given else ""
         rows.append(
             (
                 part.name,
@@ -70,6 +71,33 @@ def budget(b: Budget) -> Table:
     notes.append(f"Not assessed: {', '.join(b.unassessed) or 'nothing known'}.")
     headers = ("part", "half-width of the input", "sensitivity", "95 %", "of the value", "of the variance")
     return Table(f"Budget of {primed(b.symbol)}, {b.campaign}", headers, tuple(rows), tuple(notes), frozenset({0}))
+
+
+def _unit(name: str) -> str:
+    """Unit of the half-width of an input: ``angle beta`` is an angle, ``reference point`` a length."""
+    kinds = (k for k in DIMENSIONS if name.replace("_", " ").startswith(k.replace("_", " ")))
+    return UNITS.get(DIMENSIONS.get(next(kinds, ""), ""), "-")
+
+
+def shared(model: FittedModel) -> Table:
+    """What the half-widths of a fitted model hold beside the scatter; no rows where nothing."""
+    names = tuple(model.shared)
+    rows = tuple(
+        (
+            symbol,
+            coefficient(float(value)),
+            coefficient(float(whole)),
+            coefficient(float(scatter)),
+            *(coefficient(abs(float(model.shared[n][i]))) for n in names),
+        )
+        for i, (symbol, value, whole, scatter) in enumerate(
+            zip(model.symbols, model.fit.coefficients, model.half_width, model.fit.half_width, strict=True)
+        )
+        if names
+    )
+    headers = ("", "value", "95 %", "random", *names)
+    notes = ("Not assessed: model form, and inputs that the campaign does not declare.",)
+    return Table(f"{model.response} of {model.campaign}: parts of the half-widths", headers, rows, notes)
 
 
 def grids(budgets: Sequence[Budget]) -> Table:

@@ -14,7 +14,7 @@ def terms(model: FittedModel) -> Table:
     """Every coefficient with its interval; what the data leave open is said below, not printed as a number."""
     rows = []
     for symbol, term, value, half in zip(
-        model.symbols, model.terms, model.fit.coefficients, model.fit.half_width, strict=True
+        model.symbols, model.terms, model.fit.coefficients, model.half_width, strict=True
     ):
         known = math.isfinite(value)
         rows.append(
