@@ -14,13 +14,18 @@ from coeflab.kernels.least_squares import Array, Factorised
 from coeflab.kernels.robust import FULL_LEVERAGE, hangs_on_one_point
 
 LEAST_PIVOT = 1e-9
+BLOCK = 128
 
 
 def draw_counts(n: int, replicates: int, seed: int) -> Array:
     """How often each of n rows is drawn in each replicate, shape (replicates, n)."""
     drawn = np.random.default_rng(seed).integers(0, n, size=(replicates, n))
-    flat = drawn + n * np.arange(replicates)[:, None]
-    return np.bincount(flat.ravel(), minlength=replicates * n).reshape(replicates, n).astype(float)
+    counts = np.empty((replicates, n))
+    for start in range(0, replicates, BLOCK):
+        some = drawn[start : start + BLOCK]
+        some += n * np.arange(len(some))[:, None]
+        counts[start : start + BLOCK] = np.bincount(some.ravel(), minlength=some.size).reshape(some.shape)
+    return counts
 
 
 def pairs(f: Factorised, responses: Array, counts: Array) -> Array:
@@ -42,11 +47,12 @@ def pairs(f: Factorised, responses: Array, counts: Array) -> Array:
     q, p = f.basis, f.basis.shape[1]
     weighted = responses * f.root_weights[:, None]
     upper = np.triu_indices(p)
-    products = q[:, upper[0]] * q[:, upper[1]]
-    gram = (products.T @ counts.T).astype(np.float64, copy=False)
-    moments = (q[:, :, None] * weighted[:, None, :]).reshape(len(q), -1).T @ counts.T
+    squares = q[:, upper[0]] * q[:, upper[1]]
+    products = (q[:, :, None] * weighted[:, None, :]).reshape(len(q), -1)
+    sums = np.hstack([squares, products]).T @ counts.T
+    gram, moments = sums[: squares.shape[1]], sums[squares.shape[1] :]
     solved = _solved(gram, moments.reshape(p, weighted.shape[1], len(counts)), p)
-    return np.asarray(np.einsum("jp,pmb->bjm", f.back, solved))
+    return np.moveaxis(np.tensordot(f.back, solved, axes=1), 2, 0)
 
 
 def _solved(gram: Array, moments: Array, p: int) -> Array:
