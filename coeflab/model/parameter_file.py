@@ -1,6 +1,7 @@
 """The parameter file: JSON, one body, one scaling, one reference point.
 
-Version 1.1: 1.0 and fitted tables. Version 1.2: what the half-widths of these hold, and the status ``form_assumed``.
+Version 1.1: 1.0 and fitted tables. Version 1.2: what the half-widths of these hold, the status ``form_assumed``, added mass
+and the potential part of every coefficient.
 
 The models below are the schema; ``parameter_file.schema.json`` beside them is generated from them.
 """
@@ -17,6 +18,7 @@ from pydantic import Field, ValidationError, model_validator
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.symbols import derivative
 from coeflab.core.toml import read_text
+from coeflab.model.parameter_added_mass import ParameterAddedMass
 from coeflab.model.parameter_model import ParameterModel
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.schema_types import Finite, Name, NotNegative, Positive, Strict
@@ -56,6 +58,10 @@ class ParameterCoefficient(Strict):
     window: tuple[Finite, Finite] | None = Field(default=None, description="radians; r' = r L/U for rates")
     n_points: Annotated[int, Field(ge=0)] = 0
     citation: str = ""
+    potential: Finite | None = Field(
+        default=None,
+        description="part of the value that -C_A(nu) nu gives, by `added_mass`; the rest is viscous; since 1.2",
+    )
 
     @model_validator(mode="after")
     def _honest(self) -> ParameterCoefficient:
@@ -177,6 +183,7 @@ class ParameterFile(Strict):
     covariance: ParameterCovariance
     covered: tuple[CoveredRange, ...]
     models: tuple[ParameterModel, ...] = Field(default=(), description="fitted tables and force laws, since 1.1")
+    added_mass: ParameterAddedMass | None = Field(default=None, description="since 1.2")
     provenance: Provenance
 
     @model_validator(mode="after")
@@ -202,6 +209,8 @@ class ParameterFile(Strict):
                 raise ValueError(f"{response} over {', '.join(names)} stands more than once")
         if tables and self.schema_version == FIRST_VERSION:
             raise ValueError(f"models came with version 1.1; this file says {FIRST_VERSION}")
+        if self.added_mass and self.schema_version in (FIRST_VERSION, "1.1"):
+            raise ValueError(f"added mass came with version 1.2; this file says {self.schema_version}")
         return self
 
     def coefficient(self, symbol: str) -> ParameterCoefficient | None:
@@ -214,14 +223,22 @@ class ParameterFile(Strict):
 
         A file of an earlier version is written as one, without the keys that came later.
         """
-        left_out: dict[str, Any] = {}
-        if self.schema_version == FIRST_VERSION:
-            left_out = {"models": True}
-        elif self.schema_version == "1.1":
-            left_out = {"models": {"__all__": {"holds"}}}
-        content = self.model_dump(mode="json", exclude=left_out)
+        content = _as_of(self.schema_version, self.model_dump(mode="json"))
         text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
         return (text + "\n").encode()
+
+
+def _as_of(version: str, content: dict[str, Any]) -> dict[str, Any]:
+    """A file's content without what came after a version."""
+    if version in (FIRST_VERSION, "1.1"):
+        del content["added_mass"]
+        for coefficient in content["coefficients"]:
+            del coefficient["potential"]
+        for model in content["models"]:
+            del model["holds"]
+    if version == FIRST_VERSION:
+        del content["models"]
+    return content
 
 
 def schema() -> bytes:

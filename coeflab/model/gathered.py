@@ -1,0 +1,116 @@
+"""Which coefficients a parameter file holds: those of fits, of literature, and the wanted ones that nothing gives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.symbols import derivative, primed
+from coeflab.model.coefficient import Coefficient, Status
+from coeflab.model.fit_result import FitResult
+from coeflab.model.reference import Reference
+from coeflab.model.scaling import Scaling
+from coeflab.model.study import PlannedParameterFile
+
+
+def _literature(
+    group: PlannedParameterFile, references: Sequence[Reference], scaling: Scaling, point: NDArray[np.float64]
+) -> list[Coefficient]:
+    """Literature coefficients of a group, rescaled to its length, labelled with method and source."""
+    out = []
+    known = {r.name: r for r in references}
+    for name in group.literature:
+        if name not in known:
+            raise InputError(
+                f"no reference {shown(name)}", f"one of {', '.join(known) or 'none'}",
+                column=f"parameter_file.{group.name}.literature",
+            )  # fmt: skip
+        reference = known[name]
+        if reference.reference_point is not None and not np.allclose(reference.reference_point, point, atol=1e-9):
+            raise ScalingMismatchError(
+                f"{name} is about {tuple(reference.reference_point)}, the parameter file about {tuple(point)}: "
+                "literature values are taken only about their own point."
+            )
+        for kind in reference.literature:
+            for v in kind.values:
+                value = None if v.value is None else v.value * reference.scaling.ratio(v.symbol, scaling)
+                what = f"{kind.method} {kind.kind}, {reference.place}"
+                out.append(
+                    Coefficient(
+                        symbol=v.symbol,
+                        value=value,
+                        u95=None if value is None else abs(value) * kind.uncertainty,
+                        status=Status.STATED if value is not None else Status.NOT_DETERMINED,
+                        body=reference.body,
+                        origin="literature",
+                        estimator=what if value is not None else f"{what}: printed {v.printed}, a digit is illegible",
+                        citation=reference.citation,
+                    )
+                )
+    return out
+
+
+def _owners(chosen: Sequence[FitResult]) -> tuple[dict[str, str], list[str]]:
+    """Which fit gives each force component, and notes on what the other fits give for it.
+
+    Terms of one force law belong together: a linear term of one fit beside a quadratic one of another is the law of
+    neither.
+    """
+    owner: dict[str, str] = {}
+    left: dict[tuple[str, str], list[str]] = {}
+    for f in chosen:
+        for c in f.coefficients.coefficients:
+            component = derivative(c.symbol).component
+            if c.value is not None and owner.setdefault(component, f.fit) != f.fit:
+                left.setdefault((component, f.fit), []).append(primed(c.symbol))
+    return owner, [
+        f"{component}' is that of {owner[component]}; left out, from {fit}: {', '.join(dict.fromkeys(symbols))}"
+        for (component, fit), symbols in left.items()
+    ]
+
+
+def gathered(
+    group: PlannedParameterFile,
+    chosen: Sequence[FitResult],
+    missing: Sequence[Coefficient],
+    references: Sequence[Reference],
+) -> tuple[list[Coefficient], NDArray[np.float64], list[str]]:
+    """The coefficients of a group, one of each symbol, with their covariance and notes on what was left out."""
+    sets = [f.coefficients for f in chosen]
+    first = sets[0]
+    owner, notes = _owners(chosen)
+    entries: dict[str, tuple[Coefficient, int, int]] = {}
+    for k, s in enumerate(sets):
+        for i, c in enumerate(s.coefficients):
+            if owner.get(derivative(c.symbol).component, chosen[k].fit) != chosen[k].fit:
+                continue
+            earlier = entries[c.symbol][0] if c.symbol in entries else None
+            used, other = (
+                (c, earlier) if earlier is None or (earlier.value is None and c.value is not None) else (earlier, c)
+            )
+            if other is not None:
+                given = "no value" if other.value is None else f"{other.value:.6g}"
+                notes.append(f"{primed(c.symbol)} from {used.campaign}; {other.campaign} gives {given}")
+            if used is c:
+                entries[c.symbol] = (c, k, i)
+    extra = {c.symbol: c for c in _literature(group, references, first.scaling, first.reference_point)}
+    entries = {s: e for s, e in entries.items() if e[0].value is not None or s not in extra or extra[s].value is None}
+    absent = [c for c in missing if c.campaign == ", ".join(group.campaigns) and c.body == group.body]
+    coefficients = [c for c, _, _ in entries.values()]
+    coefficients += [c for s, c in extra.items() if s not in entries]
+    coefficients += [c for c in absent if c.symbol not in entries and c.symbol not in extra]
+    covariance = np.zeros((len(coefficients), len(coefficients)))
+    for i, c in enumerate(coefficients):
+        if c.symbol in entries:
+            _, k, row = entries[c.symbol]
+            for j, d in enumerate(coefficients):
+                if d.symbol in entries and entries[d.symbol][1] == k:
+                    covariance[i, j] = sets[k].covariance[row, entries[d.symbol][2]]
+        elif c.u95 is not None:
+            covariance[i, i] = (c.u95 / 2.0) ** 2
+    void = np.array([c.u95 is None for c in coefficients], dtype=bool)
+    covariance[void, :] = covariance[:, void] = np.nan
+    return coefficients, covariance, notes

@@ -1,0 +1,87 @@
+"""Added mass as the parameter file holds it, since version 1.2."""
+
+from __future__ import annotations
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from coeflab.core.errors import ScalingMismatchError, shown
+from coeflab.kernels.composition import definiteness
+from coeflab.model.added_mass import AddedMass
+from coeflab.model.schema_types import Finite, Name, Positive, Strict
+
+Row = tuple[Finite, Finite, Finite, Finite, Finite, Finite]
+Matrix = tuple[Row, Row, Row, Row, Row, Row]
+
+
+class OtherMethod(Strict):
+    """The same matrix by another method, to be compared with."""
+
+    method: Name
+    matrix: Matrix
+
+
+class ParameterAddedMass(Strict):
+    """M_A, positive, FRD, about the file's reference point; acceleration derivatives are its negatives."""
+
+    body: Name = Field(description="whose shape it was computed from")
+    method: Name
+    density: Positive = Field(description="kg/m^3")
+    matrix: Matrix = Field(description="kg, kg m, kg m^2; rows X Y Z K M N, columns of du dv dw dp dq dr")
+    others: tuple[OtherMethod, ...] = ()
+    statements: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _kinetic_energy(self) -> ParameterAddedMass:
+        found = definiteness(np.array(self.matrix))
+        if not found.holds:
+            raise ValueError(
+                f"the added mass by {self.method} is no kinetic energy: asymmetric by {found.asymmetry:.1e}, smallest "
+                f"scaled eigenvalue {found.smallest:.1e}"
+            )
+        return self
+
+
+def added_mass_record(
+    chosen: AddedMass, others: tuple[AddedMass, ...], density: float, point: np.ndarray, datum: str
+) -> ParameterAddedMass:
+    """The added mass of a file, all methods about its reference point.
+
+    Parameters
+    ----------
+    chosen : AddedMass
+        The one to use.
+    others : tuple of AddedMass
+        Other methods, of the same body.
+    density : float
+        That all were computed with, kg/m^3.
+    point : (3,) array
+    datum : str
+        Of the file.
+
+    Raises
+    ------
+    ScalingMismatchError
+        The body measures points from another datum.
+    """
+    if chosen.datum != datum:
+        raise ScalingMismatchError(
+            f"the added mass of {chosen.body} is stated from {shown(chosen.datum)}, the parameter file from {shown(datum)}; "
+            "give both the same datum."
+        )
+    return ParameterAddedMass.model_validate(
+        {
+            "body": chosen.body,
+            "method": chosen.method,
+            "density": density,
+            "matrix": _rows(chosen, point),
+            "others": tuple({"method": o.method, "matrix": _rows(o, point)} for o in others),
+            "statements": chosen.statements,
+        }
+    )
+
+
+def _rows(found: AddedMass, point: np.ndarray) -> tuple[tuple[float, ...], ...]:
+    matrix = found.about(point).matrix
+    cut = 1e-12 * float(np.max(np.abs(matrix)))
+    return tuple(tuple(float(v) if abs(v) > cut else 0.0 for v in row) for row in (matrix + matrix.T) / 2.0)
