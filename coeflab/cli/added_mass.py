@@ -18,6 +18,7 @@ def command(
     """Show a body's added mass by several methods, about its reference point in FRD."""
     from coeflab.core.citations import work
     from coeflab.core.files import located
+    from coeflab.presentation import added_mass_tables as tables
     from coeflab.studies.triangulate import triangulate
     from coeflab.workbench import read_body
 
@@ -26,10 +27,11 @@ def command(
     if json:
         show.json_object({r.method: r.matrix.tolist() for r in found.results})
         return
-    show.table(found.particulars())
+    show.table(tables.particulars(found.body))
     for result in found.results:
-        show.table(found.matrix(result))
-    show.table(found.derivatives())
-    show.table(found.primes())
+        show.table(tables.matrix(result))
+    show.table(tables.derivatives(found))
+    show.table(tables.symmetry(found))
+    show.table(tables.primes(found))
     for citation in found.citations:
         show.text(f"  {work(citation)}")

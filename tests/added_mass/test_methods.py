@@ -15,6 +15,7 @@ from coeflab.kernels.parts import plate_coefficient
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.scaling import Scaling
+from coeflab.presentation.added_mass_tables import derivatives
 from coeflab.studies.triangulate import methods, triangulate
 from coeflab.workbench import read_body
 
@@ -179,7 +180,7 @@ def test_plates_alone_have_no_ellipsoid(tmp_path: Path) -> None:
     found = triangulate(body(tmp_path, plate), RHO)
     assert "displace nothing" in found.refused["ellipsoid"]
     assert found.results[0].matrix[2, 2] == pytest.approx(0.579 * np.pi / 4.0 * RHO)
-    assert found.derivatives().rows
+    assert derivatives(found).rows
 
 
 @pytest.mark.parametrize("density", [0.0, -1.0, np.nan, np.inf])

@@ -1,0 +1,117 @@
+"""One body's added mass by several methods, side by side, and which of them to use."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.model.added_mass import AddedMass
+from coeflab.model.body import Body
+from coeflab.model.mirror_planes import NAMES, mirrors, must_vanish
+from coeflab.model.shape import Ellipsoid, Parts, Shape
+
+Array = NDArray[np.float64]
+RULE = (
+    "an ellipsoid by Lamb's closed form; else the panel method; else, for parts among which are plates or none that "
+    "touch, their closed forms with corrected ends; else strips with Lamb's end correction; else the ellipsoid of equal "
+    "volume and proportions"
+)
+ORDER = ("panel", "primitives:lamb", "strip:lamb", "ellipsoid", "primitives", "strip")
+ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class Triangulation:
+    """Added mass by every method that applies, and why the others do not.
+
+    Attributes
+    ----------
+    body : Body
+        With a shape.
+    density : float
+        kg/m^3.
+    results : tuple of AddedMass
+        About the body's reference point.
+    refused : mapping of method to str
+    citations : tuple of str
+    """
+
+    body: Body
+    density: float
+    results: tuple[AddedMass, ...]
+    refused: Mapping[str, str]
+    citations: tuple[str, ...]
+
+    @property
+    def recommended(self) -> AddedMass:
+        """The first by `RULE` that is a kinetic energy.
+
+        Raises
+        ------
+        InputError
+            None of them is.
+        """
+        order = ("ellipsoid", *ORDER) if _is_ellipsoid(self.body.require_shape()) else ORDER
+        sound = {r.method: r for r in self.results if r.definiteness.holds}
+        found = next((sound[m] for m in order if m in sound), next(iter(sound.values()), None))
+        if found is None:
+            raise InputError(
+                f"no added mass of {shown(self.body.name)} that is a kinetic energy", "a symmetric, positive matrix"
+            )
+        return found
+
+    @property
+    def ordered(self) -> tuple[AddedMass, ...]:
+        """The recommended one first."""
+        first = self.recommended
+        return (first, *(r for r in self.results if r is not first))
+
+    @property
+    def spread(self) -> Array:
+        """(6, 6) range over the methods that say something on an entry, over the recommended one's size there.
+
+        The size is the entry itself on the diagonal, the root of both its diagonal entries off it; NaN where fewer than
+        two methods have it. A zero on the diagonal is silence, not a value.
+        """
+        stack = np.array([r.matrix for r in self.results])
+        diagonal = np.einsum("nii->ni", stack)
+        speaks = (diagonal > 0.0)[:, :, None] & (diagonal > 0.0)[:, None, :]
+        own = np.diag(self.recommended.matrix)
+        size = np.sqrt(np.outer(own, own))
+        high = np.max(np.where(speaks, stack, -np.inf), axis=0)
+        low = np.min(np.where(speaks, stack, np.inf), axis=0)
+        known = (speaks.sum(axis=0) > 1) & (size > 0.0)
+        return np.where(known, np.where(known, high - low, 0.0) / np.where(size > 0.0, size, 1.0), np.nan)
+
+    @property
+    def mirror_planes(self) -> tuple[str, ...]:
+        """Names of the shape's planes of symmetry."""
+        return tuple(n for n, holds in zip(NAMES, mirrors(self.body.require_shape()), strict=True) if holds)
+
+    def vanishing(self) -> tuple[Array, dict[str, float]]:
+        """Entries that symmetry makes vanish, (6, 6) of booleans, and the largest of them by method.
+
+        Largest over the root of both diagonal entries.
+        """
+        zero = must_vanish(self.body.require_shape(), self.body.reference_point)
+        left = {}
+        for r in self.results:
+            diagonal = np.diag(r.matrix)
+            size = np.sqrt(np.outer(diagonal, diagonal))
+            live = zero & (size > ROUNDING * float(size.max()))
+            left[r.method] = float(np.max(np.abs(r.matrix[live]) / size[live], initial=0.0))
+        return zero, left
+
+    def vanishing_symbols(self) -> tuple[str, ...]:
+        """The same as derivatives of the upper triangle: Yudot, ..."""
+        zero, _ = self.vanishing()
+        return tuple(f"{COMPONENTS[i]}{MOTIONS[j]}dot" for i in range(6) for j in range(i + 1, 6) if zero[i, j])
+
+
+def _is_ellipsoid(shape: Shape) -> bool:
+    return isinstance(shape, Parts) and len(shape.parts) == 1 and isinstance(shape.parts[0].form, Ellipsoid)

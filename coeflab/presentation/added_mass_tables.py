@@ -1,0 +1,111 @@
+"""Added mass by several methods, as tables to be shown."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coeflab.core.citations import work
+from coeflab.core.symbols import COMPONENTS
+from coeflab.model.added_mass import AddedMass
+from coeflab.model.body import Body
+from coeflab.model.table import ABSENT, Table, coefficient, number
+from coeflab.model.triangulation import RULE, Triangulation
+
+SHOWN = ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot", "Yrdot", "Zqdot")
+TRANSLATIONS = "uvw"
+
+
+def particulars(body: Body) -> Table:
+    """Volume, centre and wetted surface: of the shape, and as printed elsewhere."""
+    rows = []
+    for c in body.configurations:
+        centre = ABSENT if c.centre_of_buoyancy is None else f"{c.centre_of_buoyancy[0]:.4f}"
+        rows.append((c.name, number(c.volume, 6), centre, number(c.wetted_surface, 5), c.title))
+    headers = ("particulars", "volume m^3", "xB m", "wetted surface m^2", "what")
+    return Table(f"{body.name}: {body.title}", headers, tuple(rows), (), frozenset({0, 4}))
+
+
+def matrix(result: AddedMass) -> Table:
+    """One 6 x 6 matrix."""
+    cut = _rounding(result)
+    rows = [(a, *(number(v if abs(v) > cut else 0.0) for v in row)) for a, row in zip(COMPONENTS, result.matrix)]
+    at = ", ".join(f"{x:g}" for x in result.reference_point)
+    title = f"{result.method}: M_A, kg, kg m, kg m^2, FRD about ({at}) m from: {result.datum}"
+    return Table(title, ("", "u", "v", "w", "p", "q", "r"), tuple(rows))
+
+
+def derivatives(found: Triangulation) -> Table:
+    """Acceleration derivatives in SI, over the displaced mass, and their spread over the methods."""
+    mass = found.density * found.body.require_shape().volume
+    spread = found.spread
+    rows = []
+    for symbol in SHOWN:
+        values = [_settled(r, symbol) for r in found.results]
+        ratios = [number(-v / mass, 3) if mass and symbol[1] in TRANSLATIONS else ABSENT for v in values]
+        i, j = COMPONENTS.index(symbol[0]), "uvwpqr".index(symbol[1])
+        apart = ABSENT if np.isnan(spread[i, j]) else f"{100.0 * spread[i, j]:.1f} %"
+        rows.append((symbol, *(c for pair in zip([number(v) for v in values], ratios) for c in pair), apart))
+    headers = ("SI", *(cell for r in found.results for cell in (r.method, "/m")), "spread")
+    notes = [
+        f"/m: added mass over the displaced mass, {mass:.5g} kg at {found.density:g} kg/m^3; spread: range over the methods "
+        "that speak of the entry, over the recommended one",
+        f"recommended: {found.recommended.method}, by the rule: {RULE}",
+    ]
+    notes += [f"{r.method}: {'; '.join([r.verdict, *r.statements])}" for r in found.results]
+    notes += [f"{name}: not used: {why}" for name, why in found.refused.items()]
+    return Table("Acceleration derivatives", headers, tuple(rows), tuple(notes))
+
+
+def symmetry(found: Triangulation) -> Table:
+    """Which entries the planes of symmetry make vanish, and how large they are all the same."""
+    zero, left = found.vanishing()
+    rows = tuple((m, f"{v:.1e}") for m, v in left.items()) if np.any(zero) else ()
+    planes = ", ".join(found.mirror_planes) or "none"
+    notes = (
+        f"planes of symmetry: {planes}; vanish about the reference point: {', '.join(found.vanishing_symbols())}",
+        "largest: over the root of the two diagonal entries; zero but for rounding and the mesh",
+    )
+    return Table("Entries that symmetry makes vanish", ("method", "largest"), rows, notes)
+
+
+def primes(found: Triangulation) -> Table:
+    """Primed acceleration derivatives beside measured ones; no rows where the body names no length."""
+    by = found.body.scaling
+    if by is None:
+        return Table("Primes", (), ())
+    rows, notes = [], [f"primed by {by} and 1/2 rho"]
+    measured = {m.symbol: m for m in found.body.measured}
+    for symbol in dict.fromkeys((*SHOWN, *measured)):
+        values = [r.primed(symbol, by, found.density) if _settled(r, symbol) else 0.0 for r in found.results]
+        cells = [coefficient(v) if v else "0" for v in values]
+        if measured:
+            beside = measured.get(symbol)
+            gaps = [ABSENT if beside is None else _gap(v, beside.bounds) for v in values]
+            cells = [c for pair in zip(cells, gaps) for c in pair]
+            cells.append(ABSENT if beside is None else beside.printed)
+        rows.append((f"{symbol}'", *cells))
+    headers: list[str] = ["prime"]
+    for r in found.results:
+        headers += [r.method, "gap"] if measured else [r.method]
+    if measured:
+        headers.append("measured")
+        notes.append("gap: computed over measured, less one; potential theory is not tuned to the measurement")
+        notes += dict.fromkeys(f"measured: {work(m.citation)} {m.place}" for m in measured.values())
+        if any("?" in m.printed for m in measured.values()):
+            notes.append("?: an illegible last digit; the gap is given for 0 and for 9 where that shows")
+    return Table("Primes", tuple(headers), tuple(rows), tuple(notes))
+
+
+def _rounding(result: AddedMass) -> float:
+    """Entries below this are rounding and shown as zero."""
+    return 1e-12 * float(np.max(np.abs(result.matrix)))
+
+
+def _settled(result: AddedMass, symbol: str) -> float:
+    value = result.derivatives()[symbol]
+    return value if abs(value) > _rounding(result) else 0.0
+
+
+def _gap(value: float, bounds: tuple[float, float]) -> str:
+    low, high = sorted(100.0 * (value / b - 1.0) for b in bounds)
+    return f"{low:+.1f} %" if f"{low:.1f}" == f"{high:.1f}" else f"{low:+.1f} to {high:+.1f} %"
