@@ -160,6 +160,7 @@ def _coefficients(model: FittedModel, axis: str, citation: str) -> tuple[list[Co
                 estimator=f"{model.form}, {axis} from {low:g} to {high:g} {'rad/s' if axis in ANGULAR else 'm/s'}",
                 n_points=model.n_points,
                 citation=citation,
+                law="rest",
             )
         )
     return out, covariance
@@ -169,7 +170,7 @@ def _too_few(rows: Rows, axis: str, chosen: Options, citation: str) -> list[Coef
     return [
         Coefficient(
             rows.response + t.suffix, None, None, Status.TOO_FEW_POINTS, rows.body, origin="fit",
-            table=", ".join(rows.tables), campaign=rows.campaign, n_points=len(rows.y), citation=citation,
+            table=", ".join(rows.tables), campaign=rows.campaign, n_points=len(rows.y), citation=citation, law="rest",
         )
         for t in _terms(axis, chosen) if t.factors
     ]  # fmt: skip

@@ -60,6 +60,7 @@ def _written(
         window=c.window,
         n_points=c.n_points,
         citation=c.citation,
+        law=c.law,
         potential=potential_part(c.symbol, hull, scaling, density)
         if hull is not None and c.value is not None
         else None,
@@ -180,7 +181,7 @@ def assemble(
             symbols=tuple(primed(c.symbol) for c in coefficients),
             matrix=tuple(tuple(None if np.isnan(v) else float(v) for v in row) for row in covariance),
         ),
-        covered=_covered([t for t in tables if t.campaign in group.campaigns], first.scaling.length),
+        covered=_covered([t for t in tables if any(t.campaign in f.campaigns for f in chosen)], first.scaling.length),
         models=models,
         added_mass=record,
         provenance=Provenance(
@@ -189,7 +190,8 @@ def assemble(
             inputs=tuple(InputRecord(name=i.name, sha256=i.sha256) for i in inputs),
             citations=tuple(
                 dict.fromkeys(
-                    [c.citation for c in coefficients if c.citation] + [k for f in chosen for k in f.citations]
+                    [k for c in coefficients if c.citation for k in c.citation.split(", ")]
+                    + [k for f in chosen for k in f.citations]
                 )
             ),
             notes=tuple(notes),

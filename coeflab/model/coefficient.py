@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,6 +94,9 @@ class Coefficient:
         Range of the motion variable used: v' and w' as angles in radians, rates as r' = r L/U.
     n_points : int
     citation : str
+    law : str
+        ``motion``: the force scales with the speed of the motion, 1/2 rho U^(2-n) for n motion variables, as the prime
+        system has it. ``rest``: damping about a state of rest, whose SI value multiplies the velocities whatever U is.
     """
 
     symbol: str
@@ -109,6 +113,7 @@ class Coefficient:
     window: tuple[float, float] | None = None
     n_points: int = 0
     citation: str = ""
+    law: Literal["motion", "rest"] = "motion"
 
     def scaled(self, factor: float, unit: str) -> Coefficient:
         """Value and uncertainties times a factor."""

@@ -58,6 +58,11 @@ class ParameterCoefficient(Strict):
     window: tuple[Finite, Finite] | None = Field(default=None, description="radians; r' = r L/U for rates")
     n_points: Annotated[int, Field(ge=0)] = 0
     citation: str = ""
+    law: Literal["motion", "rest"] = Field(
+        default="motion",
+        description="motion: the force goes with 1/2 rho U^(2-n) for n motion variables; rest: value_si times the velocities "
+        "whatever U is, damping about a state of rest; since 1.2",
+    )
     potential: Finite | None = Field(
         default=None,
         description="part of the value that -C_A(nu) nu gives, by `added_mass`; the rest is viscous; since 1.2",
@@ -233,7 +238,7 @@ def _as_of(version: str, content: dict[str, Any]) -> dict[str, Any]:
     if version in (FIRST_VERSION, "1.1"):
         del content["added_mass"]
         for coefficient in content["coefficients"]:
-            del coefficient["potential"]
+            del coefficient["potential"], coefficient["law"]
         for model in content["models"]:
             del model["holds"]
     if version == FIRST_VERSION:
