@@ -6,6 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
+import numpy as np
+from numpy.typing import NDArray
+
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.campaign import Campaign
@@ -65,6 +68,22 @@ class Exporter(Plugin, Protocol):
     """Renders a parameter file for a target; pure, so that golden files hold it."""
 
     def render(self, parameters: ParameterFile) -> Mapping[str, bytes]: ...
+
+
+@runtime_checkable
+class SimulatorExporter(Exporter, Protocol):
+    """An exporter whose target has a force law of its own, which proves what the export is worth.
+
+    ``adds_coriolis`` says whether the target itself adds -C_A(nu) nu from the added mass that it is given.
+    """
+
+    adds_coriolis: bool
+
+    def force(self, files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]: ...
+
+    def not_held(self, parameters: ParameterFile) -> tuple[str, ...]: ...
+
+    def changes(self, parameters: ParameterFile) -> tuple[str, ...]: ...
 
 
 @runtime_checkable

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.surface_mesh import Faces
@@ -43,7 +44,7 @@ def asymmetries(vertices: Array, faces: Faces) -> Array:
     return np.array(out)
 
 
-def vanishing(mirrors: tuple[bool, bool, bool]) -> Array:
+def vanishing(mirrors: tuple[bool, bool, bool]) -> NDArray[np.bool_]:
     """Which entries of the (6, 6) matrix vanish about a point on the mirror planes of x, y and z, as booleans."""
     out = np.zeros((6, 6), dtype=bool)
     for signs, holds in zip(SIGNS, mirrors, strict=True):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.kernels.mirror import asymmetries, vanishing
 from coeflab.model.mesh import TriangleMesh
@@ -55,7 +56,7 @@ def _figure(part: Part) -> tuple[str, float, Array, Array]:
     return type(part.form).__name__, part.form.volume, part.centre, spread
 
 
-def must_vanish(shape: Shape, point: Array) -> Array:
+def must_vanish(shape: Shape, point: Array) -> NDArray[np.bool_]:
     """Entries of the added mass about a point that the mirror planes through it make vanish, (6, 6) of booleans."""
     off = np.abs(point - shape.centre_of_volume)
     size = shape.length or 1.0

@@ -93,7 +93,7 @@ class Triangulation:
         """Names of the shape's planes of symmetry."""
         return tuple(n for n, holds in zip(NAMES, mirrors(self.body.require_shape()), strict=True) if holds)
 
-    def vanishing(self) -> tuple[Array, dict[str, float]]:
+    def vanishing(self) -> tuple[NDArray[np.bool_], dict[str, float]]:
         """Entries that symmetry makes vanish, (6, 6) of booleans, and the largest of them by method.
 
         Largest over the root of both diagonal entries.

@@ -1,0 +1,55 @@
+"""``coeflab export``: a parameter file for a simulator."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import typer
+
+from coeflab.cli import show
+
+EXAMPLE = "coeflab export reports/suboff/suboff_bare_hull.parameters.json --to xdyn --accept-loss"
+
+
+def command(
+    file: Path = typer.Argument(..., help="A parameter file."),
+    to: str = typer.Option(..., "--to", help="Target (see coeflab formats)."),
+    out: Path | None = typer.Option(None, help="Folder for the files; default NAME.TARGET beside the parameter file."),
+    accept_loss: bool = typer.Option(False, "--accept-loss", help="Write although the target cannot hold everything."),
+    strict: bool = typer.Option(False, "--strict", help="Refuse any loss, whatever else is said."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Write what a simulator loads, prove it by the simulator's own force law, and say what is lost."""
+    from coeflab.core.errors import InputError
+    from coeflab.core.files import write_atomically
+    from coeflab.model.parameter_file import read_parameter_file
+    from coeflab.presentation import loss_tables
+    from coeflab.studies.export import export
+
+    parameters = read_parameter_file(file)
+    made = export(parameters, to)
+    loss = made.loss
+    if loss is not None and not json:
+        show.table(loss_tables.forces(loss))
+        show.table(loss_tables.parts(parameters))
+    if loss is not None and not loss.lossless and (strict or not accept_loss):
+        raise InputError(
+            f"{to} cannot hold all of {parameters.name}",
+            "a target that holds everything" if strict else "--accept-loss, once the loss above has been read",
+            file=file,
+        )
+    folder = out if out is not None else file.parent / f"{parameters.name}.{to}"
+    paths = [folder / name for name in sorted(made.files)]
+    for path in paths:
+        write_atomically(path, made.files[path.name])
+    if json:
+        show.json_object({
+            "target": to, "files": [str(p) for p in paths], "lossless": loss is None or loss.lossless,
+            "not_held": [] if loss is None else list(loss.not_held),
+            "worst_difference": None if loss is None else loss.worst.tolist(),
+            "rms_difference": None if loss is None else loss.rms.tolist(),
+            "largest_force": None if loss is None else loss.largest.tolist(),
+        })  # fmt: skip
+        return
+    for path in paths:
+        show.text(f"  {path}")

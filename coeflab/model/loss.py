@@ -1,0 +1,141 @@
+"""What an export loses: the target's own force law against that of the parameter file, over the range that is covered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.model.force_law import ForceLaw, LawTerm
+from coeflab.model.frozen import locked
+from coeflab.model.parameter_file import ParameterFile
+
+Array = NDArray[np.float64]
+SPEEDS = (0.5, 1.0, 1.5)
+POINTS = 5
+LOSSLESS = 1e-9
+ANGLES = {"asin(v/U)": "v", "asin(w/U)": "w"}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Loss:
+    """What one target makes of one parameter file.
+
+    Attributes
+    ----------
+    target : str
+    not_held : tuple of str
+        What the target cannot represent, in words, symbol first.
+    changes : tuple of str
+        What was changed in sign, axes or form, and why.
+    worst, rms, largest : (6,) array
+        Largest and root-mean-square difference of the target's force from the file's, and the file's largest force, over
+        the grid; N and N m.
+    grid : str
+        The velocities that were tried, in words.
+    """
+
+    target: str
+    not_held: tuple[str, ...]
+    changes: tuple[str, ...]
+    worst: Array
+    rms: Array
+    largest: Array
+    grid: str
+
+    def __post_init__(self) -> None:
+        for name in ("worst", "rms", "largest"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+    @property
+    def relative(self) -> Array:
+        """(6,) worst over the largest force of the component; over the largest force or moment where it is zero."""
+        scale = self.largest.copy()
+        for group in (slice(0, 3), slice(3, 6)):
+            scale[group] = np.where(scale[group] > 0.0, scale[group], scale[group].max(initial=0.0))
+        return np.divide(self.worst, scale, out=np.where(self.worst > 0.0, np.inf, 0.0), where=scale > 0.0)
+
+    @property
+    def lossless(self) -> bool:
+        """Whether the target holds everything, and its force is the file's to rounding."""
+        return not self.not_held and bool(np.all(self.relative <= LOSSLESS))
+
+
+def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
+    """Velocities (n, 6) over what the file's campaigns cover, at half, full and one and a half times its speed.
+
+    Every combination of five values of each covered motion; straight motion alone where none is covered.
+    """
+    speed, length = parameters.conditions.speed, parameters.scaling.length
+    ranges: dict[str, tuple[float, float]] = {}
+    for c in parameters.covered:
+        name = ANGLES.get(c.variable, c.variable.removesuffix("'"))
+        if name not in MOTIONS:
+            continue
+        low, high = np.sin([c.low, c.high]) if c.variable in ANGLES else (c.low, c.high)
+        before = ranges.get(name, (low, high))
+        ranges[name] = (min(float(low), before[0]), max(float(high), before[1]))
+    names = list(ranges)
+    values = [np.linspace(*ranges[n], POINTS) for n in names]
+    rows = []
+    for factor in SPEEDS:
+        at = factor * speed
+        for chosen in product(*values):
+            primes = dict(zip(names, chosen, strict=True))
+            side = np.array([primes.get("v", 0.0), primes.get("w", 0.0)])
+            across = float(side @ side)
+            if across > 1.0:
+                continue
+            rates = [primes.get(r, 0.0) * at / length for r in "pqr"]
+            rows.append([at * np.sqrt(1.0 - across), *(at * side), *rates])
+    words = ", ".join(f"{n}' {a:.3g} to {b:.3g}" for n, (a, b) in ranges.items()) or "straight motion"
+    return np.array(rows), f"{words}; U {', '.join(f'{f * speed:.3g}' for f in SPEEDS)} m/s; {len(rows)} states"
+
+
+def loss_of(
+    target: str,
+    law: ForceLaw,
+    parameters: ParameterFile,
+    files: Mapping[str, bytes],
+    force: Callable[[Mapping[str, bytes], Array], Array],
+    not_held: tuple[str, ...],
+    changes: tuple[str, ...],
+) -> Loss:
+    """Evaluate a target's law, from its own files, beside the law of the parameter file.
+
+    Parameters
+    ----------
+    force : callable
+        The target's files and (n, 6) velocities -> (n, 6) forces, FRD, about the file's reference point, steady motion.
+    """
+    nu, words = covered_grid(parameters)
+    ours, theirs = law.force(nu), force(files, nu)
+    apart = np.abs(theirs - ours)
+    return Loss(
+        target, not_held, changes, apart.max(axis=0), np.sqrt((apart**2).mean(axis=0)), np.abs(ours).max(axis=0), words
+    )
+
+
+def unheld(law: ForceLaw, held: Callable[[LawTerm], bool], *, ideal: bool) -> tuple[str, ...]:
+    """What of a law a target does not take, in words, in the order of the file.
+
+    Parameters
+    ----------
+    law : ForceLaw
+    held : callable
+        Whether the target takes a term.
+    ideal : bool
+        Whether it has the ideal fluid's products that no measured term speaks of.
+    """
+    terms = tuple(t.symbol for t in law.terms if t.coefficient != 0.0 and not held(t))
+    products = tuple(
+        f"{COMPONENTS[i]}{MOTIONS[j]}{MOTIONS[k]} of the ideal fluid"
+        for i, j, k in product(range(6), range(6), range(6))
+        if j <= k and law.ideal[i, j, k] != 0.0
+    )
+    controls = tuple(f"{s} (control or acceleration)" for s in law.left_out if not s.endswith("dot"))
+    return (*terms, *(() if ideal else products), *controls)

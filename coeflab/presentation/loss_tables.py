@@ -1,0 +1,61 @@
+"""What an export loses, as tables and as the text beside the files."""
+
+from __future__ import annotations
+
+from coeflab.core.symbols import COMPONENTS
+from coeflab.model.loss import Loss
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.table import Table, coefficient, number
+
+
+def forces(loss: Loss) -> Table:
+    """Difference of the target's force from the file's."""
+    rows = tuple(
+        (c, "N*m" if c in "KMN" else "N", number(a, 4), number(b, 3), number(r, 3), f"{100.0 * x:.2g} %")
+        for c, a, b, r, x in zip(COMPONENTS, loss.largest, loss.worst, loss.rms, loss.relative, strict=True)
+    )
+    notes = [f"over {loss.grid}; steady motion, FRD, about the file's reference point"]
+    notes += [f"not held: {what}" for what in loss.not_held]
+    notes += [f"changed: {what}" for what in loss.changes]
+    headers = ("", "unit", "largest", "worst difference", "rms difference", "worst of largest")
+    return Table(
+        f"Force law of {loss.target} against the parameter file", headers, rows, tuple(notes), frozenset({0, 1})
+    )
+
+
+def parts(parameters: ParameterFile) -> Table:
+    """Total, potential and viscous part of every coefficient; no rows without added mass."""
+    rows = tuple(
+        (c.symbol, coefficient(c.value), coefficient(c.potential), coefficient(c.value - c.potential), c.origin)
+        for c in parameters.coefficients
+        if c.value is not None and c.potential is not None
+    )
+    hull = parameters.added_mass
+    notes = [] if hull is None else [f"potential part by the added mass of {hull.body}, method {hull.method}"]
+    if hull is not None and hull.body != parameters.body:
+        notes.append(f"MISMATCH: the coefficients are those of {parameters.body}")
+    headers = ("", "total", "potential", "viscous", "origin")
+    return Table("Parts of the coefficients", headers, rows, tuple(notes), frozenset({0, 4}))
+
+
+def as_text(loss: Loss, parameters: ParameterFile) -> str:
+    """The loss report: plain text, the same bytes for the same file."""
+    lines = [f"Loss report: {parameters.name} ({parameters.body}) for {loss.target}", ""]
+    lines.append("Lossless." if loss.lossless else "This export is not lossless.")
+    for table in (forces(loss), parts(parameters)):
+        if table.rows:
+            lines += ["", table.title, *_aligned(table), *(f"  {n}" for n in table.notes)]
+    return "\n".join(lines) + "\n"
+
+
+def _aligned(table: Table) -> list[str]:
+    rows = [table.headers, *table.rows]
+    widths = [max(len(r[i]) for r in rows) for i in range(len(table.headers))]
+    return [
+        "  "
+        + "  ".join(
+            cell.ljust(w) if i in table.left else cell.rjust(w)
+            for i, (cell, w) in enumerate(zip(r, widths, strict=True))
+        ).rstrip()
+        for r in rows
+    ]
