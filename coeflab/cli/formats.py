@@ -1,34 +1,106 @@
-"""``coeflab formats``: the rooms and their plugins."""
+"""``coeflab formats``: the rooms, their plugins, and the options of these."""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from coeflab.cli import show
 
-EXAMPLE = "coeflab formats"
+if TYPE_CHECKING:
+    from coeflab.core.registry import Registry
+    from coeflab.model.table import Table
+
+EXAMPLE = "coeflab formats surface"
 
 
-def command(json: bool = typer.Option(False, "--json", help="Print one JSON object.")) -> None:
+def command(
+    name: str = typer.Argument("", help="A room such as fits, or one plugin: its options are explained."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
     """List everything that can be plugged in: importers, fits, exporters, checks, reports, validations."""
+    from coeflab.model.table import Table
+
+    found = _chosen(name)
+    rows = [(room.kind, plugin, room.load(plugin).summary) for room, plugin in found]
+    if not name:
+        from coeflab.studies.validate import validations
+
+        rows += [("validation", v, f"coeflab validate {v}") for v in validations()]
+    if json:
+        show.json_object({"plugins": [_as_object(room, plugin) for room, plugin in found] + [
+            dict(zip(("kind", "name", "summary"), row, strict=True)) for row in rows[len(found):]
+        ]})  # fmt: skip
+        return
+    notes = () if name else ("`coeflab formats NAME` explains the options of a plugin, or of a room such as fits.",)
+    show.table(Table("Formats", ("kind", "name", "what"), tuple(rows), notes, frozenset({0, 1, 2})))
+    if name:
+        for room, plugin in found:
+            show.table(options_of(room, plugin))
+
+
+def explain(fit: str) -> None:
+    """Print the options of a fit."""
+    from coeflab.fits import FITS
+
+    show.table(options_of(FITS, fit))
+
+
+def options_of(room: Registry[Any], plugin: str) -> Table:
+    """Every option of a plugin: what it takes, its default, what it means. No rows where it has none."""
+    from coeflab.core.options import described
+    from coeflab.model.table import Table
+
+    kind = getattr(room.load(plugin), "Options", None)
+    rows = tuple((o.name, o.takes, o.default, o.meaning) for o in described(kind)) if kind else ()
+    notes = (
+        f"On the command line: coeflab fit TABLE --fit {plugin} --{rows[0][0].replace('_', '-')} VALUE; in a plan: [table.options.{plugin}].",
+    ) if rows and room.package == "coeflab.fits" else ()  # fmt: skip
+    return Table(
+        f"Options of {plugin}", ("option", "takes", "default", "meaning"), rows, notes, frozenset({0, 1, 2, 3})
+    )
+
+
+def _as_object(room: Registry[Any], plugin: str) -> dict[str, Any]:
+    rows = options_of(room, plugin).rows
+    options = [dict(zip(("name", "takes", "default", "meaning"), row, strict=True)) for row in rows]
+    return {"kind": room.kind, "name": plugin, "summary": room.load(plugin).summary, "options": options}
+
+
+def _chosen(name: str) -> list[tuple[Registry[Any], str]]:
+    """Every plugin, those of one room, or those of one name.
+
+    Raises
+    ------
+    InputError
+        Neither a room nor a plugin has that name.
+    """
+    import difflib
+
+    from coeflab.core.errors import InputError, shown
+
+    every = [(room, plugin) for room in _rooms() for plugin in room.names()]
+    rooms = [room.package.rpartition(".")[2] for room in _rooms()]
+    out = [(r, p) for r, p in every if not name or name in (p, r.package.rpartition(".")[2])]
+    if not out and name not in rooms:
+        near = difflib.get_close_matches(name, [*rooms, *(p for _, p in every)], n=1)
+        hint = f"Did you mean {near[0]}? " if near else ""
+        raise InputError(
+            shown(name), f"a plugin, or one of {', '.join(rooms)}", advice=f"{hint}`coeflab formats` lists all."
+        )
+    return out
+
+
+def _rooms() -> tuple[Registry[Any], ...]:
     from coeflab.added_mass import ADDED_MASS
     from coeflab.bodies import BODIES
     from coeflab.checks import CHECKS
     from coeflab.exporters import EXPORTERS
     from coeflab.fits import FITS
     from coeflab.importers import IMPORTERS
-    from coeflab.model.table import Table
     from coeflab.parameter_importers import PARAMETER_IMPORTERS
     from coeflab.reporting import REPORTERS
     from coeflab.simulators import SIMULATORS
-    from coeflab.studies.validate import validations
 
-    rooms = (
-        IMPORTERS, BODIES, FITS, ADDED_MASS, SIMULATORS, EXPORTERS, PARAMETER_IMPORTERS, CHECKS, REPORTERS,
-    )  # fmt: skip
-    rows = [(room.kind, name, room.load(name).summary) for room in rooms for name in room.names()]
-    rows += [("validation", name, f"coeflab validate {name}") for name in validations()]
-    if json:
-        show.json_object({"plugins": [dict(zip(("kind", "name", "summary"), row, strict=True)) for row in rows]})
-        return
-    show.table(Table("Formats", ("kind", "name", "what"), tuple(rows), (), frozenset({0, 1, 2})))
+    return (IMPORTERS, BODIES, FITS, ADDED_MASS, SIMULATORS, EXPORTERS, PARAMETER_IMPORTERS, CHECKS, REPORTERS)

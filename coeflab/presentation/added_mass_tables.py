@@ -25,6 +25,25 @@ def particulars(body: Body) -> Table:
     return Table(f"{body.name}: {body.title}", headers, tuple(rows), (), frozenset({0, 4}))
 
 
+def displaced(body: Body, density: float) -> Table:
+    """Projected areas and the inertia of the displaced water, where they are known."""
+    rows = []
+    for c in body.configurations:
+        inertia = c.displaced_inertia(density)
+        if inertia is None or c.projected_areas is None:
+            continue
+        products = (-inertia[0, 1], -inertia[0, 2], -inertia[1, 2])
+        cut = 1e-9 * float(np.trace(inertia))
+        moments = (*np.diag(inertia), *(p if abs(p) > cut else 0.0 for p in products))
+        rows.append((c.name, *(number(float(v)) for v in (*c.projected_areas, *moments))))
+    headers = ("displaced water", *(f"A{a} m^2" for a in "xyz"), *(f"I{a} kg m^2" for a in ("x", "y", "z", "xy", "xz", "yz")))
+    notes = (
+        "A: area projected along the axis",
+        f"I: moments and products (integral of x y dm) of {density:g} kg/m^3 about the centre of buoyancy",
+    )
+    return Table(f"{body.name}: projected areas and inertia of the displaced water", headers, tuple(rows), notes)
+
+
 def matrix(result: AddedMass) -> Table:
     """One 6 x 6 matrix."""
     cut = _rounding(result)

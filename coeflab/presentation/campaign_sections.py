@@ -7,14 +7,18 @@ import re
 from coeflab.core.citations import work
 from coeflab.core.symbols import primed
 from coeflab.model.fit_result import FitResult, Sweep
+from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
+from coeflab.model.misfit import residuals_in_words
 from coeflab.model.reference import Relation
 from coeflab.model.study import Study
 from coeflab.model.table import Table, coefficient, percent
-from coeflab.presentation import tables
+from coeflab.presentation import joint_tables, model_tables, tables
 from coeflab.presentation.document import Figure, Section
 from coeflab.presentation.estimator_figure import estimator_figure
 from coeflab.presentation.figures import sweep_figure
+from coeflab.presentation.model_figure import distinct, model_figures, over_what
+from coeflab.presentation.variables import moving, response_name
 
 
 def filled(*several: Table) -> tuple[Table, ...]:
@@ -34,9 +38,9 @@ def anchor(text: str, taken: set[str]) -> str:
 
 def campaign_section(study: Study, fit: FitResult, taken: set[str]) -> Section:
     """A campaign by one fit: its data, its coefficients, its sweeps."""
-    mine = [t for t in study.tables if t.campaign == fit.campaign]
+    mine = [t for t in study.tables if t.campaign in fit.campaigns]
     place = anchor(f"campaign {fit.campaign}", taken)
-    title = mine[0].title if mine else fit.campaign
+    title = mine[0].title if len(fit.campaigns) == 1 and mine else f"Jointly: {fit.campaign}"
     if sum(f.campaign == fit.campaign for f in study.fits) > 1:
         title = f"{title} ({fit.fit})"
     text = [line for t in mine for line in _about(t)]
@@ -49,9 +53,18 @@ def campaign_section(study: Study, fit: FitResult, taken: set[str]) -> Section:
         place,
         title,
         tuple(text),
-        filled(tables.coefficients(study, fit.campaign)),
-        subsections=tuple(_sweep_section(study, fit, s, anchor(f"{place} {s.symbol}", taken)) for s in fit.sweeps),
+        filled(tables.coefficients(study, fit.campaign), joint_tables.campaigns((fit,))),
+        subsections=(
+            *(_sweep_section(study, fit, s, anchor(f"{place} {s.symbol}", taken)) for s in fit.sweeps),
+            *(_model_section(m, anchor(f"{place} {m.response}", taken)) for m in distinct(fit.models)),
+        ),
     )
+
+
+def _model_section(model: FittedModel, place: str) -> Section:
+    name = f"{response_name(model)} over {over_what(model)}" if moving(model) else response_name(model)
+    shown = filled(model_tables.influence(model), model_tables.correlations(model))
+    return Section(place, name, residuals_in_words(model), shown, model_figures(model, place))
 
 
 def _about(table: ForceTable) -> list[str]:

@@ -29,7 +29,7 @@ def document(study: Study) -> Document:
         Section(
             "campaigns",
             "Campaigns",
-            ("Every coefficient with its points, its curves and all estimators that were tried.",),
+            ("Every coefficient and every fitted model with its points, its curves and what was tried.",),
             subsections=campaigns,
         ),
         _checks(study),
@@ -155,11 +155,10 @@ def _models(study: Study) -> tuple[Section, ...]:
         return ()
     text = (
         "Force laws and tables over one or more variables. What the data leave open is said below each table and has no "
-        "number; a reader outside the domain follows the stated rule.",
+        "number; a reader outside the domain follows the stated rule. Pictures, influential points and correlations stand "
+        "under Campaigns.",
     )
-    each = tuple(
-        t for m in models for t in (model_tables.terms(m), model_tables.influence(m), model_tables.correlations(m))
-    )
+    each = tuple(model_tables.terms(m) for m in models)
     return (Section("models", "Fitted models", text, filled(model_tables.quality(models), *each)),)
 
 

@@ -18,15 +18,20 @@ from coeflab.presentation.svg import COLOURS, POINTS
 
 Array = NDArray[np.float64]
 WIDTH, HEIGHT = 340.0, 336.0
-LEFT, RIGHT, BOTTOM, GAP = 46.0, 10.0, 34.0, 16.0
+LEFT, RIGHT, BOTTOM, GAP = 52.0, 10.0, 34.0, 16.0
 LEGEND_ROW, LEGEND_ROWS = 12.2, 4
 TOP = HEIGHT - 4.0 - LEGEND_ROW * LEGEND_ROWS - 8.0
 Range = tuple[float, float]
 
 
-def drawing() -> Figure:
-    """An empty figure of the report's size."""
-    return Figure(figsize=(WIDTH / POINTS, HEIGHT / POINTS))
+def drawing(height: float = HEIGHT) -> Figure:
+    """An empty figure of the report's width."""
+    return Figure(figsize=(WIDTH / POINTS, height / POINTS))
+
+
+def height_of(figure: Figure) -> float:
+    """Height of a figure in points."""
+    return float(figure.get_figheight()) * POINTS
 
 
 def limits(values: Array, margin: float) -> Range | None:
@@ -79,8 +84,8 @@ def panel(
     most_up : int
         Largest number of steps of the upright axis.
     """
-    width = WIDTH - LEFT - RIGHT
-    axes = figure.add_axes((LEFT / WIDTH, bottom / HEIGHT, width / WIDTH, height / HEIGHT))
+    width, whole = WIDTH - LEFT - RIGHT, height_of(figure)
+    axes = figure.add_axes((LEFT / WIDTH, bottom / whole, width / WIDTH, height / whole))
     axes.set_axis_off()
     axes.set_xlim(*across)
     axes.set_ylim(*up)
@@ -94,36 +99,36 @@ def panel(
     ):
         axes.plot(x, y, linestyle="none", marker=mark, markersize=3.0, markeredgewidth=0.6, **thin)
     for y, text in zip(at_y, tick_texts(at_y), strict=True):
-        height_of = bottom + height * (float(y) - up[0]) / (up[1] - up[0])
-        figure.text((LEFT - 5.5) / WIDTH, (height_of - 2.9) / HEIGHT, text, ha="right", va="baseline", fontsize=8.0)
+        level = bottom + height * (float(y) - up[0]) / (up[1] - up[0])
+        figure.text((LEFT - 5.5) / WIDTH, (level - 2.9) / whole, text, ha="right", va="baseline")
     figure.text(
-        11.0 / WIDTH, (bottom + height / 2.0) / HEIGHT, name_up, rotation=90, ha="center", va="center",
+        9.5 / WIDTH, (bottom + height / 2.0) / whole, name_up, rotation=90, ha="center", va="center",
         rotation_mode="anchor",
     )  # fmt: skip
     if name_across:
         for x, text in zip(at_x, tick_texts(at_x), strict=True):
             place = LEFT + width * (float(x) - across[0]) / (across[1] - across[0])
-            figure.text(place / WIDTH, (bottom - 13.5) / HEIGHT, text, ha="center", va="baseline", fontsize=8.0)
-        figure.text((LEFT + width / 2.0) / WIDTH, (bottom - 27.5) / HEIGHT, name_across, ha="center", va="baseline")
+            figure.text(place / WIDTH, (bottom - 13.5) / whole, text, ha="center", va="baseline")
+        figure.text((LEFT + width / 2.0) / WIDTH, (bottom - 27.5) / whole, name_across, ha="center", va="baseline")
     return axes
 
 
 def heading(figure: Figure, above: float, text: str) -> None:
     """A small title over a panel whose upper edge is ``above`` points from the lower edge of the figure."""
-    figure.text(LEFT / WIDTH, (above + 4.0) / HEIGHT, text, fontsize=8.0, color=COLOURS["muted"], va="baseline")
+    figure.text(LEFT / WIDTH, (above + 4.0) / height_of(figure), text, color=COLOURS["muted"], va="baseline")
 
 
-def legend(figure: Figure, handles: list[Any]) -> None:
-    """One legend in two columns above the panels."""
+def legend(figure: Figure, handles: list[Any], above: float = TOP) -> None:
+    """One legend in two columns above the panels, whose upper edge is ``above`` points from the lower edge."""
     figure.legend(
         handles=handles,
         loc="lower left",
-        bbox_to_anchor=(LEFT / WIDTH, (TOP + 8.0) / HEIGHT),
+        bbox_to_anchor=((LEFT - 16.0) / WIDTH, (above + 8.0) / height_of(figure)),
         ncols=2,
         borderpad=0.0,
         borderaxespad=0.0,
-        handlelength=2.6,
+        handlelength=2.5,
         handletextpad=0.6,
-        columnspacing=1.4,
+        columnspacing=1.0,
         labelspacing=0.38,
     )

@@ -30,16 +30,17 @@ _SETTINGS: dict[Any, object] = {
     "svg.fonttype": "none",
     "svg.hashsalt": "coeflab",
     "font.family": _FONT,
-    "font.size": 8.5,
+    "font.size": 8.75,
     "text.parse_math": False,
     "text.color": COLOURS["ink"],
     "axes.facecolor": "none",
     "figure.facecolor": "none",
     "legend.frameon": False,
-    "legend.fontsize": 8.0,
+    "legend.fontsize": 8.75,
     "path.simplify": False,
 }
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_DECIMALS = re.compile(r"-?\d+\.\d{3,}")
 _REFERENCES = re.compile(r'(?:xlink:href="#|url\(#)([^")]+)')
 
 
@@ -61,7 +62,12 @@ def power_of_ten(largest: float) -> tuple[float, str]:
         exponent += 3
     while largest * 10.0**exponent >= 10_000.0:
         exponent -= 3
-    return 10.0**exponent, f" × 10{str(exponent).translate(_SUPERSCRIPT)}" if exponent else ""
+    return 10.0**exponent, f" × 10{superscript(exponent)}" if exponent else ""
+
+
+def superscript(exponent: int) -> str:
+    """A whole number as an exponent."""
+    return str(exponent).translate(_SUPERSCRIPT)
 
 
 def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
@@ -82,14 +88,16 @@ def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
     text = text[text.index("<svg") :]
     text = re.sub(r"<!--.*?-->\s*|<metadata>.*?</metadata>\s*|<style.*?</style>\s*", "", text, flags=re.DOTALL)
     text = text.replace("<defs>\n </defs>\n", "").replace("<defs/>\n", "")
-    used = set(_REFERENCES.findall(text))
-    text = re.sub(r' id="([^"]*)"', lambda m: f' id="{prefix}-{m[1]}"' if m[1] in used else "", text)
-    text = re.sub(r'xlink:href="#', f'href="#{prefix}-', text).replace("url(#", f"url(#{prefix}-")
+    short = {name: f"{prefix}-{i}" for i, name in enumerate(dict.fromkeys(_REFERENCES.findall(text)))}
+    text = re.sub(r' id="([^"]*)"', lambda m: f' id="{short[m[1]]}"' if m[1] in short else "", text)
+    text = re.sub(r'xlink:href="#([^"]+)', lambda m: f'href="#{short[m[1]]}', text)
+    text = re.sub(r"url\(#([^)]+)", lambda m: f"url(#{short[m[1]]}", text)
+    text = re.sub(r' (?:d|x|y)="[^"]*"', lambda m: _DECIMALS.sub(_rounded, m[0]), text)
     text = text.replace(f" font-family: '{_FONT}';", "")
     text = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", text)
     for name, colour in COLOURS.items():
         text = text.replace(colour, f"var(--fig-{name}, {colour})")
-    text = _without_bare_groups(re.sub(r"\n\s*", "\n", text))
+    text = _styled_once(_without_bare_groups(re.sub(r"\n\s*", "\n", text)))
     box = re.search(r'viewBox="[^"]*"', text)
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" {box[0] if box else ""} role="img" '
@@ -98,6 +106,24 @@ def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
         f'<title id="{prefix}-title">{escape(title)}</title>\n<desc id="{prefix}-desc">{escape(description)}</desc>\n'
     )
     return head + text[text.index(">") + 1 :].strip() + "\n"
+
+
+def _rounded(number: re.Match[str]) -> str:
+    """A coordinate to a hundredth of a point."""
+    return f"{float(number[0]) + 0.0:.2f}".rstrip("0").rstrip(".")
+
+
+def _styled_once(text: str) -> str:
+    """The same drawing with the style of a row of equal markers on their group."""
+
+    def moved(group: re.Match[str]) -> str:
+        styles = set(re.findall(r' style="[^"]*"', group[2]))
+        if len(styles) != 1 or " style=" in group[1]:
+            return group[0]
+        style = styles.pop()
+        return f"{group[1]}{style}>\n{group[2].replace(style, '')}</g>"
+
+    return re.sub(r"(<g clip-path=[^>]*)>\n((?:<use [^>]*/>\n)+)</g>", moved, text)
 
 
 def _without_bare_groups(text: str) -> str:

@@ -55,11 +55,11 @@ def _bars(figure: Drawing, bars: list[tuple[str, float]], height: float, factor:
         colour = COLOURS["ink" if label == "U95" else "a" if label in MEASURED else "b" if label == "grid" else "c"]
         axes.barh(y, 2.0 * size, height=THICK, left=-size, color=colour, zorder=2)
         base = (BOTTOM + (y + 0.5) * ROW - 2.9) / height
-        figure.text((LEFT - 5.5) / WIDTH, base, label, ha="right", va="baseline", fontsize=8.0)
-        figure.text((WIDTH - RIGHT + 5.5) / WIDTH, base, f"± {size:.3g}", ha="left", va="baseline", fontsize=8.0)
+        figure.text((LEFT - 5.5) / WIDTH, base, label, ha="right", va="baseline")
+        figure.text((WIDTH - RIGHT + 5.5) / WIDTH, base, f"± {size:.3g}", ha="left", va="baseline")
     for x, text in zip(at, tick_texts(at), strict=True):
         place = LEFT + width * (float(x) - across[0]) / (across[1] - across[0])
-        figure.text(place / WIDTH, (BOTTOM - 13.5) / height, text, ha="center", va="baseline", fontsize=8.0)
+        figure.text(place / WIDTH, (BOTTOM - 13.5) / height, text, ha="center", va="baseline")
     figure.text((LEFT + width / 2.0) / WIDTH, (BOTTOM - 27.5) / height, name, ha="center", va="baseline")
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 from coeflab.presentation.estimator_figure import estimator_figure
+from coeflab.presentation.sheet import plain
 from coeflab.studies.validate import validation
 from coeflab.workbench import run
 
@@ -14,9 +14,8 @@ HERE = Path(__file__).resolve().parent
 
 def standalone(svg: str) -> str:
     """The drawing as a file of its own: white ground, colours in place of the page's variables."""
-    plain = re.sub(r"var\(--fig-\w+, (#[0-9a-f]{6})\)", r"\1", svg)
     head = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" style="background:#fff" '
-    return plain.replace("<svg ", head, 1) + "\n"
+    return plain(svg).replace("<svg ", head, 1) + "\n"
 
 
 def main() -> None:

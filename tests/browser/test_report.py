@@ -9,6 +9,7 @@ import pytest
 
 from coeflab.core.files import shipped
 from coeflab.model.plan import read_plan
+from coeflab.model.study import Plan, PlannedTable
 from coeflab.reporting import REPORTERS
 from coeflab.workbench import run
 from tests.presentation.studies import FULL, HOSTILE, small_study
@@ -36,6 +37,10 @@ CLIPPED = """() => {
   }
   return out;
 }"""
+SMALLEST = """() => Math.min(...[...document.querySelectorAll('figure svg text')].map(t => {
+  const m = t.getScreenCTM();
+  return parseFloat(getComputedStyle(t).fontSize) * Math.hypot(m.a, m.b);
+}))"""
 OVERLAPPING = """() => {
   const out = [];
   for (const svg of document.querySelectorAll('figure svg')) {
@@ -75,10 +80,15 @@ def browser():
 def _study(kind: str):
     if kind == "suboff":
         return run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
+    if kind == "models":
+        planned = [("huuv_synthetic", "surface"), ("thauv_case_01_synthetic", "glide_polar"),
+                   ("suboff_cfd_barehull", "manoeuvring_model")]  # fmt: skip
+        tables = tuple(PlannedTable(shipped("cfd_data") / c, (f,), {}) for c, f in planned)
+        return run(Plan(name="models", title="Fitted models", tables=tables))
     return small_study(FULL, named=HOSTILE if kind == "hostile" else "tow", published=True)
 
 
-@pytest.fixture(scope="module", params=["plain", "hostile", pytest.param("suboff", marks=pytest.mark.slow)])
+@pytest.fixture(scope="module", params=["plain", "hostile", "models", pytest.param("suboff", marks=pytest.mark.slow)])
 def address(request, tmp_path_factory):
     path = tmp_path_factory.mktemp("report") / "report.html"
     study = _study(request.param)
@@ -125,6 +135,11 @@ def test_no_drawing_is_cut_off_and_no_text_lies_on_another(opened, width):
     assert page.locator("figure svg").count() >= 4
     assert page.evaluate(CLIPPED) == []
     assert page.evaluate(OVERLAPPING) == []
+
+
+def test_text_of_drawings_is_readable_on_a_phone(opened):
+    page = opened(390)
+    assert page.evaluate(SMALLEST) >= 10.0
 
 
 def test_dark_and_light_differ_in_paper_and_ink(opened):

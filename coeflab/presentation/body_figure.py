@@ -1,0 +1,168 @@
+"""A body of parts in three views and obliquely, with the mesh that it stands for around it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from coeflab.model.mesh import TriangleMesh
+from coeflab.model.shape import Parts
+from coeflab.presentation.body_view import BEHIND, Sheet, View
+from coeflab.presentation.document import Figure
+from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets
+from coeflab.presentation.svg import COLOURS, POINTS, settings, svg_text
+
+Array = NDArray[np.float64]
+WIDTH, MARGIN, GAP, CAPTION, LABELS = 680.0, 14.0, 26.0, 16.0, 20.0
+TALLEST_VIEWS, TALLEST_OBLIQUE = 420.0, 300.0
+LABELLED, LETTER = 14, 4.7
+AZIMUTH, ELEVATION = np.radians(52.0), np.radians(24.0)
+
+
+def _oblique() -> Array:
+    level = np.array([np.cos(AZIMUTH), np.sin(AZIMUTH), 0.0])
+    toward = np.cos(ELEVATION) * level + np.sin(ELEVATION) * np.array([0.0, 0.0, -1.0])
+    right = np.array([np.sin(AZIMUTH), -np.cos(AZIMUTH), 0.0])
+    return np.array([right, np.cross(toward, right), toward])
+
+
+SIDE = View("side, from starboard", np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
+FRONT = View("front, from ahead", np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]))
+TOP = View("top, from above", np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]))
+OBLIQUE = View("from ahead, starboard and above", _oblique())
+
+
+def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str) -> Figure:
+    """Parts solid, coloured by form; the mesh translucent over them, and as an outline.
+
+    Parameters
+    ----------
+    name : str
+        Of the body.
+    shape : Parts
+    mesh : TriangleMesh, optional
+    anchor : str
+        Unique in the document.
+    """
+    of_parts = [part_facets(p).reshape(-1, 3) for p in shape.parts]
+    points = np.concatenate([*of_parts, *([] if mesh is None else [mesh.vertices])])
+    size = np.maximum(np.ptp(points, axis=0), 1e-3 * float(np.ptp(points, axis=0).max()))
+    scale = min((WIDTH - 2.0 * MARGIN - GAP) / (size[0] + size[1]), TALLEST_VIEWS / (size[1] + size[2]))
+    tilted = np.ptp(points @ OBLIQUE.axes[:2].T, axis=0)
+    larger = min((WIDTH - 2.0 * MARGIN) / tilted[0], TALLEST_OBLIQUE / tilted[1])
+    rows = [CAPTION + 2.0 * LABELS + larger * tilted[1], CAPTION + scale * size[2], CAPTION + scale * size[1]]
+    height = sum(rows) + 3.0 * GAP + 2.0 * MARGIN
+    tops = height - MARGIN - np.cumsum([0.0, rows[0] + GAP, rows[1] + GAP])
+    right = MARGIN + scale * size[0] + GAP
+    title = f"{name}: simple parts" + (" over the mesh" if mesh is not None else "")
+    with settings():
+        figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
+        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        axes.set_axis_off()
+        axes.set_xlim(0.0, WIDTH)
+        axes.set_ylim(0.0, height)
+        middle = (WIDTH - larger * tilted[0]) / 2.0
+        for view, left, top, by in (
+            (OBLIQUE, middle, tops[0], larger),
+            (SIDE, MARGIN, tops[1], scale),
+            (FRONT, right, tops[1], scale),
+            (TOP, MARGIN, tops[2], scale),
+        ):
+            room = LABELS if view is OBLIQUE else 0.0
+            sheet = _placed(axes, view, points, (left, top - CAPTION - room), by)
+            axes.text(MARGIN if room else left, top - 9.0, view.title, fontsize=8.0, color=COLOURS["muted"])
+            sheet.body(shape, mesh)
+            if room:
+                _labels(sheet, shape, (tops[0] - CAPTION - room, tops[1] + GAP + room))
+        _scale_bar(axes, right, tops[2] - rows[2], scale, float(size.max()))
+        _legend(axes, shape, mesh is not None)
+        svg = svg_text(figure, anchor, title, _description(shape, mesh))
+    return Figure(anchor, svg, title, _caption(mesh), _description(shape, mesh))
+
+
+def _placed(axes: Axes, view: View, points: Array, corner: tuple[float, float], scale: float) -> Sheet:
+    """A view whose left upper corner is at ``corner``, points."""
+    flat = points @ view.axes[:2].T * scale
+    move = np.array([corner[0] - flat[:, 0].min(), corner[1] - flat[:, 1].max()])
+    return Sheet(axes, view, scale, move, float(np.ptp(points, axis=0).max()))
+
+
+def _labels(sheet: Sheet, shape: Parts, between: tuple[float, float]) -> None:
+    """Names of the largest parts over and under the view, in their order from left to right, with lines to the parts."""
+    size = [float(np.prod(np.sort(np.ptp(part_facets(p).reshape(-1, 3), axis=0))[1:])) for p in shape.parts]
+    chosen = sorted(sorted(range(len(size)), key=lambda i: (-size[i], i))[:LABELLED])
+    at = {i: sheet.on_paper(shape.parts[i].centre) for i in chosen}
+    middle = sum(between) / 2.0
+    for baseline, foot, row in (
+        (between[0] + 7.0, between[0] + 3.0, [i for i in chosen if at[i][1] >= middle]),
+        (between[1] - 15.0, between[1] - 7.0, [i for i in chosen if at[i][1] < middle]),
+    ):
+        row.sort(key=lambda i: (at[i][0], i))
+        widths = [LETTER * len(shape.parts[i].name) + 10.0 for i in row]
+        for i, x in zip(row, _spread([float(at[i][0]) for i in row], widths), strict=True):
+            sheet.axes.plot([x, at[i][0]], [foot, at[i][1]], color=COLOURS["ink"], linewidth=0.6, zorder=3)
+            sheet.axes.plot(*at[i], marker="o", markersize=2.4, color=COLOURS["ink"], zorder=3)
+            sheet.axes.text(x, baseline, shape.parts[i].name, ha="center", fontsize=8.5)
+
+
+def _spread(wanted: list[float], widths: list[float]) -> list[float]:
+    """Centres of labels near the wanted ones, in order, that do not overlap while the paper has room."""
+    out: list[float] = []
+    for i, (x, w) in enumerate(zip(wanted, widths, strict=True)):
+        least = MARGIN + w / 2.0 if not out else out[-1] + (widths[i - 1] + w) / 2.0
+        out.append(max(x, least))
+    most = WIDTH - MARGIN
+    for i in reversed(range(len(out))):
+        out[i] = min(out[i], most - widths[i] / 2.0)
+        most = out[i] - widths[i] / 2.0
+    return out
+
+
+def _scale_bar(axes: Axes, left: float, bottom: float, scale: float, longest: float) -> None:
+    most = min(longest / 4.0, (WIDTH - MARGIN - left) / scale)
+    step = 10.0 ** np.floor(np.log10(most))
+    length = float(step * max(k for k in (1.0, 2.0, 5.0) if k * step <= most * (1.0 + 1e-9)))
+    x, y = [left, left, left + length * scale, left + length * scale], bottom + 4.0
+    axes.plot(x, [y + 3.0, y, y, y + 3.0], color=COLOURS["muted"], linewidth=0.8)
+    axes.text(left, y + 7.0, f"{length:g} m", fontsize=8.0, color=COLOURS["muted"])
+
+
+def _legend(axes: Axes, shape: Parts, with_mesh: bool) -> None:
+    forms = {form_name(p.form) for p in shape.parts}
+    handles: list[Any] = [
+        Patch(facecolor=COLOURS[c], edgecolor="none", label=f) for f, c in COLOUR_OF.items() if f in forms
+    ]
+    if with_mesh:
+        handles.append(Line2D([], [], color=COLOURS["ink"], linewidth=0.9, label="outline of the mesh"))
+        bare = Patch(facecolor=COLOURS["band"], alpha=BEHIND, edgecolor="none", label="mesh that no part covers")
+        handles.append(bare)
+    axes.legend(
+        handles=handles,
+        loc="lower left",
+        bbox_to_anchor=(MARGIN, MARGIN - 4.0),
+        bbox_transform=axes.transData,
+        ncols=len(handles),
+        borderpad=0.0,
+        borderaxespad=0.0,
+        handlelength=1.6,
+    )
+
+
+def _caption(mesh: TriangleMesh | None) -> str:
+    if mesh is None:
+        return "The parts of the body, coloured by form, in orthographic views at one scale; the oblique one is larger."
+    return (
+        "Simple parts (solid, coloured by form) under the translucent mesh with its outline: grey without colour is mesh "
+        "outside the parts, full colour beyond the outline is part outside the mesh. A plate seen from its edge is a line."
+    )
+
+
+def _description(shape: Parts, mesh: TriangleMesh | None) -> str:
+    parts = ", ".join(f"{p.name} ({form_name(p.form)})" for p in shape.parts)
+    return f"Side, front, top and oblique views of {parts}" + (" with the outline of the mesh." if mesh else ".")

@@ -1,0 +1,90 @@
+"""The figure of a fit over several variables: measured against fitted, residuals against every variable."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.lines import Line2D
+
+from coeflab.model.fitted_model import FittedModel
+from coeflab.presentation.document import Figure
+from coeflab.presentation.model_words import law_in_words, scatter_in_words
+from coeflab.presentation.panel import BOTTOM, Array, drawing, legend, limits, panel
+from coeflab.presentation.points import hollow, used
+from coeflab.presentation.svg import COLOURS, settings, svg_text
+from coeflab.presentation.variables import axis_name, moving, response_name, response_unit, scale_of, shown_values
+
+MEASURED, RESIDUALS, ROOM, LEGEND = 150.0, 62.0, 12.0, 22.0
+MOST = 4
+
+
+def residual_figure(model: FittedModel, anchor: str) -> Figure:
+    """What the fit leaves unexplained.
+
+    Parameters
+    ----------
+    model : FittedModel
+    anchor : str
+    """
+    names = moving(model)[:MOST]
+    name, aside = response_name(model), model.set_aside
+    fitted = model.y - model.fit.residuals
+    title = f"{name}, {model.campaign}: measured against fitted, and residuals"
+    lowest = len(names) * (RESIDUALS + BOTTOM + ROOM)
+    above = lowest + BOTTOM + MEASURED
+    description = _description(model, names)
+    with settings():
+        figure = drawing(above + 8.0 + LEGEND)
+        axes, factor = _measured(figure, model, fitted, lowest + BOTTOM)
+        handles = used(axes, fitted * factor, model.y * factor)
+        if aside is not None and len(aside.y):
+            handles += hollow(axes, model.evaluate(aside.x)[0] * factor, aside.y * factor)
+        handles.append(Line2D([], [], color=COLOURS["a"], linewidth=1.1, label="measured = fitted"))
+        legend(figure, handles, above)
+        for i, variable in enumerate(names):
+            _residuals(figure, model, variable, (len(names) - 1 - i) * (RESIDUALS + BOTTOM + ROOM) + BOTTOM)
+        svg = svg_text(figure, anchor, title, description)
+    return Figure(anchor, svg, title, _caption(model), description)
+
+
+def _measured(figure: Drawing, model: FittedModel, fitted: Array, bottom: float) -> tuple[Axes, float]:
+    aside = model.set_aside
+    beside = [] if aside is None or not len(aside.y) else [aside.y, model.evaluate(aside.x)[0]]
+    factor, power = scale_of(model.y)
+    both = limits(np.concatenate([model.y, fitted, *beside]) * factor, 0.06) or (-1.0, 1.0)
+    name, unit = response_name(model), response_unit(model)
+    axes = panel(
+        figure, bottom, MEASURED, across=both, up=both, name_up=f"{name} measured{power}  [{unit}]",
+        name_across=f"{name} fitted{power}  [{unit}]",
+    )  # fmt: skip
+    axes.plot(both, both, color=COLOURS["a"], linewidth=1.1, zorder=2)
+    return axes, factor
+
+
+def _residuals(figure: Drawing, model: FittedModel, variable: str, bottom: float) -> None:
+    residuals = model.fit.residuals
+    largest = float(np.max(np.abs(residuals), initial=0.0))
+    factor, power = scale_of(residuals)
+    reach = largest * factor * 1.2 or 1.0
+    x = shown_values(variable, model.x[variable])
+    axes = panel(
+        figure, bottom, RESIDUALS, across=limits(x, 0.04) or (-1.0, 1.0), up=(-reach, reach),
+        name_up=f"residual{power}", name_across=axis_name(variable, model), most_up=3,
+    )  # fmt: skip
+    axes.axhline(0.0, color=COLOURS["muted"], linewidth=0.6)
+    used(axes, x, residuals * factor)
+
+
+def _caption(model: FittedModel) -> str:
+    text = f"{response_name(model)} measured against fitted ({law_in_words(model)}), and what is left over."
+    return f"{text} {scatter_in_words(model)}"
+
+
+def _description(model: FittedModel, names: tuple[str, ...]) -> str:
+    over = ", ".join(axis_name(v, model).replace("  ", " ") for v in names)
+    n = 0 if model.set_aside is None else len(model.set_aside.y)
+    return (
+        f"Top panel: {model.n_points} measured values of {response_name(model)} against the fitted ones"
+        f"{f', {n} rejected or doubtful ones hollow' if n else ''}. Panels below: residuals against {over}."
+    )

@@ -1,0 +1,90 @@
+"""What ``coeflab fit`` prints and draws on demand, and where options are explained."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from tests.cli.conftest import Run
+
+
+def test_diagnostics_are_printed_on_demand(coeflab: Run) -> None:
+    polynomial = ("fit", "suboff_roddy_2", "--fit", "polynomial", "--variable", "v", "--responses", "Y")
+    without = coeflab(*polynomial).stdout
+    done = coeflab(*polynomial, "--diagnostics")
+    assert done.returncode == 0, done.stderr
+    for text in (
+        "Diagnostics of the fitted models",
+        "Most influential points",
+        "Correlations",
+        "PRESS",
+        "predicted R2",
+    ):
+        assert text in done.stdout
+    assert "Most influential points" not in without
+    assert "v' -0.310 .. 0.232" in without
+
+
+def test_many_terms_show_only_the_close_pairs(coeflab: Run) -> None:
+    done = coeflab("fit", "huuv_synthetic", "--fit", "surface", "--responses", "C_D", "--diagnostics")
+    assert "pairs lie beyond 0.9" in done.stdout
+    assert "alpha -25.0 .. 25.0 deg" in done.stdout
+
+
+def test_a_figure_is_one_file_with_equal_bytes(coeflab: Run, tmp_path: Path) -> None:
+    call = ("fit", "huuv_synthetic", "--fit", "surface", "--responses", "C_D", "--figure", "out.svg")
+    done = coeflab(*call)
+    assert done.returncode == 0, done.stderr
+    assert "Written: out.svg" in done.stdout
+    first = (tmp_path / "out.svg").read_bytes()
+    assert len(ET.fromstring(first).findall("{http://www.w3.org/2000/svg}svg")) == 3
+    coeflab(*call)
+    assert (tmp_path / "out.svg").read_bytes() == first
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("huuv_synthetic", "--fit", "surface", "--figure", "out.png"), "ends in .svg"),
+        (("suboff_roddy_2", "--symbol", "Yw", "--figure", "out.svg"), "no sweep"),
+        ((), "campaign folder"),
+        (("huuv_synthetic", "--fit", "surface", "--degre", "3"), "`coeflab formats surface` explains every option"),
+        (("huuv_synthetic", "--fit", "surface", "--area", "3 kg", "--area-name", "frontal"), "unit of area"),
+    ],
+)
+def test_wrong_calls_write_nothing(coeflab: Run, tmp_path: Path, arguments: tuple[str, ...], said: str) -> None:
+    done = coeflab("fit", *arguments)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_area_with_its_unit_is_that_in_si(coeflab: Run) -> None:
+    def drag(area: str) -> object:
+        done = coeflab("fit", "huuv_synthetic", "--fit", "surface", "--responses", "C_D", "--area", area,
+                       "--area-name", "frontal", "--json")  # fmt: skip
+        return json.loads(done.stdout)["models"][0]["coefficients"]
+
+    assert drag("0.04") == drag("0.04 m^2")
+
+
+def test_options_are_explained(coeflab: Run) -> None:
+    by_fit = coeflab("fit", "--fit", "surface", "--help-options").stdout
+    by_name = coeflab("formats", "surface").stdout
+    assert "Options of surface" in by_fit
+    assert by_fit.strip() in by_name
+    for text in ("degree", "whole number, 1 to 8", "refuse, clamp, taper", "[table.options.surface]"):
+        assert text in by_fit
+    every = coeflab("formats", "fits").stdout
+    assert "Options of manoeuvring_model" in every
+    assert "openfoam" not in every
+    found = json.loads(coeflab("formats", "polynomial", "--json").stdout)["plugins"]
+    assert found[0]["options"][2] == {
+        "name": "degree", "takes": "whole number, 0 to 20", "default": "3", "meaning": "The highest power.",
+    }  # fmt: skip
+    wrong = coeflab("formats", "sufrace")
+    assert wrong.returncode == 2
+    assert "Did you mean surface?" in wrong.stderr

@@ -1,0 +1,127 @@
+"""Overlay drawing and scene: well formed, the same bytes twice, what is drawn is where it should be."""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import struct
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+
+from coeflab.kernels.attitude import rotation
+from coeflab.kernels.solids import box, surface
+from coeflab.model.mesh import TriangleMesh
+from coeflab.model.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate
+from coeflab.presentation.body_figure import FRONT, OBLIQUE, SIDE, TOP, _spread, body_figure
+from coeflab.presentation.body_scene import body_scene
+from coeflab.presentation.svg import COLOURS
+
+SVG = "{http://www.w3.org/2000/svg}"
+SHAPE = Parts(
+    (
+        Part("hull", Cylinder(0.1, 2.0), np.zeros(3), np.eye(3)),
+        Part("mast", Ellipsoid(0.2, 0.05, 0.05), np.array([0.3, 0.0, -0.25]), rotation(0.0, np.pi / 2, 0.0)),
+        Part("fin <&>", Plate(0.2, 0.4), np.array([-0.8, 0.3, 0.0]), np.eye(3)),
+        Part("pod", Box(0.3, 0.1, 0.1), np.array([0.5, -0.3, 0.1]), rotation(0.2, 0.1, 0.3)),
+    )
+)
+
+
+def mesh() -> TriangleMesh:
+    return TriangleMesh(*surface(box(np.array([-1.0, -0.1, -0.1]), np.array([1.0, 0.1, 0.1]))))
+
+
+@pytest.mark.parametrize("view", [SIDE, FRONT, TOP, OBLIQUE])
+def test_views_do_not_mirror(view) -> None:
+    """The picture's right, up and toward the viewer are right-handed."""
+    assert view.axes @ view.axes.T == pytest.approx(np.eye(3))
+    assert np.linalg.det(view.axes) == pytest.approx(1.0)
+
+
+def test_views_show_what_they_say() -> None:
+    bow, starboard, up = np.eye(3) * [[1.0], [1.0], [-1.0]]
+    assert SIDE.axes @ bow == pytest.approx([1, 0, 0])
+    assert SIDE.axes @ starboard == pytest.approx([0, 0, 1])
+    assert FRONT.axes @ bow == pytest.approx([0, 0, 1])
+    assert TOP.axes @ up == pytest.approx([0, 0, 1])
+    assert all(v.axes[1] @ up > 0.9 for v in (SIDE, FRONT, OBLIQUE))
+    assert np.all(OBLIQUE.axes[2] * [1, 1, -1] > 0.0)
+
+
+@pytest.mark.parametrize("with_mesh", [True, False])
+def test_drawing(with_mesh: bool) -> None:
+    figure = body_figure("a & b", SHAPE, mesh() if with_mesh else None, "overlay")
+    root = ET.fromstring(figure.svg)
+    assert "fin <&>" in figure.description
+    assert root.find(f"{SVG}title").text.startswith("a & b")
+    texts = {"".join(t.itertext()) for t in root.iter(f"{SVG}text")}
+    assert {p.name for p in SHAPE.parts} <= texts
+    assert {"cylinder", "plate", "ellipsoid", "box"} <= texts
+    assert ("outline of the mesh" in texts) == with_mesh
+    assert not re.findall("#[0-9a-f]{6}", re.sub(r"var\(--fig-\w+, #[0-9a-f]{6}\)", "", figure.svg))
+    assert figure.svg == body_figure("a & b", SHAPE, mesh() if with_mesh else None, "overlay").svg
+    assert len(figure.svg) < 200_000
+
+
+@pytest.mark.parametrize("tall", [False, True])
+def test_everything_lies_on_the_paper(tall: bool) -> None:
+    turn = rotation(0.0, np.pi / 2, 0.0) if tall else np.eye(3)
+    shape = Parts((Part("hull", Cylinder(0.1, 5.0), np.zeros(3), turn), Part("p", Plate(1, 1), np.ones(3), np.eye(3))))
+    svg = body_figure("b", shape, None, "o").svg
+    width, height = (float(v) for v in re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', svg).groups())
+    numbers = re.findall(r"[ML] ([\d.-]+) ([\d.-]+)", svg)
+    places = np.array(numbers, dtype=float)
+    assert len(places) > 100
+    assert np.all(places >= -1.0)
+    assert np.all(places <= [width + 1.0, height + 1.0])
+
+
+def test_labels_do_not_overlap() -> None:
+    widths = [60.0, 40.0, 80.0]
+    at = _spread([100.0, 101.0, 102.0], widths)
+    assert at == sorted(at)
+    assert all(b - a >= (v + w) / 2.0 - 1e-9 for a, b, v, w in zip(at, at[1:], widths, widths[1:]))
+    assert _spread([670.0], [60.0]) == [636.0]
+
+
+def parsed(data: bytes) -> tuple[dict, bytes]:
+    magic, version, length = struct.unpack_from("<4sII", data)
+    assert (magic, version, length) == (b"glTF", 2, len(data))
+    size, kind = struct.unpack_from("<I4s", data, 12)
+    assert kind == b"JSON"
+    assert size % 4 == 0
+    rest, binary = struct.unpack_from("<I4s", data, 20 + size)
+    assert binary == b"BIN\0"
+    assert 28 + size + rest == len(data)
+    return json.loads(data[20 : 20 + size]), data[28 + size :]
+
+
+def test_scene() -> None:
+    data = body_scene("b", SHAPE, mesh())
+    assert data == body_scene("b", SHAPE, mesh())
+    content, binary = parsed(data)
+    assert [n["name"] for n in content["nodes"]] == [*(p.name for p in SHAPE.parts), "mesh", "b"]
+    materials = {m["name"]: m for m in content["materials"]}
+    assert materials["mesh"]["alphaMode"] == "BLEND"
+    assert materials["mesh"]["pbrMetallicRoughness"]["baseColorFactor"][3] < 1.0
+    assert "alphaMode" not in materials["cylinder"]
+    assert content["buffers"][0]["byteLength"] <= len(binary)
+    red = int(COLOURS["a"][1:3], 16)
+    assert materials["cylinder"]["pbrMetallicRoughness"]["baseColorFactor"][0] == pytest.approx(red / 255.0, abs=0.1)
+
+
+def test_an_independent_reader_sees_the_body() -> None:
+    """trimesh: volumes and where forward, starboard and down have gone (glTF: z forward, x to port, y up)."""
+    import trimesh
+
+    scene = trimesh.load_scene(io.BytesIO(body_scene("b", SHAPE, mesh())), file_type="glb")
+    assert scene.geometry["pod"].volume == pytest.approx(0.003, rel=1e-4)
+    assert scene.geometry["hull"].volume == pytest.approx(0.02 * np.pi, rel=0.01)
+    place = {name: scene.graph.get(name)[0] for name in scene.graph.nodes_geometry}
+    mast = scene.geometry["mast"].vertices.mean(axis=0)
+    assert (place["mast"] @ [*mast, 1.0])[:3] == pytest.approx([0.0, 0.25, 0.3], abs=1e-6)
+    fin = scene.geometry["fin <&>"].vertices.mean(axis=0)
+    assert (place["fin <&>"] @ [*fin, 1.0])[:3] == pytest.approx([-0.3, 0.0, -0.8], abs=1e-6)
