@@ -23,10 +23,12 @@ from coeflab.model.coefficient import Coefficient, Status
 from coeflab.model.declared import declared
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
+from coeflab.model.joint_rows import joint_name
 from coeflab.model.model_budget import with_model_budgets
 from coeflab.model.reference import compare, compare_set, read_references
 from coeflab.model.scaling import Scaling
-from coeflab.model.study import Plan, PlannedParameterFile, PlannedTable, Study
+from coeflab.model.several_campaigns import one_length
+from coeflab.model.study import Plan, PlannedJoint, PlannedParameterFile, PlannedTable, Study
 from coeflab.reporting import REPORTERS
 
 Progress = Callable[[str], None]
@@ -65,6 +67,14 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
             fits.append(fitted)
             progress(f"fitted {read[0].campaign} by {name}")
         tables += read
+    for joint in plan.joint:
+        read = _together(joint, plan)
+        progress(f"read {joint_name(t.campaign for t in read)}: {sum(map(len, read))} rows")
+        fitted, found = _fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
+        budgets += found
+        fits.append(fitted)
+        progress(f"fitted {fitted.campaign} by {joint.fit}")
+        tables += [t for t in read if t.name not in {known.name for known in tables}]
     body = read_body(plan.body) if plan.body else None
     references = tuple(r for path in plan.references for r in read_references(path))
     groups = plan.parameter_files or _groups(fits)
@@ -96,6 +106,7 @@ def _fitted(
     name: str, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]
 ) -> tuple[FitResult, tuple[Budget, ...]]:
     """One fit with its budgets in it, and these."""
+    _refuse_several(name, tables)
 
     def once(some: Sequence[ForceTable], by: Scaling) -> FitResult:
         return FITS.load(name).fit(some, by, options)
@@ -105,6 +116,26 @@ def _fitted(
     found = budgets_of(fit, {t.name: t for t in tables})
     fit, more = with_model_budgets(with_budget(fit, found), tables, scaling, once)
     return fit, (*found, *more)
+
+
+def _together(joint: PlannedJoint, plan: Plan) -> list[ForceTable]:
+    """All tables of a joint fit, each once."""
+    read = [_settled(t, plan) for planned in joint.tables for t in read_tables(planned)]
+    names = [t.name for t in read]
+    twice = next((n for n in names if names.count(n) > 1), None)
+    if twice is not None:
+        raise InputError(f"the table {shown(twice)} twice", "every table once, and campaigns of different names",
+                         column="campaigns", advice="A row that counts twice makes every interval too narrow.")  # fmt: skip
+    return read
+
+
+def _refuse_several(name: str, tables: Sequence[ForceTable]) -> None:
+    """Refuse several campaigns in a fit that knows nothing of their intercepts and scatter."""
+    campaigns = joint_name(t.campaign for t in tables)
+    if len({t.campaign for t in tables}) > 1 and not getattr(FITS.load(name), "joins_campaigns", False):
+        able = [n for n in FITS.names() if getattr(FITS.load(n), "joins_campaigns", False)]
+        raise InputError(f"{name} over the campaigns {campaigns}", f"a fit that joins campaigns: {', '.join(able)}",
+                         column="fit", advice="Or fit each campaign by itself.")  # fmt: skip
 
 
 def _refuse_starved(fit: FitResult) -> None:

@@ -15,7 +15,9 @@ def check(study: Study) -> Sequence[Check]:
     """One note per campaign that has budgets: what none of them assessed."""
     out = []
     for t in {t.campaign: t for t in study.tables}.values():
-        open_parts = dict.fromkeys(u for b in study.budgets if b.campaign == t.campaign for u in b.unassessed)
+        open_parts = dict.fromkeys(
+            u for b in study.budgets if t.campaign in b.campaign.split(", ") for u in b.unassessed
+        )
         if not open_parts:
             continue
         stated = t.source.stated_uncertainty

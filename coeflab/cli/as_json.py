@@ -8,6 +8,7 @@ from typing import Any
 from coeflab.core.symbols import primed
 from coeflab.model.coefficient import Coefficient
 from coeflab.model.fitted_model import FittedModel
+from coeflab.model.pooling import Pooling
 from coeflab.model.study import Study
 
 
@@ -60,6 +61,35 @@ def model(m: FittedModel) -> dict[str, Any]:
     }
 
 
+def pooling(campaign: str, p: Pooling) -> dict[str, Any]:
+    """The campaigns of one component of a joint fit, and the test of one law."""
+    return {
+        "response": p.response,
+        "campaign": campaign,
+        "campaigns": [
+            {
+                "campaign": s.campaign,
+                "n_points": s.n_points,
+                "intercept": s.intercept,
+                "intercept_half_width_95": s.half_width,
+                "noise": s.noise,
+                "rms": s.rms,
+                "rms_alone": s.rms_alone,
+                "left_out_rms_of_range": _finite(s.left_out.rms) if s.left_out.told else None,
+            }
+            for s in p.shares
+        ],
+        "every_third_left_out_rms_of_range": _finite(p.every_third.rms) if p.every_third.told else None,
+        "one_law": {
+            "f": _finite(p.test.statistic),
+            "restrictions": p.test.restrictions,
+            "freedom": _finite(p.test.freedom),
+            "probability": _finite(p.test.probability),
+            "rejected": p.rejected,
+        },
+    }
+
+
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
@@ -73,6 +103,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
         "passed": not s.failed,
         "coefficients": [coefficient(c, scalings.get(c.campaign or "", common)) for c in s.coefficients],
         "models": [model(m) for f in s.fits for m in f.models],
+        "poolings": [pooling(f.campaign, p) for f in s.fits for p in f.poolings],
         "comparisons": [
             {
                 "symbol": primed(c.coefficient.symbol),

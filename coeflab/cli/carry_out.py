@@ -42,7 +42,7 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
 
 def summarise(study: Study) -> None:
     """Comparison, coefficients, fitted models and grave findings."""
-    from coeflab.presentation import model_tables, tables
+    from coeflab.presentation import joint_tables, model_tables, tables
 
     show.text(study.plan.title)
     show.text()
@@ -57,6 +57,7 @@ def summarise(study: Study) -> None:
     for model in models:
         show.table(model_tables.terms(model))
     show.table(model_tables.quality(models))
+    show.table(joint_tables.campaigns(study.fits))
     findings(study)
     for c in study.checks:
         if c.name == "stability" and "not determined" not in c.statistic:

@@ -1,7 +1,9 @@
-"""``coeflab fit``: one table or campaign, printed, nothing written."""
+"""``coeflab fit``: a table, a campaign or several campaigns jointly, printed, nothing written."""
 
 from __future__ import annotations
 
+from itertools import takewhile
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
@@ -10,6 +12,7 @@ from coeflab.cli import show
 
 if TYPE_CHECKING:
     from coeflab.model.study import Study
+    from coeflab.presentation.document import Figure
 
 EXAMPLE = "coeflab fit suboff_roddy_2 --symbol Yv"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
@@ -17,45 +20,84 @@ CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 def command(
     ctx: typer.Context,
-    table: str = typer.Argument(..., help="A campaign folder, one CSV of it, or a shipped campaign's name."),
+    table: list[str] = typer.Argument(
+        [],
+        help="Campaign folders, CSVs of them, or names of shipped campaigns; several are fitted jointly.",
+        show_default=False,
+    ),
     fit: str = typer.Option("slope_at_origin", help="Name of the fit (see coeflab formats)."),
+    constraint: list[str] = typer.Option(
+        [], metavar="EQUATION", help='Equation between coefficients, "Mw = -Nv"; repeatable.'
+    ),
     symbol: list[str] = typer.Option([], help="Show estimators and windows of this coefficient; repeatable."),
     length: str = typer.Option("", help='Length of the primes, such as "4.356 m"; default the campaign\'s own.'),
     length_name: str = typer.Option("", help="Name of that length, such as LOA."),
+    diagnostics: bool = typer.Option(False, help="Show influential points, PRESS, conditioning and correlations."),
+    figure: Path = typer.Option(None, metavar="FILE.svg", help="Draw the fits into this file."),
+    help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the fit, and stop."),
     include_uncertain: bool = typer.Option(False, help="Use cells that the source marks as doubtful."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Fit the coefficients of one table and show how they were made.
+    """Fit the coefficients of a table, or of several jointly, and show how they were made.
 
-    Any further --option VALUE goes to the fit: --seed 2, --degree 4, --terms "Yv Yv|v|".
+    Any further --option VALUE goes to the fit: --seed 2, --degree 4, --terms "Yv Yv|v|". See --fit NAME --help-options.
     """
-    from coeflab.core.errors import InputError
+    from coeflab.core.errors import InputError, shown
     from coeflab.core.files import located
     from coeflab.core.units import quantity
+    from coeflab.model.plan import table_at
     from coeflab.model.scaling import Scaling
-    from coeflab.model.study import Plan, PlannedTable
+    from coeflab.model.study import Plan, PlannedJoint
     from coeflab.workbench import run
 
-    path = located(table, "cfd_data")
+    if help_options:
+        from coeflab.cli.formats import explain
+
+        explain(fit)
+        return
+    names, options = given([*table, *ctx.args], constraint)
+    if not names:
+        raise InputError("no table", "a campaign folder, one CSV of it, or a shipped campaign's name", column="TABLE")
+    if figure is not None and figure.suffix != ".svg":
+        raise InputError(shown(figure.name), "a file name that ends in .svg", column="--figure")
+    paths = [located(name, "cfd_data") for name in names]
     if bool(length) != bool(length_name):
         raise InputError("--length without its name", "--length and --length-name together")
-    only = path.name if path.is_file() and path.suffix != ".toml" else None
+    alone = len(paths) == 1
     plan = Plan(
-        name=path.stem,
-        title=path.name,
-        tables=(PlannedTable(path, (fit,), {fit: further(ctx.args)}, only),),
+        name="_".join(p.stem for p in paths)[:80],
+        title=", ".join(p.name for p in paths),
+        tables=(table_at(paths[0], (fit,), {fit: options}),) if alone else (),
+        joint=() if alone else (PlannedJoint(tuple(map(table_at, paths)), fit, options),),
         scaling=Scaling(quantity(length, "length", key="--length"), length_name) if length else None,
         wanted=("Yv", "Nv", "Zw", "Mw", "Yr", "Nr") if fit == "slope_at_origin" else (),
         include_uncertain=include_uncertain,
     )
     with show.progress(json) as say:
         study = run(plan, say)
+    wanted = [s.removesuffix("'") for s in symbol]
     if json:
+        if figure is not None:
+            _draw(study, wanted, figure)
         from coeflab.cli.as_json import study as study_json
 
         show.json_object(study_json(study, []))
         return
-    _print(study, [s.removesuffix("'") for s in symbol])
+    _print(study, wanted)
+    if diagnostics:
+        _diagnose(study)
+    if figure is not None:
+        _draw(study, wanted, figure)
+        show.text(f"Written: {figure}")
+
+
+def given(words: list[str], equations: list[str]) -> tuple[list[str], dict[str, int | float | str]]:
+    """Tables, which come first, and the options of the fit; equations join those of ``--constraints``."""
+    names = list(takewhile(lambda word: not word.startswith("--"), words))
+    options = further(words[len(names) :])
+    if equations:
+        options["constraints"] = ", ".join([*filter(None, [str(options.get("constraints", ""))]), *equations])
+    return names, options
 
 
 def further(arguments: list[str]) -> dict[str, int | float | str]:
@@ -81,10 +123,45 @@ def further(arguments: list[str]) -> dict[str, int | float | str]:
     return out
 
 
+def _draw(study: Study, symbols: list[str], file: Path) -> None:
+    """All figures of the fits in one file; of sweeps those of the wanted symbols, where any are."""
+    from coeflab.core.errors import InputError
+    from coeflab.core.files import write_atomically
+    from coeflab.presentation.estimator_figure import estimator_figure
+    from coeflab.presentation.figures import sweep_figure
+    from coeflab.presentation.model_figure import distinct, model_figures
+    from coeflab.presentation.sheet import sheet
+
+    rows: list[tuple[Figure, ...]] = []
+    for fit in study.fits:
+        for i, s in enumerate(s for s in fit.sweeps if not symbols or s.symbol in symbols):
+            rows.append((sweep_figure(s, f"s{i}"), estimator_figure(s, (), f"e{i}")))
+        for i, m in enumerate(distinct(fit.models)):
+            rows.append(model_figures(m, f"m{i}"))
+    rows = [row for row in rows if row]
+    if not rows:
+        raise InputError("nothing to draw", "a fit with a curve or a surface", column="--figure")
+    write_atomically(file, sheet(rows))
+
+
+def _diagnose(study: Study) -> None:
+    from coeflab.presentation import model_tables
+    from coeflab.presentation.model_figure import distinct
+
+    models = distinct([m for f in study.fits for m in f.models])
+    if not models:
+        show.text("No fitted model to diagnose; --symbol shows the windows and estimators of a slope.")
+        return
+    show.table(model_tables.diagnostics(models))
+    for model in models:
+        show.table(model_tables.influence(model))
+        show.table(model_tables.correlations(model))
+
+
 def _print(study: Study, symbols: list[str]) -> None:
     from coeflab.cli.carry_out import findings
     from coeflab.core.errors import InputError, shown
-    from coeflab.presentation import budget_tables, model_tables, tables
+    from coeflab.presentation import budget_tables, joint_tables, model_tables, tables
 
     show.table(tables.coefficients(study))
     models = tuple(m for f in study.fits for m in f.models)
@@ -92,6 +169,7 @@ def _print(study: Study, symbols: list[str]) -> None:
         show.table(model_tables.terms(model))
         show.table(budget_tables.shared(model))
     show.table(model_tables.quality(models))
+    show.table(joint_tables.campaigns(study.fits))
     known = {s.symbol: s for f in study.fits for s in f.sweeps}
     for symbol in symbols:
         if symbol not in known:

@@ -45,6 +45,10 @@ WORKS: dict[str, str] = {
     "Transfer, 2009.",
     "jcgm100": "JCGM 100:2008, Evaluation of measurement data: Guide to the expression of uncertainty in measurement, and "
     "JCGM 101:2008, Propagation of distributions using a Monte Carlo method.",
+    "chow1960": "G. C. Chow, Tests of equality between sets of coefficients in two linear regressions, Econometrica "
+    "28(3), 1960.",
+    "tipton2015": "E. Tipton, J. E. Pustejovsky, Small-sample adjustments for tests of moderators and model fit using "
+    "robust variance estimation in meta-regression, J. Educational and Behavioral Statistics 40(6), 2015.",
     "brunton2016": "S. L. Brunton, J. L. Proctor, J. N. Kutz, Discovering governing equations from data by sparse "
     "identification of nonlinear dynamical systems, PNAS 113(15), 2016.",
     "kaptanoglu2022": "A. A. Kaptanoglu et al., PySINDy: A comprehensive Python package for robust sparse system "
@@ -56,6 +60,19 @@ WORKS: dict[str, str] = {
     "carlson1995": "B. C. Carlson, Numerical computation of real or complex elliptic integrals, Numerical Algorithms 10, "
     "1995.",
     "newman1977": "J. N. Newman, Marine Hydrodynamics, MIT Press, 1977, sections 4.13-4.16.",
+    "myring1976": "D. F. Myring, A theoretical study of body drag in subcritical axisymmetric flow, Aeronautical Quarterly "
+    "27(3), 1976.",
+    "prestero2001": "T. Prestero, Verification of a Six-Degree of Freedom Simulation Model for the REMUS Autonomous "
+    "Underwater Vehicle, MSc thesis, MIT and WHOI, 2001.",
+    "hess1967": "J. L. Hess, A. M. O. Smith, Calculation of potential flow about arbitrary bodies, Progress in Aeronautical "
+    "Sciences 8, 1967.",
+    "vanoosterom1983": "A. van Oosterom, J. Strackee, The solid angle of a plane triangle, IEEE Trans. Biomedical "
+    "Engineering 30, 1983.",
+    "wilton1984": "D. R. Wilton et al., Potential integrals for uniform and linear source distributions on polygonal and "
+    "polyhedral domains, IEEE Trans. Antennas and Propagation 32, 1984.",
+    "eberly2002": "D. Eberly, Polyhedral Mass Properties (Revisited), Geometric Tools, 2002.",
+    "bryson1954": "A. E. Bryson, Evaluation of the inertia coefficients of the cross-section of a slender body, "
+    "J. Aeronautical Sciences 21, 1954.",
     "coeflab_plates": "Added mass of rectangular plates at aspect 1, 2, 3 and 5, computed for this project with a panel "
     "code, to 1 %.",
 }

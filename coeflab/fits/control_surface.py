@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
-from coeflab.core.options import bounded, one_of, parse_options
+from coeflab.core.options import measured, one_of, parse_options
 from coeflab.kernels.linear_model import fit_linear
 from coeflab.kernels.robust import t_probability
 from coeflab.kernels.terms import Term, design
@@ -56,11 +56,11 @@ class Options:
     Attributes
     ----------
     effective : {"delta-alpha", "delta+alpha"}
-        Angle between surface and flow; see the signs above.
+        Angle between surface and flow. With ``delta-alpha`` a positive delta lowers lift, with ``delta+alpha`` it raises it.
     cubic : {"no", "yes"}
         Whether C_L and C_m have a cubic term.
     area : float
-        m^2; 0 means L^2, the square of the scaling's length.
+        0 is L^2, the square of the scaling's length.
     area_name : str
         What that area is, needed with ``area``.
     surface : {"ds", "db"}
@@ -69,7 +69,7 @@ class Options:
 
     effective: str = one_of("delta-alpha", "delta-alpha", "delta+alpha")
     cubic: str = one_of("no", "no", "yes")
-    area: float = bounded(0.0, 0.0, 1e6)
+    area: float = measured(0.0, 0.0, 1e6, "area")
     area_name: str = one_of(PRIMES, *AREAS)
     surface: str = one_of("ds", "ds", "db")
 

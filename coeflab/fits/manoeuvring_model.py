@@ -1,4 +1,6 @@
-"""Manoeuvring models: any SNAME terms, fitted jointly over drift, rotating-arm and combined tables of a campaign.
+"""Manoeuvring models: any SNAME terms, fitted jointly over drift, rotating-arm and combined tables of campaigns.
+
+Of several campaigns each has its own intercepts and its own scatter; its rows are moved to the point of the first.
 
 Term sets: Gertler & Hagen (1967), Feldman (1979). HC2: MacKinnon & White (1985), degrees of freedom: Bell & McCaffrey
 (2002). Valid inside the convex hull of the data; U95 holds the scatter of the points about the chosen form only.
@@ -14,31 +16,27 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import one_of, parse_options, words
-from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.core.symbols import MOTIONS
 from coeflab.kernels.least_squares import Array
+from coeflab.model.asked_terms import AskedTerms, asked_terms
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
-from coeflab.model.joint_model import Component, joint_models
-from coeflab.model.joint_rows import joint_rows, measured, moving
-from coeflab.model.manoeuvring_terms import (
-    SETS,
-    NamedTerm,
-    canonical,
-    read_equation,
-    read_term,
-    read_terms,
-    split_equations,
-)
+from coeflab.model.joint_component import Component
+from coeflab.model.joint_model import joint_models
+from coeflab.model.joint_rows import joint_name, joint_rows
+from coeflab.model.manoeuvring_terms import NamedTerm, canonical, read_equation, split_equations
 from coeflab.model.misfit import next_terms_in_words, residuals_in_words
 from coeflab.model.scaling import Scaling
 from coeflab.model.secant import secant
+from coeflab.model.several_campaigns import about_one_point, differences
 
 summary = (
-    "manoeuvring model of any SNAME terms over all tables of a campaign, with linear equations between coefficients"
+    "manoeuvring model of any SNAME terms over one or several campaigns, with linear equations between coefficients"
 )
-citations = ("gertler1967", "feldman1979", "mackinnon1985", "bell2002")
+citations = ("gertler1967", "feldman1979", "mackinnon1985", "bell2002", "chow1960", "tipton2015")
+joins_campaigns = True
 
 SCATTER_ONLY = "U95 holds the scatter of the points about this form; the error of the form itself is not in it."
 MORE_TERMS = "Add terms of a higher power or of two motions, or fit a narrower range."
@@ -46,6 +44,7 @@ UNWEIGHTED = (
     "Rows weigh alike: their stated standard errors are noise of one run, not the error of the model. weights = yes "
     "uses them."
 )
+UNUSED = "Stated standard errors of single runs are not used; weights = yes uses them inside every campaign."
 WEIGHTED = "Rows are weighted by their stated standard errors, as asked."
 
 
@@ -63,7 +62,8 @@ class Options:
     components : tuple of str
         Components of the set; none given means all that the tables have.
     intercepts : str
-        ``yes`` adds Y0, N0 ... to every component; ``no`` leaves only those that the terms name.
+        ``yes`` adds Y0, N0 ... to every component, one for each of several campaigns; ``no`` leaves only those that the
+        terms name. Named ones are shared by all campaigns.
     constraints : tuple of str
         Linear equations, kept exactly and tested against the free fit: ``Mw = -Nv``; a text is split at commas and
         semicolons.
@@ -77,53 +77,6 @@ class Options:
     intercepts: str = one_of("yes", "yes", "no")
     constraints: tuple[str, ...] = words()
     weights: str = one_of("no", "yes", "no")
-
-
-def _asked(options: Options, tables: Sequence[ForceTable]) -> tuple[tuple[NamedTerm, ...], tuple[NamedTerm, ...]]:
-    """Terms to fit, and terms of the set that no row excites."""
-    named = read_terms(options.terms, "manoeuvring_model.terms")
-    chosen = _set_of(options) or "none"
-    if chosen == "none" and not named:
-        raise InputError("no terms", "terms, or a set", column="manoeuvring_model.terms",
-                         advice="For example terms = Yv,Yv|v|,Nv or set = horizontal.")  # fmt: skip
-    unknown = [c for c in options.components if c not in COMPONENTS]
-    if unknown:
-        raise InputError(", ".join(unknown), f"some of {', '.join(COMPONENTS)}", column="manoeuvring_model.components")
-    wanted = set(measured(tables)) & set(options.components or COMPONENTS)
-    of_set = [t for s in SETS.get(chosen, ()) if (t := read_term(s, "set")).component in wanted]
-    if options.intercepts == "yes":
-        of_set += [read_term(f"{c}0", "set") for c in {t.component for t in named}]
-    else:
-        of_set = [t for t in of_set if t.term.factors]
-    taken, moves = {t.key for t in named}, set(moving(tables))
-    fitted, idle = list(named), list[NamedTerm]()
-    for t in of_set:
-        if t.key in taken:
-            continue
-        taken.add(t.key)
-        occurring = _occurs(t, tables) if moves.issuperset(v for v, _, _ in t.term.factors) else False
-        (fitted if occurring else idle).append(t)
-    alone = {t.component for t in fitted} - {t.component for t in fitted if t.term.factors or t in named}
-    idle += [t for t in fitted if t.component in alone]
-    fitted = [t for t in fitted if t.component not in alone]
-    if not fitted:
-        raise InputError(f"no motion of the {chosen} set in {tables[0].campaign}", "tables in which one of its motions varies",
-                         column="manoeuvring_model.set", advice="Name the terms, or use the other set.")  # fmt: skip
-    order = {c: i for i, c in enumerate(COMPONENTS)}
-    return tuple(sorted(fitted, key=lambda t: (order[t.component], bool(t.term.factors)))), tuple(idle)
-
-
-def _occurs(term: NamedTerm, tables: Sequence[ForceTable]) -> bool:
-    """Whether a usable row of the component has all motions of a term at once."""
-    for t in tables:
-        if term.component not in t.forces:
-            continue
-        together = np.array(t.usable[term.component])
-        for v, _, _ in term.term.factors:
-            together &= (t.controls[v] if v in t.controls else t.motion.get(v, np.zeros(len(t)))) != 0.0
-        if np.any(together):
-            return True
-    return False
 
 
 def _with_secants(model: FittedModel) -> list[str]:
@@ -189,12 +142,12 @@ def _covariance(spread: Array, coefficients: Sequence[Coefficient]) -> Array:
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
-    """Fit the model over all tables of one campaign.
+    """Fit the model over all tables of one or several campaigns.
 
     Parameters
     ----------
     tables : sequence of ForceTable
-        Of one campaign, about one reference point.
+        With reference points from one datum; the coefficients are about that of the first.
     scaling : Scaling
         Length of the primes.
     options : mapping
@@ -213,58 +166,74 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     given = {k: split_equations(o) if k == "constraints" and isinstance(o, str) else o for k, o in options.items()}
     chosen = parse_options(Options, given, "manoeuvring_model")
     equations = [read_equation(c, "manoeuvring_model.constraints") for c in chosen.constraints]
-    terms, idle = _asked(chosen, tables)
-    components = {}
-    for c in dict.fromkeys(t.component for t in terms):
-        own = tuple(t for t in terms if t.component == c)
-        variables = tuple(dict.fromkeys(v for t in own for v, _, _ in t.term.factors)) or ("u",)
-        components[c] = Component(c, own, joint_rows(tables, variables, c, scaling.length))
+    apart, tables = differences(tables, scaling.length), about_one_point(tables)
+    asked = asked_terms(chosen.terms, _set_of(chosen) or "none", chosen.components, tables,
+                        intercepts=chosen.intercepts == "yes", place="manoeuvring_model")  # fmt: skip
     weighted = chosen.weights == "yes"
+    components = {
+        c: _component(c, asked, tables, scaling.length, weighted=weighted)
+        for c in dict.fromkeys(t.component for t in asked.fitted)
+    }
     stated = {c: p.data.rows.errors is not None for c, p in components.items()}
-    if weighted and not all(stated.values()):
-        lacking = ", ".join(c for c, known in stated.items() if not known)
-        raise InputError(f"no standard errors of {lacking}", "weights = no", column="manoeuvring_model.weights",
-                         advice="Every usable row needs se_ columns of the component.")  # fmt: skip
     n_runs = sum(map(len, tables))
-    models, spread = joint_models(components, equations, "manoeuvring model", weighted=weighted, n_runs=n_runs)
-    weights_said = {c: [WEIGHTED] if weighted else [UNWEIGHTED] if known else [] for c, known in stated.items()}
+    joint = joint_models(components, equations, "manoeuvring model", n_runs=n_runs)
+    unused = UNUSED if len({t.campaign for t in tables}) > 1 else UNWEIGHTED
+    weights_said = {c: [WEIGHTED] if weighted else [unused] if known else [] for c, known in stated.items()}
     tied = {symbol[0] for e in equations for symbol, _ in e.weights}
     missed = {
         m.response: ()
         if m.response in tied
-        else next_terms_in_words(m, components[m.response].data.rows.errors if weighted else None, _set_of(chosen))
-        for m in models
+        else next_terms_in_words(m, (own := components[m.response]).errors, _set_of(chosen), own.intercepts)
+        for m in joint.models
     }
-    finished = tuple(_finished(m, (*missed[m.response], *weights_said[m.response]), idle) for m in models)
-    first = tables[0]
-    coefficients = [c for m in finished for c in _coefficients(m, first.source.citation)]
+    finished = tuple(
+        _finished(m, apart, (*missed[m.response], *weights_said[m.response]), asked.idle) for m in joint.models
+    )
+    first, campaign, body = tables[0], joint_name(t.campaign for t in tables), joint_name(t.body for t in tables)
+    coefficients = [c for m in finished for c in _coefficients(m, joint_name(t.source.citation for t in tables))]
     open_ones = [
-        Coefficient(t.symbol, None, None, Status.NOT_DETERMINED, first.body, origin="fit", campaign=first.campaign,
+        Coefficient(t.symbol, None, None, Status.NOT_DETERMINED, body, origin="fit", campaign=campaign,
                     estimator="no motion in the tables")
-        for t in idle
+        for t in asked.idle
     ]  # fmt: skip
     every = tuple(coefficients + open_ones)
     return FitResult(
         fit="manoeuvring_model",
-        campaign=first.campaign,
-        body=first.body,
+        campaign=campaign,
+        body=body,
         coefficients=CoefficientSet(
             every,
-            _covariance(np.vstack([spread, np.zeros((len(open_ones), n_runs))]), every),
+            _covariance(np.vstack([joint.spread, np.zeros((len(open_ones), n_runs))]), every),
             scaling,
             first.reference_point,
             first.datum,
-            first.body,
+            body,
         ),
         sweeps=(),
         citations=citations,
         settings={
-            "terms": " ".join(t.symbol for t in terms),
+            "terms": " ".join(t.symbol for t in asked.fitted),
             "constraints": ", ".join(map(str, equations)) or "none",
             "weights": chosen.weights,
         },
         models=finished,
+        poolings=joint.poolings,
+        differences=apart,
     )
+
+
+def _component(
+    name: str, asked: AskedTerms, tables: Sequence[ForceTable], length: float, *, weighted: bool
+) -> Component:
+    """Terms, rows and weights of one force component."""
+    own = tuple(t for t in asked.fitted if t.component == name)
+    variables = tuple(dict.fromkeys(v for t in own for v, _, _ in t.term.factors)) or ("u",)
+    data = joint_rows(tables, variables, name, length)
+    if weighted and data.rows.errors is None:
+        raise InputError(f"no standard errors of {name}", "weights = no", column="manoeuvring_model.weights",
+                         advice="Every usable row needs se_ columns of the component.")  # fmt: skip
+    free = name in asked.own
+    return Component(name, own, data.without_campaigns_at_rest() if free else data, own=free).weighed(stated=weighted)
 
 
 def _set_of(chosen: Options) -> str:
@@ -273,10 +242,17 @@ def _set_of(chosen: Options) -> str:
     return "" if used == "none" else used
 
 
-def _finished(model: FittedModel, more: Sequence[str], idle: Sequence[NamedTerm]) -> FittedModel:
+def _finished(model: FittedModel, first: Sequence[str], more: Sequence[str], idle: Sequence[NamedTerm]) -> FittedModel:
     """The model with what a reader must know about it, in words."""
     absent = [t.symbol for t in idle if t.component == model.response]
-    said = [*residuals_in_words(model, MORE_TERMS), *model.statements, *_with_secants(model), *more, SCATTER_ONLY]
+    said = [
+        *first,
+        *residuals_in_words(model, MORE_TERMS),
+        *model.statements,
+        *_with_secants(model),
+        *more,
+        SCATTER_ONLY,
+    ]
     if absent:
         said.insert(0, f"Not determined, as the tables do not hold their motion: {', '.join(absent)}.")
     return replace(model, statements=tuple(said))

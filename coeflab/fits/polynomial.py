@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
-from coeflab.core.options import bounded, one_of, parse_options, words
+from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.symbols import COMPONENTS, primed
 from coeflab.kernels.sharpened import sharpened
 from coeflab.kernels.terms import Term, power_terms
@@ -40,12 +40,13 @@ class Options:
     responses : tuple of str
         X Y Z K M N, C_D C_S C_L or C_l C_m C_n; by default every component that the tables have.
     degree : int
+        The highest power.
     parity : str
         ``odd`` or ``even`` powers only, or ``full``.
     extrapolation : str
         What a reader outside the data is to do.
     area : float
-        m^2; 0 is the square of the primes' length.
+        0 is the square of the primes' length.
     area_name : str
         What the area is.
     """
@@ -55,7 +56,7 @@ class Options:
     degree: int = bounded(3, 0, 20)
     parity: str = one_of("full", "full", "odd", "even")
     extrapolation: str = one_of("refuse", "refuse", "clamp", "taper")
-    area: float = bounded(0.0, 0.0, 1e6)
+    area: float = measured(0.0, 0.0, 1e6, "area")
     area_name: str = one_of(PRIMES, *AREAS)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.options import bounded, one_of, parse_options, words
+from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.symbols import PORT_STARBOARD
 from coeflab.kernels.nested import nested_test
 from coeflab.kernels.sharpened import sharpened
@@ -61,6 +61,8 @@ class Options:
     degree : int
         Of each variable (``tensor``, ``additive``) or of the product (``total``).
     form : str
+        ``tensor``: every product of powers up to the degree in each variable; ``total``: those whose powers add up to the
+        degree; ``additive``: a curve in each variable, no products.
     parity : tuple of str
         ``variable=odd|even|full|symmetric``. ``symmetric`` takes the parity of each response from port-starboard
         symmetry: side force, roll and yaw odd in beta, the others even. That is the default of the variables which the
@@ -68,7 +70,7 @@ class Options:
     extrapolation : str
         What a reader outside the data is to do.
     area : float
-        m^2; 0 is the square of the primes' length.
+        0 is the square of the primes' length.
     area_name : str
         What the area is.
     """
@@ -79,7 +81,7 @@ class Options:
     form: str = one_of("tensor", *FORMS)
     parity: tuple[str, ...] = words()
     extrapolation: str = one_of("refuse", "refuse", "clamp", "taper")
-    area: float = bounded(0.0, 0.0, 1e6)
+    area: float = measured(0.0, 0.0, 1e6, "area")
     area_name: str = one_of(PRIMES, *AREAS)
 
 

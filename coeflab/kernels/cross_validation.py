@@ -69,6 +69,7 @@ def predict_left_out(
     fold: Index,
     constraint: tuple[Array, Array] | None = None,
     root_weights: Array | None = None,
+    asked: Array | None = None,
 ) -> Array:
     """Every row predicted by the fit to the other folds, shape (n,); NaN where those do not determine it.
 
@@ -80,8 +81,11 @@ def predict_left_out(
     constraint : ((k, p) array, (k,) array), optional
         C and d of C b = d.
     root_weights : (n,) array, optional
+    asked : (n, p) array, optional
+        Rows to predict in place of those of the design.
     """
     unit, size = unit_columns(design)
+    wanted = unit if asked is None else asked / size
     scaled = None if constraint is None else (constraint[0] / size, constraint[1])
     start, free = constrained_space(scaled, design.shape[1])
     matrix, target = unit @ free, response - unit @ start
@@ -96,10 +100,10 @@ def predict_left_out(
         keep = singular > OPEN * singular.max(initial=0.0)
         seen = right[keep]
         z = seen.T @ ((left[:, keep].T @ (root[train] * target[train])) / singular[keep])
-        rows = matrix[test]
+        rows = wanted[test] @ free
         hidden = np.linalg.norm(rows - (rows @ seen.T) @ seen, axis=1)
         known = hidden <= 1e-6 * np.maximum(np.linalg.norm(rows, axis=1), 1e-300)
-        out[test] = np.where(known, rows @ z + unit[test] @ start, np.nan)
+        out[test] = np.where(known, rows @ z + wanted[test] @ start, np.nan)
     return out
 
 

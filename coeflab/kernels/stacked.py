@@ -115,13 +115,19 @@ def scatter(design: Array, response: Array, errors: Array | None) -> float:
     return float(rest / np.sqrt(f.freedom))
 
 
-def _stack(designs: Sequence[Array], responses: Sequence[Array], errors: Sequence[Array | None]) -> tuple[Array, Array]:
-    """Block design (n, p) of all responses, and the scatter (n,) that weighs its rows."""
+def stack(designs: Sequence[Array], responses: Sequence[Array], errors: Sequence[Array | None]) -> tuple[Array, Array]:
+    """Block design (n, p) of all responses, and the scatter (n,) that weighs its rows.
+
+    Parameters
+    ----------
+    designs, responses, errors
+        Of `fit_stacked`.
+    """
     design = np.zeros((sum(map(len, responses)), sum(d.shape[1] for d in designs)))
     noise, row, column = [], 0, 0
     for d, y, e in zip(designs, responses, errors, strict=True):
         design[row : row + len(y), column : column + d.shape[1]] = d
-        relative = np.ones(len(y)) if e is None else e / float(np.sqrt(np.mean(e**2)))
+        relative = np.ones(len(y)) if e is None else e * float(np.sqrt(np.mean(e**-2.0)))
         noise.append(relative * scatter(d, y, e))
         row, column = row + len(y), column + d.shape[1]
     return design, np.concatenate(noise)
@@ -145,7 +151,7 @@ def freed(
     designs, responses, runs, constraint, errors, n_runs
         Of `fit_stacked`.
     """
-    design, sigma = _stack(designs, responses, errors)
+    design, sigma = stack(designs, responses, errors)
     y, (c, d) = np.concatenate(responses), constraint
     size = np.linalg.norm(design / sigma[:, None], axis=0)
     size = np.where(size > 0.0, size, 1.0)
@@ -158,11 +164,11 @@ def freed(
     hidden = contrast @ null
     told = np.linalg.norm(hidden, axis=1) <= OPEN
     probability = np.full(len(d), np.nan)
-    stack = np.concatenate(runs)
-    probability[told] = _violated(f, contrast[told], right[told], y, stack, n_runs)
+    stacked_runs = np.concatenate(runs)
+    probability[told] = _violated(f, contrast[told], right[told], y, stacked_runs, n_runs)
     left, singular, _ = np.linalg.svd(hidden[~told])
     mixed = left[:, int(np.sum(singular > OPEN)) :].T
-    combined = _violated(f, mixed @ contrast[~told], mixed @ right[~told], y, stack, n_runs)
+    combined = _violated(f, mixed @ contrast[~told], mixed @ right[~told], y, stacked_runs, n_runs)
     known = combined[np.isfinite(combined)]
     together = float(min(1.0, len(known) * known.min())) if len(known) else float("nan")
     return Freed(probability, together, np.any(np.abs(null) > OPEN, axis=1))
@@ -213,13 +219,13 @@ def fit_stacked(
     ValueError
         The constraint cannot hold.
     """
-    design, sigma = _stack(designs, responses, errors)
+    design, sigma = stack(designs, responses, errors)
     y = np.concatenate(responses)
     size = np.linalg.norm(design / sigma[:, None], axis=0)
     size = np.where(size > 0.0, size, 1.0)
     scaled = (constraint[0] / size, constraint[1])
     start, free = constrained_space(scaled, design.shape[1])
-    fit = fit_linear(design / size, y, sigma, scaled)
+    fit = fit_linear(design / size, y, sigma, scaled if len(scaled[1]) else None)
     f = factorise((design / size) @ free, sigma**-2.0)
     back = free @ f.back / size[:, None]
     at_start = y - design @ (start / size)

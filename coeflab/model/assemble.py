@@ -61,9 +61,9 @@ def _written(
         n_points=c.n_points,
         citation=c.citation,
         law=c.law,
-        potential=potential_part(c.symbol, hull, scaling, density)
-        if hull is not None and c.value is not None
-        else None,
+        potential=None
+        if hull is None or c.value is None or c.law == "rest"
+        else potential_part(c.symbol, hull, scaling, density),
     )
 
 

@@ -179,21 +179,21 @@ def budget_of(
         See `Budget`.
     """
     value = 0.0 if c.value is None else c.value
-    kind = tables[0].source.kind
+    kinds = tuple(dict.fromkeys(t.source.kind for t in tables))
     found = {name: part for name, part in fitted.items() if part is not None}
     open_parts = [name for name, part in fitted.items() if part is None]
     study = grid_study_of(tables, component)
     relative = None if study is None else study.convergence.relative
     if relative is not None:
         found["grid"] = relative * abs(value)
-    elif kind == "cfd":
+    elif "cfd" in kinds:
         open_parts.append("grid" if study is None else f"grid: {study.convergence.convergence}")
     found.update({p.name.replace("_", " "): p.linear for p in inputs if p.linear > 0.0})
-    unassessed = (*open_parts, *lacking, *ALWAYS_OPEN[kind])
+    unassessed = (*open_parts, *lacking, *(u for kind in kinds for u in ALWAYS_OPEN[kind]))
     u95 = None if c.u95 is None else float(np.sqrt(sum(h * h for h in found.values())))
     parts = tuple(BudgetPart(n, h, (h / u95) ** 2 if u95 else None) for n, h in found.items())
     return Budget(
-        c.symbol, c.campaign or "", c.body, c.table or "", kind, value, parts, u95, inputs, total, study, window, unassessed
+        c.symbol, c.campaign or "", c.body, c.table or "", kinds[0], value, parts, u95, inputs, total, study, window, unassessed
     )  # fmt: skip
 
 

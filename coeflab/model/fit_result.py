@@ -11,6 +11,7 @@ from coeflab.kernels.slopes import Estimate, Recommendation
 from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.frozen import locked
+from coeflab.model.pooling import Pooling
 
 Array = NDArray[np.float64]
 
@@ -124,13 +125,14 @@ class Sweep:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FitResult:
-    """Coefficients of one campaign by one fit.
+    """Coefficients of one campaign, or of several jointly, by one fit.
 
     Attributes
     ----------
     fit : str
         Plugin name.
     campaign, body : str
+        Of several campaigns the names, joined by commas.
     coefficients : CoefficientSet
     sweeps : tuple of Sweep
     citations : tuple of str
@@ -138,6 +140,10 @@ class FitResult:
         Options as used, seed and replicates among them.
     models : tuple of FittedModel
         Force laws and tables over one or more variables.
+    poolings : tuple of Pooling
+        What each of several campaigns adds, one a component.
+    differences : tuple of str
+        What sets several campaigns apart: bodies, Reynolds numbers, sources, points.
     """
 
     fit: str
@@ -148,6 +154,13 @@ class FitResult:
     citations: tuple[str, ...]
     settings: dict[str, str]
     models: tuple[FittedModel, ...] = ()
+    poolings: tuple[Pooling, ...] = ()
+    differences: tuple[str, ...] = ()
+
+    @property
+    def campaigns(self) -> tuple[str, ...]:
+        """The campaigns that it comes from."""
+        return tuple(self.campaign.split(", "))
 
     def sweep(self, symbol: str) -> Sweep:
         """The sweep of a coefficient."""

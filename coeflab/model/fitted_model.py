@@ -14,6 +14,7 @@ from coeflab.kernels.domain import half_spaces, inside
 from coeflab.kernels.linear_model import LinearFit
 from coeflab.kernels.terms import Term, design
 from coeflab.model.frozen import locked, locked_columns
+from coeflab.model.set_aside import SetAside
 
 Array = NDArray[np.float64]
 
@@ -91,6 +92,8 @@ class FittedModel:
     shared : mapping of str to (p,) array
         Errors that all rows share, each as the signed 95 % shift that it gives to every coefficient: the grid, declared
         angles, speeds, calibrations.
+    set_aside : SetAside or None
+        Printed rows that are rejected or doubtful.
     """
 
     response: str
@@ -109,6 +112,7 @@ class FittedModel:
     statements: tuple[str, ...] = ()
     post_selection: bool = False
     shared: Mapping[str, Array] = field(default_factory=dict)
+    set_aside: SetAside | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "x", locked_columns(self.x))

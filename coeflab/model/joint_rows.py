@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from coeflab.core.symbols import COMPONENTS
 from coeflab.kernels.least_squares import Index
 from coeflab.model.force_table import ForceTable
 from coeflab.model.regression import Area, Rows, collect, response, variable
+from coeflab.model.set_aside import SetAside, joined
 
 AT_REST = float(np.sin(np.radians(0.05)))
 
@@ -26,16 +27,49 @@ class JointRows:
     rows : Rows
     table : (n,) array
         Index of the table of every row.
+    campaign : (n,) array
+        Index in `campaigns` of every row.
     run : (n,) array
         Number of the run, the same for every response of that run.
+    campaigns : tuple of str
+        Those of all tables.
     statements : tuple of str
         Rows that are left out, in words.
     """
 
     rows: Rows
     table: Index
+    campaign: Index
     run: Index
+    campaigns: tuple[str, ...]
     statements: tuple[str, ...]
+
+    @property
+    def present(self) -> tuple[int, ...]:
+        """Indices of the campaigns that have a row."""
+        return tuple(int(k) for k in np.unique(self.campaign))
+
+    def only(self, keep: NDArray[np.bool_], *statements: str) -> JointRows:
+        """Some of the rows, and what to say about it."""
+        names = dict(zip(np.unique(self.table).tolist(), self.rows.tables, strict=True))
+        tables = tuple(names[k] for k in np.unique(self.table[keep]).tolist())
+        return replace(
+            self,
+            rows=replace(_only(self.rows, keep), tables=tables),
+            table=self.table[keep],
+            campaign=self.campaign[keep],
+            run=self.run[keep],
+            statements=(*self.statements, *statements),
+        )
+
+    def without_campaigns_at_rest(self) -> JointRows:
+        """Without campaigns in which none of the variables moves: with an intercept of their own they tell nothing."""
+        moves = np.any([np.abs(x) > AT_REST for x in self.rows.x.values()], axis=0)
+        resting = [k for k in self.present if not np.any(moves[self.campaign == k])]
+        if len(resting) in (0, len(self.present)):
+            return self
+        said = f"{', '.join(self.campaigns[k] for k in resting)} is at rest in {', '.join(self.rows.x)}: no row of it is used."
+        return self.only(~np.isin(self.campaign, resting), said)
 
 
 def moving(tables: Sequence[ForceTable]) -> tuple[str, ...]:
@@ -46,6 +80,11 @@ def moving(tables: Sequence[ForceTable]) -> tuple[str, ...]:
 def measured(tables: Sequence[ForceTable]) -> tuple[str, ...]:
     """Force components that have a usable row in any of the tables."""
     return tuple(c for c in COMPONENTS if any(c in t.forces and np.any(t.usable[c]) for t in tables))
+
+
+def joint_name(names: Iterable[str]) -> str:
+    """Names of campaigns or bodies in one text, each once."""
+    return ", ".join(dict.fromkeys(names))
 
 
 def prime_area(length: float) -> Area:
@@ -76,14 +115,32 @@ def joint_rows(tables: Sequence[ForceTable], variables: Sequence[str], component
                 moves = np.abs(variable(t, v, length)[index]) > AT_REST
                 left[v] += int(np.sum(moves & keep))
                 keep &= ~moves
-            parts.append(_only(collect([t], variables, component, area), keep))
+            own = _only(collect([t], variables, component, area), keep)
+            parts.append(replace(own, set_aside=_beside(t, variables, others, component, area)))
             table += [k] * int(keep.sum())
             run += list(start + index[keep])
         start += len(t)
-    rows = _joined([p for p in parts if len(p.y)], component)
+    campaigns = tuple(dict.fromkeys(t.campaign for t in tables))
+    rows = _joined([p for p in parts if len(p.y)], component, tables)
     said = [f"{n} rows in which {v} moves are left out of {component}: no term of it contains {v}."
             for v, n in left.items() if n]  # fmt: skip
-    return JointRows(rows, np.array(table, dtype=np.int64), np.array(run, dtype=np.int64), tuple(said))
+    of_table = np.array([campaigns.index(t.campaign) for t in tables], dtype=np.int64)
+    index = np.array(table, dtype=np.int64)
+    return JointRows(rows, index, of_table[index], np.array(run, dtype=np.int64), campaigns, tuple(said))
+
+
+def _beside(
+    table: ForceTable, variables: Sequence[str], others: Sequence[str], component: str, area: Area
+) -> SetAside | None:
+    """Printed rows that no fit may use, in which the other variables are at rest."""
+    found = collect([table], (*variables, *others), component, area).set_aside if table.exclusions else None
+    if found is None:
+        return None
+    still = np.ones(len(found.y), dtype=bool)
+    for v in others:
+        still &= np.abs(found.x[v]) <= AT_REST
+    kept = found.only(still)
+    return replace(kept, x={v: kept.x[v] for v in variables})
 
 
 def _only(rows: Rows, keep: NDArray[np.bool_]) -> Rows:
@@ -96,16 +153,20 @@ def _only(rows: Rows, keep: NDArray[np.bool_]) -> Rows:
     )
 
 
-def _joined(parts: Sequence[Rows], component: str) -> Rows:
+def _joined(parts: Sequence[Rows], component: str, tables: Sequence[ForceTable]) -> Rows:
     if not parts:
         raise InputError(f"no usable rows for {component}", "rows in which only motions of its terms occur",
                          column="terms", advice="Add terms in the motions that the tables vary.")  # fmt: skip
     errors = [p.errors for p in parts if p.errors is not None]
+    alone = len({t.campaign for t in tables}) == 1
     return replace(
         parts[0],
         x={v: np.concatenate([p.x[v] for p in parts]) for v in parts[0].x},
         y=np.concatenate([p.y for p in parts]),
         errors=np.concatenate(errors) if len(errors) == len(parts) else None,
-        labels=tuple(t for p in parts for t in p.labels),
+        labels=tuple(t if alone else f"{p.campaign} {t}" for p in parts for t in p.labels),
         tables=tuple(t for p in parts for t in p.tables),
+        campaign=joint_name(t.campaign for t in tables),
+        body=joint_name(t.body for t in tables),
+        set_aside=joined([p.set_aside for p in parts if p.set_aside is not None]),
     )

@@ -65,7 +65,9 @@ def _next(model: FittedModel, variable: str) -> Term | None:
     return None
 
 
-def next_terms_in_words(model: FittedModel, errors: Array | None, asked: str) -> tuple[str, ...]:
+def next_terms_in_words(
+    model: FittedModel, errors: Array | None, asked: str, beside: Array | None = None
+) -> tuple[str, ...]:
     """Curvature in a motion that the rows show and the terms lack.
 
     After a line in a motion the next term is x|x|, after x|x| it is x^3 (the latter where the residuals are not random).
@@ -79,6 +81,8 @@ def next_terms_in_words(model: FittedModel, errors: Array | None, asked: str) ->
         Standard errors that weighed the rows.
     asked : str
         Set of terms that was asked for, as advice needs it; empty for none.
+    beside : (n, k) array, optional
+        Columns that were fitted beside the terms.
 
     Returns
     -------
@@ -86,8 +90,9 @@ def next_terms_in_words(model: FittedModel, errors: Array | None, asked: str) ->
         One sentence a term below 0.01, with what it does to the slope.
     """
     matrix, out = design(model.terms, model.x), []
+    matrix = matrix if beside is None else np.column_stack([matrix, beside])
     lines = {canonical(t): s for t, s in zip(model.terms, model.symbols, strict=True)}
-    if model.fit.rms <= ROUNDING * float(np.max(np.abs(model.y))) or len(model.y) <= len(model.terms) + 1:
+    if model.fit.rms <= ROUNDING * float(np.max(np.abs(model.y))) or len(model.y) <= matrix.shape[1] + 1:
         return ()
     for variable in (v for v in model.x if v in MOTIONS):
         term, slope = _next(model, variable), lines.get(((variable, 1, True),), "")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isnan
 
 import numpy as np
 
@@ -32,11 +33,18 @@ class OutOfSample:
     predicted: int
     rows: int
 
+    @property
+    def told(self) -> bool:
+        """Whether the others determine at least half of the rows, so that an error can be given."""
+        return 2 * self.predicted >= max(self.rows, 1) and not isnan(self.rms)
+
     def __str__(self) -> str:
         if not self.predicted:
             return f"{self.how}: the remaining rows do not determine the model, so nothing can be predicted."
+        if isnan(self.rms):
+            return f"{self.how}: the left-out rows do not vary, so no error is given as a share of their range."
         missing = self.rows - self.predicted
-        if missing > self.predicted:
+        if not self.told:
             return (
                 f"{self.how}: the remaining rows determine only {self.predicted} of {self.rows} left-out rows, so no "
                 "error is given."

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.toml import Section, read_toml
 from coeflab.model.scaling import read_conditions, read_scaling
-from coeflab.model.study import Plan, PlannedParameterFile, PlannedTable
+from coeflab.model.study import Plan, PlannedJoint, PlannedParameterFile, PlannedTable
 
+JOINT = "manoeuvring_model"
 _NAME = re.compile(r"^[\w][\w .+-]{0,79}$")
 
 
@@ -24,10 +27,22 @@ def safe_name(section: Section, key: str, default: str | None = None) -> str:
 
 
 def _path(section: Section, key: str, kind: str) -> Path:
+    return _located(section, key, section.text(key), kind)
+
+
+def _located(section: Section, key: str, name: str, kind: str) -> Path:
     try:
-        return located(section.text(key), kind, section.file.parent)
+        return located(name, kind, section.file.parent)
     except InputError as why:
         raise section.fail(key, why.found, why.expected) from None
+
+
+def table_at(
+    path: Path, fits: tuple[str, ...] = (), options: Mapping[str, Mapping[str, Any]] | None = None
+) -> PlannedTable:
+    """A campaign folder, its campaign.toml, or one CSV of it."""
+    only = path.name if path.is_file() and path.suffix != ".toml" else None
+    return PlannedTable(path, fits, options or {}, only)
 
 
 def _tables(root: Section) -> tuple[PlannedTable, ...]:
@@ -37,11 +52,23 @@ def _tables(root: Section) -> tuple[PlannedTable, ...]:
         fits = s.texts("fits") or ("slope_at_origin",)
         options = s.section("options", required=False)
         chosen = {name: dict(options.section(name).content) for name in options.content}
-        only = path.name if path.is_file() and path.suffix != ".toml" else None
-        out.append(PlannedTable(path, fits, chosen, only))
+        out.append(table_at(path, fits, chosen))
         s.finish()
-    if not out:
+    if not out and not root.has("joint"):
         raise root.fail("table", "no [[table]]", "at least one", 'Add [[table]] with campaign = "path/to/campaign".')
+    return tuple(out)
+
+
+def _joint(root: Section) -> tuple[PlannedJoint, ...]:
+    out = []
+    for s in root.sections("joint"):
+        names = s.texts("campaigns")
+        if len(names) < 2:
+            raise s.fail("campaigns", shown(list(names)), "the paths of two or more campaigns")
+        tables = tuple(table_at(_located(s, "campaigns", name, "cfd_data")) for name in names)
+        options = s.section("options", required=False)
+        out.append(PlannedJoint(tables, s.text("fit", JOINT), dict(options.content)))
+        s.finish()
     return tuple(out)
 
 
@@ -83,6 +110,7 @@ def read_plan(path: Path) -> Plan:
         name=safe_name(study, "name"),
         title=study.text("title", study.text("name")),
         tables=_tables(root),
+        joint=_joint(root),
         reference_point=study.point("reference_point") if study.has("reference_point") else None,
         datum=study.text("datum", ""),
         scaling=read_scaling(scaling) if scaling.content else None,

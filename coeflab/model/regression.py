@@ -15,6 +15,7 @@ from coeflab.kernels.terms import Term, design
 from coeflab.kernels.wind_axes import incidence, wind_forces
 from coeflab.model.fitted_model import Domain, Extrapolation, FittedModel, in_words
 from coeflab.model.force_table import ForceTable
+from coeflab.model.set_aside import SetAside, joined, readmitted
 
 Array = NDArray[np.float64]
 ANGLES = ("alpha", "beta")
@@ -57,6 +58,8 @@ class Rows:
     response : str
     tables : tuple of str
     campaign, body : str
+    set_aside : SetAside or None
+        Printed rows that are rejected or doubtful.
     """
 
     x: Mapping[str, Array]
@@ -67,6 +70,7 @@ class Rows:
     tables: tuple[str, ...]
     campaign: str
     body: str
+    set_aside: SetAside | None = None
 
 
 def variable(table: ForceTable, name: str, length: float) -> Array:
@@ -142,6 +146,7 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
     errors: list[Array | None] = []
     labels: list[str] = []
     names: list[str] = []
+    beside: list[SetAside] = []
     for table in tables:
         component = MOMENT_COEFFICIENTS.get(name, name)
         if component in COMPONENTS and component not in table.forces:
@@ -153,6 +158,7 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
         errors.append(None if error is None else error[usable])
         labels += [t for t, u in zip(table.labels, usable, strict=True) if u]
         names.append(table.name)
+        beside += [] if not table.exclusions else [_beside(table, variables, name, area, usable)]
     if not ys or not sum(map(len, ys)):
         raise InputError(f"no usable rows for {name}", "a table with that component", column="responses")
     known = [e for e in errors if e is not None]
@@ -165,7 +171,16 @@ def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, a
         tables=tuple(names),
         campaign=tables[0].campaign,
         body=tables[0].body,
+        set_aside=joined(beside),
     )
+
+
+def _beside(table: ForceTable, variables: Sequence[str], name: str, area: Area, used: NDArray[np.bool_]) -> SetAside:
+    """Printed rows of a table that no fit may use."""
+    y, _, printed = response(readmitted(table), name, area)
+    rows = printed & ~used
+    labels = tuple(t for t, k in zip(table.labels, rows, strict=True) if k)
+    return SetAside({v: variable(table, v, area.length)[rows] for v in variables}, y[rows], labels)
 
 
 def model_of(
@@ -220,4 +235,5 @@ def model_of(
         labels=rows.labels,
         statements=in_words(fit, symbols),
         post_selection=post_selection,
+        set_aside=rows.set_aside,
     )

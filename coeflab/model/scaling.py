@@ -21,17 +21,24 @@ class Conditions:
         m/s, at the reference point.
     viscosity : float, optional
         Kinematic, m^2/s.
+    reynolds : float, optional
+        As the source states it.
     """
 
     density: float
     speed: float
     viscosity: float | None = None
+    reynolds: float | None = None
 
     def __post_init__(self) -> None:
-        for name in ("density", "speed", "viscosity"):
+        for name in ("density", "speed", "viscosity", "reynolds"):
             value = getattr(self, name)
             if value is not None and not value > 0.0:
                 raise InputError(f"{name} = {value:g}", "a value above zero", column=f"conditions.{name}")
+
+    def reynolds_on(self, length: float) -> float | None:
+        """Reynolds number on a length, or the one that the source states where the viscosity is not known."""
+        return self.reynolds if self.viscosity is None else self.speed * length / self.viscosity
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,4 +97,5 @@ def read_conditions(section: Section) -> Conditions:
         density=section.positive("density", "density"),
         speed=section.positive("speed", "speed"),
         viscosity=section.optional_positive("viscosity", "viscosity"),
+        reynolds=section.optional_positive("reynolds", "none"),
     )

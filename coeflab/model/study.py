@@ -37,6 +37,15 @@ class PlannedTable:
 
 
 @dataclass(frozen=True, slots=True)
+class PlannedJoint:
+    """One ``[[joint]]``: one fit over several tables or campaigns."""
+
+    tables: tuple[PlannedTable, ...]
+    fit: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
 class PlannedParameterFile:
     """One ``[[parameter_file]]``: which campaigns and which literature it holds."""
 
@@ -62,6 +71,8 @@ class Plan:
         For dimensional values; None takes the first campaign's.
     body : Path or None
     tables : tuple of PlannedTable
+    joint : tuple of PlannedJoint
+        Fits over several campaigns, after those of the tables.
     references : tuple of Path
     parameter_files : tuple of PlannedParameterFile
     exports : tuple of str
@@ -86,6 +97,7 @@ class Plan:
     wanted: tuple[str, ...] = ()
     include_uncertain: bool = False
     file: InputFile | None = None
+    joint: tuple[PlannedJoint, ...] = ()
 
     def __post_init__(self) -> None:
         if self.reference_point is not None:
