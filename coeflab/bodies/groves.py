@@ -1,7 +1,6 @@
-"""The bare hull of DARPA SUBOFF from its equations: bow, parallel middle body, afterbody and cap.
+"""DARPA SUBOFF from its equations: bow, parallel middle body, afterbody and cap, with sail and stern planes on request.
 
-Source: Groves, Huang & Chang, DTRC/SHD-1298-01 (1989), Tables 1-3; feet, x aft of the nose. Sail, stern planes and ring
-wings are not part of it.
+Source: Groves, Huang & Chang, DTRC/SHD-1298-01 (1989), Tables 1-3; feet, x aft of the nose. Ring wings are not part of it.
 """
 
 from __future__ import annotations
@@ -15,11 +14,15 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.kernels.axisymmetric import graded_nodes
+from coeflab.kernels.structured_surface import lofted
+from coeflab.kernels.suboff_appendages import Appendage, plane, plane_sections, sail, sail_sections
 from coeflab.model.body import Body, Configuration
 from coeflab.model.body_file import open_body_file
+from coeflab.model.mesh import TriangleMesh
+from coeflab.model.meshing import meshed, united
 from coeflab.model.shape import Revolution
 
-summary = "the SUBOFF bare hull from the equations of Groves, Huang and Chang"
+summary = "SUBOFF from the equations of Groves, Huang and Chang: bare hull, or with sail and stern planes"
 citations = ("groves1989",)
 
 Array = NDArray[np.float64]
@@ -28,6 +31,8 @@ LARGEST_RADIUS = 5.0 / 6.0
 BOW_END, MIDDLE_END, AFTERBODY_END, CAP_END = 3.333333, 10.645833, 13.979167, 14.291667
 CAP_RADIUS, K0, K1 = 0.1175, 10.0, 44.6244
 NODES, GRADING = 96, 4
+HULL_PANELS = 60_000
+SAIL, PLANE = (48, 24, 12), (40, 20)
 
 _X = Polynomial([0.0, 1.0])
 _BOW = (
@@ -70,6 +75,16 @@ def _piece(x: Array, end: float) -> tuple[Array, Array]:
     return _rest(x, square)
 
 
+def profile(x: Array) -> tuple[Array, Array]:
+    """R and R dR/dx at stations within the hull, ft."""
+    ends = (BOW_END, MIDDLE_END, AFTERBODY_END, CAP_END)
+    square, half = np.empty_like(x), np.empty_like(x)
+    for k, end in enumerate(ends):
+        here = np.searchsorted(ends, x).clip(max=3) == k
+        square[here], half[here] = _piece(x[here], end)
+    return LARGEST_RADIUS * np.sqrt(square), LARGEST_RADIUS**2 * half
+
+
 def radius(aft: float) -> float:
     """Radius of the bare hull, m.
 
@@ -86,9 +101,7 @@ def radius(aft: float) -> float:
     x = aft / FOOT
     if not -1e-12 <= x <= CAP_END + 1e-12:
         raise InputError(f"x = {aft:g} m aft of the nose", f"0 to {CAP_END * FOOT:.4f} m, where the equations hold")
-    end = next((e for e in (BOW_END, MIDDLE_END, AFTERBODY_END) if x <= e), CAP_END)
-    square, _ = _piece(np.array([x]), end)
-    return float(FOOT * LARGEST_RADIUS * np.sqrt(square[0]))
+    return float(FOOT * profile(np.array([x]))[0][0])
 
 
 def meridian(nodes: int = NODES) -> Revolution:
@@ -109,8 +122,50 @@ def meridian(nodes: int = NODES) -> Revolution:
     )
 
 
+def appended(with_sail: bool, with_planes: bool) -> Configuration:
+    """Integrals of the equations: the hull, and of sail and planes what stands outside it."""
+    hull = meridian()
+    parts: list[Appendage] = [sail(profile)] if with_sail else []
+    parts += [plane(profile)] * 4 if with_planes else []
+    volume = hull.volume + FOOT**3 * sum(p.volume for p in parts)
+    centre = hull.centre_of_volume
+    if parts:
+        aft, up = FOOT**4 * np.sum([p.moment for p in parts], axis=0)
+        centre = (hull.volume * centre - np.array([aft, 0.0, up])) / volume
+    names = ["sail"] * with_sail + ["four stern planes"] * with_planes
+    return Configuration(
+        name="by_equations",
+        title=", ".join(["integrals of the equations", *names]),
+        volume=volume,
+        wetted_surface=hull.integrals.wetted_surface + FOOT**2 * sum(p.surface - p.covered for p in parts),
+        centre_of_buoyancy=centre,
+        mass=None,
+    )
+
+
+def mesh(with_sail: bool, with_planes: bool, hull_panels: int = HULL_PANELS) -> TriangleMesh:
+    """The hull with its appendages as one closed mesh; the exact volume by equations is known to it."""
+    solids = [meshed(meridian(), hull_panels)]
+    if with_sail:
+        solids.append(_solid(sail_sections(*SAIL), 0.0))
+    if with_planes:
+        solids += [_solid(plane_sections(*PLANE)[:, :, [0, 2, 1]], turn * np.pi / 2.0) for turn in range(4)]
+    whole = united(solids)
+    return TriangleMesh(whole.vertices, whole.faces, appended(with_sail, with_planes).volume)
+
+
+def _solid(sections: Array, roll: float) -> TriangleMesh:
+    """Loops of x aft, breadth and height, ft, about an upright appendage: to m, FRD, and rolled about the axis."""
+    vertices, faces = lofted(FOOT * sections * np.array([-1.0, 1.0, -1.0]))
+    c, s = np.cos(roll), np.sin(roll)
+    return TriangleMesh(vertices @ np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]]).T, faces)
+
+
 def read(path: Path) -> Body:
-    """Read a body.toml whose shape is the SUBOFF bare hull.
+    """Read a body.toml whose shape is SUBOFF; ``[hull]`` may say ``sail = true`` and ``planes = true``.
+
+    The bare hull is a body of revolution. With appendages the shape is a mesh, and the configuration ``by_equations``
+    still holds exact integrals.
 
     Raises
     ------
@@ -118,13 +173,8 @@ def read(path: Path) -> Body:
         Anything missing, unknown or of the wrong unit, by file and key.
     """
     opened = open_body_file(path, "groves")
-    hull = meridian()
-    computed = Configuration(
-        name="by_equations",
-        title="integrals of the equations",
-        volume=hull.volume,
-        wetted_surface=hull.integrals.wetted_surface,
-        centre_of_buoyancy=hull.centre_of_volume,
-        mass=None,
-    )
-    return opened.body(hull, computed)
+    chosen = opened.root.section("hull", required=False)
+    with_sail, with_planes = chosen.flag("sail", False), chosen.flag("planes", False)
+    chosen.finish()
+    shape = mesh(with_sail, with_planes) if with_sail or with_planes else meridian()
+    return opened.body(shape, appended(with_sail, with_planes))

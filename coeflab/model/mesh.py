@@ -24,6 +24,8 @@ class TriangleMesh:
         m, FRD, from the datum.
     faces : (m, 3) array of int
         Counter-clockwise seen from outside.
+    exact_volume : float, optional
+        Of the body that the mesh stands for, m^3, where that is known.
     integrals : MeshIntegrals
         Volume, centre, second moments, area and projected areas of the facets.
 
@@ -35,6 +37,7 @@ class TriangleMesh:
 
     vertices: Array
     faces: NDArray[np.int64]
+    exact_volume: float | None = None
     integrals: MeshIntegrals = field(init=False)
 
     def __post_init__(self) -> None:
@@ -57,6 +60,11 @@ class TriangleMesh:
     def volume(self) -> float:
         """m^3."""
         return self.integrals.volume
+
+    @property
+    def discretisation_error(self) -> float | None:
+        """Volume of the facets over that of the body they stand for, minus one; None where that is not known."""
+        return None if self.exact_volume is None else self.volume / self.exact_volume - 1.0
 
     @property
     def centre_of_volume(self) -> Array:

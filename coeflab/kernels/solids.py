@@ -1,0 +1,93 @@
+"""Closed surfaces as solids that can be cut: arrays in, arrays out, with manifold3d between.
+
+Vertices are (n, 3), m; faces are (m, 3) indices, counter-clockwise seen from outside.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from coeflab.kernels.least_squares import Array
+from coeflab.kernels.surface_mesh import Faces
+
+Surface = tuple[Array, Faces]
+Solid = Any
+ROUND = 128
+
+
+def solid(vertices: Array, faces: Faces) -> Solid:
+    """A solid from its surface; vertices at one place are joined first.
+
+    Raises
+    ------
+    ValueError
+        The surface is not closed, or an edge has more or fewer than two faces.
+    """
+    from manifold3d import Error, Manifold, Mesh64
+
+    places, joined = np.unique(vertices, axis=0, return_inverse=True)
+    corners = joined.reshape(-1)[faces]
+    kept = (corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])
+    made = Manifold(Mesh64(np.ascontiguousarray(places), np.ascontiguousarray(corners[kept].astype(np.uint64))))
+    if made.status() != Error.NoError or made.is_empty():
+        raise ValueError(f"a surface that is not closed ({made.status().name})")
+    return made
+
+
+def surface(of: Solid) -> Surface:
+    """Vertices and faces of a solid."""
+    mesh = of.to_mesh64()
+    return np.array(mesh.vert_properties[:, :3], dtype=np.float64), np.array(mesh.tri_verts, dtype=np.int64)
+
+
+def pieces(of: Solid) -> list[Solid]:
+    """Its connected shells, the largest volume first, equal ones from aft and port."""
+    found = [p for p in of.decompose() if not p.is_empty()]
+    return sorted(found, key=lambda p: (-round(p.volume(), 15), *np.round(p.bounding_box(), 9)))
+
+
+def simplified(of: Solid, most: int) -> tuple[Solid, float]:
+    """A solid of at most ``most`` faces, and how far its surface may have moved, m; itself and 0 where it has fewer."""
+    box = of.bounding_box()
+    out, moved = of, 0.0
+    step = 1e-5 * float(np.linalg.norm(np.subtract(box[3:], box[:3])))
+    while out.num_tri() > most and moved < 1e4 * step:
+        moved = 2.0 * moved or step
+        out = of.simplify(moved)
+    return out, moved
+
+
+def box(low: Array, high: Array) -> Solid:
+    """A box between two corners, (3,) each, m."""
+    from manifold3d import Manifold
+
+    return Manifold.cube(tuple(np.subtract(high, low))).translate(tuple(low))
+
+
+def revolved(x: Array, radius: Array, rotation: Array, point: Array) -> Solid:
+    """A body of revolution.
+
+    Parameters
+    ----------
+    x, radius : (n,) arrays
+        Stations along the axis from ``point``, rising, and radii, m.
+    rotation : (3, 3) array
+        Its first column is the axis.
+    point : (3,) array
+        m.
+    """
+    from manifold3d import CrossSection, Manifold
+
+    outline = np.column_stack([np.r_[0.0, radius, 0.0], np.r_[x[0], x, x[-1]]])
+    upright = Manifold.revolve(CrossSection([outline]), ROUND)
+    turn = np.column_stack([rotation[:, 1], rotation[:, 2], rotation[:, 0]])
+    return upright.transform(np.column_stack([turn, point]))
+
+
+def hull_of(points: Array) -> Solid:
+    """The convex hull of (n, 3) points."""
+    from manifold3d import Manifold
+
+    return Manifold.hull_points(np.ascontiguousarray(points))
