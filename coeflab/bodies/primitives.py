@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
 from coeflab.core.errors import InputError
 from coeflab.core.toml import Section
+from coeflab.kernels.attitude import rotation
 from coeflab.model.body import Body, Configuration
 from coeflab.model.body_file import open_body_file
 from coeflab.model.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate
@@ -17,15 +15,6 @@ summary = "named cylinders, plates, spheroids, ellipsoids, spheres and boxes fro
 citations = ("fossen2011",)
 
 FORMS = ("cylinder", "plate", "spheroid", "ellipsoid", "sphere", "box")
-
-
-def rotation(roll: float, pitch: float, yaw: float) -> NDArray[np.float64]:
-    """(3, 3) matrix from the part's axes to the body's: yaw, then pitch, then roll, rad (Fossen 2011, equation 2.18)."""
-    (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
-    about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
-    about_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
-    about_z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
-    return np.asarray(about_z @ about_y @ about_x)
 
 
 def _form(section: Section) -> Form:

@@ -7,7 +7,7 @@ import sys
 
 import typer
 
-from coeflab.cli import added_mass, compare, fit, formats, inspect, new, params, run, table, validate
+from coeflab.cli import added_mass, compare, export, fit, formats, inspect, new, params, run, simplify, table, validate
 
 app = typer.Typer(
     name="coeflab",
@@ -19,7 +19,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-for module in (validate, run, fit, inspect, new, formats, table, compare, added_mass):
+for module in (validate, run, fit, inspect, new, formats, table, compare, added_mass, simplify, export):
     app.command(
         name=module.__name__.rpartition(".")[2].replace("_", "-"),
         epilog=f"Example: {module.EXAMPLE}",

@@ -23,11 +23,13 @@ def command(
     from coeflab.workbench import read_body
 
     path = located(body, "geometry")
-    found = triangulate(read_body(path / "body.toml" if path.is_dir() else path), density, method)
+    with show.narrated():
+        found = triangulate(read_body(path / "body.toml" if path.is_dir() else path), density, method)
     if json:
         show.json_object({r.method: r.matrix.tolist() for r in found.results})
         return
     show.table(tables.particulars(found.body))
+    show.table(tables.displaced(found.body, density))
     for result in found.results:
         show.table(tables.matrix(result))
     show.table(tables.derivatives(found))

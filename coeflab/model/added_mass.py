@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.kernels.composition import Definiteness, definiteness, moved
+from coeflab.kernels.transforms import velocity_transfer
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Scaling
 
@@ -27,6 +28,8 @@ class AddedMass:
     datum, body, method : str
     statements : tuple of str
         What the method assumed, in words.
+    error : (6, 6) array, optional
+        Estimate of the numerical error of each entry, at least zero, where the method gives one.
     """
 
     matrix: NDArray[np.float64]
@@ -35,10 +38,13 @@ class AddedMass:
     body: str
     method: str
     statements: tuple[str, ...] = ()
+    error: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", locked(self.matrix))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
+        if self.error is not None:
+            object.__setattr__(self, "error", locked(self.error))
         if self.matrix.shape != (6, 6):
             raise InputError(f"a matrix of shape {self.matrix.shape}", "6 x 6")
 
@@ -61,9 +67,13 @@ class AddedMass:
         )
 
     def about(self, point: NDArray[np.float64]) -> AddedMass:
-        """The same about another point, m, FRD, from the datum."""
-        matrix = moved(self.matrix, np.asarray(point, dtype=float) - self.reference_point)
-        return AddedMass(matrix, np.asarray(point), self.datum, self.body, self.method, self.statements)
+        """The same about another point, m, FRD, from the datum; errors add up as if all had the worst sign."""
+        shift = np.asarray(point, dtype=float) - self.reference_point
+        matrix, error = moved(self.matrix, shift), None
+        if self.error is not None:
+            lever = np.abs(velocity_transfer(-shift))
+            error = lever.T @ self.error @ lever
+        return AddedMass(matrix, np.asarray(point), self.datum, self.body, self.method, self.statements, error)
 
     def derivatives(self) -> dict[str, float]:
         """All 36 acceleration derivatives, SI: Xudot, ..., Nrdot."""

@@ -42,7 +42,21 @@ class MassProperties:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Configuration:
-    """One state of appendages."""
+    """One state of appendages.
+
+    Attributes
+    ----------
+    name, title : str
+    volume, wetted_surface : float, optional
+        m^3, m^2.
+    centre_of_buoyancy : (3,) array, optional
+        m, FRD, from the datum.
+    mass : MassProperties, optional
+    projected_areas : (3,) array, optional
+        Along x, y and z, m^2, where each line of sight crosses the surface twice; hidden faces count as well.
+    second_moments : (3, 3) array, optional
+        Integral of d d^T over the volume, d from the centre of buoyancy, m^5.
+    """
 
     name: str
     title: str
@@ -50,10 +64,18 @@ class Configuration:
     wetted_surface: float | None
     centre_of_buoyancy: NDArray[np.float64] | None
     mass: MassProperties | None
+    projected_areas: NDArray[np.float64] | None = None
+    second_moments: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
-        if self.centre_of_buoyancy is not None:
-            object.__setattr__(self, "centre_of_buoyancy", locked(self.centre_of_buoyancy))
+        for name in ("centre_of_buoyancy", "projected_areas", "second_moments"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, locked(getattr(self, name)))
+
+    def displaced_inertia(self, density: float) -> NDArray[np.float64] | None:
+        """(3, 3) inertia of the displaced water about the centre of buoyancy, kg m^2; None where it is not known."""
+        spread = self.second_moments
+        return None if spread is None else np.asarray(density * (np.trace(spread) * np.eye(3) - spread))
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from coeflab.core.symbols import ANGULAR, COMPONENTS, derivative
+from coeflab.core.symbols import ANGULAR, COMPONENTS, FORCES, MOMENTS, derivative
 from coeflab.model.budget import Budget, budget_of, grid_study_of, undeclared, with_budget
 from coeflab.model.coefficient import Coefficient
 from coeflab.model.fit_result import FitResult
@@ -69,6 +69,15 @@ def _grid(model: FittedModel, tables: Sequence[ForceTable]) -> dict[str, np.ndar
     return {} if relative is None else {"grid": relative * np.nan_to_num(model.fit.coefficients)}
 
 
+def _gravest(tables: Sequence[ForceTable], component: str) -> str:
+    """The force, or the moment, with the largest relative grid error: for a coefficient that equations alone give."""
+    relative = {}
+    for other in dict.fromkeys((component, *(MOMENTS if component in MOMENTS else FORCES))):
+        study = grid_study_of(tables, other)
+        relative[other] = 0.0 if study is None else study.convergence.relative or 0.0
+    return max(relative, key=lambda k: relative[k])
+
+
 def _model_of(c: Coefficient, fit: FitResult) -> FittedModel | None:
     return next((m for m in fit.models if c.symbol in {s.removesuffix("'") for s in m.symbols}), None)
 
@@ -78,6 +87,7 @@ def _budget(
 ) -> Budget:
     component = derivative(c.symbol).component
     own = tuple(t for t in tables if component in t.forces) or tuple(tables)
+    gridded = component if c.n_points else _gravest(tables, component)
     inputs: tuple[InputPart, ...] = ()
     if effects is not None:
         inputs = tuple(
@@ -90,4 +100,4 @@ def _budget(
     assessed = () if effects is None else tuple(InputPart(i.kind, i.half_width, 0.0) for i in effects.inputs)
     lacking = [*undeclared(wanted, own, assessed), *(effects.lacking if effects else ())]
     total = None if effects is None else effects.propagated(number)
-    return budget_of(c, component, own, {"random": c.parts.random or c.u95, FORM: None}, inputs, total, lacking)
+    return budget_of(c, gridded, own, {"random": c.parts.random or c.u95, FORM: None}, inputs, total, lacking)

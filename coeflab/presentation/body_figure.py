@@ -15,7 +15,7 @@ from coeflab.model.mesh import TriangleMesh
 from coeflab.model.shape import Parts
 from coeflab.presentation.body_view import BEHIND, Sheet, View
 from coeflab.presentation.document import Figure
-from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets
+from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets, picture_surface
 from coeflab.presentation.svg import COLOURS, POINTS, settings, svg_text
 
 Array = NDArray[np.float64]
@@ -51,7 +51,8 @@ def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str)
         Unique in the document.
     """
     of_parts = [part_facets(p).reshape(-1, 3) for p in shape.parts]
-    points = np.concatenate([*of_parts, *([] if mesh is None else [mesh.vertices])])
+    drawn = None if mesh is None else picture_surface(mesh)
+    points = np.concatenate([*of_parts, *([] if drawn is None else [drawn[0]])])
     size = np.maximum(np.ptp(points, axis=0), 1e-3 * float(np.ptp(points, axis=0).max()))
     scale = min((WIDTH - 2.0 * MARGIN - GAP) / (size[0] + size[1]), TALLEST_VIEWS / (size[1] + size[2]))
     tilted = np.ptp(points @ OBLIQUE.axes[:2].T, axis=0)
@@ -77,7 +78,7 @@ def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str)
             room = LABELS if view is OBLIQUE else 0.0
             sheet = _placed(axes, view, points, (left, top - CAPTION - room), by)
             axes.text(MARGIN if room else left, top - 9.0, view.title, fontsize=8.0, color=COLOURS["muted"])
-            sheet.body(shape, mesh)
+            sheet.body(shape, drawn)
             if room:
                 _labels(sheet, shape, (tops[0] - CAPTION - room, tops[1] + GAP + room))
         _scale_bar(axes, right, tops[2] - rows[2], scale, float(size.max()))

@@ -12,16 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.kernels import solids
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.shape import Parts
-from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets
+from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets, picture_surface
 from coeflab.presentation.svg import COLOURS
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 FLOAT, UNSIGNED, VERTICES, ELEMENTS = 5126, 5125, 34962, 34963
-MOST_FACES = 20_000
 FILM = 0.3
 # glTF has y up and looks along z: forward becomes z, up y, port x. The quaternion (x, y, z, w) of that rotation.
 FROM_FRD = [0.5, -0.5, 0.5, 0.5]
@@ -40,8 +38,8 @@ def body_scene(name: str, shape: Parts, mesh: TriangleMesh | None = None) -> byt
 
     Notes
     -----
-    Vertices are in FRD, m, from the datum; the root node turns them to glTF's axes. Nodes carry name, form and datum
-    sizes in ``extras``. Faces have no normals, so viewers shade them flat, as glTF asks.
+    Vertices are in FRD, m, from the datum; the root node turns them to glTF's axes. Nodes carry form and volume in
+    ``extras``. Faces have no normals, so viewers shade them flat, as glTF asks.
     """
     out = _Scene()
     forms = dict.fromkeys(form_name(p.form) for p in shape.parts)
@@ -51,7 +49,7 @@ def body_scene(name: str, shape: Parts, mesh: TriangleMesh | None = None) -> byt
         kind = form_name(part.form)
         out.node(part.name, *_triangles(facets), material[kind], {"form": kind, "volume_m3": part.form.volume})
     if mesh is not None:
-        vertices, faces = _few(mesh)
+        vertices, faces = picture_surface(mesh)
         out.node("mesh", vertices, faces, out.material("mesh", COLOURS["band"], FILM), {"volume_m3": mesh.volume})
     return out.file(name)
 
@@ -62,15 +60,6 @@ def _triangles(facets: Array) -> tuple[Array, Indices]:
     kept = corners[area > 1e-12 * float(area.max())].reshape(-1, 3)
     vertices, index = np.unique(np.round(kept, 9), axis=0, return_inverse=True)
     return vertices, index.reshape(-1, 3)
-
-
-def _few(mesh: TriangleMesh) -> tuple[Array, Indices]:
-    if len(mesh.faces) <= MOST_FACES:
-        return mesh.vertices, mesh.faces
-    try:
-        return solids.surface(solids.simplified(solids.solid(mesh.vertices, mesh.faces), MOST_FACES)[0])
-    except ValueError:
-        return mesh.vertices, mesh.faces
 
 
 class _Scene:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from coeflab.kernels import silhouette
 from coeflab.kernels.form_facets import normals
-from coeflab.model.mesh import TriangleMesh
+from coeflab.kernels.solids import Surface
 from coeflab.model.shape import Parts
 from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets
 from coeflab.presentation.svg import COLOURS
@@ -72,9 +72,9 @@ class Sheet:
         """(..., 2) places of (..., 3) points."""
         return np.asarray(points @ self.frame.T + self.move)
 
-    def body(self, shape: Parts, mesh: TriangleMesh | None) -> None:
+    def body(self, shape: Parts, mesh: Surface | None) -> None:
         """Draw the mesh and the parts, those nearer to the viewer later."""
-        outline = None if mesh is None else silhouette.mesh_outline(mesh.vertices, mesh.faces, self.frame)
+        outline = None if mesh is None else silhouette.mesh_outline(*mesh, self.frame)
         if outline is not None:
             self._fill(outline, "band", BEHIND)
         depth = [round(float(p.centre @ self.view.axes[2]), 9) for p in shape.parts]

@@ -1,4 +1,4 @@
-"""Parts of a body as facets in body axes, and the colour of each form."""
+"""What a picture of a body is made of: facets of its parts, the surface of its mesh, the colour of each form."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.kernels.form_facets import box_facets, cylinder_facets, ellipsoid_facets, plate_facets
+from coeflab.kernels.solids import Surface, simplified, solid, surface
+from coeflab.model.mesh import TriangleMesh
 from coeflab.model.shape import Box, Cylinder, Form, Part, Plate
 
 Array = NDArray[np.float64]
+MOST_FACES = 20_000
 COLOUR_OF = {"cylinder": "a", "plate": "b", "ellipsoid": "c", "box": "d"}
 
 
@@ -29,3 +32,13 @@ def part_facets(part: Part) -> Array:
     else:
         own = ellipsoid_facets(form.axes)
     return np.asarray(own @ part.rotation.T + part.centre)
+
+
+def picture_surface(mesh: TriangleMesh) -> Surface:
+    """Vertices and faces of a mesh, simplified to 20,000 faces where it has more and is closed."""
+    if len(mesh.faces) <= MOST_FACES:
+        return mesh.vertices, mesh.faces
+    try:
+        return surface(simplified(solid(mesh.vertices, mesh.faces), MOST_FACES)[0])
+    except ValueError:
+        return mesh.vertices, mesh.faces
