@@ -1,0 +1,62 @@
+"""``coeflab simplify``: a mesh as cylinders, plates, ellipsoids and boxes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import typer
+
+from coeflab.cli import show
+
+EXAMPLE = "coeflab simplify huuv_mesh"
+
+
+def command(
+    mesh: str = typer.Argument(..., help="A body.toml of reader mesh, its folder, a shipped body, or a mesh file."),
+    unit: str = typer.Option("", "--unit", help="Of a mesh file: m, mm, in ... Required with one."),
+    axes: str = typer.Option("", "--axes", help="Of a mesh file: FRD, FLU, CFD or forward,port,up. Required with one."),
+    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was done."),
+    box: list[str] = typer.Option([], "--box", help="NAME=x0:x1,y0:y1,z0:z1 in m, FRD: what is inside is that part."),
+    boxes: Path | None = typer.Option(
+        None, "--boxes", help="A TOML file of [[box]] with name, x, y, z as [low, high]."
+    ),
+    parts: int | None = typer.Option(None, "--parts", min=1, help="How many parts there must be; else an error."),
+    out: Path | None = typer.Option(None, "--out", help="Folder to write; without it NAME_simplified."),
+    force: bool = typer.Option(False, "--force", help="Replace files that differ."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Write a body.toml of simple parts in place of a mesh, with an overlay as SVG and GLB.
+
+    Cuts off the boxes, then separates shells, then cuts appendages from a round hull.
+    """
+    from coeflab.core.errors import OutputError
+    from coeflab.core.files import write_atomically
+    from coeflab.model.named_box import parse_box, read_boxes
+    from coeflab.presentation.body_figure import body_figure
+    from coeflab.presentation.body_scene import body_scene
+    from coeflab.studies.simplify import simplify
+    from coeflab.studies.simplify_source import mesh_body
+
+    named = tuple(parse_box(text) for text in box) + (read_boxes(boxes) if boxes is not None else ())
+    found = simplify(mesh_body(mesh, unit, axes, repair), named, parts)
+    name = found.body.name
+    folder = out if out is not None else Path(name)
+    figure = body_figure(name, found.shape, found.mesh, "overlay")
+    files = {
+        "body.toml": found.part_file(),
+        "overlay.svg": figure.svg.encode(),
+        "overlay.glb": body_scene(name, found.shape, found.mesh),
+    }
+    for file, content in files.items():
+        path = folder / file
+        if not force and path.exists() and not (path.is_file() and path.read_bytes() == content):
+            raise OutputError(f"{path} exists and differs. Name another --out, or replace it with --force.")
+    changed = {file: write_atomically(folder / file, content) for file, content in files.items()}
+    if json:
+        show.json_object(found.as_json())
+        return
+    show.table(found.part_table())
+    show.table(found.total_table())
+    for file, new in changed.items():
+        show.text(f"  {folder / file}: {'written' if new else 'unchanged'}")
+    show.text(f"Look at overlay.svg, correct body.toml, then: coeflab added-mass {folder}")

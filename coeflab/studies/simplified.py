@@ -1,0 +1,190 @@
+"""What a simplification found: parts beside the pieces of the mesh that they stand for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.kernels.part_forms import Likeness
+from coeflab.model.body import Body
+from coeflab.model.mesh import TriangleMesh
+from coeflab.model.part_file import part_file, written
+from coeflab.model.shadows import shadow
+from coeflab.model.shape import Part, Parts
+from coeflab.model.table import ABSENT, Table, number
+
+Array = NDArray[np.float64]
+TOLD = np.radians(0.05)
+RULES = (
+    "A cylinder keeps volume and projected area across its axis; a plate keeps area and centre of its projection "
+    "along the normal and the ratio of second moments along chord (fore and aft) and span; ellipsoids and boxes keep the volume, and second moments up to one factor.",
+    "An attachment is cut off where it meets the hull's surface, so its form begins there on average; it keeps the "
+    "attachment's centre.",
+    "A plate has no thickness: its volume and its edges are left out.",
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimplifiedPart:
+    """A part and the piece of the mesh behind it.
+
+    Attributes
+    ----------
+    part : Part
+    likeness : Likeness
+        The form as fitted, before rounding, and why.
+    volume : float
+        Of the piece, m^3.
+    projected : (3,) array
+        Of the piece along the part's own axes, m^2.
+    cut : bool
+        Whether it was cut from a hull.
+    turned : float
+        Angle by which the pose was tidied, rad.
+    """
+
+    part: Part
+    likeness: Likeness
+    volume: float
+    projected: Array
+    cut: bool
+    turned: float
+
+    @property
+    def volume_error(self) -> float:
+        """Of the form over the piece, less one."""
+        return self.part.form.volume / self.volume - 1.0
+
+    @property
+    def projected_errors(self) -> Array:
+        """(3,) along the part's own axes, of the form over the piece, less one."""
+        return np.array([shadow(self.part.form, axis) for axis in np.eye(3)]) / self.projected - 1.0
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What it was found to be, in words."""
+        like = self.likeness
+        kind = (
+            like.form if like.clear else f"neither cylinder, plate, ellipsoid nor box; an equal volume as {like.form}"
+        )
+        out = [f"{'attachment' if self.cut else 'body'} of {self.volume:.5g} m^3: {kind} ({like.reason})"]
+        if not like.clear:
+            out.append("look at it in the overlay; a --box around each of its bodies splits it")
+        if self.turned > TOLD:
+            out.append(f"pose tidied: turned by {np.degrees(self.turned):.1f} deg to right angles")
+        return tuple(out)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Simplification:
+    """A mesh, the simple parts in its place, and how far they agree.
+
+    Attributes
+    ----------
+    body : Body
+        Of the parts.
+    shape : Parts
+        The same parts.
+    mesh : TriangleMesh
+    parts : tuple of SimplifiedPart
+    unassigned : float
+        Volume of slivers that belong to no part, m^3.
+    statements : tuple of str
+        What was done to the mesh first.
+    """
+
+    body: Body
+    shape: Parts
+    mesh: TriangleMesh
+    parts: tuple[SimplifiedPart, ...]
+    unassigned: float
+    statements: tuple[str, ...]
+
+    def part_table(self) -> Table:
+        """Sizes and errors part by part."""
+        rows = []
+        for p in self.parts:
+            kind, sizes = written(p.part.form)
+            size = ", ".join(f"{key.replace('_', ' ')} {value:g}" for key, value in sizes.items())
+            clear = "" if p.likeness.clear else " (stand-in)"
+            errors = [_percent(e) for e in (p.volume_error, *p.projected_errors)]
+            rows.append((p.part.name, kind + clear, size, number(p.volume, 5), number(p.part.form.volume, 5), *errors))
+        notes = ["errors: form over mesh, less one; A: projected areas along the part's own axes"]
+        notes += [f"{p.part.name}: {remark}" for p in self.parts for remark in p.remarks]
+        headers = ("part", "form", "m", "mesh m^3", "form m^3", "V", "A x", "A y", "A z")
+        return Table("Parts", headers, tuple(rows), (*notes, *self.statements), frozenset({0, 1, 2}))
+
+    def total_table(self) -> Table:
+        """The whole mesh beside the sum of the parts."""
+        pieces = sum(p.volume for p in self.parts)
+        plates = sum(p.volume for p in self.parts if not p.part.form.volume)
+        whole = pieces + self.unassigned
+        centre = self.shape.centre_of_volume
+        rows = [
+            ("volume m^3", number(whole, 6), number(self.shape.volume, 6), _percent(self.shape.volume / whole - 1.0)),
+            ("of it plates m^3", number(plates, 4), "0", ABSENT),
+            (
+                "unassigned m^3",
+                number(abs(self.unassigned), 3),
+                ABSENT,
+                f"{abs(100.0 * self.unassigned / whole):.4f} %",
+            ),
+        ]
+        for axis, a, b in zip(
+            "xyz", *(np.round(c, 5) + 0.0 for c in (self.mesh.centre_of_volume, centre)), strict=True
+        ):
+            rows.append((f"centre of volume {axis} m", f"{a:.5f}", f"{b:.5f}", f"{b - a:+.5f} m"))
+        for axis, a, b in zip("xyz", self.mesh.integrals.projected, self._projected(), strict=True):
+            rows.append((f"projected area along {axis} m^2", number(a, 5), number(b, 5), _percent(b / a - 1.0)))
+        notes = ("projected areas: sums over the parts, what hides what is not looked at", *RULES)
+        return Table("Whole body", ("", "mesh", "parts", "error"), tuple(rows), notes)
+
+    def _projected(self) -> Array:
+        along = np.eye(3)
+        return np.array([sum(shadow(p.form, p.rotation.T @ d) for p in self.shape.parts) for d in along])
+
+    def as_json(self) -> dict[str, Any]:
+        """Everything that the tables show, in SI."""
+        parts = [
+            {
+                "name": p.part.name, "form": written(p.part.form)[0], "sizes": written(p.part.form)[1],
+                "centre": p.part.centre.tolist(), "rotation": p.part.rotation.tolist(),
+                "mesh_volume": p.volume, "volume": p.part.form.volume, "volume_error": p.volume_error,
+                "projected_area_errors": p.projected_errors.tolist(), "stand_in": not p.likeness.clear,
+                "remarks": list(p.remarks),
+            }
+            for p in self.parts
+        ]  # fmt: skip
+        return {
+            "body": self.body.name,
+            "parts": parts,
+            "mesh_volume": sum(p.volume for p in self.parts) + self.unassigned,
+            "volume": self.shape.volume,
+            "unassigned": self.unassigned,
+            "statements": list(self.statements),
+        }
+
+    def part_file(self) -> bytes:
+        """The body.toml of the parts, with remarks for the person who corrects it."""
+        opening = (
+            f"Simple parts in place of {self.body.name.removesuffix('_simplified')}, made by coeflab simplify. Look at "
+            "the overlay, and correct here what is wrong.",
+            "Lengths in m, FRD, from the datum. Along its own axes a cylinder or spheroid lies along x; a plate has its "
+            "chord along x, its span along y, its normal along z. rotation = [roll, pitch, yaw].",
+            *RULES,
+            *self.statements,
+        )
+        remarks = {}
+        for p in self.parts:
+            v, (x, y, z) = _percent(p.volume_error), (_percent(e) for e in p.projected_errors)
+            errors = f"errors: volume {v}; projected area along its x {x}, y {y}, z {z}"
+            remarks[p.part.name] = (*p.remarks, errors)
+        return part_file(self.body, self.shape, opening, remarks)
+
+
+def _percent(share: float) -> str:
+    text = f"{100.0 * share:+.1f} %"
+    return "0.0 %" if text in ("+0.0 %", "-0.0 %") else text

@@ -1,0 +1,224 @@
+"""A mesh as cylinders, plates, ellipsoids and boxes: cut into bodies, each replaced by the form that it resembles."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.provenance import Source
+from coeflab.kernels import solids
+from coeflab.kernels.attitude import angles, rotation, snapped
+from coeflab.kernels.part_forms import Likeness, likeness
+from coeflab.kernels.segmentation import segments, without_overlap
+from coeflab.kernels.surface_mesh import mesh_integrals
+from coeflab.model.body import Body, Configuration
+from coeflab.model.mesh import TriangleMesh
+from coeflab.model.named_box import NamedBox
+from coeflab.model.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate
+from coeflab.studies.simplified import Simplification, SimplifiedPart
+
+Array = NDArray[np.float64]
+MOST_FACES, KEPT_FACES = 1_000_000, 200_000
+SNAP = np.radians(2.0)
+SNAP_OFFSET = 5e-4
+RESOLUTION = 1e-5
+FORMS: dict[str, Any] = {"cylinder": Cylinder, "plate": Plate, "ellipsoid": Ellipsoid, "box": Box}
+SECTORS = ("starboard", "starboard_bottom", "bottom", "port_bottom", "port", "port_top", "top", "starboard_top")
+SLIVERS, REMNANT, HAIR = 2e-4, 0.2, 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """A body of the mesh before it has a form."""
+
+    solid: solids.Solid
+    name: str
+    cut: bool
+
+
+def simplify(body: Body, boxes: Sequence[NamedBox] = (), expected: int | None = None) -> Simplification:
+    """Replace a mesh by simple parts.
+
+    Parameters
+    ----------
+    body : Body
+        Whose shape is a mesh.
+    boxes : sequence of NamedBox
+        What is inside a box becomes a part of that name, before anything else is cut; what little it leaves between
+        itself and the hull goes with it.
+    expected : int, optional
+        How many parts there must be.
+
+    Raises
+    ------
+    InputError
+        Another shape, a surface that is not closed, a shell that looks inward, a box that holds nothing, another number
+        of parts than expected, nothing but plates.
+    """
+    mesh = body.require_shape()
+    if not isinstance(mesh, TriangleMesh):
+        raise InputError(f"{body.name}, which is no mesh", "a body of reader mesh, or a mesh file")
+    whole, statements = _whole(mesh)
+    _refuse_idle_boxes(boxes, mesh)
+    found, unassigned, shared = _pieces(whole, boxes)
+    if shared > SLIVERS * mesh.volume:
+        statements.append(f"shells overlap by {shared:.4g} m^3, which goes to the larger one")
+    likes = [likeness(*solids.surface(p.solid)) for p in found]
+    if all(like.form == "plate" for like in likes):
+        raise InputError("nothing but plates", "at least one part that displaces water")
+    if expected is not None and len(found) != expected:
+        raise InputError(
+            f"{len(found)} parts ({', '.join(_counted(likes))})", f"{expected} parts, as --parts says",
+            advice="Name parts with --box, or leave --parts out and look at the overlay.",
+        )  # fmt: skip
+    length = float(mesh.extents.max())
+    parts = _named([_part(p, like, length) for p, like in zip(found, likes, strict=True)])
+    shape = Parts(tuple(p.part for p in parts))
+    return Simplification(_body(body, shape), shape, mesh, parts, unassigned, tuple(statements))
+
+
+def _whole(mesh: TriangleMesh) -> tuple[solids.Solid, list[str]]:
+    try:
+        whole = solids.solid(mesh.vertices, mesh.faces)
+    except ValueError as why:
+        raise InputError(str(why), "a closed surface", advice="Repair the mesh first.") from None
+    if len(mesh.faces) <= MOST_FACES:
+        return whole, []
+    fewer, moved = solids.simplified(whole, KEPT_FACES)
+    change = fewer.volume() / whole.volume() - 1.0
+    said = f"{len(mesh.faces)} faces decimated to {fewer.num_tri()}: surface moved by at most {moved:.2g} m, volume "
+    return fewer, [f"{said}{100.0 * change:+.3f} %"]
+
+
+def _refuse_idle_boxes(boxes: Sequence[NamedBox], mesh: TriangleMesh) -> None:
+    names = [b.name for b in boxes]
+    for b in boxes:
+        if names.count(b.name) > 1:
+            raise InputError(f"two boxes called {shown(b.name)}", "one name for each box")
+        if not np.any(np.all((mesh.vertices >= b.low) & (mesh.vertices <= b.high), axis=1)):
+            low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+            reach = ", ".join(f"{axis} {a:.4g} to {z:.4g}" for axis, a, z in zip("xyz", low, high, strict=True))
+            raise InputError(
+                f"the box {shown(b.name)}, which holds no vertex of the mesh", f"a box within {reach} m",
+                advice="Boxes are in m, FRD, from the datum: z is down.",
+            )  # fmt: skip
+
+
+def _boxed(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece], solids.Solid]:
+    """What the boxes hold, in their order, and the rest.
+
+    Boxes shrink by a hair, so that a side drawn on a flat face of the mesh does not take that face along as a skin.
+    """
+    out, rest, least = [], whole, SLIVERS * whole.volume()
+    for b in boxes:
+        hair = HAIR * float(np.ptp([b.low, b.high], axis=0).max())
+        block = solids.box(np.add(b.low, hair), np.subtract(b.high, hair))
+        inside = rest ^ block
+        if inside.volume() <= least:
+            raise InputError(f"the box {shown(b.name)}, which holds next to no volume", "a box around a part")
+        out.append(_Piece(inside, b.name, False))
+        rest = rest - block
+    return out, rest
+
+
+def _remnant_of(part: solids.Solid, boxes: Sequence[NamedBox], boxed: Sequence[_Piece]) -> int | None:
+    """The box that cut an attachment and left this little of it between itself and the hull: under a fifth."""
+    found = part.bounding_box()
+    for k, b in enumerate(boxes):
+        reach = HAIR * float(np.ptp([b.low, b.high], axis=0).max())
+        touches = np.all(np.greater(found[3:], np.subtract(b.low, reach)) & np.less(found[:3], np.add(b.high, reach)))
+        if touches and part.volume() < REMNANT * boxed[k].solid.volume():
+            return k
+    return None
+
+
+def _pieces(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece], float, float]:
+    """Bodies, named boxes first; the volume of the slivers; and the volume that shells shared."""
+    least = SLIVERS * whole.volume()
+    out, rest = _boxed(whole, boxes)
+    shells = solids.pieces(rest)
+    if any(s.volume() < -least for s in shells):
+        raise InputError(
+            "a shell that looks inward: a cavity, or reversed faces", "shells that look outward",
+            advice="Remove inner surfaces: added mass belongs to the outer one.",
+        )  # fmt: skip
+    alone = [p for s in without_overlap(shells) for p in solids.pieces(s)]
+    shared = sum(s.volume() for s in shells) - sum(p.volume() for p in alone)
+    unassigned = 0.0
+    for shell in alone:
+        if shell.volume() <= least:
+            unassigned += shell.volume()
+            continue
+        cut = segments(shell, least / shell.volume())
+        for part, attached in zip(cut.bodies, cut.cut, strict=True):
+            k = _remnant_of(part, boxes, out) if attached else None
+            if k is None:
+                out.append(_Piece(part, "", attached))
+            else:
+                out[k] = replace(out[k], solid=out[k].solid + part)
+        unassigned += cut.unassigned
+    if not out:
+        raise InputError("nothing but slivers", "at least one body")
+    return out, unassigned, shared
+
+
+def _part(piece: _Piece, like: Likeness, length: float) -> SimplifiedPart:
+    """The form in round numbers: sizes to 1e-5 of the body's length, angles to 0.01 deg, near-right angles right."""
+    decimals = int(np.ceil(-np.log10(RESOLUTION * length)))
+    turn = snapped(like.rotation, SNAP)
+    turned = float(np.arccos(np.clip((np.trace(turn.T @ like.rotation) - 1.0) / 2.0, -1.0, 1.0)))
+    turn = rotation(*(np.radians(np.round(np.degrees(a), 2)) for a in angles(turn)))
+    centre = np.where(np.abs(like.centre) < np.array([0.0, 1.0, 1.0]) * SNAP_OFFSET * length, 0.0, like.centre)
+    sizes = [round(s, decimals) if s > 100.0 * RESOLUTION * length else float(f"{s:.3g}") for s in like.sizes]
+    form: Form = FORMS[like.form](*sizes)
+    part = Part(piece.name, form, np.asarray(np.round(centre, decimals) + 0.0), turn)
+    vertices, faces = solids.surface(piece.solid)
+    own = mesh_integrals(vertices @ turn, faces)
+    return SimplifiedPart(part, like, own.volume, own.projected, piece.cut, turned)
+
+
+def _named(parts: list[SimplifiedPart]) -> tuple[SimplifiedPart, ...]:
+    """Hull first, then from fore to aft and from port to starboard; names by form and side unless a box gave one."""
+    hull = max(parts, key=lambda p: p.volume)
+    rest = sorted(
+        (p for p in parts if p is not hull), key=lambda p: tuple(np.round([-1.0, 1.0, 1.0] * p.part.centre, 3))
+    )
+    given = {p.part.name for p in parts}
+    names = [p.part.name or ("hull" if p is hull and "hull" not in given else _place(p, hull)) for p in (hull, *rest)]
+    out = []
+    for i, (p, name) in enumerate(zip((hull, *rest), names, strict=True)):
+        numbered = name if names.count(name) == 1 or p.part.name else f"{name}_{names[: i + 1].count(name)}"
+        out.append(replace(p, part=replace(p.part, name=numbered)))
+    return tuple(out)
+
+
+def _place(p: SimplifiedPart, hull: SimplifiedPart) -> str:
+    """``plate_port``: the form, and where it lies about the hull's axis, in eighths of the girth; else fore or aft."""
+    turn = hull.part.rotation if hull.part.rotation[0, 0] > 0.7 else np.eye(3)
+    offset = turn.T @ (p.part.centre - hull.part.centre)
+    half = hull.part.form.half_extents(turn.T @ hull.part.rotation)
+    if np.hypot(offset[1], offset[2]) < 0.2 * max(half[1:]):
+        return f"{p.likeness.form}_{'fore' if offset[0] > 0.0 else 'aft'}"
+    return f"{p.likeness.form}_{SECTORS[round(np.arctan2(offset[2], offset[1]) / (np.pi / 4.0)) % 8]}"
+
+
+def _counted(likes: Sequence[Likeness]) -> list[str]:
+    forms = [like.form for like in likes]
+    return [f"{forms.count(f)} {f}{'s' if forms.count(f) > 1 else ''}" for f in dict.fromkeys(forms)]
+
+
+def _body(body: Body, shape: Parts) -> Body:
+    made_from = "; ".join(f"{f.name}, sha256 {f.sha256}" for f in body.files)
+    source = Source(body.source.citation, body.source.place, f"coeflab simplify of {made_from}", "computed")
+    computed = Configuration(
+        "by_parts", "sum of the parts; overlaps count twice", shape.volume, None, shape.centre_of_volume, None
+    )
+    return replace(
+        body, name=f"{body.name}_simplified", title=f"{body.title or body.name}, simplified", configurations=(computed,),
+        source=source, shape=shape, measured=(),
+    )  # fmt: skip

@@ -1,0 +1,173 @@
+"""``coeflab simplify`` as a real process."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import numpy as np
+import pytest
+
+from coeflab.core.files import shipped
+from coeflab.kernels.solids import box, surface
+from coeflab.model.shape import Cylinder, Plate
+from coeflab.workbench import read_body
+
+Run = Callable[..., CompletedProcess[str]]
+NUMBER = re.compile(r"(?<![\w.])[+-]?\d+(?:\.\d+)?(?:e-?\d+)?(?![\w.])")
+STL = shipped("geometry") / "huuv_mesh" / "huuv.stl"
+FILES = ("body.toml", "overlay.svg", "overlay.glb")
+
+
+@pytest.mark.slow
+def test_the_shipped_vehicle_from_mesh_to_added_mass(coeflab: Run, tmp_path: Path) -> None:
+    done = coeflab("simplify", "huuv_mesh", "--parts", "4")
+    assert (done.returncode, done.stderr) == (0, "")
+    folder = tmp_path / "huuv_mesh_simplified"
+    assert sorted(p.name for p in folder.iterdir()) == sorted(FILES)
+    for words in ("hull", "cylinder_top", "plate_port", "plate_starboard", "unassigned", "body.toml: written"):
+        assert words in done.stdout
+    matrix = json.loads(coeflab("added-mass", folder, "--method", "primitives", "--json").stdout)["primitives"]
+    assert np.linalg.eigvalsh(np.array(matrix))[0] > 0.0
+    first = {f: (folder / f).read_bytes() for f in FILES}
+    again = coeflab("simplify", "huuv_mesh")
+    assert again.returncode == 0
+    assert again.stdout.count("unchanged") == 3
+    assert {f: (folder / f).read_bytes() for f in FILES} == first
+
+
+@pytest.mark.slow
+def test_a_bare_mesh_gives_the_same_parts(coeflab: Run, tmp_path: Path) -> None:
+    """And the file that ships is what the command writes, but for the last digits on another machine."""
+    done = coeflab("simplify", STL, "--unit", "mm", "--axes", "forward,port,up", "--out", "a", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    found = json.loads(done.stdout)
+    assert [p["form"] for p in found["parts"]] == ["cylinder", "cylinder", "plate", "plate"]
+    coeflab("simplify", "huuv_mesh", "--out", "b")
+    kept = (shipped("geometry") / "huuv_mesh_simplified" / "body.toml").read_text()
+    made = (tmp_path / "b" / "body.toml").read_text()
+    assert NUMBER.sub("#", made) == NUMBER.sub("#", kept)
+    for a, b in zip(NUMBER.findall(made), NUMBER.findall(kept), strict=True):
+        assert float(a) == pytest.approx(float(b), abs=2.1e-5, rel=1e-4)
+    assert re.findall("[0-9a-f]{64}", made) == re.findall("[0-9a-f]{64}", kept)
+    bare = read_body(tmp_path / "a" / "body.toml").require_shape()
+    for p, q in zip(bare.parts, read_body(tmp_path / "b" / "body.toml").require_shape().parts, strict=True):
+        assert p.form == q.form
+        assert np.array_equal(p.centre, q.centre)
+
+
+def test_the_shipped_parts_against_the_dimensions_that_made_the_mesh() -> None:
+    """Hull 1.2 m x 0.07 m with rounded ends, mast 0.02 m up to z = -0.37 m, elevators 0.12 m x 0.24 m, all synthetic."""
+    body = read_body(shipped("geometry") / "huuv_mesh_simplified" / "body.toml")
+    assert body.source.kind == "computed"
+    parts = {p.name: p for p in body.require_shape().parts}
+    hull, mast, port = parts["hull"].form, parts["cylinder_top"].form, parts["plate_port"].form
+    assert isinstance(hull, Cylinder)
+    assert isinstance(mast, Cylinder)
+    assert isinstance(port, Plate)
+    assert (hull.radius, hull.length) == pytest.approx((0.07, 1.2), rel=0.03)
+    assert (mast.radius, mast.length) == pytest.approx((0.02, 0.3), rel=0.02)
+    assert (port.chord, port.span) == pytest.approx((0.12, 0.24), rel=0.021)
+    assert parts["cylinder_top"].centre[2] - mast.length / 2.0 == pytest.approx(-0.37, abs=0.003)
+    assert parts["plate_port"].centre == pytest.approx([-0.5, -0.19, 0.0], abs=0.003)
+
+
+def test_the_mesh_is_what_its_script_makes() -> None:
+    script = shipped("geometry") / "huuv" / "make_mesh.py"
+    spec = importlib.util.spec_from_file_location("make_mesh", script)
+    assert spec is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    fused = module.hull() + module.mast() + module.elevator(1.0) + module.elevator(-1.0)
+    content = STL.read_bytes()
+    assert len(content) < 300_000
+    corners = np.frombuffer(content[84:], dtype=np.uint8).reshape(-1, 50)[:, 12:48].copy().view("<f4").reshape(-1, 3, 3)
+    volume = float(np.sum(np.cross(corners[:, 1], corners[:, 2]) * corners[:, 0])) / 6.0
+    assert volume == pytest.approx(fused.volume(), rel=1e-5)
+    assert len(corners) == fused.num_tri()
+
+
+@pytest.mark.slow
+def test_a_corrected_file_is_not_overwritten(coeflab: Run, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "body.toml").write_text("# corrected by hand\n")
+    done = coeflab("simplify", "huuv_mesh", "--out", out)
+    assert done.returncode == 2
+    assert "exists and differs" in done.stderr
+    assert [p.name for p in out.iterdir()] == ["body.toml"]
+    assert (out / "body.toml").read_text() == "# corrected by hand\n"
+    assert coeflab("simplify", "huuv_mesh", "--out", out, "--force").returncode == 0
+    assert read_body(out / "body.toml").name == "huuv_mesh_simplified"
+
+
+@pytest.mark.slow
+def test_boxes_on_the_command_line_and_in_a_file(coeflab: Run, tmp_path: Path) -> None:
+    (tmp_path / "boxes.toml").write_text(
+        '[[box]]\nname = "elevator_port"\nx = [-0.6, -0.4]\ny = [-0.4, "-7 cm"]\nz = [-0.05, 0.05]\n'
+    )
+    done = coeflab("simplify", "huuv_mesh", "--box", "mast=0.05:0.15,-0.05:0.05,-0.4:-0.07", "--boxes", "boxes.toml")
+    assert (done.returncode, done.stderr) == (0, "")
+    names = {p.name for p in read_body(tmp_path / "huuv_mesh_simplified" / "body.toml").require_shape().parts}
+    assert names == {"hull", "mast", "elevator_port", "plate_starboard"}
+
+
+@pytest.mark.slow
+def test_overlapping_shells_are_united_on_request(coeflab: Run, tmp_path: Path) -> None:
+    """An OBJ with two crossing blocks, as CAD exports them."""
+    lines, count = [], 0
+    for low, high in (((-1, -0.2, -0.2), (1, 0.2, 0.2)), ((0.2, -0.1, -0.5), (0.6, 0.1, 0.1))):
+        vertices, faces = surface(box(np.array(low, dtype=float), np.array(high, dtype=float)))
+        lines += [f"v {x} {y} {z}" for x, y, z in vertices.tolist()]
+        lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in (faces + count).tolist()]
+        count += len(vertices)
+    (tmp_path / "two.obj").write_text("\n".join(lines) + "\n")
+    declared = ("two.obj", "--unit", "m", "--axes", "FRD")
+    refused = coeflab("simplify", *declared)
+    assert refused.returncode == 2
+    assert "overlap" in refused.stderr
+    done = coeflab("simplify", *declared, "--repair", "--box", "sail=0.1:0.7,-0.2:0.2,-0.6:-0.2", "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    found = {p["name"]: (p["form"], p["mesh_volume"]) for p in json.loads(done.stdout)["parts"]}
+    assert found == {"hull": ("box", pytest.approx(0.32, rel=1e-5)), "sail": ("box", pytest.approx(0.024, rel=1e-5))}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("huuv.stl",), "Mesh files do not say their unit"),
+        (("huuv.stl", "--unit", "mm"), "--axes"),
+        (("huuv.stl", "--unit", "kg", "--axes", "FLU"), "a unit of another dimension"),
+        (("huuv.stl", "--unit", "mm", "--axes", "forward,port,down"), "left-handed"),
+        (("huuv_mesh", "--unit", "mm"), "A body.toml says these itself"),
+        (("huuv",), "huuv, which is no mesh"),
+        (("suboff",), "without a shape"),
+        (("nothing.stl",), "no file or folder"),
+        (("huuv_mesh", "--box", "mast=9:10,0:1,0:1"), "which holds no vertex of the mesh"),
+        (("huuv_mesh", "--box", "mast"), "NAME=x0:x1"),
+        (("huuv_mesh", "--parts", "3"), "4 parts (2 cylinders, 2 plates); expected 3 parts"),
+        (("cut.stl", "--unit", "mm", "--axes", "FLU"), "cut.stl"),
+        (("open.stl", "--unit", "mm", "--axes", "FLU"), "not watertight"),
+    ],
+)
+def test_wrong_input(coeflab: Run, tmp_path: Path, arguments: tuple[str, ...], said: str) -> None:
+    shutil.copy(STL, tmp_path / "huuv.stl")
+    content = bytearray(STL.read_bytes())
+    (tmp_path / "cut.stl").write_bytes(content[:10_000])
+    content[80:84] = (4225).to_bytes(4, "little")
+    (tmp_path / "open.stl").write_bytes(content[:-50])
+    done = coeflab("simplify", *arguments)
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+    assert done.stdout == ""
+    assert {p.name for p in tmp_path.iterdir()} == {"huuv.stl", "cut.stl", "open.stl"}
+
+
+def test_help_has_an_example(coeflab: Run) -> None:
+    assert "Example: coeflab simplify huuv_mesh" in coeflab("simplify", "--help").stdout

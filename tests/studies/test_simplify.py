@@ -1,0 +1,212 @@
+"""Meshes of known make become the parts that they were made of."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from manifold3d import Manifold
+
+from coeflab.bodies.primitives import read
+from coeflab.core.errors import InputError
+from coeflab.core.provenance import InputFile, Source
+from coeflab.kernels.attitude import rotation
+from coeflab.kernels.solids import surface
+from coeflab.model.body import Body
+from coeflab.model.mesh import TriangleMesh
+from coeflab.model.named_box import NamedBox
+from coeflab.model.scaling import Scaling
+from coeflab.model.shadows import shadow
+from coeflab.model.shape import Box, Cylinder, Ellipsoid, Plate
+from coeflab.studies import simplify as study
+from coeflab.studies.simplify import simplify
+from tests.kernels.vehicles import HULL, LENGTH, fin, lathe, rod, tailed_hull
+
+
+def body(*solids: Manifold, turn: np.ndarray | None = None) -> Body:
+    """A body of one mesh; several solids stay several shells."""
+    surfaces = [surface(s) for s in solids]
+    starts = np.cumsum([0] + [len(v) for v, _ in surfaces])
+    vertices = np.vstack([v for v, _ in surfaces]) @ (np.eye(3) if turn is None else turn).T
+    faces = np.vstack([f + s for (_, f), s in zip(surfaces, starts)])
+    return Body(
+        "b", "a body", "nose", np.array([-1.0, 0.0, 0.0]), {}, (), Source("synthetic", kind="synthetic"),
+        (InputFile("b/b.stl", "0" * 64),), TriangleMesh(vertices, faces), Scaling(4.0, "length"),
+    )  # fmt: skip
+
+
+def mast() -> Manifold:
+    """Upright, to 1.2 m above the axis, with 64 facets."""
+    return Manifold.cylinder(1.2, 0.08, 0.08, 64).rotate((180.0, 0.0, 0.0)).translate((0.5, 0.0, 0.0))
+
+
+def test_fused_vehicle() -> None:
+    found = simplify(body(tailed_hull() + mast()))
+    forms = {p.part.name: p.part.form for p in found.parts}
+    assert list(forms) == ["hull", "cylinder_top", "plate_port", "plate_top", "plate_bottom", "plate_starboard"]
+    hull, top = forms["hull"], forms["cylinder_top"]
+    assert isinstance(hull, Cylinder)
+    assert (hull.radius, hull.length) == pytest.approx((HULL, LENGTH), rel=0.01)
+    assert isinstance(top, Cylinder)
+    assert (top.radius, top.length) == pytest.approx((0.08, 1.2 - HULL), rel=0.025)
+    for name in ("plate_port", "plate_top"):
+        assert isinstance(forms[name], Plate)
+        assert (forms[name].chord, forms[name].span) == pytest.approx((0.3, 0.6 - HULL), rel=5e-3)
+    parts = {p.part.name: p.part for p in found.parts}
+    assert parts["cylinder_top"].rotation == pytest.approx(rotation(0.0, np.pi / 2, 0.0), abs=1e-12)
+    assert parts["plate_port"].centre == pytest.approx([-1.7, -(0.6 + HULL) / 2.0, 0.0], abs=2e-3)
+    assert parts["plate_top"].rotation[:, 1] == pytest.approx([0, 0, 1], abs=1e-12)
+    assert found.statements == ()
+
+
+def test_errors_are_those_of_the_written_numbers() -> None:
+    found = simplify(body(tailed_hull() + mast()))
+    whole = found.mesh.volume
+    assert sum(p.volume for p in found.parts) + found.unassigned == pytest.approx(whole, rel=1e-9)
+    for p in found.parts:
+        if isinstance(p.part.form, Plate):
+            assert p.volume_error == -1.0
+            assert p.projected_errors[2] == pytest.approx(0.0, abs=1e-3)
+            continue
+        assert p.volume_error == pytest.approx(p.part.form.volume / p.volume - 1.0)
+        assert abs(p.volume_error) < 5e-4
+        assert np.mean(p.projected_errors[1:]) == pytest.approx(0.0, abs=2e-3)
+        assert p.projected_errors[0] == pytest.approx(shadow(p.part.form, np.eye(3)[0]) / p.projected[0] - 1.0)
+    row = found.total_table().rows[0]
+    assert row[3] == f"{100.0 * (found.shape.volume / whole - 1.0):+.1f} %"
+
+
+@pytest.mark.slow
+def test_the_file_holds_exactly_the_parts(tmp_path: Path) -> None:
+    made = body(tailed_hull() + mast(), turn=rotation(0.1, 0.2, 0.3))
+    found = simplify(made)
+    path = tmp_path / "body.toml"
+    path.write_bytes(found.part_file())
+    again = read(path)
+    assert again.source.kind == "computed"
+    assert "b/b.stl, sha256 " + "0" * 64 in again.source.how_obtained
+    assert again.reference_point == pytest.approx([-1.0, 0.0, 0.0])
+    assert again.scaling == Scaling(4.0, "length")
+    for p, q in zip(again.shape.parts, found.shape.parts, strict=True):
+        assert (p.name, p.form) == (q.name, q.form)
+        assert np.array_equal(p.centre, q.centre)
+        assert p.rotation == pytest.approx(q.rotation, abs=1e-12)
+    text = path.read_text()
+    assert text.count("# errors: volume") == len(found.parts)
+    assert found.part_file() == simplify(made).part_file()
+
+
+def test_scale_does_not_matter() -> None:
+    small = body(tailed_hull().scale((0.01, 0.01, 0.01)))
+    large = body(tailed_hull().scale((30.0, 30.0, 30.0)))
+    for p, q in zip(simplify(small).parts, simplify(large).parts, strict=True):
+        assert p.part.name == q.part.name
+        assert type(p.part.form) is type(q.part.form)
+        assert np.array(p.likeness.sizes) * 3000.0 == pytest.approx(q.likeness.sizes, rel=1e-6)
+
+
+def test_separate_shells_that_overlap() -> None:
+    """A slab through the hull is two plates, and the hull keeps what they share."""
+    slab = Manifold.cube((0.3, 1.2, 0.02), True).translate((-1.5, 0.0, 0.0))
+    found = simplify(body(rod(HULL, LENGTH), slab))
+    assert [p.part.name for p in found.parts] == ["hull", "plate_port", "plate_starboard"]
+    assert found.parts[0].volume == pytest.approx(rod(HULL, LENGTH).volume(), rel=1e-12)
+    assert found.parts[1].volume == pytest.approx(0.3 * 0.02 * (0.6 - HULL), rel=2e-3)
+    assert "overlap by 0.00299" in found.statements[0]
+
+
+def test_boxes_name_parts_and_come_first() -> None:
+    sail = NamedBox("sail", (0.0, -0.2, -2.0), (1.0, 0.2, -HULL))
+    rudder = NamedBox("rudder", (-2.0, -0.1, -0.7), (-1.0, 0.1, -HULL))
+    found = simplify(body(tailed_hull() + mast()), (sail, rudder), expected=6)
+    names = [p.part.name for p in found.parts]
+    assert names[0] == "hull"
+    assert {"sail", "rudder", "plate_port", "plate_starboard", "plate_bottom"} == set(names[1:])
+
+
+def test_other_forms_and_an_ellipsoid_hull() -> None:
+    x = np.linspace(-1.0, 1.0, 121)
+    spindle = lathe(x, 0.2 * np.sqrt(1.0 - x**2))
+    pod = Manifold.cube((0.4, 0.2, 0.2), True).translate((0.0, 0.0, 0.5))
+    found = simplify(body(spindle, pod))
+    assert [p.part.name for p in found.parts] == ["hull", "box_bottom"]
+    assert isinstance(found.parts[0].part.form, Ellipsoid)
+    assert found.parts[0].part.form.axes == pytest.approx([1.0, 0.2, 0.2], rel=5e-3)
+    assert found.parts[0].part.form.y == found.parts[0].part.form.z
+    assert found.parts[1].part.form == Box(0.4, 0.2, 0.2)
+
+
+def test_what_is_like_nothing_is_said() -> None:
+    duct = rod(1.0, 1.0) - rod(0.8, 1.2)
+    found = simplify(body(duct))
+    assert "neither cylinder, plate, ellipsoid nor box" in found.parts[0].remarks[0]
+    assert "(stand-in)" in found.part_table().rows[0][1]
+    assert found.as_json()["parts"][0]["stand_in"]
+    assert abs(found.parts[0].volume_error) < 1e-3
+
+
+@pytest.mark.slow
+def test_plates_are_named_by_side_of_a_turned_hull() -> None:
+    """The hull's own axes decide, so a trimmed hull keeps its port and starboard."""
+    found = simplify(body(tailed_hull(), turn=rotation(0.0, np.radians(20.0), np.radians(15.0))))
+    assert {p.part.name for p in found.parts} == {"hull", "plate_port", "plate_starboard", "plate_top", "plate_bottom"}
+
+
+def test_two_fins_on_one_side_are_numbered() -> None:
+    hull = rod(HULL, LENGTH) + fin(0.3, 0.02, 0.6, 90.0, -1.7) + fin(0.3, 0.02, 0.6, 90.0, 1.2)
+    names = [p.part.name for p in simplify(body(hull)).parts]
+    assert names == ["hull", "plate_starboard_1", "plate_starboard_2"]
+
+
+def test_many_faces_are_decimated_and_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(study, "MOST_FACES", 2000)
+    monkeypatch.setattr(study, "KEPT_FACES", 1500)
+    found = simplify(body(Manifold.sphere(1.0, 64)))
+    assert "faces decimated to" in found.statements[0]
+    assert found.part_file().decode().count("decimated") == 1
+    assert found.parts[0].part.form.volume == pytest.approx(4.0 * np.pi / 3.0, rel=0.05)
+
+
+def open_mesh() -> Body:
+    vertices, faces = surface(rod(0.2, 2.0))
+    return Body("b", "", "nose", np.zeros(3), {}, (), Source(""), (), TriangleMesh(vertices, faces[1:]))
+
+
+def hollow() -> Body:
+    outer, faces = surface(Manifold.sphere(1.0, 32))
+    inner, more = surface(Manifold.sphere(0.5, 32))
+    mesh = TriangleMesh(np.vstack([outer, inner]), np.vstack([faces, more[:, ::-1] + len(outer)]))
+    return Body("b", "", "nose", np.zeros(3), {}, (), Source(""), (), mesh)
+
+
+@pytest.mark.parametrize(
+    ("made", "boxes", "expected", "said"),
+    [
+        ("open", (), None, "not closed"),
+        ("hollow", (), None, "a shell that looks inward"),
+        ("plate", (), None, "nothing but plates"),
+        ("rod", (), 2, r"1 parts \(1 cylinder\); expected 2 parts"),
+        ("rod", (("m", (5, 5, 5), (6, 6, 6)),), None, "holds no vertex of the mesh; expected a box within x -1 to 1"),
+        ("rod", (("m", (0, 0, -1), (2, 1, 1)), ("m", (0, -1, -1), (2, 0, 1))), None, 'two boxes called "m"'),
+        ("rod", (("m", (-3, -1, -1), (3, 1, 1)),), None, ""),
+        ("rod", (("m", (0.9999, -1, -1), (3, 1, 1)),), None, "holds next to no volume"),
+    ],
+)
+def test_gates(made: str, boxes: tuple, expected: int | None, said: str) -> None:
+    of = {
+        "open": open_mesh, "hollow": hollow, "plate": lambda: body(Manifold.cube((1.0, 1.0, 0.02))),
+        "rod": lambda: body(rod(0.2, 2.0)),
+    }[made]()  # fmt: skip
+    drawn = tuple(NamedBox(n, tuple(map(float, low)), tuple(map(float, high))) for n, low, high in boxes)
+    if not said:
+        assert [p.part.name for p in simplify(of, drawn, expected).parts] == ["m"]
+        return
+    with pytest.raises(InputError, match=said):
+        simplify(of, drawn, expected)
+
+
+def test_a_body_without_a_mesh() -> None:
+    parts = simplify(body(rod(0.2, 2.0))).body
+    with pytest.raises(InputError, match="which is no mesh"):
+        simplify(parts)
