@@ -19,12 +19,12 @@ def command(
     from coeflab.core.citations import work
     from coeflab.core.files import located
     from coeflab.presentation import added_mass_tables as tables
-    from coeflab.studies.triangulate import triangulate
+    from coeflab.workbench.hulls import added_masses
     from coeflab.workbench import read_body
 
     path = located(body, "geometry")
     with show.narrated():
-        found = triangulate(read_body(path / "body.toml" if path.is_dir() else path), density, method)
+        found = added_masses(read_body(path / "body.toml" if path.is_dir() else path), density, method)
     if json:
         show.json_object({r.method: r.matrix.tolist() for r in found.results})
         return

@@ -24,7 +24,7 @@ def command(
     from coeflab.core.files import write_atomically
     from coeflab.model.parameter_file import read_parameter_file
     from coeflab.presentation import loss_tables
-    from coeflab.studies.export import export
+    from coeflab.workbench.exports import export
 
     parameters = read_parameter_file(file)
     made = export(parameters, to)

@@ -36,6 +36,7 @@ from coeflab.model.potential import potential_part
 from coeflab.model.reference import Reference
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.study import PlannedParameterFile
+from coeflab.model.triangulation import Triangulation
 
 
 def _written(
@@ -105,8 +106,7 @@ def assemble(
     body: Body | None,
     conditions: Conditions,
     inputs: Sequence[InputFile],
-    added_mass: tuple[AddedMass, ...] = (),
-    density: float = 0.0,
+    found: Triangulation | None = None,
 ) -> ParameterFile:
     """Build the parameter file of a group of campaigns.
 
@@ -116,10 +116,8 @@ def assemble(
 
     Parameters
     ----------
-    added_mass : tuple of AddedMass
-        By several methods, the one to use first; its potential part is booked in every coefficient.
-    density : float
-        That these were computed with, kg/m^3.
+    found : Triangulation, optional
+        Added mass; the potential part by the recommended method is booked in every coefficient.
 
     Raises
     ------
@@ -151,9 +149,9 @@ def assemble(
         notes += note
     prime = mass.primed(first.scaling, conditions.density) if mass else (1.0, 0.0)
     hull, record = None, None
-    if added_mass:
-        record = added_mass_record(added_mass[0], added_mass[1:], density, first.reference_point, first.datum)
-        hull = added_mass[0].about(first.reference_point)
+    if found is not None:
+        record = added_mass_record(found, first.reference_point, first.datum)
+        hull = found.recommended.about(first.reference_point)
         if hull.body != group.body:
             notes.append(
                 f"added mass is that of {hull.body}, the coefficients are those of {group.body}: their potential parts are "
@@ -176,7 +174,9 @@ def assemble(
         )
         if mass
         else None,
-        coefficients=tuple(_written(c, first.scaling, conditions, hull, density) for c in coefficients),
+        coefficients=tuple(
+            _written(c, first.scaling, conditions, hull, found.density if found else 0.0) for c in coefficients
+        ),
         covariance=ParameterCovariance(
             symbols=tuple(primed(c.symbol) for c in coefficients),
             matrix=tuple(tuple(None if np.isnan(v) else float(v) for v in row) for row in covariance),

@@ -9,6 +9,7 @@ from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.kernels.composition import definiteness
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.schema_types import Finite, Name, Positive, Strict
+from coeflab.model.triangulation import Triangulation
 
 Row = tuple[Finite, Finite, Finite, Finite, Finite, Finite]
 Matrix = tuple[Row, Row, Row, Row, Row, Row]
@@ -42,19 +43,12 @@ class ParameterAddedMass(Strict):
         return self
 
 
-def added_mass_record(
-    chosen: AddedMass, others: tuple[AddedMass, ...], density: float, point: np.ndarray, datum: str
-) -> ParameterAddedMass:
-    """The added mass of a file, all methods about its reference point.
+def added_mass_record(found: Triangulation, point: np.ndarray, datum: str) -> ParameterAddedMass:
+    """The added mass of a file, the recommended method and the others about its reference point.
 
     Parameters
     ----------
-    chosen : AddedMass
-        The one to use.
-    others : tuple of AddedMass
-        Other methods, of the same body.
-    density : float
-        That all were computed with, kg/m^3.
+    found : Triangulation
     point : (3,) array
     datum : str
         Of the file.
@@ -64,6 +58,7 @@ def added_mass_record(
     ScalingMismatchError
         The body measures points from another datum.
     """
+    chosen, *others = found.ordered
     if chosen.datum != datum:
         raise ScalingMismatchError(
             f"the added mass of {chosen.body} is stated from {shown(chosen.datum)}, the parameter file from {shown(datum)}; "
@@ -73,15 +68,20 @@ def added_mass_record(
         {
             "body": chosen.body,
             "method": chosen.method,
-            "density": density,
+            "density": found.density,
             "matrix": _rows(chosen, point),
-            "others": tuple({"method": o.method, "matrix": _rows(o, point)} for o in others),
+            "others": tuple({"method": o.method, "matrix": _rows(o, point)} for o in others if o.definiteness.holds),
             "statements": chosen.statements,
         }
     )
 
 
 def _rows(found: AddedMass, point: np.ndarray) -> tuple[tuple[float, ...], ...]:
+    """Symmetric, to ten digits of the diagonal: what is below differs from one machine to the next."""
     matrix = found.about(point).matrix
-    cut = 1e-12 * float(np.max(np.abs(matrix)))
-    return tuple(tuple(float(v) if abs(v) > cut else 0.0 for v in row) for row in (matrix + matrix.T) / 2.0)
+    diagonal = np.diag(matrix)
+    cut = 1e-10 * np.sqrt(np.outer(diagonal, diagonal))
+    return tuple(
+        tuple(float(f"{v:.10g}") if abs(v) > c else 0.0 for v, c in zip(row, least, strict=True))
+        for row, least in zip((matrix + matrix.T) / 2.0, cut, strict=True)
+    )

@@ -88,13 +88,16 @@ def read_plan(path: Path) -> Plan:
     root = read_toml(path)
     study = root.section("study")
     scaling, conditions, body = (root.section(k, required=False) for k in ("scaling", "conditions", "body"))
+    added_mass = root.section("added_mass", required=False)
     wanted = study.texts("wanted") or ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
     for symbol in wanted:
         study.symbol("wanted", symbol)
     files = []
     for s in root.sections("parameter_file"):
         name, group = safe_name(s, "name"), s.texts("campaigns")
-        files.append(PlannedParameterFile(name, s.text("body"), group, s.texts("literature")))
+        hull = _path(s, "added_mass", "geometry") if s.has("added_mass") else None
+        method = s.text("added_mass_method", "all")
+        files.append(PlannedParameterFile(name, s.text("body"), group, s.texts("literature"), hull, method))
         if name.casefold() in {f.name.casefold() for f in files[:-1]}:
             raise s.fail("name", f"the parameter file {shown(name)} twice", "a name of its own for each")
         s.finish()
@@ -122,7 +125,9 @@ def read_plan(path: Path) -> Plan:
         wanted=tuple(w.removesuffix("'") for w in wanted),
         include_uncertain=study.flag("include_uncertain", False),
         file=InputFile(path.name, sha256_of(path)),
+        hull=_path(added_mass, "body", "geometry") if added_mass.content else None,
+        method=added_mass.text("method", "all"),
     )
-    for section in (study, scaling, conditions, body, root):
+    for section in (study, scaling, conditions, body, added_mass, root):
         section.finish()
     return plan

@@ -21,6 +21,7 @@ from coeflab.model.force_table import ForceTable
 from coeflab.model.frozen import locked
 from coeflab.model.reference import Comparison, Reference
 from coeflab.model.scaling import Conditions, Scaling
+from coeflab.model.triangulation import Triangulation
 
 if TYPE_CHECKING:
     from coeflab.model.parameter_file import ParameterFile
@@ -47,12 +48,24 @@ class PlannedJoint:
 
 @dataclass(frozen=True, slots=True)
 class PlannedParameterFile:
-    """One ``[[parameter_file]]``: which campaigns and which literature it holds."""
+    """One ``[[parameter_file]]``: which campaigns, which literature and whose added mass it holds.
+
+    Attributes
+    ----------
+    name, body : str
+    campaigns, literature : tuple of str
+    hull : Path or None
+        The body.toml of the added mass.
+    method : str
+        ``all`` recommends one by the stated rule, else a method's name.
+    """
 
     name: str
     body: str
     campaigns: tuple[str, ...]
     literature: tuple[str, ...]
+    hull: Path | None = None
+    method: str = "all"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,6 +111,8 @@ class Plan:
     include_uncertain: bool = False
     file: InputFile | None = None
     joint: tuple[PlannedJoint, ...] = ()
+    hull: Path | None = None
+    method: str = "all"
 
     def __post_init__(self) -> None:
         if self.reference_point is not None:
@@ -106,7 +121,10 @@ class Plan:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Study:
-    """Everything that a run found; export and report are two leaves of this one object."""
+    """Everything that a run found; export and report are two leaves of this one object.
+
+    ``parameter_files`` and ``hulls``, the added mass of those that have one, go by the name of the file.
+    """
 
     plan: Plan
     tables: tuple[ForceTable, ...]
@@ -119,9 +137,11 @@ class Study:
     inputs: tuple[InputFile, ...]
     budgets: tuple[Budget, ...] = ()
     checks: tuple[Check, ...] = ()
+    hulls: Mapping[str, Triangulation] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parameter_files", MappingProxyType(dict(self.parameter_files)))
+        object.__setattr__(self, "hulls", MappingProxyType(dict(self.hulls)))
 
     @property
     def coefficients(self) -> tuple[Coefficient, ...]:

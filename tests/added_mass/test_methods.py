@@ -16,7 +16,7 @@ from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.scaling import Scaling
 from coeflab.presentation.added_mass_tables import derivatives
-from coeflab.studies.triangulate import methods, triangulate
+from coeflab.workbench.hulls import added_masses, methods
 from coeflab.workbench import read_body
 
 RHO = 1000.0
@@ -37,7 +37,7 @@ def body(folder: Path, parts: str, point: str = "[0.0, 0.0, 0.0]") -> Body:
 
 @pytest.mark.parametrize("name", BODIES)
 def test_every_method_gives_a_kinetic_energy(name: str) -> None:
-    found = triangulate(shipped_body(name), RHO)
+    found = added_masses(shipped_body(name), RHO)
     assert found.results
     for result in found.results:
         assert result.definiteness.holds
@@ -47,10 +47,11 @@ def test_every_method_gives_a_kinetic_energy(name: str) -> None:
 
 def test_methods_agree_on_a_spheroid() -> None:
     exact = ellipsoid_added_mass(np.array([1.5, 0.25, 0.25]), RHO)
-    results = {r.method: r.matrix for r in triangulate(shipped_body("spheroid_example"), RHO).results}
-    assert set(results) == {"ellipsoid", "primitives", "primitives:lamb", "strip", "strip:lamb"}
-    for name in set(results) - {"strip"}:
+    results = {r.method: r.matrix for r in added_masses(shipped_body("spheroid_example"), RHO).results}
+    assert set(results) == {"ellipsoid", "primitives", "primitives:lamb", "panel", "strip", "strip:lamb"}
+    for name in set(results) - {"panel", "strip"}:
         assert results[name] == pytest.approx(exact, rel=1e-10, abs=1e-9)
+    assert np.diag(results["panel"]) == pytest.approx(np.diag(exact), rel=1e-3)
     assert results["strip"][1, 1] == pytest.approx(RHO * 4.0 / 3.0 * np.pi * 1.5 * 0.0625, rel=1e-10)
 
 
@@ -114,7 +115,7 @@ def test_suboff_beside_roddy_is_not_tuned() -> None:
     hull = shipped_body("suboff_bare_hull")
     lbp = hull.scaling
     assert lbp == Scaling(13.9792 * 0.3048, "LBP")
-    results = {r.method: r for r in triangulate(hull, RHO).results}
+    results = {r.method: r for r in added_masses(hull, RHO).results}
     assert results["strip"].primed("Yvdot", lbp, RHO) == pytest.approx(-0.0181, abs=5e-5)
     assert results["strip:lamb"].primed("Yvdot", lbp, RHO) == pytest.approx(-0.0171, abs=5e-5)
     measured = {m.symbol: m.bounds for m in hull.measured}
@@ -159,7 +160,7 @@ def test_statements_name_what_is_estimated(tmp_path: Path) -> None:
         '[[part]]\nname = "box"\nform = "box"\nlength = 1\nwidth = 1\nheight = 1\ncentre = [0, 0, 0]\n'
     )
     said = " ".join(primitives.added_mass(body(tmp_path, parts), RHO).statements)
-    for words in ("slat: aspect 20", "puck: shorter than its diameter", "equal volume and proportions", "panel code"):
+    for words in ("slat: aspect 20", "puck: shorter than its diameter", "equal volume and proportions", "doublet lattice"):
         assert words in said
 
 
@@ -169,7 +170,7 @@ def test_methods_that_do_not_apply() -> None:
         primitives.added_mass(suboff, RHO)
     with pytest.raises(InputError, match="no body of revolution about x"):
         strip.added_mass(huuv, RHO)
-    assert set(triangulate(suboff, RHO).refused) == {"primitives"}
+    assert set(added_masses(suboff, RHO).refused) == {"primitives"}
     for name in ADDED_MASS.names():
         with pytest.raises(InputError, match="without a shape"):
             ADDED_MASS.load(name).added_mass(shipped_body("suboff"), RHO)
@@ -177,7 +178,7 @@ def test_methods_that_do_not_apply() -> None:
 
 def test_plates_alone_have_no_ellipsoid(tmp_path: Path) -> None:
     plate = '[[part]]\nname = "p"\nform = "plate"\nchord = 1\nspan = 1\ncentre = [0, 0, 0]'
-    found = triangulate(body(tmp_path, plate), RHO)
+    found = added_masses(body(tmp_path, plate), RHO)
     assert "displace nothing" in found.refused["ellipsoid"]
     assert found.results[0].matrix[2, 2] == pytest.approx(0.579 * np.pi / 4.0 * RHO)
     assert derivatives(found).rows
@@ -186,14 +187,14 @@ def test_plates_alone_have_no_ellipsoid(tmp_path: Path) -> None:
 @pytest.mark.parametrize("density", [0.0, -1.0, np.nan, np.inf])
 def test_densities_that_cannot_be(density: float) -> None:
     with pytest.raises(InputError, match="a density of"):
-        triangulate(shipped_body("huuv"), density)
+        added_masses(shipped_body("huuv"), density)
 
 
 def test_names_of_methods() -> None:
     assert {"ellipsoid", "primitives", "strip", "strip:lamb"} <= set(methods())
     with pytest.raises(PluginError, match="did you mean strip"):
-        triangulate(shipped_body("spheroid_example"), RHO, "stripe")
+        added_masses(shipped_body("spheroid_example"), RHO, "stripe")
     with pytest.raises(InputError, match='unknown preset "lam" of strip'):
-        triangulate(shipped_body("spheroid_example"), RHO, "strip:lam")
+        added_masses(shipped_body("spheroid_example"), RHO, "strip:lam")
     with pytest.raises(InputError, match="one of none, lamb"):
         strip.added_mass(shipped_body("spheroid_example"), RHO, {"end_correction": "lam"})

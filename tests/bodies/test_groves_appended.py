@@ -14,7 +14,7 @@ from coeflab.kernels.decimation import is_closed
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.meshing import meshed
 from coeflab.model.shape import Revolution
-from coeflab.studies.triangulate import triangulate
+from coeflab.workbench.hulls import added_masses
 from coeflab.workbench import read_body
 
 BODY = shipped("geometry") / "suboff_aff8" / "body.toml"
@@ -97,7 +97,7 @@ def test_error_falls_with_the_hull(whole: TriangleMesh) -> None:
 
 
 def test_added_mass_of_an_ellipsoid_as_heavy() -> None:
-    found = triangulate(read_body(BODY), 1000.0, "ellipsoid").results[0]
+    found = added_masses(read_body(BODY), 1000.0, "ellipsoid").results[0]
     assert found.matrix[1, 1] > found.matrix[2, 2] > 0.9 * 1000.0 * 0.7057
     assert found.matrix[1, 3] > 0.0
 

@@ -162,6 +162,11 @@ def test_wrong_units(tmp_path: Path, solid: trimesh.Trimesh, declared: str, said
             '[[configuration]]\nname = "bare"\nvolume = 0.02',
             ["a volume of 0.0317385 m^3", "0.02 m^3 as in [[configuration]] bare"],
         ),
+        (
+            "cm",
+            '[[configuration]]\nname = "bare"\nvolume = 0.0317',
+            ["a volume of 31.7385 m^3", 'Is the unit "mm"?'],
+        ),
     ],
 )
 def test_far_from_what_is_stated(

@@ -17,7 +17,7 @@ from coeflab.core.files import shipped
 from coeflab.kernels.decimation import is_closed
 from coeflab.model.meshing import dense_meridian, meshed
 from coeflab.model.shape import Revolution
-from coeflab.studies.triangulate import triangulate
+from coeflab.workbench.hulls import added_masses
 from coeflab.workbench import read_body
 
 BODY = shipped("geometry") / "remus100" / "body.toml"
@@ -71,7 +71,7 @@ def test_shipped_body() -> None:
 
 
 def test_added_mass_by_sections_and_by_an_ellipsoid() -> None:
-    found = {r.method: r.matrix for r in triangulate(read_body(BODY), 1000.0).results}
+    found = {r.method: r.matrix for r in added_masses(read_body(BODY), 1000.0).results}
     mass = 1000.0 * REMUS.meridian().volume
     assert found["strip"][1, 1] == pytest.approx(mass, rel=1e-9)
     assert 0.9 * mass < found["ellipsoid"][1, 1] < mass

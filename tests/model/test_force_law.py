@@ -7,15 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.core.provenance import Source
 from coeflab.kernels.kirchhoff import ideal_force
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.assemble import assemble
+from coeflab.model.body import Body
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_law import force_law
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.scaling import Conditions, Scaling
+from coeflab.model.shape import Box, Part, Parts
 from coeflab.model.study import PlannedParameterFile
+from coeflab.model.triangulation import Triangulation
 from tests.presentation.studies import FULL, small_table
 
 LENGTH, AT = Scaling(2.0, "LOA"), Conditions(1000.0, 1.5)
@@ -33,8 +37,12 @@ def parameters(values: dict[str, float], hull: AddedMass | None = None, **more: 
     )
     fit = FitResult("slope_at_origin", "tow", "body of tow", among, (), (), {})
     group = PlannedParameterFile("file", "body of tow", ("tow",), ())
-    given = () if hull is None else (hull,)
-    return assemble(group, "study", [fit], [small_table(FULL)], [], [], None, AT, [], given, AT.density)
+    given = None
+    if hull is not None:
+        box = Part("hull", Box(2.0, 0.5, 0.5), np.zeros(3), np.eye(3))
+        body = Body(hull.body, "", "nose", np.zeros(3), {}, (), Source("synthetic"), (), shape=Parts((box,)))
+        given = Triangulation(body, AT.density, (hull,), {}, ())
+    return assemble(group, "study", [fit], [small_table(FULL)], [], [], None, AT, [], given)
 
 
 def drifting(beta: float, speed: float) -> np.ndarray:

@@ -1,16 +1,20 @@
-"""One body's added mass by every method."""
+"""Added mass of a body by every method."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from coeflab.added_mass import ADDED_MASS
 from coeflab.core.errors import InputError
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
+from coeflab.model.study import PlannedParameterFile
 from coeflab.model.triangulation import Triangulation
+from coeflab.workbench.reading import read_body
 
 DENSEST = 1e5
+FILE = "body.toml"
 
 
 def methods() -> tuple[str, ...]:
@@ -21,7 +25,16 @@ def methods() -> tuple[str, ...]:
     return tuple(out)
 
 
-def triangulate(body: Body, density: float, method: str = "all") -> Triangulation:
+def hull_of(group: PlannedParameterFile, density: float, progress: Callable[[str], None]) -> Triangulation | None:
+    """Added mass for a parameter file, by all methods or the one that the plan names; None where it names no hull."""
+    if group.hull is None:
+        return None
+    body = read_body(group.hull / FILE if group.hull.is_dir() else group.hull)
+    progress(f"added mass of {body.name}")
+    return added_masses(body, density, group.method, reproducible=True)
+
+
+def added_masses(body: Body, density: float, method: str = "all", *, reproducible: bool = False) -> Triangulation:
     """Run one method, or all that apply.
 
     Parameters
@@ -31,6 +44,8 @@ def triangulate(body: Body, density: float, method: str = "all") -> Triangulatio
         kg/m^3.
     method : str
         ``all``, a plugin's name, or a name with a preset.
+    reproducible : bool
+        Take the options of each plugin that give the same numbers with and without optional packages.
 
     Raises
     ------
@@ -53,8 +68,9 @@ def triangulate(body: Body, density: float, method: str = "all") -> Triangulatio
         known = getattr(plugin, "presets", {})
         if preset and preset not in known:
             raise InputError(f'the unknown preset "{preset}" of {plugin_name}', f"one of {', '.join(known) or 'none'}")
+        options = {**(getattr(plugin, "reproducible", {}) if reproducible else {}), **(known[preset] if preset else {})}
         try:
-            found = plugin.added_mass(body, density, known[preset]) if preset else plugin.added_mass(body, density)
+            found = plugin.added_mass(body, density, options) if options else plugin.added_mass(body, density)
         except InputError as why:
             if method != "all":
                 raise

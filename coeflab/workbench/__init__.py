@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
-from coeflab.bodies import BODIES
 from coeflab.checks import CHECKS
-from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.symbols import MOTIONS
-from coeflab.core.toml import read_toml
 from coeflab.exporters import EXPORTERS
 from coeflab.fits import FITS
-from coeflab.importers import IMPORTERS
 from coeflab.model.assemble import assemble
 from coeflab.model.body import Body
 from coeflab.model.budget import Budget, budgets_of, with_budget
-from coeflab.model.campaign import FILE, read_campaign
 from coeflab.model.coefficient import Coefficient, Status
-from coeflab.model.declared import declared
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
 from coeflab.model.joint_rows import joint_name
@@ -28,8 +22,12 @@ from coeflab.model.model_budget import with_model_budgets
 from coeflab.model.reference import compare, compare_set, read_references
 from coeflab.model.scaling import Scaling
 from coeflab.model.several_campaigns import one_length
-from coeflab.model.study import Plan, PlannedJoint, PlannedParameterFile, PlannedTable, Study
+from coeflab.model.study import Plan, PlannedParameterFile, Study
 from coeflab.reporting import REPORTERS
+from coeflab.workbench.hulls import hull_of
+from coeflab.workbench.reading import read_body, read_tables, settled, together
+
+__all__ = ["read_body", "read_tables", "rendered", "run"]
 
 Progress = Callable[[str], None]
 FEWEST = 3
@@ -58,7 +56,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     fits: list[FitResult] = []
     budgets: list[Budget] = []
     for planned in plan.tables:
-        read = [_settled(t, plan) for t in read_tables(planned)]
+        read = [settled(t, plan) for t in read_tables(planned)]
         progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
         scaling = plan.scaling or read[0].scaling
         for name in planned.fits:
@@ -68,7 +66,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
             progress(f"fitted {read[0].campaign} by {name}")
         tables += read
     for joint in plan.joint:
-        read = _together(joint, plan)
+        read = together(joint, plan)
         progress(f"read {joint_name(t.campaign for t in read)}: {sum(map(len, read))} rows")
         fitted, found = _fitted(joint.fit, read, plan.scaling or one_length(read), joint.options)
         budgets += found
@@ -77,11 +75,12 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         tables += [t for t in read if t.name not in {known.name for known in tables}]
     body = read_body(plan.body) if plan.body else None
     references = tuple(r for path in plan.references for r in read_references(path))
-    groups = plan.parameter_files or _groups(fits)
+    groups = plan.parameter_files or _groups(fits, plan)
     missing = tuple(c for g in groups for c in _missing(g, fits, plan.wanted))
     first = plan.scaling or fits[0].coefficients.scaling
     conditions = plan.conditions or tables[0].conditions
-    inputs = _inputs(plan, tables, body)
+    hulls = {g.name: h for g in groups if (h := hull_of(g, conditions.density, progress)) is not None}
+    inputs = _inputs(plan, tables, [b for b in (body, *(h.body for h in hulls.values())) if b is not None])
     study = Study(
         plan=plan,
         tables=tuple(tables),
@@ -92,8 +91,12 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         comparisons=tuple(c for f in fits for c in compare_set(f.coefficients, references))
         + compare(missing, references, first),
         parameter_files={
-            g.name: assemble(g, plan.name, fits, tables, missing, references, body, conditions, inputs) for g in groups
+            g.name: assemble(
+                g, plan.name, fits, tables, missing, references, body, conditions, inputs, hulls.get(g.name)
+            )
+            for g in groups
         },
+        hulls=hulls,
         inputs=inputs,
         budgets=tuple(budgets),
     )
@@ -116,17 +119,6 @@ def _fitted(
     found = budgets_of(fit, {t.name: t for t in tables})
     fit, more = with_model_budgets(with_budget(fit, found), tables, scaling, once)
     return fit, (*found, *more)
-
-
-def _together(joint: PlannedJoint, plan: Plan) -> list[ForceTable]:
-    """All tables of a joint fit, each once."""
-    read = [_settled(t, plan) for planned in joint.tables for t in read_tables(planned)]
-    names = [t.name for t in read]
-    twice = next((n for n in names if names.count(n) > 1), None)
-    if twice is not None:
-        raise InputError(f"the table {shown(twice)} twice", "every table once, and campaigns of different names",
-                         column="campaigns", advice="A row that counts twice makes every interval too narrow.")  # fmt: skip
-    return read
 
 
 def _refuse_several(name: str, tables: Sequence[ForceTable]) -> None:
@@ -152,42 +144,7 @@ def _refuse_starved(fit: FitResult) -> None:
             )
 
 
-def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
-    """The tables of a planned campaign: a folder, its campaign.toml, or one CSV beside it."""
-    path = planned.campaign
-    declaration = path / FILE if path.is_dir() else path if path.suffix == ".toml" else path.parent / FILE
-    if not declaration.exists():
-        raise InputError(
-            f"no {FILE} in {declaration.parent}",
-            f"a {FILE} that declares axes, angle sign, reference point and scaling",
-            file=path,
-            advice="`coeflab new DIR` writes a commented one.",
-        )
-    campaign = read_campaign(declaration)
-    return declared(IMPORTERS.load(campaign.importer).read(campaign, planned.only), campaign)
-
-
-def read_body(path: Path) -> Body:
-    """A body, by the reader that its body.toml names."""
-    head = read_toml(path).section("body")
-    return BODIES.load(head.text("reader", "particulars")).read(path)
-
-
-def _settled(table: ForceTable, plan: Plan) -> ForceTable:
-    """The table about the plan's reference point."""
-    if plan.include_uncertain:
-        table = table.with_uncertain_cells()
-    if plan.reference_point is None:
-        return table
-    if plan.datum and plan.datum != table.datum:
-        raise ScalingMismatchError(
-            f"the plan measures points from {shown(plan.datum)}, {table.campaign} from {shown(table.datum)}; "
-            "state the reference point from one datum."
-        )
-    return table.about(plan.reference_point)
-
-
-def _groups(fits: list[FitResult]) -> tuple[PlannedParameterFile, ...]:
+def _groups(fits: list[FitResult], plan: Plan) -> tuple[PlannedParameterFile, ...]:
     """One parameter file per body when the plan names none."""
     bodies: dict[str, list[str]] = {}
     for f in fits:
@@ -195,7 +152,9 @@ def _groups(fits: list[FitResult]) -> tuple[PlannedParameterFile, ...]:
     names = [_file_name(b) for b in bodies]
     numbered = [n if names.count(n) == 1 else f"{n}_{names[:i].count(n) + 1}" for i, n in enumerate(names)]
     groups = zip(numbered, bodies.items(), strict=True)
-    return tuple(PlannedParameterFile(n, b, tuple(dict.fromkeys(c)), ()) for n, (b, c) in groups)
+    return tuple(
+        PlannedParameterFile(n, b, tuple(dict.fromkeys(c)), (), plan.hull, plan.method) for n, (b, c) in groups
+    )
 
 
 def _file_name(body: str) -> str:
@@ -221,10 +180,10 @@ def _missing(group: PlannedParameterFile, fits: list[FitResult], wanted: tuple[s
     ]
 
 
-def _inputs(plan: Plan, tables: list[ForceTable], body: Body | None) -> tuple[InputFile, ...]:
+def _inputs(plan: Plan, tables: list[ForceTable], bodies: list[Body]) -> tuple[InputFile, ...]:
     files = [plan.file] if plan.file else []
     files += [f for t in tables for f in t.files]
-    files += list(body.files) if body else []
+    files += [f for b in bodies for f in b.files]
     files += [InputFile(p.name, sha256_of(p)) for p in plan.references]
     return tuple(dict.fromkeys(files))
 

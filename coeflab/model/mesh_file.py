@@ -1,0 +1,114 @@
+"""A mesh file as vertices and faces, as they stand there."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, shown
+from coeflab.model.mesh_headers import FORMATS
+
+if TYPE_CHECKING:
+    from trimesh import Scene, Trimesh
+
+MOST_FACES = 5_000_000
+BYTES_PER_FACE = 1500
+WORTH_SAYING = 500_000
+
+log = logging.getLogger(__name__)
+
+Array = NDArray[np.float64]
+
+
+def memory(faces: int) -> str:
+    """How much memory a mesh of so many faces takes at most, from file to added mass, in words."""
+    return f"about {max(faces * BYTES_PER_FACE / 1e9, 0.1):.1f} GB of memory"
+
+
+def faces_of(path: Path) -> int:
+    """How many faces a mesh file holds by its own account, checked against its size; nothing is loaded.
+
+    Raises
+    ------
+    InputError
+        Not there, a folder, empty, of another format, cut short, or with more faces than 5,000,000.
+    """
+    kind = path.suffix.lower().lstrip(".")
+    try:
+        if path.is_dir():
+            raise InputError("a folder", "a mesh file", file=path)
+        if not path.exists():
+            raise InputError("no such file", "a mesh file that exists", file=path)
+        if kind not in FORMATS:
+            advice = "Save it as GLB." if kind == "gltf" else "Export the body as STL."
+            raise InputError(shown(path.suffix), f"a mesh file: {', '.join(FORMATS)}", file=path, advice=advice)
+        if path.stat().st_size == 0:
+            raise InputError("an empty file", "a mesh", file=path)
+        count = FORMATS[kind](path)
+    except (OSError, ValueError) as why:
+        raise InputError(str(getattr(why, "strerror", None) or why), "a readable mesh file", file=path) from None
+    if count == 0:
+        raise InputError("no faces", "triangles of a closed surface", file=path)
+    if count > MOST_FACES:
+        raise InputError(
+            f"{count} faces, which would take {memory(count)}",
+            f"at most {MOST_FACES} ({memory(MOST_FACES)})",
+            file=path,
+            advice="Decimate the mesh first: 100,000 faces describe a hull to better than 0.1 %.",
+        )
+    return count
+
+
+def _only(scene: Scene) -> Trimesh:
+    """All meshes of a scene as one; a single one that stands at the origin is taken as it is, without a copy."""
+    found: Trimesh | None = None
+    if len(scene.graph.nodes_geometry) == len(scene.geometry) == 1:
+        place, name = scene.graph[scene.graph.nodes_geometry[0]]
+        found = scene.geometry[name] if np.array_equal(place, np.eye(4)) else None
+    return scene.to_mesh() if found is None else found
+
+
+def load(path: Path) -> tuple[Array, NDArray[np.int64]]:
+    """Vertices (n, 3) and faces (m, 3) of an STL, OBJ, PLY or GLB; nothing is joined, dropped or mended.
+
+    Polygons become triangles; placed copies within a GLB become one mesh. Materials are not read.
+
+    Raises
+    ------
+    InputError
+        See `faces_of`; or the file is damaged inside, or holds coordinates that are no numbers.
+    """
+    count = faces_of(path)
+    if count >= WORTH_SAYING:
+        log.info("%s: %d faces, %s", path.name, count, memory(count))
+    import trimesh
+
+    kind = path.suffix.lower().lstrip(".")
+    extra: dict[str, Any] = {"skip_materials": True} if kind in ("obj", "glb") else {}
+    try:
+        with path.open("rb") as stream:
+            scene = trimesh.load_scene(stream, file_type=kind, process=False, **extra)
+        found = _only(scene)
+        vertices, faces = np.array(found.vertices, dtype=np.float64), np.array(found.faces, dtype=np.int64)
+    # The parser meets files of any kind; whatever it stumbles over, the file is at fault.
+    except Exception as why:
+        raise InputError(
+            f"contents that cannot be read ({type(why).__name__}: {shown(why)})", f"a whole {kind.upper()}", file=path
+        ) from None
+    if faces.ndim != 2 or len(faces) == 0 or faces.min() < 0 or faces.max() >= len(vertices):
+        raise InputError("no faces, or a face without its vertex", "triangles of a closed surface", file=path)
+    if len(faces) < count:
+        raise InputError(f"{len(faces)} readable faces of {count}", "all of them", file=path, advice="Export it again.")
+    wrong = int(np.sum(~np.isfinite(vertices).all(axis=1)))
+    if wrong:
+        raise InputError(
+            f"{wrong} vertices with coordinates that are no numbers",
+            "finite coordinates",
+            file=path,
+            advice="Export it again.",
+        )
+    return vertices, faces

@@ -1,0 +1,197 @@
+"""Mesh files that are not what they say: refused before anything is loaded."""
+
+from __future__ import annotations
+
+import json
+import logging
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from coeflab.core.errors import InputError
+from coeflab.model import mesh_file, mesh_headers
+from coeflab.model.mesh_file import MOST_FACES, faces_of, load
+
+BALL = trimesh.creation.icosphere(subdivisions=1)
+FORMATS = {"stl": "stl", "ascii.stl": "stl_ascii", "obj": "obj", "ply": "ply", "ascii.ply": "ply_ascii", "glb": "glb"}
+
+
+def content(kind: str) -> bytes:
+    if kind == "ply_ascii":
+        return BALL.export(file_type="ply", encoding="ascii")
+    made = BALL.export(file_type=kind)
+    return made if isinstance(made, bytes) else made.encode()
+
+
+def written(folder: Path, name: str, data: bytes) -> Path:
+    (folder / name).write_bytes(data)
+    return folder / name
+
+
+def refused(path: Path, *words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        load(path)
+    for w in (path.name, *words):
+        assert w in str(caught.value)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format(tmp_path: Path, name: str) -> None:
+    path = written(tmp_path, f"ball.{name}", content(FORMATS[name]))
+    assert faces_of(path) == 80
+    vertices, faces = load(path)
+    assert faces.shape == (80, 3)
+    assert np.linalg.norm(vertices, axis=1) == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@pytest.mark.parametrize("share", [0.0, 0.02, 0.5, 0.97])
+def test_every_format_cut_short(tmp_path: Path, name: str, share: float) -> None:
+    """No truncated file passes unnoticed; an OBJ has no mark of its end and loses faces, which other gates see."""
+    data = content(FORMATS[name])
+    path = written(tmp_path, f"ball.{name}", data[: int(share * len(data))])
+    if name == "obj" and share > 0.9:
+        assert len(load(path)[1]) < 80
+        return
+    refused(path)
+
+
+def test_a_header_that_claims_four_thousand_million_triangles(tmp_path: Path) -> None:
+    data = bytes(80) + struct.pack("<I", 4_000_000_000) + bytes(50)
+    refused(written(tmp_path, "bomb.stl", data), "counts 4000000000 triangles", "200000000084 bytes", "cut short")
+
+
+def test_a_binary_stl_whose_header_says_solid(tmp_path: Path) -> None:
+    data = content("stl")
+    path = written(tmp_path, "s.stl", b"solid facet".ljust(80) + data[80:])
+    assert faces_of(path) == 80
+    assert len(load(path)[1]) == 80
+
+
+def test_ply_that_promises_too_much(tmp_path: Path) -> None:
+    head = "ply\nformat {}\nelement vertex 4000000000\nproperty float x\nproperty float y\nproperty float z\nelement face 12\n"
+    head += "property list uchar int vertex_indices\nend_header\n"
+    for kind in ("binary_little_endian 1.0", "ascii 1.0"):
+        refused(written(tmp_path, "b.ply", head.format(kind).encode() + bytes(500)), "4000000000 vertices", "or more")
+    cloud = head.replace("element face 12", "element face 0").replace("4000000000", "4")
+    refused(written(tmp_path, "c.ply", cloud.format("ascii 1.0").encode()), "Is it a point cloud?")
+    refused(written(tmp_path, "d.ply", b"ply\nformat ascii 1.0\n"), "end_header")
+
+
+def glb(description: object, binary: bytes = b"") -> bytes:
+    text = json.dumps(description).encode()
+    text += b" " * (-len(text) % 4)
+    body = struct.pack("<I", len(text)) + b"JSON" + text + struct.pack("<I", len(binary)) + b"BIN\x00" + binary
+    return b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body
+
+
+def scene(count: int = 3, nodes: object = None, **more: object) -> dict[str, object]:
+    return {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": 36}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": count, "type": "VEC3"}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "nodes": [{"mesh": 0}] if nodes is None else nodes,
+        **more,
+    }
+
+
+@pytest.mark.parametrize(
+    ("description", "words"),
+    [
+        (scene(4_000_000_000), "4000000000 values that the file does not hold"),
+        (scene(nodes=[{"children": [1]}, {"children": [0], "mesh": 0}]), "nodes that are no tree"),
+        (scene(nodes=[{"children": [1, 1]}, {"mesh": 0}]), "nodes that are no tree"),
+        (scene(nodes=[{}] * 10_001), "10001 nodes"),
+        (scene(extensionsRequired=["KHR_draco_mesh_compression"]), "KHR_draco_mesh_compression"),
+        (scene(buffers=[{"uri": "../secret.bin", "byteLength": 36}]), "data in another file"),
+        (scene(accessors=[{"count": 10**12, "componentType": 5126, "type": "VEC3"}]), "a broken description"),
+        (scene(meshes=[{"primitives": 7}]), "a broken description"),
+        (["no", "object"], "a broken description"),
+        (scene(nodes=[]), "no faces"),
+    ],
+)
+def test_glb_that_cannot_be(tmp_path: Path, description: object, words: str) -> None:
+    refused(written(tmp_path, "b.glb", glb(description, bytes(36))), words)
+
+
+def test_glb_of_another_kind(tmp_path: Path) -> None:
+    data = content("glb")
+    refused(written(tmp_path, "a.glb", data[:4] + struct.pack("<I", 1) + data[8:]), "a GLB of version 2")
+    refused(written(tmp_path, "b.glb", data + b"more"), "a whole GLB")
+    refused(written(tmp_path, "c.gltf", b"{}"), "Save it as GLB")
+
+
+def test_copies_in_a_glb_count(tmp_path: Path) -> None:
+    made = trimesh.Scene([BALL])
+    made.add_geometry(next(iter(made.geometry.values())), transform=np.diag([2.0, 2.0, 2.0, 1.0]))
+    path = written(tmp_path, "two.glb", made.export(file_type="glb"))
+    assert faces_of(path) == 160
+    assert len(load(path)[1]) == 160
+
+
+def test_paths_to_nothing(tmp_path: Path) -> None:
+    refused(tmp_path / "none.stl", "no such file")
+    (tmp_path / "folder.stl").mkdir()
+    refused(tmp_path / "folder.stl", "a folder")
+    refused(written(tmp_path, "empty.stl", b""), "an empty file")
+    refused(written(tmp_path, "hull.step", b"ISO-10303-21;"), ".step", "stl, obj, ply, glb")
+    refused(written(tmp_path, "notes.stl", b"a letter, not a mesh"), "an STL")
+    refused(written(tmp_path, "letter.obj", b"Dear sirs,\n"), "no vertices and faces")
+    with pytest.raises(InputError):
+        load(Path("nul\0.stl"))
+
+
+@pytest.mark.parametrize("word", ["nan", "inf", "1e400"])
+def test_coordinates_that_are_no_numbers(tmp_path: Path, word: str) -> None:
+    text = content("obj").decode().split("\n")
+    first = next(i for i, line in enumerate(text) if line.startswith("v "))
+    text[first] = f"v {word} 0 0"
+    refused(written(tmp_path, "n.obj", "\n".join(text).encode()), "1 vertices with coordinates that are no numbers")
+
+
+def test_coordinates_that_are_no_numbers_in_binary(tmp_path: Path) -> None:
+    data = bytearray(content("stl"))
+    data[84 + 12 : 84 + 16] = struct.pack("<f", np.nan)
+    refused(written(tmp_path, "n.stl", bytes(data)), "coordinates that are no numbers")
+
+
+def test_faces_without_their_vertex(tmp_path: Path) -> None:
+    refused(written(tmp_path, "f.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"))
+
+
+def test_ten_million_faces_are_refused_unread(tmp_path: Path) -> None:
+    """A sparse file of the right size: nothing of it is read but the header."""
+    path = tmp_path / "huge.stl"
+    with path.open("wb") as stream:
+        stream.write(bytes(80) + struct.pack("<I", 10_000_000))
+        stream.truncate(84 + 50 * 10_000_000)
+    refused(path, "10000000 faces", "15.0 GB of memory", f"at most {MOST_FACES}", "7.5 GB", "Decimate")
+
+
+def test_text_has_a_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mesh_headers, "LARGEST_TEXT", 1000)
+    for name in ("ascii.stl", "obj", "ascii.ply"):
+        refused(written(tmp_path, f"ball.{name}", content(FORMATS[name])), "MB of text", "binary STL or PLY")
+
+
+def test_a_text_bomb_is_refused(tmp_path: Path) -> None:
+    """One vertex, and faces of it by the million."""
+    path = written(tmp_path, "bomb.obj", b"v 0 0 0\n" + b"f 1 1 1\n" * (MOST_FACES + 1))
+    refused(path, f"{MOST_FACES + 1} faces", "Decimate")
+
+
+def test_large_meshes_are_announced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    path = written(tmp_path, "ball.stl", content("stl"))
+    with caplog.at_level(logging.INFO, "coeflab"):
+        load(path)
+        assert caplog.messages == []
+        monkeypatch.setattr(mesh_file, "WORTH_SAYING", 80)
+        load(path)
+    assert caplog.messages == ["ball.stl: 80 faces, about 0.1 GB of memory"]
