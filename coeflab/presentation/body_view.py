@@ -84,6 +84,12 @@ class Sheet:
             self._fill(outline, "band", FILM)
             self._line(outline, "ink", 0.9)
 
+    def outline(self, mesh: Surface) -> None:
+        """Draw a surface as a filled outline."""
+        outline = silhouette.mesh_outline(*mesh, self.frame)
+        self._fill(outline, "band", BEHIND)
+        self._line(outline, "ink", 0.9)
+
     def _part(self, facets: Array, colour: str) -> None:
         whole = silhouette.convex_outline(facets.reshape(-1, 3), self.frame)
         if whole.area() <= EDGE_ON * (self.scale * self.extent) ** 2:

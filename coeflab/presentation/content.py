@@ -10,6 +10,7 @@ from coeflab.model.coefficient import Status
 from coeflab.model.reference import Comparison, Relation
 from coeflab.model.study import Study
 from coeflab.presentation import model_tables, tables
+from coeflab.presentation.added_mass_section import added_mass_sections
 from coeflab.presentation.budget_section import budget_sections
 from coeflab.presentation.campaign_sections import campaign_section, filled
 from coeflab.presentation.conventions_section import conventions_section
@@ -26,6 +27,7 @@ def document(study: Study) -> Document:
         _coefficients(study),
         *_models(study),
         *budget_sections(study),
+        *added_mass_sections(study),
         Section(
             "campaigns",
             "Campaigns",

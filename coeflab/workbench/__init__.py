@@ -24,7 +24,7 @@ from coeflab.model.scaling import Scaling
 from coeflab.model.several_campaigns import one_length
 from coeflab.model.study import Plan, PlannedParameterFile, Study
 from coeflab.reporting import REPORTERS
-from coeflab.workbench.hulls import hull_of
+from coeflab.workbench.hulls import hulls_of
 from coeflab.workbench.reading import read_body, read_tables, settled, together
 
 __all__ = ["read_body", "read_tables", "rendered", "run"]
@@ -79,7 +79,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     missing = tuple(c for g in groups for c in _missing(g, fits, plan.wanted))
     first = plan.scaling or fits[0].coefficients.scaling
     conditions = plan.conditions or tables[0].conditions
-    hulls = {g.name: h for g in groups if (h := hull_of(g, conditions.density, progress)) is not None}
+    hulls = hulls_of(groups, conditions.density, progress)
     inputs = _inputs(plan, tables, [b for b in (body, *(h.body for h in hulls.values())) if b is not None])
     study = Study(
         plan=plan,

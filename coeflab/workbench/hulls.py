@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 from coeflab.added_mass import ADDED_MASS
@@ -25,13 +26,22 @@ def methods() -> tuple[str, ...]:
     return tuple(out)
 
 
-def hull_of(group: PlannedParameterFile, density: float, progress: Callable[[str], None]) -> Triangulation | None:
-    """Added mass for a parameter file, by all methods or the one that the plan names; None where it names no hull."""
-    if group.hull is None:
-        return None
-    body = read_body(group.hull / FILE if group.hull.is_dir() else group.hull)
-    progress(f"added mass of {body.name}")
-    return added_masses(body, density, group.method, reproducible=True)
+def hulls_of(
+    groups: Sequence[PlannedParameterFile], density: float, progress: Callable[[str], None]
+) -> dict[str, Triangulation]:
+    """Added mass of the parameter files that name a hull, by file; a hull that several name is computed once."""
+    known: dict[tuple[Path, str], Triangulation] = {}
+    out = {}
+    for group in groups:
+        if group.hull is None:
+            continue
+        key = (group.hull, group.method)
+        if key not in known:
+            body = read_body(group.hull / FILE if group.hull.is_dir() else group.hull)
+            progress(f"added mass of {body.name}")
+            known[key] = added_masses(body, density, group.method, reproducible=True)
+        out[group.name] = known[key]
+    return out
 
 
 def added_masses(body: Body, density: float, method: str = "all", *, reproducible: bool = False) -> Triangulation:
