@@ -73,8 +73,18 @@ WORKS: dict[str, str] = {
     "eberly2002": "D. Eberly, Polyhedral Mass Properties (Revisited), Geometric Tools, 2002.",
     "bryson1954": "A. E. Bryson, Evaluation of the inertia coefficients of the cross-section of a slender body, "
     "J. Aeronautical Sciences 21, 1954.",
-    "coeflab_plates": "Added mass of rectangular plates at aspect 1, 2, 3 and 5, computed for this project with a panel "
-    "code, to 1 %.",
+    "coeflab_plates": "Added mass of rectangular plates at eleven aspects from 1 to 10, computed for this project with a "
+    "lattice of doublets, extrapolated, to 1e-4.",
+    "mss": "T. I. Fossen, T. Perez, Marine Systems Simulator (MSS), VESSELS/npsauv.m and VESSELS/navalvessel.m, "
+    "github.com/cybergalactic/MSS.",
+    "python_vehicle_simulator": "T. I. Fossen, Python Vehicle Simulator, src/python_vehicle_simulator/vehicles/remus100.py "
+    "and lib/mainLoop.py, github.com/cybergalactic/PythonVehicleSimulator.",
+    "gz_sim": "Gazebo Sim, src/systems/hydrodynamics/Hydrodynamics.cc and HydrodynamicsUtils.hh, commit 42d1720 of 2026, "
+    "github.com/gazebosim/gz-sim.",
+    "uuv_simulator": "M. M. M. Manhaes et al., UUV Simulator: A Gazebo-based package for underwater intervention and "
+    "multi-robot simulation, OCEANS 2016; HydrodynamicModel.cc, commit bea0a1b, github.com/uuvsimulator/uuv_simulator.",
+    "xdyn": "Sirehna, Naval Group, xdyn 26.8, a lightweight time-domain ship simulator, github.com/naval-group/lxdyn; "
+    "force laws read in xdyn/core and xdyn/force_models.",
 }
 
 

@@ -6,6 +6,7 @@ Vertices are (n, 3), m; faces are (m, 3) indices, counter-clockwise seen from ou
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +66,12 @@ def mesh_integrals(vertices: Array, faces: Faces) -> MeshIntegrals:
         return MeshIntegrals(0.0, np.full(3, np.nan), np.zeros((3, 3)), area, projected)
     offset = first / volume
     return MeshIntegrals(volume, origin + offset, second - volume * np.outer(offset, offset), area, projected)
+
+
+def corner_range(values: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Least and largest of the three corners of each face, from (m, 3); by columns, which is quicker than along rows."""
+    a, b, c = values.T
+    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
 def _cross(a: Array, b: Array) -> Array:

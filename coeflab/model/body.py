@@ -28,11 +28,22 @@ class MassProperties:
         x_G m about the reference point, kg m, positive forward.
     inertia : float or None
         About the transverse axes (Iy = Iz) through the reference point, kg m^2.
+    centre : (3,) array, optional
+        Centre of gravity from the reference point, m, FRD.
+    inertia_matrix : (3, 3) array, optional
+        About the reference point, kg m^2.
     """
 
     mass: float
     mass_moment: float
     inertia: float | None
+    centre: NDArray[np.float64] | None = None
+    inertia_matrix: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("centre", "inertia_matrix"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, locked(getattr(self, name)))
 
     def primed(self, scaling: Scaling, density: float) -> tuple[float, float]:
         """(m', xG' m') with m' = m / (1/2 rho L^3)."""

@@ -87,6 +87,10 @@ def load(path: Path) -> tuple[Array, NDArray[np.int64]]:
         log.info("%s: %d faces, %s", path.name, count, memory(count))
     import trimesh
 
+    # The library logs what it stumbles over with a traceback; that is for those who have set up logging.
+    theirs = logging.getLogger("trimesh")
+    if not theirs.handlers:
+        theirs.addHandler(logging.NullHandler())
     kind = path.suffix.lower().lstrip(".")
     extra: dict[str, Any] = {"skip_materials": True} if kind in ("obj", "glb") else {}
     try:
@@ -99,6 +103,8 @@ def load(path: Path) -> tuple[Array, NDArray[np.int64]]:
         raise InputError(
             f"contents that cannot be read ({type(why).__name__}: {shown(why)})", f"a whole {kind.upper()}", file=path
         ) from None
+    if vertices.ndim != 2 or vertices.shape[1] != 3:
+        raise InputError("vertices without three coordinates", "x, y and z", file=path)
     if faces.ndim != 2 or len(faces) == 0 or faces.min() < 0 or faces.max() >= len(vertices):
         raise InputError("no faces, or a face without its vertex", "triangles of a closed surface", file=path)
     if len(faces) < count:

@@ -1,10 +1,9 @@
-"""What a mesh must be before anything is computed from it, and the repair that a person may ask for."""
+"""What a mesh must be before anything is computed from it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +14,13 @@ from coeflab.kernels.mesh_topology import (
     Labels,
     degenerate,
     edges,
-    oriented,
+    joined,
     repeated,
     shell_volumes,
     shells,
     welded,
 )
-from coeflab.kernels.solids import Solid, solid, surface
+from coeflab.kernels.solids import Solid, solid
 from coeflab.kernels.triangle_pairs import crossing_faces
 
 Array = NDArray[np.float64]
@@ -29,6 +28,7 @@ Faces = NDArray[np.int64]
 MOST_TESTED, MOST_SHELLS = 50_000, 1000
 NOTHING, JOINED, OVERLAP = 1e-9, 1e-6, 1e-6
 ON_REQUEST = "Mend it where it was made, or set repair = true under [mesh]."
+NEARLY = "Its vertices nearly meet: set repair = true under [mesh] to join them."
 BY_HAND = "Mend it where it was made; repair does not close holes or untangle surfaces."
 
 
@@ -68,7 +68,8 @@ def examined(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
     if border.open or border.crowded:
         what = [f"{border.open} edges with one face"] * bool(border.open)
         what += [f"{border.crowded} edges with more than two"] * bool(border.crowded)
-        raise fail(f"a mesh that is not watertight: {' and '.join(what)}", "two faces at every edge", BY_HAND)
+        advice = NEARLY if _nearly_closed(vertices, faces) else BY_HAND
+        raise fail(f"a mesh that is not watertight: {' and '.join(what)}", "two faces at every edge", advice)
     if border.turned:
         raise fail(
             f"inconsistent winding: neighbours face opposite sides at {border.turned} edges", "all faces outward"
@@ -87,6 +88,14 @@ def examined(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
         elif crossing:
             raise fail(f"a surface that cuts through itself, in {crossing} pairs of faces", "a simple surface", BY_HAND)
     return SoundMesh(vertices, faces, said)
+
+
+def _nearly_closed(vertices: Array, faces: Faces) -> bool:
+    left = joined(vertices, faces, JOINED)[1]
+    if not len(left):
+        return False
+    border = edges(left)
+    return not (border.open or border.crowded)
 
 
 def _outward(volume: Array, area: Array, fail: Callable[..., InputError]) -> None:
@@ -121,7 +130,7 @@ def _apart(vertices: Array, faces: Faces, shell: Labels, count: int, fail: Calla
     low, high = _boxes(vertices, faces, shell, count)
     meet = np.all((low[:, None] < high[None]) & (low[None] < high[:, None]), axis=2)
     close = np.argwhere(np.triu(meet, 1))
-    solids = {int(k): _solid(vertices, faces[shell == k], fail) for k in np.unique(close)}
+    solids = {int(k): as_solid(vertices, faces[shell == k], fail) for k in np.unique(close)}
     pairs = [(solids[int(a)], solids[int(b)]) for a, b in close]
     common = [(a ^ b).volume() / min(a.volume(), b.volume()) for a, b in pairs]
     overlapping = sum(c > OVERLAP for c in common)
@@ -133,64 +142,9 @@ def _apart(vertices: Array, faces: Faces, shell: Labels, count: int, fail: Calla
         )
 
 
-def _solid(vertices: Array, faces: Faces, fail: Callable[..., InputError]) -> Solid:
+def as_solid(vertices: Array, faces: Faces, fail: Callable[..., InputError]) -> Solid:
+    """One shell as a solid that can be cut and united."""
     try:
         return solid(*welded(vertices, faces))
     except ValueError as why:
         raise fail(str(why), "a closed surface", BY_HAND) from None
-
-
-def repaired(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
-    """The mesh mended as far as that is safe, then examined like any other; the statements say what was done.
-
-    Vertices within 1e-6 of the size are joined; faces that lost their area or came twice go; faces are turned alike and
-    outward, which fills cavities; shells are united.
-
-    Raises
-    ------
-    InputError
-        What remains after that, such as holes.
-    """
-    said: list[str] = []
-    count = len(faces)
-    plain = welded(vertices, faces)
-    vertices, faces = welded(vertices, faces, JOINED * float(np.ptp(vertices, axis=0).max()))
-    _say(said, len(plain[0]) - len(vertices), "vertices joined")
-    point = np.any([faces[:, a] == faces[:, b] for a, b in pairwise((0, 1, 2, 0))], axis=0)
-    faces = faces[~point]
-    faces = faces[~repeated(faces)]
-    _say(said, count - len(faces), "degenerate or duplicate faces dropped")
-    turned = oriented(faces)
-    if turned is not None:
-        _say(said, int(np.any(turned != faces, axis=1).sum()), "faces turned")
-        faces = turned
-    number, shell = shells(faces)
-    inward = shell_volumes(vertices, faces, shell)[0] < 0.0
-    if edges(faces).sound:
-        faces = np.where(inward[shell][:, None], faces[:, ::-1], faces)
-        _say(said, int(inward.sum()), f"of {number} shells turned outward")
-        if number > 1 or degenerate(vertices, faces).any():
-            vertices, faces = _united(vertices, faces, shell, number, file)
-            said.append(
-                f"{number} shells united" if number > 1 else "faces without an area merged into their neighbours"
-            )
-    found = examined(vertices, faces, file)
-    return SoundMesh(
-        found.vertices, found.faces, (f"repaired: {', '.join(said) or 'nothing to do'}", *found.statements)
-    )
-
-
-def _united(vertices: Array, faces: Faces, shell: Labels, count: int, file: Path) -> tuple[Array, Faces]:
-    """What all shells enclose together."""
-    from manifold3d import Manifold, OpType
-
-    def fail(found: str, expected: str, advice: str) -> InputError:
-        return InputError(found, expected, file=file, advice=advice)
-
-    made = [_solid(vertices, faces[shell == k], fail) for k in range(count)]
-    return surface(Manifold.batch_boolean(made, OpType.Add).simplify(0.0))
-
-
-def _say(said: list[str], count: int, what: str) -> None:
-    if count:
-        said.append(f"{count} {what}")

@@ -15,7 +15,8 @@ from coeflab.core.units import factor
 from coeflab.model.body import Body, Configuration
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.mesh_file import load
-from coeflab.model.mesh_gates import examined, repaired
+from coeflab.model.mesh_gates import examined
+from coeflab.model.mesh_repair import repaired
 from coeflab.workbench import read_body
 
 BODY = "body.toml"

@@ -10,10 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from coeflab.core.errors import InputError
 from coeflab.model import mesh_file, mesh_headers
 from coeflab.model.mesh_file import MOST_FACES, faces_of, load
+from coeflab.model.mesh_gates import examined
+from coeflab.model.mesh_repair import repaired
 
 BALL = trimesh.creation.icosphere(subdivisions=1)
 FORMATS = {"stl": "stl", "ascii.stl": "stl_ascii", "obj": "obj", "ply": "ply", "ascii.ply": "ply_ascii", "glb": "glb"}
@@ -179,10 +183,34 @@ def test_text_has_a_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
         refused(written(tmp_path, f"ball.{name}", content(FORMATS[name])), "MB of text", "binary STL or PLY")
 
 
-def test_a_text_bomb_is_refused(tmp_path: Path) -> None:
-    """One vertex, and faces of it by the million."""
-    path = written(tmp_path, "bomb.obj", b"v 0 0 0\n" + b"f 1 1 1\n" * (MOST_FACES + 1))
-    refused(path, f"{MOST_FACES + 1} faces", "Decimate")
+def test_a_text_bomb_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One vertex and far too many faces of it, and one face of far too many corners."""
+    monkeypatch.setattr(mesh_file, "MOST_FACES", 1000)
+    for bomb in (b"f 1 1 1\n" * 1001, b"f" + b" 1" * 1003):
+        refused(written(tmp_path, "bomb.obj", b"v 0 0 0\n" + bomb), "1001 faces", "Decimate")
+
+
+@pytest.mark.parametrize("name", FORMATS)
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_damage_is_an_input_error_or_a_mesh(tmp_path: Path, name: str, data: st.DataObject) -> None:
+    """Bytes overwritten or cut out anywhere, most often in the header: refused with the file's name, or read."""
+    whole = bytearray(content(FORMATS[name]))
+    at = data.draw(st.one_of(st.integers(0, min(len(whole), 700) - 1), st.integers(0, len(whole) - 1)))
+    if data.draw(st.booleans()):
+        new = data.draw(st.binary(min_size=1, max_size=8))
+        whole[at : at + len(new)] = new
+    else:
+        del whole[at : at + data.draw(st.integers(1, 200))]
+    path = written(tmp_path, f"damaged.{name}", bytes(whole))
+    for mended in (examined, repaired):
+        said = str(path)
+        try:
+            vertices, faces = load(path)
+            mended(vertices, faces, path)
+        except InputError as why:
+            said = str(why)
+        assert str(path) in said
 
 
 def test_large_meshes_are_announced(

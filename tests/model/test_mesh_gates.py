@@ -11,7 +11,8 @@ import trimesh
 from coeflab.core.errors import InputError
 from coeflab.kernels.surface_mesh import mesh_integrals
 from coeflab.model import mesh_gates
-from coeflab.model.mesh_gates import examined, repaired
+from coeflab.model.mesh_gates import examined
+from coeflab.model.mesh_repair import repaired
 from tests.kernels.test_surface_mesh import CUBE, CUBE_FACES
 
 FILE = Path("hull.stl")
@@ -155,7 +156,7 @@ def test_repair_joins_what_is_nearly_joined() -> None:
     rng = np.random.default_rng(1)
     soup = CUBE[CUBE_FACES].reshape(-1, 3) + 1e-9 * rng.standard_normal((36, 3))
     corners = np.arange(36).reshape(-1, 3)
-    with pytest.raises(InputError, match="not watertight"):
+    with pytest.raises(InputError, match=r"not watertight: 36 edges .* nearly meet: set repair = true"):
         examined(soup, corners, FILE)
     found = repaired(soup, corners, FILE)
     assert len(found.vertices) == 8

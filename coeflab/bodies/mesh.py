@@ -1,0 +1,155 @@
+"""Bodies as closed surfaces of triangles: STL, OBJ, PLY or GLB with their unit and axes declared."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.axes import parse_axes
+from coeflab.core.errors import UnitsError
+from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.toml import Section
+from coeflab.core.units import factor
+from coeflab.model.body import Body, Configuration
+from coeflab.model.body_file import open_body_file
+from coeflab.model.mesh import TriangleMesh
+from coeflab.model.mesh_file import load
+from coeflab.model.mesh_gates import examined
+from coeflab.model.mesh_repair import repaired
+
+summary = "a closed mesh (STL, OBJ, PLY, GLB) with declared unit and axes, refused unless sound"
+citations = ("eberly2002",)
+
+SHORTEST, LONGEST = 0.05, 500.0
+UNITS = ("mm", "m", "cm", "ft", "in")
+NEAR, FAR = 0.005, 0.05
+STATED = (
+    ("length", 0, ("length", "length_overall", "loa")),
+    ("breadth", 1, ("breadth", "beam", "width")),
+    ("depth", 2, ("depth", "height")),
+)
+
+
+def _unit(section: Section) -> float:
+    name = section.text("unit")
+    try:
+        return factor(name, "length")
+    except UnitsError as why:
+        raise section.fail("unit", why.found, why.expected, 'Name the unit of the file: "m", "mm", "ft" ...') from None
+
+
+def _likely(numbers: float, length: float | None) -> str:
+    """The unit in which the file's numbers give the stated length, or a plausible one."""
+    for name in UNITS:
+        found = numbers * factor(name, "length")
+        if _near(found, length) if length else 2.0 * SHORTEST <= found <= 0.4 * LONGEST:
+            return f'Is the unit "{name}"? The body would be {found:.4g} m long.'
+    return "Is the unit right?"
+
+
+def _require_size(mesh: TriangleMesh, unit: float, lengths: dict[str, float], section: Section) -> tuple[str, ...]:
+    """Hold the mesh against the stated sizes; what lies 0.5 to 5 % off is returned in words.
+
+    Raises
+    ------
+    InputError
+        More than 5 % off, or without stated sizes shorter than 0.05 m or longer than 500 m.
+    """
+    largest, said = float(mesh.extents.max()), []
+    stated = {name: (axis, lengths[key]) for name, axis, keys in STATED for key in keys if key in lengths}
+    if not stated and not SHORTEST <= largest <= LONGEST:
+        raise section.fail(
+            "unit", f"a body {largest:.6g} m in size", f"{SHORTEST:g} to {LONGEST:g} m", _likely(largest / unit, None)
+        )
+    for name, (axis, value) in stated.items():
+        found = float(mesh.extents[axis])
+        if not _near(found, value):
+            axes = "Are the axes right?" if np.any(np.abs(mesh.extents / value - 1.0) <= FAR) else ""
+            advice = axes or _likely(found / unit, value)
+            raise section.fail(
+                "path", f"a {name} of {found:.6g} m", f"{value:.6g} m as in [particulars], within 5 %", advice
+            )
+        if abs(found / value - 1.0) > NEAR:
+            said.append(f"{name} {100.0 * (found / value - 1.0):+.1f} % from the stated")
+    return tuple(said)
+
+
+def _require_volume(
+    mesh: TriangleMesh, unit: float, printed: tuple[Configuration, ...], section: Section
+) -> tuple[str, ...]:
+    """Hold the volume against the nearest of the stated ones, in the same way."""
+    stated = [(abs(mesh.volume / c.volume - 1.0), c) for c in printed if c.volume]
+    if not stated:
+        return ()
+    off, nearest = min(stated, key=lambda pair: pair[0])
+    volume = nearest.volume or 1.0
+    if off > FAR:
+        likely = (
+            f'Is the unit "{u}"?' for u in UNITS if _near(mesh.volume * (factor(u, "length") / unit) ** 3, volume)
+        )
+        raise section.fail(
+            "path",
+            f"a volume of {mesh.volume:.6g} m^3",
+            f"{volume:.6g} m^3 as in [[configuration]] {nearest.name}, within 5 %",
+            next(likely, "Does the mesh show the same body, all of it and once?"),
+        )
+    return (f"volume {100.0 * (mesh.volume / volume - 1.0):+.1f} % from {nearest.name}",) if off > NEAR else ()
+
+
+def _near(found: float, stated: float) -> bool:
+    return abs(found / stated - 1.0) <= FAR
+
+
+def _placed(vertices: NDArray[np.float64], unit: float, section: Section) -> NDArray[np.float64]:
+    axes = parse_axes(section.raw("axes"), section.file, section.key("axes"))
+    origin = section.point("origin") if section.has("origin") else np.zeros(3)
+    return np.asarray(unit * vertices @ axes.rotation.T + origin)
+
+
+def read(path: Path) -> Body:
+    """Read a body.toml whose shape is a mesh file.
+
+    ``[mesh]`` holds ``path`` (from the folder of the body.toml), ``unit``, ``axes`` (``"FRD"``, ``"FLU"``, ``"CFD"`` or
+    three directions), ``origin`` (where the file's origin lies, m, FRD, from the datum; the datum itself unless given)
+    and ``repair`` (false). ``length``, ``breadth`` and ``depth`` under ``[particulars]``, and the volume of a
+    ``[[configuration]]``, are what the mesh is held against.
+
+    Raises
+    ------
+    InputError
+        Anything missing, unknown or of the wrong unit, by file and key; a file that is no sound mesh; a body far from
+        its stated size.
+    """
+    opened = open_body_file(path, "mesh")
+    section = opened.root.section("mesh")
+    file = path.parent / section.text("path")
+    unit, repair = _unit(section), section.flag("repair", False)
+    parse_axes(section.raw("axes"), section.file, section.key("axes"))
+    raw = load(file)
+    sound = repaired(*raw, file) if repair else examined(*raw, file)
+    shape = TriangleMesh(_placed(sound.vertices, unit, section), sound.faces)
+    section.finish()
+    body = opened.body(shape, _computed(shape, sound.statements))
+    said = _require_size(shape, unit, dict(body.lengths), section)
+    said += _require_volume(shape, unit, body.configurations[1:], section)
+    return dataclasses.replace(
+        body,
+        configurations=(_computed(shape, sound.statements + said), *body.configurations[1:]),
+        files=(*body.files, InputFile(f"{body.name}/{file.name}", sha256_of(file))),
+    )
+
+
+def _computed(shape: TriangleMesh, statements: tuple[str, ...]) -> Configuration:
+    return Configuration(
+        name="by_mesh",
+        title="; ".join((f"integrals over {len(shape.faces)} faces", *statements)),
+        volume=shape.volume,
+        wetted_surface=shape.integrals.area,
+        centre_of_buoyancy=shape.centre_of_volume,
+        mass=None,
+        projected_areas=shape.integrals.projected,
+        second_moments=shape.integrals.second_moments,
+    )

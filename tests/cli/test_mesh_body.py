@@ -1,0 +1,85 @@
+"""A body with a mesh through the real command."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import numpy as np
+import pytest
+import trimesh
+
+Run = Callable[..., CompletedProcess[str]]
+BODY = """[body]
+name = "bar"
+title = "a bar of 2 m"
+reader = "mesh"
+datum = "middle"
+reference_point = [0.0, 0.0, 0.0]
+[mesh]
+path = "{}"
+unit = "{}"
+axes = "FLU"
+[source]
+citation = "synthetic"
+[particulars]
+length = 2.0
+"""
+
+
+@pytest.fixture
+def bar(tmp_path: Path) -> Path:
+    trimesh.creation.box(extents=(2000.0, 200.0, 100.0)).export(tmp_path / "bar.stl")
+    (tmp_path / "body.toml").write_text(BODY.format("bar.stl", "mm"))
+    return tmp_path
+
+
+def test_particulars_and_matrices(coeflab: Run, bar: Path) -> None:
+    done = coeflab("added-mass", bar, "--method", "strip")
+    assert (done.returncode, done.stderr) == (0, "")
+    for words in (
+        "bar: a bar of 2 m", "integrals over 12 faces", "0.0400000", "1.2400", "displaced water", "0.02000",
+        "by_mesh", "96 sections: 96 rectangles", "J. N. Newman",
+    ):  # fmt: skip
+        assert words in done.stdout
+
+
+def test_json(coeflab: Run, bar: Path) -> None:
+    found = json.loads(coeflab("added-mass", bar / "body.toml", "--json", "--method", "strip").stdout)
+    matrix = np.array(found["strip"])
+    assert matrix[2, 2] == pytest.approx(1000.0 * 1.36 * np.pi * 0.1**2 * 2.0, rel=0.01)
+    assert matrix[0] == pytest.approx(np.zeros(6))
+
+
+def test_wrong_unit_is_one_clear_error(coeflab: Run, bar: Path) -> None:
+    (bar / "body.toml").write_text(BODY.format("bar.stl", "m"))
+    done = coeflab("added-mass", bar)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("\n") == 1
+    assert 'Is the unit "mm"? The body would be 2 m long.' in done.stderr
+
+
+def test_a_malicious_file_is_refused_at_once(coeflab: Run, bar: Path) -> None:
+    (bar / "bar.stl").write_bytes(bytes(80) + struct.pack("<I", 4_000_000_000) + bytes(5000))
+    done = coeflab("added-mass", bar)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "counts 4000000000 triangles" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.slow
+def test_large_meshes_are_announced_on_standard_error(coeflab: Run, tmp_path: Path) -> None:
+    whole = trimesh.creation.icosphere(subdivisions=8)
+    whole.vertices = whole.vertices * [2000.0, 200.0, 200.0]
+    whole.vertices -= [1000.0, 0.0, 0.0]
+    assert len(whole.faces) > 500_000
+    whole.export(tmp_path / "ball.stl")
+    text = BODY.format("ball.stl", "mm").replace("length = 2.0", "length = 4.0")
+    (tmp_path / "body.toml").write_text(text)
+    done = coeflab("added-mass", tmp_path, "--method", "strip:lamb", "--json")
+    assert done.returncode == 0
+    assert done.stderr == f"ball.stl: {len(whole.faces)} faces, about 2.0 GB of memory\n"
+    assert list(json.loads(done.stdout)) == ["strip:lamb"]
