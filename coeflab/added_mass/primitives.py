@@ -33,7 +33,7 @@ CYLINDERS = {
     "lamb": "cylinders with Lamb's k1, k2, k' of the spheroid of equal length and volume",
 }
 PLATES = (
-    "plates: k(aspect) pi/4 rho c^2 b along the normal, k by panel code to 1 % at aspect 1, 2, 3, 5; own turning terms "
+    "plates: k(aspect) pi/4 rho c^2 b along the normal, k by doublet lattice from aspect 1 to 10; own turning terms "
     "of the elliptic disc of equal area and aspect, an estimate"
 )
 BOXES = "boxes: Lamb's ellipsoid of equal volume and proportions, an estimate"

@@ -1,0 +1,120 @@
+"""Flat triangular panels on a closed surface, and what makes a surface unfit for them; arrays in, arrays out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.kernels.least_squares import Array
+from coeflab.kernels.surface_mesh import Faces
+
+SLIVER = 1e-10
+
+
+@dataclass(frozen=True, slots=True)
+class Panels:
+    """Triangles and what the influence integrals need of them.
+
+    Attributes
+    ----------
+    corners : (n, 3, 3) array
+        Panel, corner, component; m; counter-clockwise seen from the fluid.
+    centre, normal : (n, 3) arrays
+        Centroid, m, and unit normal into the fluid.
+    area, size : (n,) arrays
+        m^2, and the distance from the centroid to the farthest corner, m.
+    spread : (2, n, 3) array
+        Two vectors in the panel, m, whose dyads sum to its second moments about the centroid over its area, m^2.
+    """
+
+    corners: Array
+    centre: Array
+    normal: Array
+    area: Array
+    size: Array
+    spread: Array
+
+    @property
+    def count(self) -> int:
+        """How many."""
+        return len(self.area)
+
+
+def panels_of(corners: Array) -> Panels:
+    """Panels from their corners, (n, 3, 3), m."""
+    centre = corners.mean(axis=1)
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    twice = np.linalg.norm(normal, axis=1)
+    size = np.linalg.norm(corners - centre[:, None], axis=2).max(axis=1)
+    spread = np.stack([(corners[:, 0] - centre) / np.sqrt(8.0), (corners[:, 1] - corners[:, 2]) / np.sqrt(24.0)])
+    return Panels(corners, centre, normal / twice[:, None], twice / 2.0, size, spread)
+
+
+def unmatched_edges(faces: Faces) -> int:
+    """How many edges are not run through as often one way as the other; 0 for a closed, consistently wound surface."""
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    _, place = np.unique(low * (int(faces.max()) + 1) + high, return_inverse=True)
+    return int(np.count_nonzero(np.bincount(place.reshape(-1), weights=np.sign(end - start))))
+
+
+def slivers(corners: Array) -> NDArray[np.bool_]:
+    """Which triangles have no area: below 1e-10 of the square of their longest side, (n,)."""
+    sides = np.roll(corners, -1, axis=1) - corners
+    longest = np.sum(sides**2, axis=2).max(axis=1)
+    twice = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    return np.asarray(twice <= SLIVER * longest)
+
+
+def slenderness(second_moments: Array) -> float:
+    """Smallest over middle side of the box of those second moments of volume, (3, 3); 1 for a body of revolution."""
+    spread = np.sqrt(np.clip(np.linalg.eigvalsh(second_moments), 0.0, None))
+    return float(spread[0] / spread[1])
+
+
+def thin_share(panels: Panels) -> float:
+    """Share of the area where the body is thinner than the panel on it is large.
+
+    There a panel looks away from another within its own size behind it; the potential jumps from one to the other and
+    constant panels cannot follow.
+    """
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(panels.centre)
+    reach = panels.size
+    behind = panels.centre - 0.5 * reach[:, None] * panels.normal
+    near = tree.query_ball_point(behind, reach)
+    panel = np.repeat(np.arange(panels.count), [len(n) for n in near])
+    other = np.concatenate(near).astype(np.int64)
+    opposed = np.einsum("ij,ij->i", panels.normal[panel], panels.normal[other]) < -0.5
+    depth = np.einsum("ij,ij->i", panels.centre[panel] - panels.centre[other], panels.normal[panel])
+    thin = np.unique(panel[opposed & (depth > 0.0) & (depth < reach[panel])])
+    return float(panels.area[thin].sum() / panels.area.sum())
+
+
+def split_in_four(corners: Array) -> Array:
+    """Each triangle as four similar ones, (4 n, 3, 3)."""
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    ab, bc, ca = (a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0
+    return np.concatenate([np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+
+
+def bisected(corners: Array, count: int) -> Array:
+    """At least ``count`` triangles on the same facets: the longest sides are halved first.
+
+    Neighbours need not share vertices; constant panels do not ask for it.
+    """
+    while len(corners) < count:
+        sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+        longest = sides.max(axis=1)
+        need = min(count - len(corners), len(corners))
+        chosen = longest >= max(np.sort(longest)[-need], 0.6 * longest.max())
+        kept, cut = corners[~chosen], corners[chosen]
+        first = sides[chosen].argmax(axis=1)
+        rows = np.arange(len(cut))
+        a, b, c = (cut[rows, (first + k) % 3] for k in range(3))
+        middle = (a + b) / 2.0
+        corners = np.concatenate([kept, np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return corners
