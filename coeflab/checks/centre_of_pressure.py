@@ -16,7 +16,7 @@ def check(study: Study) -> Sequence[Check]:
     """One note per campaign and plane; a centre outside the hull only says that the moment is mostly a couple."""
     out = []
     for fit in study.fits:
-        for d in centre_of_pressure(fit.coefficients, (), fit.campaign):
+        for d in centre_of_pressure(fit.coefficients, fit.campaign):
             within = "" if d.result is None else f" +- {d.result.linear:.2g}"
             metres = d.value * fit.coefficients.scaling.length
             out.append(

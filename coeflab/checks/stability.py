@@ -14,7 +14,7 @@ citations = ("feldman1979", "roddy1990")
 
 
 def _indices(parameters: ParameterFile) -> list[Check]:
-    given = {d.name: d for d in stability(parameters, ())}
+    given = {d.name: d for d in stability(parameters)}
     out = []
     for name, (*symbols, _) in INDICES.items():
         found = [parameters.coefficient(str(s)) for s in symbols]

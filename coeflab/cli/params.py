@@ -1,4 +1,4 @@
-"""``coeflab params``: parameter files."""
+"""``coeflab params``: parameter files, and the model files of simulators."""
 
 from __future__ import annotations
 
@@ -18,27 +18,33 @@ def _root() -> None:
 
 @app.command(epilog="Example: coeflab params check reports/suboff/suboff_fully_appended.parameters.json")
 def check(
-    file: Path = typer.Argument(..., help="A parameter file."),
+    file: Path = typer.Argument(..., help="A parameter file, or a model: SDF, URDF or xacro, xdyn YAML, MSS .m."),
+    density: float | None = typer.Option(None, help="kg/m^3, for a model that states none."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Validate a parameter file against its schema and say what it holds."""
-    from coeflab.model.parameter_file import read_parameter_file
-    from coeflab.model.table import Table, coefficient
+    """Read a parameter file or a simulator's model, say what it holds, and what of it cannot be.
 
-    p = read_parameter_file(file)
+    The exit code is 1 where a finding fails.
+    """
+    from coeflab.core.errors import InputError
+    from coeflab.presentation import model_file_tables
+    from coeflab.studies.model_files import read_model_file
+
+    if density is not None and not 0.0 < density < float("inf"):
+        raise InputError(f"{density:g}", "a density above zero", column="--density")
+    found = read_model_file(file, density)
+    p = found.parameters
     if json:
-        show.json_object({"valid": True, "name": p.name, "schema_version": p.schema_version,
-                          "coefficients": [c.symbol for c in p.coefficients]})  # fmt: skip
-        return
-    rows = tuple(
-        (c.symbol, coefficient(c.value), coefficient(c.u95), c.status.replace("_", " "), c.origin, c.estimator)
-        for c in p.coefficients
-    )
-    headers = ("", "value", "U95", "status", "origin", "how")
-    point = ", ".join(f"{x:g}" for x in p.reference_point.point)
-    notes = (
-        f"primed by {p.scaling.length_name} {p.scaling.length:.6g} m; about ({point}) m from: {p.reference_point.datum}",
-        f"schema {p.schema_version}, written by coeflab {p.provenance.coeflab_version}; valid",
-        *p.provenance.notes,
-    )
-    show.table(Table(f"{p.name} ({p.body})", headers, rows, notes, frozenset({0, 3, 4, 5})))
+        show.json_object({
+            "valid": True, "format": found.format, "name": p.name, "schema_version": p.schema_version,
+            "coefficients": [c.symbol for c in p.coefficients], "passed": found.passed,
+            "findings": [
+                {"severity": str(c.severity), "what": c.subject, "found": c.statistic, "expected": c.rule, "means": c.comment}
+                for c in found.findings
+            ],
+        })  # fmt: skip
+    else:
+        show.table(model_file_tables.contents(p, found.format))
+        show.table(model_file_tables.findings(found.findings))
+    if not found.passed:
+        raise typer.Exit(1)

@@ -85,6 +85,8 @@ WORKS: dict[str, str] = {
     "multi-robot simulation, OCEANS 2016; HydrodynamicModel.cc, commit bea0a1b, github.com/uuvsimulator/uuv_simulator.",
     "xdyn": "Sirehna, Naval Group, xdyn 26.8, a lightweight time-domain ship simulator, github.com/naval-group/lxdyn; "
     "force laws read in xdyn/core and xdyn/force_models.",
+    "mujoco": "E. Todorov, T. Erez, Y. Tassa, MuJoCo: A physics engine for model-based control, IROS 2012; documentation, "
+    "chapter Fluid forces, and engine_passive.c, commit 01a932e, github.com/google-deepmind/mujoco.",
 }
 
 

@@ -1,14 +1,16 @@
-"""Coefficients as a CSV table with units in the header, one file per parameter file."""
+"""Coefficients, and every fitted model on a grid, as CSV tables with units in the header."""
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
-from coeflab.model.parameter_file import ParameterFile
+from coeflab.core.identifiers import identifier
+from coeflab.model.look_up import LookUp, look_up
+from coeflab.model.parameter_file import ParameterCoefficient, ParameterFile
 
-summary = "coefficients.csv: primed and SI values, U95 and its parts, status, origin"
+summary = "coefficients.csv: primed and SI values, U95, status, origin; a table_N.csv for each fitted model"
 citations = ("sname1950",)
 
 HEADER = (
@@ -18,24 +20,40 @@ HEADER = (
 
 
 def _cell(value: object) -> str:
-    return "" if value is None else repr(value) if isinstance(value, float) else str(value)
+    if value is None or value != value:  # noqa: PLR0124 - NaN alone differs from itself
+        return ""
+    text = str(value).lower() if isinstance(value, bool) else repr(value) if isinstance(value, float) else str(value)
+    return "'" + text if isinstance(value, str) and text[:1] in "=+-@\t\r" and text else text
+
+
+def _table(rows: Iterable[Sequence[object]]) -> bytes:
+    out = io.StringIO()
+    csv.writer(out, lineterminator="\n").writerows([_cell(v) for v in row] for row in rows)
+    return out.getvalue().encode()
 
 
 def render(parameters: ParameterFile) -> Mapping[str, bytes]:
-    """The coefficients of a parameter file, numbers with all their digits.
+    """The coefficients of a parameter file and the look-up tables of its models, numbers with all their digits.
 
-    Text that a spreadsheet would take for a formula is set behind an apostrophe.
+    Text that a spreadsheet would take for a formula is set behind an apostrophe. A value is empty where the model may not
+    be read.
     """
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(HEADER)
-    for c in parameters.coefficients:
-        low, high = c.window or (None, None)
-        cells = (
-            c.symbol, c.value, c.u95, c.parts.random, c.parts.model_form, c.parts.input, c.value_si, c.unit_si, c.status, c.origin,
-            c.table, c.estimator, low, high, c.n_points, c.citation,
-        )  # fmt: skip
-        writer.writerow(
-            ["'" + t if isinstance(v, str) and t[:1] in "=+-@\t\r" and t else t for v in cells for t in [_cell(v)]]
-        )
-    return {f"{parameters.name}.coefficients.csv": out.getvalue().encode()}
+    files = {f"{parameters.name}.coefficients.csv": _table([HEADER, *map(_coefficient, parameters.coefficients)])}
+    for k, model in enumerate(parameters.models, 1):
+        response = identifier(model.response)
+        files[f"{parameters.name}.table_{k}_{response}.csv"] = _table(_look_up(look_up(model)))
+    return files
+
+
+def _coefficient(c: ParameterCoefficient) -> tuple[object, ...]:
+    low, high = c.window or (None, None)
+    return (
+        c.symbol, c.value, c.u95, c.parts.random, c.parts.model_form, c.parts.input, c.value_si, c.unit_si, c.status, c.origin,
+        c.table, c.estimator, low, high, c.n_points, c.citation,
+    )  # fmt: skip
+
+
+def _look_up(of: LookUp) -> list[Sequence[object]]:
+    unit = "-" if of.model.unit == "1" else of.model.unit
+    variables = [f"{v.name} [{'-' if v.unit == '1' else v.unit}]" for v in of.model.variables]
+    return [[*variables, f"{of.model.response} [{unit}]", f"u95 [{unit}]", "inside the data [-]"], *of.rows]

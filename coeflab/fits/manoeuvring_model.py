@@ -38,7 +38,7 @@ summary = (
 citations = ("gertler1967", "feldman1979", "mackinnon1985", "bell2002", "chow1960", "tipton2015")
 joins_campaigns = True
 
-SCATTER_ONLY = "U95 holds the scatter of the points about this form; the error of the form itself is not in it."
+FORM_ASSUMED = "The error of the form itself is not in U95."
 MORE_TERMS = "Add terms of a higher power or of two motions, or fit a narrower range."
 UNWEIGHTED = (
     "Rows weigh alike: their stated standard errors are noise of one run, not the error of the model. weights = yes "
@@ -251,7 +251,7 @@ def _finished(model: FittedModel, first: Sequence[str], more: Sequence[str], idl
         *model.statements,
         *_with_secants(model),
         *more,
-        SCATTER_ONLY,
+        FORM_ASSUMED,
     ]
     if absent:
         said.insert(0, f"Not determined, as the tables do not hold their motion: {', '.join(absent)}.")

@@ -32,7 +32,11 @@ def ideal_force(matrix: Array, nu: Array) -> Array:
 
 def ideal_quadratics(matrix: Array) -> Array:
     """(6, 6, 6) array Q, symmetric in its last two axes: force i = sum of Q[i, j, k] nu_j nu_k."""
-    m = (matrix + matrix.T) / 2.0
+    return momentum_quadratics((matrix + matrix.T) / 2.0)
+
+
+def momentum_quadratics(m: Array) -> Array:
+    """The same for momenta ``m @ nu`` of a matrix that need not be symmetric, as some simulators are given it."""
     out = np.zeros((6, 6, 6))
     out[:3, 3:, :] -= np.einsum("iab,bk->iak", LEVI_CIVITA, m[:3])
     out[3:, 3:, :] -= np.einsum("iab,bk->iak", LEVI_CIVITA, m[3:])

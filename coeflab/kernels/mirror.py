@@ -22,7 +22,8 @@ def asymmetries(vertices: Array, faces: Faces) -> Array:
 
     Notes
     -----
-    Tetrahedra from the centre to the faces, each by the rule of degree 3 of Keast (1986) with five points.
+    Necessary, not sufficient: a body that only higher moments tell from its image, such as one of canted fins all alike,
+    passes. Tetrahedra from the centre to the faces, each by the rule of degree 3 of Keast (1986) with five points.
     """
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     sixth = np.einsum("ij,ij->i", a - vertices[0], np.cross(b - vertices[0], c - vertices[0])) / 6.0

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import COMPONENTS
-from coeflab.model.force_table import ForceTable
+from coeflab.model.force_table import AT_REST, ForceTable
 from coeflab.model.joint_rows import joint_name, measured, moving
 from coeflab.model.manoeuvring_terms import SETS, NamedTerm, read_term, read_terms
 
@@ -100,6 +101,13 @@ def asked_terms(
     return AskedTerms(tuple(fitted), tuple(idle), own)
 
 
+def _motion(table: ForceTable, name: str) -> NDArray[np.float64]:
+    """A motion or control of a table, primed; zero where it has none."""
+    if name in table.controls or name in table.motion:
+        return table.primed_motion(name, table.scaling.length)
+    return np.zeros(len(table))
+
+
 def _occurs(term: NamedTerm, tables: Sequence[ForceTable]) -> bool:
     """Whether a usable row of the component has all motions of a term at once."""
     for t in tables:
@@ -107,7 +115,7 @@ def _occurs(term: NamedTerm, tables: Sequence[ForceTable]) -> bool:
             continue
         together = np.array(t.usable[term.component])
         for v, _, _ in term.term.factors:
-            together &= (t.controls[v] if v in t.controls else t.motion.get(v, np.zeros(len(t)))) != 0.0
+            together &= np.abs(_motion(t, v)) > AT_REST
         if np.any(together):
             return True
     return False

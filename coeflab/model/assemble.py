@@ -11,6 +11,7 @@ from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import derivative, primed
 from coeflab.core.version import VERSION
+from coeflab.kernels.rigid_body import about_another
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body, MassProperties
 from coeflab.model.coefficient import Coefficient, CoefficientSet
@@ -83,6 +84,11 @@ def _covered(tables: Sequence[ForceTable], length: float) -> tuple[CoveredRange,
     return tuple(out)
 
 
+def _triple(values: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = map(float, values)
+    return x, y, z
+
+
 def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tuple[MassProperties | None, list[str]]:
     """Mass properties about the set's reference point; none where only another datum or another axis leads there."""
     shift = among.reference_point - body.reference_point
@@ -92,7 +98,11 @@ def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tupl
         return mass, []
     dx = float(shift[0])
     inertia = None if mass.inertia is None else mass.inertia - 2.0 * mass.mass_moment * dx + mass.mass * dx**2
-    moved = MassProperties(mass.mass, mass.mass_moment - mass.mass * dx, inertia)
+    centre = None if mass.centre is None else mass.centre - shift
+    matrix = None
+    if centre is not None and mass.centre is not None and mass.inertia_matrix is not None:
+        matrix = about_another(mass.inertia_matrix, mass.mass, mass.centre, centre)
+    moved = MassProperties(mass.mass, mass.mass_moment - mass.mass * dx, inertia, centre, matrix)
     return moved, [f"mass properties moved by {dx:+.6g} m along x to the reference point"]
 
 
@@ -171,6 +181,14 @@ def assemble(
             inertia=mass.inertia,
             mass_prime=prime[0],
             mass_moment_prime=prime[1],
+            centre=None if mass.centre is None else _triple(mass.centre),
+            inertia_matrix=None
+            if mass.inertia_matrix is None
+            else (
+                _triple(mass.inertia_matrix[0]),
+                _triple(mass.inertia_matrix[1]),
+                _triple(mass.inertia_matrix[2]),
+            ),
         )
         if mass
         else None,

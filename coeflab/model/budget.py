@@ -158,6 +158,7 @@ def budget_of(
     total: Propagated | None,
     lacking: Sequence[str],
     window: float | None = None,
+    study: GridStudy | None = None,
 ) -> Budget:
     """The budget of a coefficient.
 
@@ -177,12 +178,14 @@ def budget_of(
         Inputs that may act and were not assessed.
     window : float, optional
         See `Budget`.
+    study : GridStudy, optional
+        The one to take; by default the gravest of the component in these tables.
     """
     value = 0.0 if c.value is None else c.value
     kinds = tuple(dict.fromkeys(t.source.kind for t in tables))
     found = {name: part for name, part in fitted.items() if part is not None}
     open_parts = [name for name, part in fitted.items() if part is None]
-    study = grid_study_of(tables, component)
+    study = study or grid_study_of(tables, component)
     relative = None if study is None else study.convergence.relative
     if relative is not None:
         found["grid"] = relative * abs(value)
@@ -197,9 +200,16 @@ def budget_of(
     )  # fmt: skip
 
 
-def grid_study_of(tables: Sequence[ForceTable], component: str) -> GridStudy | None:
+def grid_study_of(tables: Sequence[ForceTable], component: str, variables: Sequence[str] = ()) -> GridStudy | None:
     """The gravest grid study of a component in computed tables; one where the force is next to nothing has no relative
     error to carry on.
+
+    Parameters
+    ----------
+    tables : sequence of ForceTable
+    component : str
+    variables : sequence of str
+        Only studies in which one of these moves; all where none is named.
     """
     studies: list[GridStudy] = []
     for table in tables:
@@ -207,7 +217,7 @@ def grid_study_of(tables: Sequence[ForceTable], component: str) -> GridStudy | N
             continue
         force = table.forces[component][table.usable[component]]
         least = TELLING * float(np.max(np.abs(force), initial=0.0))
-        found = grid_studies(table, component)
+        found = [g for g in grid_studies(table, component) if not variables or set(variables) & set(g.moving)]
         studies += [g for g in found if abs(g.convergence.values[g.convergence.used]) >= least]
     return gravest(tuple(studies))
 
@@ -247,10 +257,18 @@ def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
 def covariance(among: CoefficientSet, found: Sequence[Budget]) -> Array:
     """Covariance of standard uncertainties of a set with the budgets' further parts, shape (k, k).
 
-    Random parts keep the correlation of the set; grid parts are taken as independent; an input error is
-    common to the coefficients of a campaign, so that it cancels where a ratio does not feel it.
+    Random parts keep the correlation of the set. A grid error is common to the coefficients of one component that take it
+    from one study, and independent of others. An input error is common to the coefficients of a campaign, so that it
+    cancels where a ratio does not feel it.
     """
     return np.asarray(among.covariance + further(among.symbols, [c.campaign for c in among.coefficients], found))
+
+
+def _one_grid(a: Budget, b: Budget) -> bool:
+    """Whether two budgets take their grid part from one study."""
+    if a.grid is None or b.grid is None:
+        return False
+    return (a.grid.table, a.grid.component, a.grid.setting) == (b.grid.table, b.grid.component, b.grid.setting)
 
 
 def further(symbols: Sequence[str], campaigns: Sequence[str | None], found: Sequence[Budget]) -> Array:
@@ -264,6 +282,8 @@ def further(symbols: Sequence[str], campaigns: Sequence[str | None], found: Sequ
                 continue
             other = {p.name: p.sensitivity for p in b.inputs}
             out[i, j] += sum(p.sensitivity * other.get(p.name, 0.0) * p.half_width**2 for p in a.inputs) / 4.0
-            if i == j:
-                out[i, i] += a.joined("grid") ** 2 / 4.0
+            if i == j or _one_grid(a, b):
+                out[i, j] += (
+                    float(np.copysign(a.joined("grid"), a.value) * np.copysign(b.joined("grid"), b.value)) / 4.0
+                )
     return out

@@ -1,4 +1,4 @@
-"""Quantities made of several coefficients: centre of pressure and stability indices, with the budgets' uncertainty.
+"""Quantities made of several coefficients: centre of pressure and stability indices, with their uncertainty.
 
 Linear propagation with covariance beside Monte Carlo of the same function. Both are ratios: where the interval of a
 denominator holds zero, neither is an interval, and none is given.
@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from coeflab.core.symbols import primed
 from coeflab.kernels.propagation import Propagated, propagate, reaches_zero
 from coeflab.kernels.stability import index_gradient, stability_index
-from coeflab.model.budget import Budget, covariance, further
 from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.parameter_file import ParameterFile
 
@@ -48,10 +47,10 @@ class Derived:
 
 
 def centre_of_pressure(
-    among: CoefficientSet, found: Sequence[Budget], subject: str, draws: int = DRAWS, seed: int = SEED
+    among: CoefficientSet, subject: str, draws: int = DRAWS, seed: int = SEED
 ) -> tuple[Derived, ...]:
     """x/L = Nv'/Yv' and -Mw'/Zw', forward of the reference point, of the planes that a set has."""
-    whole = covariance(among, [b for b in found if b.campaign == subject])
+    whole = among.covariance
     out = []
     for name, (moment, force, sign) in CENTRES.items():
         if any(s not in among or among[s].value is None for s in (moment, force)):
@@ -71,9 +70,7 @@ def centre_of_pressure(
     return tuple(out)
 
 
-def stability(
-    parameters: ParameterFile, found: Sequence[Budget], draws: int = DRAWS, seed: int = SEED
-) -> tuple[Derived, ...]:
+def stability(parameters: ParameterFile, draws: int = DRAWS, seed: int = SEED) -> tuple[Derived, ...]:
     """G_h and G_v of a parameter file that has the mass and all four derivatives of a plane."""
     out = []
     for name, (*symbols, sign) in INDICES.items():
@@ -85,7 +82,6 @@ def stability(
         rows = [parameters.covariance.symbols.index(c.symbol) for c in chosen]
         cells = [[parameters.covariance.matrix[i][j] for j in rows] for i in rows]
         whole = np.array([[np.nan if v is None else v for v in row] for row in cells])
-        whole = whole + further([c.symbol for c in chosen], [c.campaign for c in chosen], found)
         gradient = index_gradient(
             float(values[0]), float(values[1]), float(values[2]), float(values[3]), mass, moment
         )  # fmt: skip

@@ -92,6 +92,8 @@ class FittedModel:
     shared : mapping of str to (p,) array
         Errors that all rows share, each as the signed 95 % shift that it gives to every coefficient: the grid, declared
         angles, speeds, calibrations.
+    not_assessed : tuple of str
+        What may act and is in no half-width, in words; filled in by the budget.
     set_aside : SetAside or None
         Printed rows that are rejected or doubtful.
     """
@@ -112,6 +114,7 @@ class FittedModel:
     statements: tuple[str, ...] = ()
     post_selection: bool = False
     shared: Mapping[str, Array] = field(default_factory=dict)
+    not_assessed: tuple[str, ...] = ()
     set_aside: SetAside | None = None
 
     def __post_init__(self) -> None:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 AT_REST = float(np.sin(np.radians(0.05)))
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,11 +132,12 @@ class ForceTable:
         return tuple(m for m in names if np.any(np.abs(self.primed_motion(m, length)) > AT_REST))
 
     def primed_motion(self, variable: str, length: float) -> Array:
-        """v/U, r L/U or a control angle, shape (n,)."""
+        """v/U, r L/U or a control angle, shape (n,); what rounding leaves of a zero is zero."""
         if variable in self.controls:
             return np.asarray(self.controls[variable])
         scale = length if variable in "pqr" else 1.0
-        return np.asarray(self.motion[variable] * scale / self.speed)
+        primes = np.asarray(self.motion[variable] * scale / self.speed)
+        return np.where(np.abs(primes) > ROUNDING, primes, 0.0)
 
     def primed_force(self, component: str, length: float, values: Array | None = None) -> Array:
         """Y' = Y / (1/2 rho U^2 L^2), moments with L^3, shape (n,)."""

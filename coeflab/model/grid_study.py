@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.symbols import MOTIONS
+from coeflab.core.symbols import LINEAR, MOTIONS
 from coeflab.kernels.grid_convergence import GridConvergence, cell_sizes, grid_convergence
 from coeflab.kernels.grid_least_squares import fitted_convergence
 from coeflab.model.force_table import ForceTable
@@ -24,6 +24,8 @@ class GridStudy:
     table, component : str
     setting : str
         Motion that is not zero, in words.
+    moving : tuple of str
+        Its variables.
     cells : tuple of int
         Finest grid first.
     cells_used : int
@@ -34,6 +36,7 @@ class GridStudy:
     table: str
     component: str
     setting: str
+    moving: tuple[str, ...]
     cells: tuple[int, ...]
     cells_used: int
     convergence: GridConvergence
@@ -62,7 +65,9 @@ def grid_studies(table: ForceTable, component: str, dimension: int = 3) -> tuple
             judged = grid_convergence(values, sizes, used=place, noise=noise)
         counts = tuple(sorted((int(cells[i]) for i in rows), reverse=True))
         found.append(
-            GridStudy(table.name, component, _setting(table, used[0]), counts, int(cells[used[0]]), judged)
+            GridStudy(
+                table.name, component, _setting(table, used[0]), _moving(table, used[0]), counts, int(cells[used[0]]), judged
+            )
         )  # fmt: skip
     return tuple(found)
 
@@ -81,9 +86,15 @@ def _alike(settings: NDArray[np.float64]) -> list[NDArray[np.intp]]:
     return [np.flatnonzero(groups == k) for k in range(int(groups.max(initial=-1)) + 1)]
 
 
-def _setting(table: ForceTable, row: int) -> str:
+def _moving(table: ForceTable, row: int) -> tuple[str, ...]:
     scale = {m: table.speed[row] / (table.scaling.length if m in "pqr" else 1.0) for m in MOTIONS}
     names = [m for m in table.varies if m in MOTIONS and abs(table.motion[m][row]) > AT_REST * scale[m]]
-    parts = [f"{m} = {table.motion[m][row]:.3g} {'m/s' if m in 'uvw' else 'rad/s'}" for m in names]
-    parts += [f"{c} = {np.degrees(a[row]):.3g} deg" for c, a in table.controls.items() if a[row] != 0.0]
+    return (*names, *(c for c, a in table.controls.items() if a[row] != 0.0))
+
+
+def _setting(table: ForceTable, row: int) -> str:
+    names = _moving(table, row)
+    units = {m: "m/s" if m in LINEAR else "rad/s" for m in MOTIONS}
+    parts = [f"{m} = {table.motion[m][row]:.3g} {units[m]}" for m in names if m in units]
+    parts += [f"{c} = {np.degrees(table.controls[c][row]):.3g} deg" for c in names if c in table.controls]
     return ", ".join(parts) or "at rest"

@@ -7,7 +7,7 @@ and below (Coriolis of <fluid_added_mass>), put together in Hydrodynamics.cc, Co
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree.ElementTree import Element
@@ -53,8 +53,8 @@ class GzLink:
         kg, of the link.
     centre : (3,) array
         Centre of gravity in the link frame, m.
-    inertia : (float, float) or None
-        About y and z through the centre of gravity, kg m^2.
+    inertia : (3, 3) array or None
+        About the centre of gravity, kg m^2, in the same axes.
     density : float or None
         kg/m^3, where the file states one.
     """
@@ -70,7 +70,7 @@ class GzLink:
     fluid_mass: Array
     mass: float | None
     centre: Array
-    inertia: tuple[float, float] | None
+    inertia: Array | None
     density: float | None
 
     def __post_init__(self) -> None:
@@ -121,7 +121,7 @@ def read_gz_link(root: Element, file: Path | str | None = None) -> GzLink:
     link = next((e for e in root.iter("link") if e.get("name") == name.rpartition("::")[2]), None)
     inertial = None if link is None else link.find("inertial")
     pose = [0.0] * 6 if inertial is None or inertial.find("pose") is None else _numbers(inertial, "pose", 6, file)
-    axes = [(a, _one(inertial, f"inertia/i{a}{a}", file)) for a in "yz"]
+    axes = {(i, j): _one(inertial, f"inertia/i{'xyz'[i]}{'xyz'[j]}", file) for i in range(3) for j in range(i, 3)}
     model = next((e.get("name", "") for e in root.iter("model")), "")
     density = next((v for tag in DENSITIES for e in root.iter(tag) if (v := numbers(e.text, (1,), tag, file)[0])), None)
     return GzLink(
@@ -136,7 +136,7 @@ def read_gz_link(root: Element, file: Path | str | None = None) -> GzLink:
         fluid_mass=_fluid(inertial, file),
         mass=_one(inertial, "mass", file),
         centre=np.array(pose[:3]),
-        inertia=None if axes[0][1] is None or axes[1][1] is None else (axes[0][1], axes[1][1]),
+        inertia=symmetric(axes),
         density=density,
     )
 
@@ -169,3 +169,10 @@ def _fluid(inertial: Element | None, file: Path | str | None) -> Array:
     for (i, j), tag in FLUID_TAGS.items():
         out[i, j] = out[j, i] = _one(element, tag, file) or 0.0
     return out
+
+
+def symmetric(axes: Mapping[tuple[int, int], float | None]) -> Array | None:
+    """An inertia (3, 3) from its entries; products that are not stated are zero, None without all three moments."""
+    if any(axes[i, i] is None for i in range(3)):
+        return None
+    return np.array([[axes[min(i, j), max(i, j)] or 0.0 for j in range(3)] for i in range(3)])

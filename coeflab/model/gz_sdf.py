@@ -2,58 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import InputError
 from coeflab.core.identifiers import identifier, one_line
 from coeflab.core.xml import serialised
-from coeflab.kernels.kirchhoff import ideal_quadratics
-from coeflab.model.force_law import ForceLaw, force_law
+from coeflab.model.exported_law import central_inertia, centre_of_gravity, number
 from coeflab.model.gz_link import FLUID_TAGS, FORCES, SYSTEM, VELOCITIES
-from coeflab.model.inertia import added_mass_of
 from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.second_order import FLU, SecondOrder, second_order, slot
+from coeflab.model.second_order import FLU, SecondOrder
 
 Array = NDArray[np.float64]
 LINK = "base_link"
-
-
-def number(value: float) -> str:
-    """All digits, and no minus before a zero."""
-    return repr(float(value) + 0.0)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Hydrodynamics:
-    """What both ways of writing share: the law, its second-order form in FRD, the added mass and where it comes from."""
-
-    law: ForceLaw
-    form: SecondOrder
-    matrix: Array
-    source: str
-    mirrored: float
-
-    @property
-    def inert(self) -> bool:
-        """Whether no added mass is known."""
-        return not np.any(self.matrix)
-
-
-def hydrodynamics(parameters: ParameterFile) -> Hydrodynamics:
-    """Law and added mass of a parameter file; an asymmetric added mass is replaced by the mean of it and its mirror."""
-    law = force_law(parameters)
-    stated, source = added_mass_of(parameters)
-    matrix = (stated + stated.T) / 2.0
-    return Hydrodynamics(law, second_order(law), matrix, source, float(np.max(np.abs(stated - matrix))))
-
-
-def viscous(h: Hydrodynamics) -> SecondOrder:
-    """The form less everything that a target adds from the added mass."""
-    return h.form.less(ideal_quadratics(h.matrix))
+INERTIA = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+AXES = "axes: FRD to the link frame x forward, y port, z up; Y Z M N v w q r change sign, factors between bars do not"
+WEIGHTLESS = "no weight and no buoyancy (<gravity> false): the parameter file states neither"
 
 
 def sdf(parameters: ParameterFile, version: str, plugin: list[tuple[str, str]], fluid: Array | None) -> bytes:
@@ -88,40 +53,20 @@ def sdf(parameters: ParameterFile, version: str, plugin: list[tuple[str, str]], 
     )
 
 
-def centre_of_gravity(parameters: ParameterFile) -> float:
-    """x_G, m forward of the reference point; zero where the file has no mass."""
-    return 0.0 if parameters.mass is None else parameters.mass.mass_moment / parameters.mass.mass
-
-
-def central_inertia(parameters: ParameterFile) -> float | None:
-    """Transverse moment of inertia through the centre of gravity.
-
-    Raises
-    ------
-    InputError
-        It would not be positive.
-    """
-    mass = parameters.mass
-    if mass is None or mass.inertia is None:
-        return None
-    central = mass.inertia - mass.mass_moment**2 / mass.mass
-    if central <= 0.0:
-        raise InputError(f"an inertia of {central:g} kg m^2 through the centre of gravity", "one above zero", column="mass")
-    return central
-
-
 def _inertial(link: Element, parameters: ParameterFile, fluid: Array | None) -> None:
     if parameters.mass is None and fluid is None:
         return
     inertial = SubElement(link, "inertial")
     if parameters.mass is not None:
-        SubElement(inertial, "pose").text = f"{number(centre_of_gravity(parameters))} 0 0 0 0 0"
+        centre = FLU[:3] * centre_of_gravity(parameters)
+        SubElement(inertial, "pose").text = f"{' '.join(map(number, centre))} 0 0 0"
         SubElement(inertial, "mass").text = number(parameters.mass.mass)
         central = central_inertia(parameters)
         if central is not None:
             inertia = SubElement(inertial, "inertia")
-            for tag in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"):
-                SubElement(inertia, tag).text = number(central) if tag[1] == tag[2] else "0"
+            turned = central * np.outer(FLU[:3], FLU[:3])
+            for i, j in INERTIA:
+                SubElement(inertia, f"i{'xyz'[i]}{'xyz'[j]}").text = number(turned[i, j])
     if fluid is not None:
         element = SubElement(inertial, "fluid_added_mass")
         for (i, j), tag in FLUID_TAGS.items():
@@ -141,24 +86,8 @@ def tags(form: SecondOrder) -> list[tuple[str, str]]:
     return out
 
 
-def common_changes(parameters: ParameterFile, h: Hydrodynamics) -> tuple[str, ...]:
-    """What any export of this kind changes, in words."""
-    out = [
-        "axes: FRD to the link frame x forward, y port, z up; Y Z M N v w q r change sign, factors between bars do not",
-        f"numbers are SI: primes times 1/2 rho L^k at {parameters.conditions.density:g} kg/m^3",
-    ]
-    speed = [t.symbol for t in h.law.terms if t.speed_power and slot(t) is not None and t.coefficient]
-    if speed:
-        out.append(
-            f"|u| stands for U in {', '.join(speed)} (u|u| or u^2 for U^2): alike on a straight course ahead, less by up to "
-            "1 - cos(beta)^2 of the term in drift"
-        )
-    if h.mirrored:
-        out.append(f"added mass: mean of the matrix and its mirror image, which differ by up to {2.0 * h.mirrored:.3g}")
-    if parameters.mass is None:
-        out.append("no mass in the parameter file: the target's default stands until you write the vehicle's")
-    elif parameters.mass.inertia is None:
-        out.append("no moment of inertia in the parameter file: the target's default stands until you write the vehicle's")
-    else:
-        out.append("roll inertia is not in the parameter file: the transverse one stands in its place; write the vehicle's")
-    return (*out, "no weight and no buoyancy: the parameter file states neither")
+def placed(parameters: ParameterFile) -> tuple[str, ...]:
+    """Where the link's origin and its centre of gravity are, in words."""
+    at = FLU[:3] * centre_of_gravity(parameters) + 0.0
+    moved = (f"centre of gravity at {at[0]:.6g} {at[1]:.6g} {at[2]:.6g} m, in <inertial><pose>",) if np.any(at) else ()
+    return (AXES, "the link's origin is the reference point", *moved, WEIGHTLESS)

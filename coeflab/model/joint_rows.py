@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import COMPONENTS
 from coeflab.kernels.least_squares import Index
-from coeflab.model.force_table import ForceTable
+from coeflab.model.force_table import AT_REST, ForceTable
 from coeflab.model.regression import Area, Rows, collect, response, variable
 from coeflab.model.set_aside import SetAside, joined
 
-AT_REST = float(np.sin(np.radians(0.05)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,21 +6,26 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.symbols import ANGULAR, COMPONENTS, FORCES, MOMENTS, derivative
-from coeflab.model.budget import Budget, budget_of, grid_study_of, undeclared, with_budget
+from coeflab.model.budget import COUPLED, Budget, budget_of, grid_study_of, undeclared, with_budget
 from coeflab.model.coefficient import Coefficient
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
+from coeflab.model.grid_study import GridStudy, gravest
 from coeflab.model.input_effects import InputPart, acting
 from coeflab.model.model_effects import ModelEffects, Refit, model_effects
 from coeflab.model.moved_tables import SET_ANGLES
 from coeflab.model.regression import MOMENT_COEFFICIENTS
 from coeflab.model.scaling import Scaling
 
-DRAWS, SEED = 500, 1
+Array = NDArray[np.float64]
+DRAWS, SEED = 200, 1
 FORM = "model form"
+SELECTED = "declared inputs, as the terms were chosen by looking at the data"
+CHANGES = "it changes which rows or terms the fit can use"
 
 
 def with_model_budgets(
@@ -47,7 +52,11 @@ def with_model_budgets(
         numbers = slice(at, at + len(model.symbols))
         at = numbers.stop
         shifts = effects.shifts(numbers) if effects else {}
-        models.append(replace(model, shared=shifts | _grid(model, tables)))
+        grid = _grid(model, tables)
+        lacking = _lacking(model, _component(model), model.domain.variables, tables, effects, numbers)
+        if _computed(model, tables) and not grid:
+            lacking = ("grid", *lacking)
+        models.append(replace(model, shared=shifts | grid, not_assessed=(FORM, *lacking)))
     found = tuple(
         _budget(c, _model_of(c, fit), tables, effects, at + i)
         for i, c in enumerate(fit.coefficients.coefficients)
@@ -62,42 +71,103 @@ def _component(model: FittedModel) -> str:
     return bare if bare in COMPONENTS else MOMENT_COEFFICIENTS.get(bare, "")
 
 
-def _grid(model: FittedModel, tables: Sequence[ForceTable]) -> dict[str, np.ndarray]:
-    """The relative half-width of the gravest grid study, on all terms alike."""
-    study = grid_study_of(tables, _component(model))
-    relative = None if study is None else study.convergence.relative
-    return {} if relative is None else {"grid": relative * np.nan_to_num(model.fit.coefficients)}
+def _own(model: FittedModel, tables: Sequence[ForceTable]) -> tuple[ForceTable, ...]:
+    """The tables that a model has rows of; all of them where equations alone give it."""
+    names = set(model.table.split(", "))
+    return tuple(t for t in tables if t.name in names) or tuple(tables)
 
 
-def _gravest(tables: Sequence[ForceTable], component: str) -> str:
-    """The force, or the moment, with the largest relative grid error: for a coefficient that equations alone give."""
-    relative = {}
-    for other in dict.fromkeys((component, *(MOMENTS if component in MOMENTS else FORCES))):
-        study = grid_study_of(tables, other)
-        relative[other] = 0.0 if study is None else study.convergence.relative or 0.0
-    return max(relative, key=lambda k: relative[k])
+def _computed(model: FittedModel, tables: Sequence[ForceTable]) -> bool:
+    return any(t.source.kind == "cfd" for t in _own(model, tables))
 
 
-def _model_of(c: Coefficient, fit: FitResult) -> FittedModel | None:
-    return next((m for m in fit.models if c.symbol in {s.removesuffix("'") for s in m.symbols}), None)
+def _study(model: FittedModel, i: int, tables: Sequence[ForceTable]) -> GridStudy | None:
+    """The grid study of a term: of its component, at a setting that moves one of its variables.
+
+    A term whose motion no row of the component has comes from equations alone; it takes the gravest of the forces, or of
+    the moments, whose terms they tie it to.
+    """
+    moves = tuple(dict.fromkeys({"alpha": "w", "beta": "v"}.get(v, v) for v, _, _ in model.terms[i].factors))
+    component = _component(model)
+    if not moves or np.any(model.terms[i].evaluate(model.x)):
+        return grid_study_of(_own(model, tables), component, moves) if component else None
+    partners = {"w": "v", "q": "r", "v": "w", "r": "q"}
+    studies = [
+        found
+        for other in (MOMENTS if component in MOMENTS else FORCES)
+        if (found := grid_study_of(tables, other, (*moves, *(partners.get(m, m) for m in moves)))) is not None
+    ]
+    return gravest(tuple(studies))
+
+
+def _grid(model: FittedModel, tables: Sequence[ForceTable]) -> dict[str, Array]:
+    """Half-widths by grid study, each common to the terms that take it: relative, so signed as the coefficients are."""
+    out: dict[str, Array] = {}
+    for i, value in enumerate(np.nan_to_num(model.fit.coefficients)):
+        study = _study(model, i, tables)
+        relative = None if study is None else study.convergence.relative
+        if study is not None and relative is not None:
+            shift = out.setdefault(f"grid at {study.setting}", np.zeros(len(model.terms)))
+            shift[i] = relative * value
+    return {"grid": next(iter(out.values()))} if len(out) == 1 else out
+
+
+def _model_of(c: Coefficient, fit: FitResult) -> tuple[FittedModel, int] | None:
+    for m in fit.models:
+        bare = [s.removesuffix("'") for s in m.symbols]
+        if c.symbol in bare:
+            return m, bare.index(c.symbol)
+    return None
+
+
+def _lacking(
+    model: FittedModel,
+    component: str,
+    variables: Sequence[str],
+    tables: Sequence[ForceTable],
+    effects: ModelEffects | None,
+    numbers: slice,
+) -> tuple[str, ...]:
+    """Inputs that may act and are in no half-width, campaign by campaign."""
+    rate, angle = any(v in ANGULAR for v in variables), any(v in SET_ANGLES for v in variables)
+    wanted = acting(component, rate, angle) if component else acting("X", rate, angle)
+    own = _own(model, tables)
+    campaigns = tuple(dict.fromkeys(t.campaign for t in own))
+    failed = () if effects is None else tuple(i for i in effects.lacking(numbers) if i.kind in wanted)
+    assessed = () if effects is None else effects.inputs
+    out = []
+    for campaign in campaigns:
+        known = tuple(InputPart(i.kind, i.half_width, 0.0) for i in assessed if i.campaign in ("", campaign))
+        missing = undeclared(wanted, tuple(t for t in own if t.campaign == campaign), known)
+        out += [f"{name} of {campaign}" if len(campaigns) > 1 else name for name in missing]
+    if rate and not angle and out:
+        out.append(COUPLED)
+    if model.post_selection and any(t.uncertainty is not None for t in own):
+        out = [SELECTED]
+    return (*out, *(f"{i.name}: {CHANGES}" for i in failed))
 
 
 def _budget(
-    c: Coefficient, model: FittedModel | None, tables: Sequence[ForceTable], effects: ModelEffects | None, number: int
+    c: Coefficient,
+    place: tuple[FittedModel, int] | None,
+    tables: Sequence[ForceTable],
+    effects: ModelEffects | None,
+    number: int,
 ) -> Budget:
     component = derivative(c.symbol).component
-    own = tuple(t for t in tables if component in t.forces) or tuple(tables)
-    gridded = component if c.n_points else _gravest(tables, component)
     inputs: tuple[InputPart, ...] = ()
     if effects is not None:
         inputs = tuple(
             InputPart(i.name, i.half_width, float(g))
             for i, g in zip(effects.inputs, effects.gradients[:, number], strict=True)
-            if g != 0.0
+            if np.isfinite(g) and g != 0.0
         )
-    variables = () if model is None else model.domain.variables
-    wanted = acting(component, any(v in ANGULAR for v in variables), any(v in SET_ANGLES for v in variables))
-    assessed = () if effects is None else tuple(InputPart(i.kind, i.half_width, 0.0) for i in effects.inputs)
-    lacking = [*undeclared(wanted, own, assessed), *(effects.lacking if effects else ())]
     total = None if effects is None else effects.propagated(number)
-    return budget_of(c, gridded, own, {"random": c.parts.random or c.u95, FORM: None}, inputs, total, lacking)
+    fitted = {"random": c.parts.random or c.u95, FORM: None}
+    if place is None:
+        return budget_of(c, component, tables, fitted, inputs, total, ())
+    model, i = place
+    variables = tuple(v for v, _, _ in model.terms[i].factors) or model.domain.variables
+    lacking = _lacking(model, component, variables, tables, effects, slice(number, number + 1))
+    study = _study(model, i, tables)
+    return budget_of(c, component, _own(model, tables), fitted, inputs, total, lacking, study=study)

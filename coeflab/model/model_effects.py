@@ -13,12 +13,13 @@ from coeflab.kernels.propagation import STEP, Propagated, normal_draws, summary_
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
 from coeflab.model.frozen import locked
-from coeflab.model.moved_tables import UncertainInput, moved, uncertain_inputs
+from coeflab.model.moved_tables import SET_ANGLES, UncertainInput, moved, uncertain_inputs
 from coeflab.model.scaling import Scaling
 
 Array = NDArray[np.float64]
 Refit = Callable[[Sequence[ForceTable], Scaling], FitResult]
 ROUNDING = 1e-9
+FEWEST_DRAWS = 100
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,13 +31,11 @@ class ModelEffects:
     inputs : tuple of UncertainInput
         k of them.
     gradients : (k, m) array
-        Derivative of every number by every input.
+        Derivative of every number by every input; NaN where the input changes which rows or terms its model has.
     sample : (s, m) array
-        The numbers over all inputs at once; draws that change which rows or terms the fit uses are left out.
+        The numbers over all inputs at once, NaN likewise.
     nominal : (m,) array
     seed : int
-    lacking : tuple of str
-        Declared inputs whose effect could not be computed, with the reason.
     """
 
     inputs: tuple[UncertainInput, ...]
@@ -44,32 +43,38 @@ class ModelEffects:
     sample: Array
     nominal: Array
     seed: int
-    lacking: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("gradients", "sample", "nominal"):
             object.__setattr__(self, name, locked(getattr(self, name)))
 
-    @property
-    def half_widths(self) -> Array:
-        """(k,) declared."""
-        return np.array([i.half_width for i in self.inputs])
-
     def shifts(self, numbers: slice) -> dict[str, Array]:
-        """Signed 95 % shift of some numbers by every input."""
+        """Signed 95 % shift of some numbers by every input that acts on them and could be carried to all of them."""
+        known = np.isfinite(self.nominal[numbers])
         return {
-            i.name: row[numbers] * i.half_width
+            i.name: np.where(known, np.nan_to_num(row[numbers]), 0.0) * i.half_width
             for i, row in zip(self.inputs, self.gradients, strict=True)
-            if np.any(row[numbers] != 0.0)
+            if np.all(np.isfinite(row[numbers][known])) and np.any(row[numbers][known] != 0.0)
         }
 
+    def lacking(self, numbers: slice) -> tuple[UncertainInput, ...]:
+        """Inputs that could not be carried to some numbers."""
+        known = np.isfinite(self.nominal[numbers])
+        return tuple(
+            i
+            for i, row in zip(self.inputs, self.gradients, strict=True)
+            if not np.all(np.isfinite(row[numbers][known]))
+        )
+
     def propagated(self, number: int) -> Propagated | None:
-        """All inputs together on one number, linear beside Monte Carlo; None without inputs or draws."""
-        if not self.inputs or not len(self.sample):
+        """All inputs together on one number, linear beside Monte Carlo; None with fewer than 100 usable draws."""
+        sample = self.sample[:, number]
+        sample = sample[np.isfinite(sample)]
+        if not self.inputs or len(sample) < min(FEWEST_DRAWS, len(self.sample)):
             return None
-        covariance = np.diag((self.half_widths / 2.0) ** 2)
-        sample, nominal = self.sample[:, number], float(self.nominal[number])
-        return summary_of(sample, nominal, self.gradients[:, number], covariance, self.seed)
+        covariance = np.diag((np.array([i.half_width for i in self.inputs]) / 2.0) ** 2)
+        gradient = np.nan_to_num(self.gradients[:, number])
+        return summary_of(sample, float(self.nominal[number]), gradient, covariance, self.seed)
 
 
 def numbers_of(fit: FitResult) -> Array:
@@ -78,9 +83,23 @@ def numbers_of(fit: FitResult) -> Array:
     return np.concatenate([*(m.fit.coefficients for m in fit.models), np.array(among, dtype=float)])
 
 
-def _same(one: FitResult, other: FitResult) -> bool:
-    """Whether two fits use the same rows and terms."""
-    return [(m.symbols, m.labels) for m in one.models] == [(m.symbols, m.labels) for m in other.models]
+def _moved_numbers(fit: FitResult, other: FitResult) -> Array | None:
+    """Numbers of a moved fit, NaN for models with other rows or terms; None where the models are others altogether."""
+    if [m.symbols for m in fit.models] != [m.symbols for m in other.models]:
+        return None
+    if fit.coefficients.symbols != other.coefficients.symbols:
+        return None
+    numbers, at, changed = numbers_of(other), 0, set()
+    for one, two in zip(fit.models, other.models, strict=True):
+        stop = at + len(one.symbols)
+        if one.labels != two.labels:
+            numbers[at:stop] = np.nan
+            changed |= {s.removesuffix("'") for s in one.symbols}
+        at = stop
+    for i, c in enumerate(fit.coefficients.coefficients):
+        if c.symbol in changed:
+            numbers[at + i] = np.nan
+    return numbers
 
 
 def model_effects(
@@ -97,40 +116,30 @@ def model_effects(
     draws, seed : int
         Of the Monte Carlo.
     """
-    variables = tuple(dict.fromkeys(v for m in fit.models if m.unit == "1" for v in m.domain.variables))
-    declared = uncertain_inputs(tables, variables)
-    if not declared or any(m.post_selection for m in fit.models):
+    variables = dict.fromkeys(v for m in fit.models for v in m.domain.variables if _is_set(v, m.unit))
+    inputs = uncertain_inputs(tables, tuple(variables))
+    if not inputs or any(m.post_selection for m in fit.models):
         return None
     nominal = numbers_of(fit)
+    nothing = np.full(len(nominal), np.nan)
 
-    def numbers(inputs: Sequence[UncertainInput], errors: Array) -> Array | None:
+    def numbers(some: Sequence[UncertainInput], errors: Array) -> Array:
         try:
-            found = refit(*moved(tables, scaling, inputs, errors))
+            found = _moved_numbers(fit, refit(*moved(tables, scaling, some, errors)))
         except InputError:
-            return None
-        return numbers_of(found) if _same(fit, found) else None
+            return nothing
+        return nothing if found is None else found
 
-    kept, rows, lacking = [], [], []
-    for given in declared:
+    rows = []
+    for given in inputs:
         step = STEP * given.half_width
-        up, down = numbers([given], np.array([step])), numbers([given], np.array([-step]))
-        if up is None or down is None:
-            lacking.append(f"{given.name}: it changes which rows or terms the fit can use")
-            continue
-        row = (up - down) / (2.0 * step)
-        telling = np.abs(row * given.half_width) > ROUNDING * np.abs(nominal)
-        kept.append(given)
-        rows.append(np.where(telling, np.nan_to_num(row), 0.0))
-    inputs = tuple(kept)
+        row = (numbers([given], np.array([step])) - numbers([given], np.array([-step]))) / (2.0 * step)
+        rows.append(np.where(np.abs(row * given.half_width) <= ROUNDING * np.abs(nominal), 0.0, row))
     half = np.array([i.half_width for i in inputs])
-    sample = [numbers(inputs, e) for e in normal_draws(np.diag((half / 2.0) ** 2), draws, seed)] if kept else []
-    usable = [s for s in sample if s is not None]
-    shape = (len(usable), len(nominal))
-    return ModelEffects(
-        inputs,
-        np.array(rows).reshape(len(kept), len(nominal)),
-        np.array(usable).reshape(shape),
-        nominal,
-        seed,
-        tuple(lacking),
-    )
+    sample = [numbers(inputs, e) for e in normal_draws(np.diag((half / 2.0) ** 2), draws, seed)]
+    return ModelEffects(inputs, np.array(rows), np.array(sample), nominal, seed)
+
+
+def _is_set(variable: str, unit: str) -> bool:
+    """Whether a variable is an angle that somebody set: alpha, beta, controls; v and w where they are primed."""
+    return variable in SET_ANGLES and (unit == "1" or variable not in ("v", "w"))

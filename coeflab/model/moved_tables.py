@@ -56,14 +56,19 @@ def uncertain_inputs(tables: Sequence[ForceTable], variables: Sequence[str]) -> 
     tables : sequence of ForceTable
     variables : sequence of str
         Those of the fitted models; only their angles are moved.
+
+    Notes
+    -----
+    All campaigns of a fit share the length of the primes: the largest of their half-widths is taken for it.
     """
     campaigns: dict[str, InputUncertainty] = {t.campaign: t.uncertainty for t in tables if t.uncertainty is not None}
     several = len({t.campaign for t in tables}) > 1
+    lengths = [d.length for d in campaigns.values() if d.length is not None]
     angles = tuple(dict.fromkeys(SET_ANGLES[v] for v in variables if v in SET_ANGLES))
     out: dict[UncertainInput, None] = {}
     for campaign, declared in campaigns.items():
         for kind in NAMES:
-            half = getattr(declared, kind)
+            half = max(lengths, default=None) if kind == "length" else getattr(declared, kind)
             if half is None:
                 continue
             owner = campaign if several and kind != "length" else ""

@@ -1,7 +1,7 @@
 """The parameter file: JSON, one body, one scaling, one reference point.
 
 Version 1.1: 1.0 and fitted tables. Version 1.2: what the half-widths of these hold, the status ``form_assumed``, added mass
-and the potential part of every coefficient.
+and the potential part of every coefficient, the centre of gravity and the inertia matrix.
 
 The models below are the schema; ``parameter_file.schema.json`` beside them is generated from them.
 """
@@ -13,11 +13,13 @@ import math
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.symbols import derivative
 from coeflab.core.toml import read_text
+from coeflab.kernels.rigid_body import inertia_doubt
 from coeflab.model.parameter_added_mass import ParameterAddedMass
 from coeflab.model.parameter_model import ParameterModel
 from coeflab.model.scaling import Conditions, Scaling
@@ -106,6 +108,9 @@ class ParameterPoint(Strict):
     axes: Literal["FRD"] = "FRD"
 
 
+Triple = tuple[Finite, Finite, Finite]
+
+
 class ParameterMass(Strict):
     """Mass properties about the reference point."""
 
@@ -114,6 +119,26 @@ class ParameterMass(Strict):
     inertia: Positive | None = Field(default=None, description="transverse (Iy = Iz), kg m^2")
     mass_prime: Positive
     mass_moment_prime: Finite
+    centre: Triple | None = Field(
+        default=None, description="centre of gravity from the reference point, m, FRD; since 1.2"
+    )
+    inertia_matrix: tuple[Triple, Triple, Triple] | None = Field(
+        default=None, description="about the reference point, kg m^2, products with their sign in the matrix; since 1.2"
+    )
+
+    @model_validator(mode="after")
+    def _of_a_body(self) -> ParameterMass:
+        if self.inertia_matrix is not None and self.centre is None:
+            raise ValueError("an inertia matrix without the centre of gravity")
+        if self.centre is not None:
+            moment = self.mass * self.centre[0]
+            if not math.isclose(moment, self.mass_moment, rel_tol=1e-6, abs_tol=1e-9 * self.mass):
+                raise ValueError(f"mass_moment {self.mass_moment:g} is not m x_G, {moment:g}")
+        if self.inertia_matrix is not None and self.centre is not None:
+            why = inertia_doubt(self.mass, np.array(self.centre), np.array(self.inertia_matrix))
+            if why:
+                raise ValueError(why)
+        return self
 
 
 class ParameterCovariance(Strict):
@@ -214,8 +239,11 @@ class ParameterFile(Strict):
                 raise ValueError(f"{response} over {', '.join(names)} stands more than once")
         if tables and self.schema_version == FIRST_VERSION:
             raise ValueError(f"models came with version 1.1; this file says {FIRST_VERSION}")
-        if self.added_mass and self.schema_version in (FIRST_VERSION, "1.1"):
-            raise ValueError(f"added mass came with version 1.2; this file says {self.schema_version}")
+        if self.schema_version in (FIRST_VERSION, "1.1"):
+            if self.added_mass:
+                raise ValueError(f"added mass came with version 1.2; this file says {self.schema_version}")
+            if self.mass and self.mass.centre:
+                raise ValueError(f"the centre of gravity came with version 1.2; this file says {self.schema_version}")
         return self
 
     def coefficient(self, symbol: str) -> ParameterCoefficient | None:
@@ -237,6 +265,8 @@ def _as_of(version: str, content: dict[str, Any]) -> dict[str, Any]:
     """A file's content without what came after a version."""
     if version in (FIRST_VERSION, "1.1"):
         del content["added_mass"]
+        if content["mass"] is not None:
+            del content["mass"]["centre"], content["mass"]["inertia_matrix"]
         for coefficient in content["coefficients"]:
             del coefficient["potential"], coefficient["law"]
         for model in content["models"]:

@@ -33,8 +33,13 @@ def potential_part(symbol: str, added_mass: AddedMass, scaling: Scaling, density
     Returns
     -------
     float or None
-        Zero for terms in |v| and of the third order, which an ideal fluid does not have; None for controls and
-        accelerations, of which it is no part.
+        Zero for terms in |v| and of the third order: an ideal fluid has products of two velocities only. None for controls
+        and accelerations, of which it is no part.
+
+    Notes
+    -----
+    In primes u is sqrt(1 - v'^2 - w'^2), so a product u v written in v' alone has a tail, -v'^3 / 2 and on. It is not
+    booked: a target that adds u v itself differs by it, 1 - cos(beta) of the potential part, as its loss report shows.
     """
     d = derivative(symbol)
     if any(f not in MOTIONS for f in d.factors):

@@ -45,7 +45,7 @@ class Secant:
     def __str__(self) -> str:
         return (
             f"{self.symbol}' is {coefficient(self.slope)} at the origin and {coefficient(self.secant)} +- "
-            f"{coefficient(self.half_width)} as secant over {self.variable}' = 0 .. {self.reach:.3g}."
+            f"{coefficient(self.half_width)} (scatter) as secant over {self.variable}' = 0 .. {self.reach:.3g}."
         )
 
 

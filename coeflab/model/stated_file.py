@@ -8,7 +8,9 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import ValidationError
 
+from coeflab.core.errors import InputError
 from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.core.version import VERSION
@@ -34,13 +36,17 @@ Array = NDArray[np.float64]
 Law = Literal["motion", "rest"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class StatedMass:
-    """Mass, kg; x_G m, kg m; transverse inertia, kg m^2, where it is known."""
+    """Mass, kg; x_G m, kg m; where they are known transverse inertia, kg m^2, the centre of gravity (3,) from the
+    reference point, m, and the inertia (3, 3) about that point, kg m^2.
+    """
 
     mass: float
     moment: float
     inertia: float | None = None
+    centre: Array | None = None
+    inertia_matrix: Array | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,7 +83,22 @@ class Stated:
 
 
 def stated_file(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, ...]) -> ParameterFile:
-    """The parameter file; every coefficient has status ``stated`` and no interval."""
+    """The parameter file; every coefficient has status ``stated`` and no interval.
+
+    Raises
+    ------
+    InputError
+        The numbers make no parameter file: one is not finite, a name is empty, a mass is no rigid body's.
+    """
+    try:
+        return _built(stated, sources, citations)
+    except ValidationError as why:
+        first = why.errors()[0]
+        place = ".".join(str(p) for p in first["loc"]) or stated.name
+        raise InputError(first["msg"], "numbers that make a parameter file", column=place) from None
+
+
+def _built(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, ...]) -> ParameterFile:
     s, at = stated, stated.conditions
     hull = None
     if s.matrix is not None:
@@ -91,12 +112,16 @@ def stated_file(stated: Stated, sources: Sequence[InputFile], citations: tuple[s
         conditions=ParameterConditions(density=at.density, speed=at.speed, viscosity=at.viscosity),
         mass=None
         if s.mass is None
-        else ParameterMass(
-            mass=s.mass.mass,
-            mass_moment=s.mass.moment,
-            inertia=s.mass.inertia,
-            mass_prime=s.mass.mass / factor,
-            mass_moment_prime=s.mass.moment / (factor * s.scaling.length),
+        else ParameterMass.model_validate(
+            {
+                "mass": s.mass.mass,
+                "mass_moment": s.mass.moment,
+                "inertia": s.mass.inertia,
+                "mass_prime": s.mass.mass / factor,
+                "mass_moment_prime": s.mass.moment / (factor * s.scaling.length),
+                "centre": None if s.mass.centre is None else s.mass.centre.tolist(),
+                "inertia_matrix": None if s.mass.inertia_matrix is None else s.mass.inertia_matrix.tolist(),
+            }
         ),
         coefficients=tuple(_coefficient(symbol, *value, s, hull) for symbol, value in s.coefficients.items()),
         covariance=ParameterCovariance(symbols=(), matrix=()),

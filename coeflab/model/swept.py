@@ -11,11 +11,10 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import COMPONENTS, FORCES
-from coeflab.model.force_table import Exclusion, ForceTable
+from coeflab.model.force_table import AT_REST, Exclusion, ForceTable
 from coeflab.model.regression import WIND, Area, Rows, response
 from coeflab.model.scaling import Scaling
 
-AT_REST = np.sin(np.radians(0.05))
 MOVED_BY = {"alpha": ("w",), "beta": ("v",)}
 PRIMES = "L^2"
 AREAS = (PRIMES, "frontal", "wetted", "projected", "planform", "volume^(2/3)")

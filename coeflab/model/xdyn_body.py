@@ -31,6 +31,7 @@ RIGID = "rigid body inertia matrix at the center of gravity and projected in the
 ADDED = "added mass matrix at the center of gravity and projected in the body frame"
 DAMPING = "damping matrix at the center of gravity projected in the body frame"
 HERE = "hydrodynamic forces calculation point in body frame"
+LARGEST = 1e15
 POWERS = {"linear damping": 1, "quadratic damping": 2}
 UNITS = {"m": 1.0, "m/s": 1.0, "rad/s": 1.0, "rad": 1.0, "kg/m^3": 1.0, "m/s^2": 1.0, "ft": 0.3048, "knot": 1852.0 / 3600.0,
          "km/h": 1.0 / 3.6, "deg": np.pi / 180.0, "deg/s": np.pi / 180.0}  # fmt: skip
@@ -96,7 +97,15 @@ class XdynBody:
         """Hydrodynamic force and moment about the centre of gravity, (n, 6), for velocities (n, 6) there."""
         out = np.zeros_like(nu)
         states: dict[str, Callable[..., Any]] = {m: partial(_state, nu[:, j]) for j, m in enumerate(MOTIONS)}
-        functions = {**states, "abs": np.abs, "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "cos": np.cos, "sin": np.sin}
+        functions: dict[str, Callable[..., Any]] = {
+            **states,
+            "abs": np.abs,
+            "sqrt": np.sqrt,
+            "exp": np.exp,
+            "log": np.log,
+            "cos": np.cos,
+            "sin": np.sin,
+        }
         for model in self.manoeuvring:
             found = settled(model.expressions, self.given(model), functions)
             at_point = np.column_stack([np.broadcast_to(found[c], len(nu)) for c in COMPONENTS])
@@ -132,12 +141,12 @@ class Reading:
         """``{value: 1, unit: m}`` in SI."""
         found = self.mapping(parent, key)
         value, unit = number(found.get("value")), str(found.get("unit"))
-        if value is None or unit not in UNITS:
+        if value is None or abs(value) > LARGEST or unit not in UNITS:
             raise self.fail(shown(found), f"{{value: number, unit: one of {', '.join(UNITS)}}}", key)
         return value * UNITS[unit]
 
     def point(self, parent: Mapping[str, Any], key: str) -> Array:
-        """x y z of a sub-mapping."""
+        """The point x y z of a sub-mapping."""
         found = self.mapping(parent, key)
         return np.array([self.measured(found, axis) for axis in "xyz"])
 
@@ -148,8 +157,8 @@ class Reading:
         for k in range(1, 7):
             row = found.get(f"row {k}")
             values = [number(v) for v in row] if isinstance(row, list) else []
-            if len(values) != 6 or None in values:
-                raise self.fail(shown(row), "six numbers", f"{key}, row {k}")
+            if len(values) != 6 or not all(v is not None and abs(v) <= LARGEST for v in values):
+                raise self.fail(shown(row), "six numbers", f"row {k} of the {key}")
             rows.append(values)
         return np.array(rows, dtype=np.float64)
 

@@ -81,7 +81,7 @@ def symmetry(found: Triangulation) -> Table:
     rows = tuple((m, f"{v:.1e}") for m, v in left.items()) if np.any(zero) else ()
     planes = ", ".join(found.mirror_planes) or "none"
     notes = (
-        f"planes of symmetry: {planes}; vanish about the reference point: {', '.join(found.vanishing_symbols())}",
+        f"planes of symmetry, as volume moments up to the third degree tell: {planes}; vanish about the reference point: {', '.join(found.vanishing_symbols())}",
         "largest: over the root of the two diagonal entries; zero but for rounding and the mesh",
     )
     return Table("Entries that symmetry makes vanish", ("method", "largest"), rows, notes)

@@ -17,8 +17,8 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
     found = study.budgets
     if not found:
         return ()
-    derived = [d for f in study.fits for d in centre_of_pressure(f.coefficients, (), f.campaign)]
-    derived += [d for p in study.parameter_files.values() for d in stability(p, ())]
+    derived = [d for f in study.fits for d in centre_of_pressure(f.coefficients, f.campaign)]
+    derived += [d for p in study.parameter_files.values() for d in stability(p)]
     tables = (
         budget_tables.overview(found),
         budget_tables.grids(found),

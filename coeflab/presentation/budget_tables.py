@@ -96,7 +96,7 @@ def shared(model: FittedModel) -> Table:
         if names
     )
     headers = ("", "value", "95 %", "random", *names)
-    notes = ("Not assessed: model form, and inputs that the campaign does not declare.",)
+    notes = (f"Not assessed: {'; '.join(model.not_assessed) or 'nothing known'}.",)
     return Table(f"{model.response} of {model.campaign}: parts of the half-widths", headers, rows, notes)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, shown
 from coeflab.exporters import EXPORTERS
 from coeflab.model.force_law import force_law
 from coeflab.model.loss import Loss, loss_of
@@ -35,14 +35,15 @@ def export(parameters: ParameterFile, target: str) -> Export:
     """
     plugin = EXPORTERS.load(target)
     files = dict(plugin.render(parameters))
-    for name in files:
-        if "/" in name or "\\" in name or name.startswith("."):
-            raise InputError(f"a file called {name!r}", "a plain file name", column=f"exporter.{target}")
+    report = f"{parameters.name}.{target}.loss.txt"
+    for name in (*files, report):
+        if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable():
+            raise InputError(f"a file called {shown(name)}", "a plain file name", column=f"exporter.{target}")
     if not isinstance(plugin, SimulatorExporter):
         return Export(target, files, None)
     found = loss_of(
         target, force_law(parameters), parameters, files, plugin.force, plugin.not_held(parameters),
         plugin.changes(parameters),
     )  # fmt: skip
-    files[f"{parameters.name}.{target}.loss.txt"] = as_text(found, parameters).encode()
+    files[report] = as_text(found, parameters).encode()
     return Export(target, files, found)

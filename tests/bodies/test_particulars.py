@@ -106,3 +106,40 @@ def test_bodies_that_cannot_be(tmp_path: Path, old: str, new: str, said: list[st
 def test_unknown_configuration() -> None:
     with pytest.raises(InputError, match=r'no configuration "x" of suboff; expected one of suboff_fully_appended'):
         read_body(SUBOFF).require("x")
+
+
+FULL = SYNTHETIC.replace(
+    'centre_of_gravity_forward = "1 ft"\ninertia = 12.0\n',
+    """centre_of_gravity = [-0.9, 0.0, 0.02]
+inertia_matrix = [[0.9, 0.0, "-0.1 kg*m^2"], [0.0, 12.0, 0.0], [-0.1, 0.0, 12.5]]
+""",
+)
+
+
+def test_centre_of_gravity_and_inertia_about_it(tmp_path: Path) -> None:
+    (tmp_path / "body.toml").write_text(FULL)
+    mass = read_body(tmp_path / "body.toml").configurations[0].mass
+    assert mass is not None
+    kilograms = 100.0 * POUND
+    assert mass.mass_moment == pytest.approx(0.1 * kilograms)
+    assert list(mass.centre) == pytest.approx([0.1, 0.0, 0.02])
+    assert mass.inertia_matrix[0, 0] == pytest.approx(0.9 + 0.02**2 * kilograms)
+    assert mass.inertia_matrix[2, 2] == pytest.approx(12.5 + 0.1**2 * kilograms)
+    assert mass.inertia_matrix[0, 2] == pytest.approx(-0.1 - 0.1 * 0.02 * kilograms)
+    assert mass.inertia is None
+
+
+@pytest.mark.parametrize(
+    ("found", "instead", "said"),
+    [
+        ("inertia_matrix = [[0.9,", "inertia_matrix = [[0.3,", "larger than the others"),
+        ("[-0.1, 0.0, 12.5]", "[0.1, 0.0, 12.5]", "not symmetric"),
+        ("[-0.1, 0.0, 12.5]", "[-0.1, 0.0]", "three rows"),
+        ("inertia_matrix", "inertia = 3.0\ninertia_matrix", "both"),
+        ('"-0.1 kg*m^2"', '"-0.1 kg*m"', "inertia"),
+    ],
+)
+def test_inertia_that_cannot_be(tmp_path: Path, found: str, instead: str, said: str) -> None:
+    (tmp_path / "body.toml").write_text(FULL.replace(found, instead))
+    with pytest.raises(InputError, match=said):
+        read_body(tmp_path / "body.toml")

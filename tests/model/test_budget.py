@@ -16,7 +16,7 @@ from coeflab.core.provenance import Source
 from coeflab.core.toml import read_toml
 from coeflab.fits.slope_at_origin import fit
 from coeflab.kernels.grid_convergence import Convergence
-from coeflab.model.budget import Budget, BudgetPart, budgets_of, covariance
+from coeflab.model.budget import Budget, BudgetPart, budgets_of, covariance, with_budget
 from coeflab.model.campaign import read_campaign
 from coeflab.model.declared import declared, with_declarations
 from coeflab.model.derived import centre_of_pressure, stability
@@ -246,13 +246,13 @@ def test_the_bare_hull_computation() -> None:
 
 def test_covariance_of_common_errors_cancels_in_the_centre_of_pressure() -> None:
     plain, tables = both(None)
-    bare = centre_of_pressure(plain.coefficients, budgets_of(plain, tables), plain.campaign)[0]
+    bare = centre_of_pressure(with_budget(plain, budgets_of(plain, tables)).coefficients, plain.campaign)[0]
     for name, same in (("speed", True), ("density", True), ("force", False), ("moment", False)):
         result, tables = both(InputUncertainty(**{name: 0.05}))
         found = budgets_of(result, tables)
         whole = covariance(result.coefficients, found)
         assert np.min(np.linalg.eigvalsh(whole)) > -1e-12 * np.max(whole)
-        x = centre_of_pressure(result.coefficients, found, result.campaign)[0]
+        x = centre_of_pressure(with_budget(result, found).coefficients, result.campaign)[0]
         assert x.result is not None
         assert bare.result is not None
         assert x.value == bare.value
@@ -263,7 +263,7 @@ def test_covariance_of_common_errors_cancels_in_the_centre_of_pressure() -> None
 def test_a_ratio_over_an_interval_with_zero_has_none() -> None:
     result, tables = both(None)
     found = [replace(b, parts=(*b.parts, BudgetPart("grid", abs(b.value), None))) for b in budgets_of(result, tables)]
-    x = centre_of_pressure(result.coefficients, found, result.campaign)[0]
+    x = centre_of_pressure(with_budget(result, found).coefficients, result.campaign)[0]
     assert x.result is None
     assert "denominator Yv'" in x.statement
 
@@ -294,24 +294,23 @@ HORIZONTAL = {"Yv'": (-0.028, 0.001), "Nv'": (-0.014, 0.0005), "Yr'": (0.005, 0.
 
 
 def test_the_stability_index_with_a_budget() -> None:
-    (g,) = stability(parameters(HORIZONTAL), ())
+    (g,) = stability(parameters(HORIZONTAL))
     assert g.value == pytest.approx(1.0 - (-0.014 * (0.005 - 0.018)) / (-0.028 * -0.0045))
     assert g.result is not None
     assert g.result.monte_carlo == pytest.approx(g.result.linear, rel=0.03)
     relative = np.array([0.001 / 0.028, 0.0005 / 0.014, 0.0005 / 0.013, 0.0002 / 0.0045])
     assert g.result.linear == pytest.approx((1.0 - g.value) * np.linalg.norm(relative))
-    extra = replace(budgets(small_study(FULL))[0], parts=(BudgetPart("grid", 0.004, None),), value=-0.028)
-    (wider,) = stability(parameters(HORIZONTAL), (extra,))
+    (wider,) = stability(parameters(HORIZONTAL | {"Yv'": (-0.028, 0.004)}))
     assert wider.result is not None
     assert wider.result.linear > 1.5 * g.result.linear
 
 
 def test_a_stability_index_that_cannot_be_bounded() -> None:
-    (g,) = stability(parameters(HORIZONTAL | {"Nr'": (-0.0045, 0.005)}), ())
+    (g,) = stability(parameters(HORIZONTAL | {"Nr'": (-0.0045, 0.005)}))
     assert g.result is None
     assert "Nr' - xG'm'" in g.statement
-    assert stability(parameters(HORIZONTAL, mass=False), ()) == ()
-    assert stability(parameters({"Yv'": (-0.028, 0.001)}), ()) == ()
+    assert stability(parameters(HORIZONTAL, mass=False)) == ()
+    assert stability(parameters({"Yv'": (-0.028, 0.001)})) == ()
 
 
 def sided(kind: str, value: float, u95: float | None, **parts: float) -> Budget:

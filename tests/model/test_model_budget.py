@@ -7,14 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.core.files import shipped
 from coeflab.core.provenance import Source
 from coeflab.fits import FITS
 from coeflab.model.budget import Budget
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
 from coeflab.model.input_uncertainty import InputUncertainty
-from coeflab.model.model_budget import with_model_budgets
+from coeflab.model.model_budget import SELECTED, with_model_budgets
 from coeflab.model.model_record import record
+from coeflab.model.study import PlannedTable
+from coeflab.workbench import read_tables
 from tests.presentation.studies import FULL, LENGTH, small_table
 
 EXPERIMENT = Source("tank", kind="experiment")
@@ -122,7 +125,8 @@ def test_terms_chosen_on_the_data_have_no_input_parts() -> None:
     noisy = {c: f * (1.0 + 0.01 * rng.standard_normal(len(f))) for c, f in table.forces.items()}
     result, found = budgeted(replace(table, forces=noisy), "sparse", components=("Y",))
     assert all(not m.shared for m in result.models)
-    assert all("force" in b.unassessed for b in found.values() if b.symbol.startswith("Y"))
+    assert all(SELECTED in b.unassessed for b in found.values() if b.symbol.startswith("Y"))
+    assert all(SELECTED in m.not_assessed for m in result.models)
 
 
 def test_an_input_that_changes_the_rows_in_use_is_named() -> None:
@@ -161,3 +165,80 @@ def test_u95_holds_errors_that_all_points_share() -> None:
             c = fit.coefficients[symbol]
             held[symbol] += abs(c.value - true) <= c.u95
     assert all(0.90 * trials <= n <= 0.99 * trials for n in held.values()), held
+
+
+def shipped_tables(name: str) -> tuple[ForceTable, ...]:
+    return read_tables(PlannedTable(shipped("cfd_data") / name, ("any",)))
+
+
+def test_a_grid_study_speaks_for_the_terms_whose_motion_it_moves() -> None:
+    """The drift study at 4 deg for v, the study on the arm for r; neither for the other."""
+    tables = shipped_tables("suboff_cfd_barehull")
+    plugin = FITS.load("manoeuvring_model")
+    options = {"terms": "Nv Nv|v| Nr Nr|r|"}
+    fit = plugin.fit(tables, tables[0].scaling, options)
+    result, found = with_model_budgets(fit, tables, tables[0].scaling, lambda t, s: plugin.fit(t, s, options))
+    share = {b.symbol: (b.part("grid") or 0.0) / abs(b.value) for b in found}
+    assert share["Nv"] == share["Nv|v|"] == pytest.approx(0.0203, rel=0.01)
+    assert share["Nr"] == pytest.approx(0.207, rel=0.01)
+    (model,) = result.models
+    held = {n: np.flatnonzero(s).tolist() for n, s in model.shared.items()}
+    names = [s.removesuffix("'") for s in model.symbols]
+    drift, arm = sorted(held, key=lambda n: "r =" in n)
+    assert {names[i] for i in held[drift]} == {"Nv", "Nv|v|"}
+    assert {names[i] for i in held[arm]} - {"N0"} == {"Nr", "Nr|r|"}
+    among, k = result.coefficients, len(model.symbols)
+    order = [among.symbols.index(n) for n in names if n in among.symbols]
+    np.testing.assert_allclose(among.covariance[np.ix_(order, order)][:k, :k], model.covariance, rtol=1e-9, atol=1e-18)
+
+
+def test_an_angle_acts_on_dimensional_laws_over_it() -> None:
+    tables = [
+        replace(t, uncertainty=InputUncertainty(angle=0.2 * DEGREE)) for t in shipped_tables("thauv_case_01_synthetic")
+    ]
+    plugin = FITS.load("glide_polar")
+    fit = plugin.fit(tables, tables[0].scaling, {})
+    result, _ = with_model_budgets(fit, tables, tables[0].scaling, lambda t, s: plugin.fit(t, s, {}), draws=2)
+    lift = next(m for m in result.models if m.response == "L/V^2")
+    slope = lift.fit.coefficients[1]
+    assert lift.shared["angle alpha"][0] == pytest.approx(
+        -0.2 * DEGREE * slope * _per_radian(lift.symbols[1]), rel=0.05
+    )
+
+
+def _per_radian(symbol: str) -> float:
+    return float(np.degrees(1.0)) if "deg" in symbol else 1.0
+
+
+def test_campaigns_share_one_length_and_answer_for_their_own_inputs() -> None:
+    one = exact_table(length=0.01, force=0.02)
+    two = replace(exact_table(length=0.02), campaign="other", name="other/table.csv")
+    plugin = FITS.load("manoeuvring_model")
+    options = {"terms": "Yv Yvvv"}
+
+    def refit(tables: object, scaling: object) -> FitResult:
+        return plugin.fit(tables, scaling, options)
+
+    result, found = with_model_budgets(refit([one, two], LENGTH), [one, two], LENGTH, refit, draws=100)
+    b = {b.symbol: b for b in found}["Yv"]
+    assert b.part("length") == pytest.approx(2.0 * 0.02 * abs(b.value), rel=1e-6)
+    assert "force of other" in b.unassessed
+    assert not any(u.startswith("force of tow") for u in b.unassessed)
+    c = result.coefficients["Yv"]
+    i = result.coefficients.symbols.index("Yv")
+    assert c.u95 == pytest.approx(2.0 * result.coefficients.covariance[i, i] ** 0.5, rel=1e-9)
+    assert c.parts.input == pytest.approx(np.sqrt(sum(p.linear**2 for p in b.inputs)), rel=1e-9)
+
+
+def test_a_point_moved_there_and_back_leaves_no_motion() -> None:
+    """Rounding of a transfer is no drift: Yv|r| stays without motion on an arm."""
+    arm = shipped_tables("suboff_cfd_barehull")[1]
+    back = arm.about(arm.reference_point + np.array([0.37, 0.0, 0.0])).about(arm.reference_point)
+    assert 0.0 < np.max(np.abs(back.motion["v"])) < 1e-12
+    plugin = FITS.load("manoeuvring_model")
+    values = [
+        {c.symbol: c.value for c in plugin.fit([t], arm.scaling, {"set": "horizontal"}).coefficients.coefficients}
+        for t in (arm, back)
+    ]
+    assert {s for s, v in values[0].items() if v is None} == {s for s, v in values[1].items() if v is None}
+    assert values[1]["Nr"] == pytest.approx(values[0]["Nr"], rel=1e-9)

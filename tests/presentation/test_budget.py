@@ -32,7 +32,7 @@ def test_every_table_has_cells_for_its_headers():
         *(budget_tables.budget(b) for b in found),
         budget_tables.grids(found),
         budget_tables.validation([validation(found[0], found[0])]),
-        budget_tables.derived(centre_of_pressure(fit.coefficients, found, fit.campaign)),
+        budget_tables.derived(centre_of_pressure(fit.coefficients, fit.campaign)),
     ]
     for table in made:
         assert all(len(row) == len(table.headers) for row in table.rows)

@@ -1,0 +1,64 @@
+"""gz-sim: an SDF 1.10 model with <fluid_added_mass> and viscous damping in the Hydrodynamics plugin.
+
+The physics engine adds the Coriolis and centripetal forces of <fluid_added_mass> and nothing can switch them off, so the
+plugin gets what is left of every term. Integration is implicit in the added mass and does not explode where it is larger than
+the body's own (gz-sim issues 1462 and 1923), which is why this way of writing is the default; ``gazebo_plugin`` is the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.identifiers import identifier
+from coeflab.core.xml import parse_xml
+from coeflab.kernels.kirchhoff import ideal_quadratics
+from coeflab.model.exported_law import common_changes, exported_law
+from coeflab.model.gz_link import read_gz_link
+from coeflab.model.gz_sdf import placed, sdf, tags
+from coeflab.model.loss import unheld
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.second_order import FLU, slot
+
+summary = "gz-sim: SDF 1.10 with <fluid_added_mass>, viscous parts in the Hydrodynamics plugin"
+citations = ("fossen2011", "gz_sim")
+adds_coriolis = True
+
+VERSION = "1.10"
+
+
+def render(parameters: ParameterFile) -> Mapping[str, bytes]:
+    """One model file, its link's origin at the reference point."""
+    h = exported_law(parameters)
+    fluid = None if h.inert else h.matrix * np.outer(FLU, FLU)
+    written = [
+        ("disable_coriolis", "true"),
+        ("disable_added_mass", "true"),
+        *tags(h.form.less(ideal_quadratics(h.matrix))),
+    ]
+    return {f"{identifier(parameters.name)}.sdf": sdf(parameters, VERSION, written, fluid)}
+
+
+def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The system's own law (`coeflab.model.gz_link`, with file and lines of its source), turned to FRD."""
+    (content,) = files.values()
+    return np.asarray(read_gz_link(parse_xml(content.decode())).force(nu * FLU) * FLU)
+
+
+def not_held(parameters: ParameterFile) -> tuple[str, ...]:
+    """Terms that are no product of one or two velocities, and controls."""
+    return unheld(exported_law(parameters).law, lambda t: slot(t) is not None, ideal=True)
+
+
+def changes(parameters: ParameterFile) -> tuple[str, ...]:
+    """What was changed, in words."""
+    h = exported_law(parameters)
+    added = (
+        "no added mass is known: totals are written and no <fluid_added_mass>; the vehicle accelerates as if in air"
+        if h.inert
+        else f"gz-sim adds -C_A(nu) nu of <fluid_added_mass> ({h.statements[0]}): the viscous part of every term, total less what it "
+        "adds, is written, so that nothing counts twice"
+    )
+    return (added, *common_changes(parameters, h), *placed(parameters))

@@ -1,0 +1,66 @@
+"""gz-sim: an SDF 1.9 model with <xDotU> in the Hydrodynamics plugin, Coriolis switched off, totals in the damping.
+
+For physics engines without <fluid_added_mass> (Bullet, MuJoCo). The plugin's own Coriolis term has its sign reversed (see
+`coeflab.model.gz_link`), so it is disabled and the ideal fluid's products are written out. The plugin takes accelerations from
+the step before, which is unstable where the added mass exceeds the body's own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.identifiers import identifier
+from coeflab.core.xml import parse_xml
+from coeflab.model.exported_law import common_changes, exported_law, number
+from coeflab.model.gz_link import FORCES, VELOCITIES, read_gz_link
+from coeflab.model.gz_sdf import placed, sdf, tags
+from coeflab.model.loss import unheld
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.second_order import FLU, slot
+
+summary = "gz-sim: SDF 1.9, added mass and total damping in the Hydrodynamics plugin, its Coriolis disabled"
+citations = ("fossen2011", "gz_sim")
+adds_coriolis = False
+
+VERSION = "1.9"
+
+
+def render(parameters: ParameterFile) -> Mapping[str, bytes]:
+    """One model file, its link's origin at the reference point."""
+    h = exported_law(parameters)
+    written = [("disable_coriolis", "true")]
+    mass = -h.matrix * np.outer(FLU, FLU)
+    written += [(f"{FORCES[i]}Dot{VELOCITIES[j]}", number(mass[i, j])) for i, j in np.argwhere(mass)]
+    return {f"{identifier(parameters.name)}.sdf": sdf(parameters, VERSION, [*written, *tags(h.form)], None)}
+
+
+def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The system's own law (`coeflab.model.gz_link`, with file and lines of its source), turned to FRD."""
+    (content,) = files.values()
+    return np.asarray(read_gz_link(parse_xml(content.decode())).force(nu * FLU) * FLU)
+
+
+def not_held(parameters: ParameterFile) -> tuple[str, ...]:
+    """Terms that are no product of one or two velocities, and controls."""
+    return unheld(exported_law(parameters).law, lambda t: slot(t) is not None, ideal=True)
+
+
+def changes(parameters: ParameterFile) -> tuple[str, ...]:
+    """What was changed, in words."""
+    h = exported_law(parameters)
+    out = [
+        "the plugin's own Coriolis term has its sign reversed and is disabled: totals are written, and what the ideal fluid "
+        "adds beyond them as products such as <xVR>",
+        "no added mass is known: the vehicle accelerates as if in air"
+        if h.inert
+        else f"added mass ({h.statements[0]}) as <xDotU> ..., negative",
+    ]
+    if parameters.mass is not None and (heaviest := float(h.matrix[:3, :3].diagonal().max())) >= parameters.mass.mass:
+        out.append(
+            f"UNSTABLE: an added mass of {heaviest:.4g} kg is not below the vehicle's {parameters.mass.mass:.4g} kg, and the "
+            "plugin integrates it explicitly; use the target gazebo"
+        )
+    return (*out, *common_changes(parameters, h), *placed(parameters))

@@ -1,0 +1,109 @@
+"""Somebody's model file: which format it is, what it says, and what of that cannot be."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from coeflab.core.errors import InputError
+from coeflab.core.toml import read_text
+from coeflab.core.xml import LARGEST
+from coeflab.model.check import Check, Severity
+from coeflab.model.parameter_file import LARGEST as LARGEST_JSON
+from coeflab.model.parameter_file import ParameterFile, read_parameter_file
+from coeflab.model.plausibility import plausibility
+from coeflab.parameter_importers import PARAMETER_IMPORTERS
+
+OWN = "coeflab"
+STAND_IN = 1000.0
+
+
+@dataclass(frozen=True, slots=True)
+class ModelFile:
+    """A file as read.
+
+    Attributes
+    ----------
+    format : str
+        ``coeflab`` for a parameter file, else the importer.
+    parameters : ParameterFile
+    findings : tuple of Check
+    """
+
+    format: str
+    parameters: ParameterFile
+    findings: tuple[Check, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing failed."""
+        return not any(c.severity is Severity.FAIL for c in self.findings)
+
+
+def recognised(path: Path) -> str:
+    """The format of a file by its content.
+
+    Raises
+    ------
+    InputError
+        None that is known.
+    """
+    text = read_text(path, max(LARGEST, LARGEST_JSON))
+    start = text.lstrip()[:1]
+    if start == "{":
+        return OWN
+    if start == "<":
+        if "hydrodynamic_model" in text:
+            return "uuv_simulator"
+        if re.search(r"<plugin[^>]*hydrodynamics", text, re.IGNORECASE) or "<sdf" in text:
+            return "gazebo"
+        raise InputError("XML without <hydrodynamic_model> or a Hydrodynamics plugin", _known(), file=path)
+    if re.search(r"^\s*(dynamics|external forces|rotations convention)\s*:", text, re.MULTILINE):
+        return "xdyn"
+    if re.search(r"^[^%#\n]*\b[XYZKMN]\w*\s*=\s*[-+.\d(\w]", text, re.MULTILINE):
+        return "mss"
+    raise InputError("a file that no importer knows", _known(), file=path)
+
+
+def read_model_file(path: Path, density: float | None = None) -> ModelFile:
+    """Read a file of any known format and look for what cannot be.
+
+    Parameters
+    ----------
+    path : path
+    density : float, optional
+        kg/m^3, for files that state none; else 1000, with a finding that says so. SI values do not depend on it.
+
+    Raises
+    ------
+    InputError
+    PluginError
+        The format has no importer here.
+    """
+    kind = recognised(path)
+    if kind == OWN:
+        parameters = read_parameter_file(path)
+        return ModelFile(kind, parameters, plausibility(parameters))
+    importer = PARAMETER_IMPORTERS.load(kind)
+    findings: list[Check] = []
+    stands_in = False
+    takes = "density" in inspect.signature(importer.read).parameters
+    try:
+        parameters = importer.read(path, density=density) if takes and density else importer.read(path)  # type: ignore[call-arg]
+    except InputError as why:
+        if not takes or density or why.found != "no density":
+            raise
+        stands_in = True
+        parameters = importer.read(path, density=STAND_IN)  # type: ignore[call-arg]
+        findings.append(Check(kind, "density", Severity.NOTE, f"{STAND_IN:g} kg/m^3 stands in", "a density in the file",
+                              "Only primes depend on it; give --density."))  # fmt: skip
+    examine = getattr(importer, "examine", None)
+    findings += examine(path) if examine is not None else ()
+    found = [c for c in plausibility(parameters) if not (c.subject == "density" and stands_in)]
+    return ModelFile(kind, parameters, (*findings, *found))
+
+
+def _known() -> str:
+    return "a parameter file, SDF with the Hydrodynamics plugin, uuv_simulator URDF or xacro, xdyn YAML, or MSS .m"

@@ -1,0 +1,89 @@
+"""``coeflab params check``: any model file by its content, findings as a table, exit code 1 where one fails."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Run
+
+DATA = Path(__file__).parents[1] / "parameter_importers" / "data"
+OWN = Path(__file__).parents[1] / "data" / "parameters_1_0.json"
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [("lauv.urdf.xacro", "uuv_simulator"), ("rexrov.urdf", "uuv_simulator"), ("tethys_like.sdf", "gazebo"),
+     ("nps_auv2.m", "mss")],
+)  # fmt: skip
+def test_formats_are_told_by_content(coeflab: Run, tmp_path: Path, name: str, kind: str) -> None:
+    shutil.copy(DATA / name, tmp_path / "model.txt")
+    done = coeflab("params", "check", "model.txt", "--json")
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    assert told["format"] == kind
+    assert told["passed"] is True
+    assert "Yv'" in told["coefficients"]
+    assert {f["severity"] for f in told["findings"]} <= {"pass", "note", "warn"}
+
+
+def test_findings_are_a_table(coeflab: Run) -> None:
+    done = coeflab("params", "check", DATA / "rexrov.urdf")
+    assert done.returncode == 0
+    assert "M_A Zr and Nw" in done.stdout
+    assert "10.774 and 10.775" in done.stdout
+    assert "-74.82" in done.stdout
+
+
+def test_a_failing_finding_is_exit_code_1(coeflab: Run, tmp_path: Path) -> None:
+    text = (DATA / "lauv.urdf.xacro").read_text(encoding="utf-8")
+    wrong = text.replace("0 -23 0 0 0 11.5", "0 23 0 0 0 11.5").replace("0 16 0 0 0 0", "0 -16 0 0 0 0")
+    (tmp_path / "m.xacro").write_text(wrong, encoding="utf-8")
+    done = coeflab("params", "check", "m.xacro")
+    assert done.returncode == 1
+    assert done.stderr == ""
+    assert "M_A Yv" in done.stdout
+    assert "It drives the motion that it should damp" in done.stdout
+    told = json.loads(coeflab("params", "check", "m.xacro", "--json").stdout)
+    assert told["passed"] is False
+    assert [f["what"] for f in told["findings"] if f["severity"] == "fail"] == ["M_A Yv", "Yv'"]
+
+
+def test_a_parameter_file_is_checked_too(coeflab: Run) -> None:
+    done = coeflab("params", "check", OWN)
+    assert done.returncode == 0, done.stderr
+    assert "schema 1.0" in done.stdout
+    assert "Findings" in done.stdout
+
+
+def test_a_density_that_the_file_lacks(coeflab: Run, tmp_path: Path) -> None:
+    text = (DATA / "tethys_like.sdf").read_text(encoding="utf-8").replace("uniform_fluid_density", "something")
+    (tmp_path / "m.sdf").write_text(text, encoding="utf-8")
+    stood_in = coeflab("params", "check", "m.sdf")
+    assert stood_in.returncode == 0, stood_in.stderr
+    assert "1000 kg/m^3 stands in" in stood_in.stdout
+    given = coeflab("params", "check", "m.sdf", "--density", "1020")
+    assert "stands in" not in given.stdout
+    assert "1020" in given.stdout
+    assert coeflab("params", "check", "m.sdf", "--density", "-1").returncode == 2
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        '<!DOCTYPE a [<!ENTITY b "c">]><sdf version="1.9"/>', "<sdf version='1.9'/>", "<html/>", "hello", "", "\x00\x01",
+        "<sdf" + "<a>" * 100_000, "[]",
+    ],
+    ids=range(8),
+)  # fmt: skip
+def test_what_cannot_be_read_is_one_error(coeflab: Run, tmp_path: Path, content: str) -> None:
+    (tmp_path / "m.sdf").write_text(content, encoding="utf-8")
+    done = coeflab("params", "check", "m.sdf")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "m.sdf" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert len(done.stderr) < 1000

@@ -1,0 +1,177 @@
+"""gz-sim: both ways of writing give the force of the file by the system's own law, and the real SDFormat takes them."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from coeflab.core.xml import parse_xml
+from coeflab.exporters import gazebo, gazebo_plugin
+from coeflab.kernels.kirchhoff import ideal_force
+from coeflab.model.force_law import force_law
+from coeflab.model.gz_link import GzLink, read_gz_link
+from coeflab.model.parameter_file import ParameterFile
+from tests.exporters import files as made
+from tests.exporters import of_second_order as second
+from tests.model.test_force_law import HULL, Q, drifting, parameters
+
+GOLDEN = Path(__file__).parent / "golden"
+BOTH = pytest.mark.parametrize("target", [gazebo, gazebo_plugin], ids=["gazebo", "gazebo_plugin"])
+ROTATION = np.diag([1.0, -1.0, -1.0])
+
+
+def velocities(n: int = 60) -> np.ndarray:
+    return np.random.default_rng(5).normal(size=(n, 6))
+
+
+def content(target: ModuleType, file: ParameterFile) -> str:
+    (only,) = target.render(file).values()
+    return str(only.decode())
+
+
+def tag(text: str, name: str) -> float | None:
+    found = next(parse_xml(text).iter(name), None)
+    return None if found is None else float(found.text or "nan")
+
+
+@BOTH
+def test_golden(target: ModuleType) -> None:
+    """Regenerate by hand: write render(golden()) to golden/<target>.sdf and read the difference."""
+    name = target.__name__.rpartition(".")[2]
+    assert target.render(second.golden()) == {"file.sdf": (GOLDEN / f"{name}.sdf").read_bytes()}
+
+
+@BOTH
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_its_force_is_the_files(target: ModuleType, seed: int) -> None:
+    """Full random added mass, random motions in six degrees of freedom, every kind of term without U."""
+    file, nu = second.with_mass(second.exact(seed)), velocities()
+    expected = force_law(file).force(nu)
+    np.testing.assert_allclose(target.force(target.render(file), nu), expected, rtol=1e-11, atol=1e-8)
+    assert target.not_held(file) == ()
+
+
+@BOTH
+def test_the_munk_moment_is_counted_once(target: ModuleType) -> None:
+    """The measured Nv' alone, but for u in the place of U: 1 - cos(beta)."""
+    beta, speed = 0.15, 2.0
+    measured = parameters({"Nv": -0.014, "Yv": -0.03}, HULL)
+    force = target.force(target.render(measured), drifting(beta, speed))[0]
+    once = -0.014 * Q * 2.0 * speed**2 * np.sin(beta) * np.cos(beta)
+    assert force[5] == pytest.approx(once, rel=1e-12)
+    assert force[1] == pytest.approx(-0.03 * Q * speed**2 * np.sin(beta) * np.cos(beta), rel=1e-12)
+    bare = target.force(target.render(parameters({"Yv": -0.03}, HULL)), drifting(beta, speed))[0]
+    assert bare[5] == pytest.approx(-580.0 * speed**2 * np.sin(beta) * np.cos(beta), rel=1e-12)
+
+
+def test_viscous_parts_beside_the_fluid_and_totals_beside_the_plugin() -> None:
+    file = parameters({"Nv": -0.014, "Yr": 0.005}, HULL)
+    fluid, plugin = content(gazebo, file), content(gazebo_plugin, file)
+    assert tag(plugin, "nVabsU") == pytest.approx(-0.014 * Q * 2.0)
+    assert tag(fluid, "nVabsU") == pytest.approx(-0.014 * Q * 2.0 + 580.0)
+    assert tag(fluid, "yRabsU") == pytest.approx(0.005 * Q * 2.0 + 20.0)
+    assert (tag(fluid, "yy"), tag(fluid, "yDotV")) == (600.0, None)
+    assert (tag(plugin, "yy"), tag(plugin, "yDotV")) == (None, -600.0)
+    for text in (fluid, plugin):
+        assert parse_xml(text).find(".//disable_coriolis").text == "true"
+
+
+@BOTH
+def test_parity_by_turning_every_vector(target: ModuleType) -> None:
+    """The link's own law in its own axes against the file's in FRD, vectors turned by half a turn about x."""
+    file, nu = second.exact(7), velocities()
+    link = read_gz_link(parse_xml(content(target, file)))
+    turn = np.kron(np.eye(2), ROTATION)
+    np.testing.assert_allclose(link.force(nu @ turn.T) @ turn, force_law(file).force(nu), rtol=1e-11, atol=1e-8)
+
+
+def test_signs_in_the_link_frame() -> None:
+    text = content(
+        gazebo_plugin, parameters({"Yv": -0.03, "Nr": -0.004, "Mw": 0.01, "Kv": -0.001, "Z0": 2e-4, "X0": -1e-3})
+    )
+    assert [tag(text, t) > 0.0 for t in ("yVabsU", "nRabsU", "mWabsU", "kVabsU", "zUU", "xUabsU")] == [
+        False, False, True, True, False, False,
+    ]  # fmt: skip
+
+
+def linked(matrix: np.ndarray, **more: object) -> GzLink:
+    zero, cube = np.zeros((6, 6)), np.zeros((6, 6, 6))
+    given = {"plugin_mass": zero, "fluid_mass": zero, "disable_coriolis": False, "disable_added_mass": False, **more}
+    return GzLink(model="", link="", linear=zero, signed=cube, absolute=cube, mass=None, centre=np.zeros(3), inertia=None,
+                  density=None, **given)  # fmt: skip
+
+
+def test_the_plugins_coriolis_is_the_reverse_of_the_ideal_fluids() -> None:
+    """Which is why it is disabled: HydrodynamicsUtils.hh, lines 43-70, in PreUpdate with two minus signs."""
+    diagonal, nu = np.diag([20.0, 600.0, 580.0, 1.0, 70.0, 72.0]), velocities()
+    np.testing.assert_allclose(linked(diagonal, plugin_mass=-diagonal).force(nu), -ideal_force(diagonal, nu), atol=1e-9)
+    root = np.random.default_rng(1).normal(size=(6, 6))
+    full = root @ root.T
+    np.testing.assert_allclose(linked(full, fluid_mass=full).force(nu), ideal_force(full, nu), atol=1e-11)
+
+
+def test_without_added_mass_totals_are_written() -> None:
+    file = parameters({"Nv": -0.014})
+    assert tag(content(gazebo, file), "nVabsU") == pytest.approx(-0.014 * Q * 2.0)
+    assert tag(content(gazebo, file), "yy") is None
+    assert any("no added mass is known" in c for c in gazebo.changes(file))
+
+
+def test_acceleration_derivatives_make_a_matrix_that_counts_nothing_twice() -> None:
+    values = {"Nv": -0.014, "Yv": -0.03, "Yvdot": -0.016, "Nrdot": -9e-4, "Yrdot": 4e-4, "Nvdot": 3.9e-4}
+    file, nu = parameters(values), drifting(0.1, 2.0)
+    text = content(gazebo, file)
+    assert tag(text, "yy") == pytest.approx(0.016 * Q * 2.0)
+    assert tag(text, "yr") == pytest.approx(-(4e-4 + 3.9e-4) / 2.0 * Q * 4.0)
+    assert gazebo.force(gazebo.render(file), nu)[0, 5] == pytest.approx(force_law(file).force(nu)[0, 5] * np.cos(0.1))
+    assert any("mirror image" in c for c in gazebo.changes(file))
+
+
+def test_a_matrix_without_its_diagonal_keeps_what_can_be_integrated() -> None:
+    file = parameters({"Nv": -0.014, "Nrdot": -9e-4, "Yrdot": 4e-4})
+    assert (tag(content(gazebo, file), "yr"), tag(content(gazebo, file), "rr")) == (0.0, pytest.approx(9e-4 * Q * 8.0))
+    assert any("only its diagonal" in c for c in gazebo.changes(file))
+
+
+@BOTH
+def test_what_has_no_place_is_said(target: ModuleType) -> None:
+    held = target.not_held(made.plain())
+    assert {"Yvvv", "Yvrr"} <= set(held)
+    assert any(h.startswith("Ydr ") for h in held)
+    assert not {"Yv", "Nv|v|", "Xvr"} & set(held)
+
+
+@BOTH
+@pytest.mark.parametrize("name", made.HOSTILE, ids=range(len(made.HOSTILE)))
+def test_hostile_names(target: ModuleType, name: str) -> None:
+    (file,) = target.render(made.named(name))
+    assert file.removesuffix(".sdf").isidentifier()
+    assert len(file) < 80
+    assert read_gz_link(parse_xml(content(target, made.named(name)))).link == "base_link"
+    plain = target.force(target.render(made.plain()), velocities())
+    assert np.array_equal(target.force(target.render(made.named(name)), velocities()), plain)
+
+
+def checked(path: Path) -> str:
+    if shutil.which("ign") is None:
+        pytest.skip("SDFormat's parser (ign sdf, Debian ignition-tools and libsdformat-dev) is not installed")
+    command = ["ign", "sdf", "--check", str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    return done.stdout + done.stderr.replace("Library error: libignition-tools-backward.so not found", "")
+
+
+@pytest.mark.parametrize("file", [second.golden(), second.bluerov2_heavy(), made.named(made.HOSTILE[0])])
+def test_the_real_parser_takes_sdf_1_9(file: ParameterFile, tmp_path: Path) -> None:
+    path = tmp_path / "model.sdf"
+    path.write_text(content(gazebo_plugin, file), encoding="utf-8")
+    told = checked(path)
+    assert "Valid" in told
+    assert "Error" not in told
+    twice = content(gazebo_plugin, file).replace("</link>", '</link><link name="base_link"/>')
+    path.write_text(twice, encoding="utf-8")
+    assert "Error" in checked(path)
