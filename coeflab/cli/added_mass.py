@@ -19,8 +19,8 @@ def command(
     from coeflab.core.citations import work
     from coeflab.core.files import located
     from coeflab.presentation import added_mass_tables as tables
-    from coeflab.workbench.hulls import added_masses
     from coeflab.workbench import read_body
+    from coeflab.workbench.hulls import added_masses
 
     path = located(body, "geometry")
     with show.narrated():

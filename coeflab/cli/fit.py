@@ -173,7 +173,10 @@ def _print(study: Study, symbols: list[str]) -> None:
     known = {s.symbol: s for f in study.fits for s in f.sweeps}
     for symbol in symbols:
         if symbol not in known:
-            raise InputError(f"no sweep for {shown(symbol)}", f"one of {', '.join(known)}")
+            raise InputError(
+                f"no sweep for {shown(symbol)}",
+                f"one of {', '.join(known)}" if known else "no --symbol: this fit has no sweeps",
+            )
         sweep = known[symbol]
         for content in (
             tables.members(sweep),

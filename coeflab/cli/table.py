@@ -38,6 +38,7 @@ def command(
     """
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import write_atomically
+    from coeflab.core.symbols import FLOW_ANGLES
     from coeflab.model.parameter_file import read_parameter_file
     from coeflab.model.parameter_model import chosen
 
@@ -53,7 +54,7 @@ def command(
     else:
         for chunk in lines:
             typer.echo(chunk, nl=False)
-    for line in outside_in_words(models, tally):
+    for line in [FLOW_ANGLES[v] for v in given if v in FLOW_ANGLES] + outside_in_words(models, tally):
         typer.echo(line, err=True)
 
 

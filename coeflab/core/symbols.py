@@ -20,6 +20,10 @@ ANGULAR = ("p", "q", "r")
 MOTIONS = LINEAR + ANGULAR
 CONTROLS = ("dr", "ds", "db")
 CONTROL_COLUMNS = {"delta_r": "dr", "delta_s": "ds", "delta_b": "db"}
+FLOW_ANGLES = {
+    "alpha": "alpha = atan2(w, u)",
+    "beta": "beta = asin(v/V), so v = +V sin(beta), whatever sign the campaign declares",
+}
 PORT_STARBOARD = frozenset("YKNvpr") | {"dr"}
 
 _FACTOR = r"(?:dr|ds|db|[uvwpqr]dot|[uvwpqr])"

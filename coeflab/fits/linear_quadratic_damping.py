@@ -144,7 +144,9 @@ def _coefficients(model: FittedModel, axis: str, citation: str) -> tuple[list[Co
     for i, u95 in zip(index, half, strict=True):
         value = float(model.fit.coefficients[i])
         sure = bool(np.isfinite(u95))
-        status = Status.FORM_ASSUMED if sure else Status.SINGLE_ESTIMATOR if np.isfinite(value) else Status.TOO_FEW_POINTS
+        status = (
+            Status.FORM_ASSUMED if sure else Status.SINGLE_ESTIMATOR if np.isfinite(value) else Status.TOO_FEW_POINTS
+        )
         out.append(
             Coefficient(
                 symbol=model.symbols[i],

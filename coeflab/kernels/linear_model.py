@@ -47,7 +47,7 @@ class LinearFit:
     condition : float
         Of the column-scaled design.
     digits : float
-        Decimal digits of the worst coefficient that the condition number leaves sure.
+        Decimal digits that the condition number and the size of the residuals leave sure.
     correlation : (p, p) array
     open_directions : (k, p) array
         Combinations of scaled coefficients that the rows do not determine.
@@ -158,11 +158,21 @@ def fit_linear(
         aicc=float(aicc(f, weighted)),
         runs_probability=runs_probability(residuals),
         condition=f.condition,
-        digits=DOUBLE_DIGITS - float(np.log10(max(f.condition, 1.0))),
+        digits=_digits(f, inner, remaining**0.5),
         correlation=covariance / np.outer(size, size),
         open_directions=open_directions,
         rank=f.rank,
     )
+
+
+def _digits(f: Factorised, coefficients: Array, remaining: float) -> float:
+    """Digits that rounding leaves: lost by the condition number, and by its square times what the fit leaves over.
+
+    Bjorck (1996), section 1.4.3, with columns of unit length.
+    """
+    size = float(np.linalg.norm(coefficients * np.linalg.norm(f.design, axis=0)))
+    loss = f.condition + f.condition**2 * (remaining / size if size > 0.0 else 0.0)
+    return DOUBLE_DIGITS - float(np.log10(max(loss, 1.0)))
 
 
 def _open_directions(f: Factorised, free: Array, scale: Array) -> Array:

@@ -17,7 +17,7 @@ from coeflab.kernels.least_squares import Array, factorise
 from coeflab.kernels.linear_model import LinearFit
 from coeflab.kernels.terms import Term, design
 
-WELL_CONDITIONED = 1e4
+WELL_CONDITIONED = 1e2
 STEPS = 40
 MOST_DIGITS = 15.0
 

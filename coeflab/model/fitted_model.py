@@ -170,23 +170,39 @@ class FittedModel:
 
 COLLINEAR = 0.98
 MOST_PAIRS = 3
+MOST_DIRECTIONS, MOST_MIXED = 4, 6
 FEWEST_DIGITS = 7.0
 SEEN = 0.05
+
+
+def _only_together(parts: list[tuple[str, float]]) -> str:
+    """Terms that a direction of the coefficients mixes; of many, the heaviest."""
+    heaviest = sorted(parts, key=lambda p: -abs(p[1]))[:MOST_MIXED]
+    shown = [p for p in parts if p in heaviest]
+    more = f" and {len(parts) - len(shown)} more" if len(parts) > len(shown) else ""
+    names = ", ".join(s for s, _ in shown)
+    mix = " ".join(f"{d:+.2g} [{s}]" for s, d in shown) + (" ..." if more else "")
+    return (
+        f"{names}{more} are determined only together: adding any multiple of {mix} (each scaled by its column) changes no "
+        "prediction."
+    )
 
 
 def in_words(fit: LinearFit, symbols: tuple[str, ...]) -> tuple[str, ...]:
     """What the rows do not determine, which coefficients move together, and how exact the arithmetic is."""
     out = []
-    for direction in fit.open_directions:
+    for direction in fit.open_directions[:MOST_DIRECTIONS]:
         largest = float(np.max(np.abs(direction)))
         parts = [(s, float(d) / largest) for s, d in zip(symbols, direction, strict=True) if abs(d) > SEEN * largest]
         if len(parts) == 1:
             out.append(f"{parts[0][0]} is not determined: its term is zero on these data.")
         else:
-            names = ", ".join(s for s, _ in parts)
-            mix = " ".join(f"{d:+.2g} [{s}]" for s, d in parts)
-            out.append(f"{names} are determined only together: adding any multiple of {mix} (each scaled by its column) "
-                       "changes no prediction.")  # fmt: skip
+            out.append(_only_together(parts))
+    if len(fit.open_directions) > MOST_DIRECTIONS:
+        out.append(
+            f"{len(fit.open_directions) - MOST_DIRECTIONS} more combinations are not determined: "
+            f"{fit.rank} of {len(symbols)} terms can be told apart. Ask for fewer."
+        )
     pairs = [(abs(fit.correlation[i, j]), i, j) for i, j in combinations(range(len(symbols)), 2)]
     close = sorted((pair for pair in pairs if pair[0] > COLLINEAR), reverse=True)
     for _, i, j in close[:MOST_PAIRS]:

@@ -8,6 +8,7 @@ from coeflab.core.toml import Section
 
 SECTION = "uncertainty"
 LARGEST_RELATIVE = 0.5
+LARGEST_ANGLE = 0.0873
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +79,10 @@ def read_input_uncertainty(section: Section) -> InputUncertainty | None:
             raise section.fail(
                 name, f"{value:g}", "a 95 % half-width above zero", "Leave the key out where it was not assessed."
             )
+        if name == "angle" and value > LARGEST_ANGLE:
+            raise section.fail(
+                name, f"{value:g} rad", "a half-width up to 5 deg", 'A bare number is in rad; write "0.1 deg".'
+            )  # fmt: skip
         if dimension == "none" and value > LARGEST_RELATIVE:
             raise section.fail(
                 name, f"{value:g}", "a relative half-width up to 0.5", "One per cent is 0.01."

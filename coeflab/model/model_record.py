@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coeflab.core.symbols import ANGULAR, CONTROLS, LINEAR
+from coeflab.core.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.parameter_model import (
@@ -72,7 +72,7 @@ def record(model: FittedModel, area: ModelArea | None = None) -> ParameterModel:
             "table": model.table,
             "campaign": model.campaign,
             "post_selection": model.post_selection,
-            "statements": model.statements,
+            "statements": (*model.statements, *(f"{FLOW_ANGLES[v]}." for v in names if v in FLOW_ANGLES)),
             "area": area,
         }
     )

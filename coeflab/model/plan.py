@@ -52,6 +52,11 @@ def _tables(root: Section) -> tuple[PlannedTable, ...]:
         fits = s.texts("fits") or ("slope_at_origin",)
         options = s.section("options", required=False)
         chosen = {name: dict(options.section(name).content) for name in options.content}
+        idle = next((name for name in chosen if name not in fits), None)
+        if idle is not None:
+            raise s.fail(
+                "options", f"options of {shown(idle)}, which is not among the fits", f"options of {', '.join(fits)}"
+            )
         out.append(table_at(path, fits, chosen))
         s.finish()
     if not out and not root.has("joint"):

@@ -11,6 +11,8 @@ from coeflab.model.misfit import UNLIKELY, chance
 from coeflab.model.out_of_sample import OutOfSample
 from coeflab.model.table import coefficient
 
+DOUBTFUL = 0.1
+
 
 @dataclass(frozen=True, slots=True)
 class CampaignShare:
@@ -69,6 +71,11 @@ class Pooling:
         return None if isnan(p) else p < UNLIKELY
 
     @property
+    def doubtful(self) -> bool:
+        """Whether the test comes near to rejecting, between 1 and 10 %: with few rows it has little power."""
+        return self.rejected is False and self.test.probability < DOUBTFUL
+
+    @property
     def statistic(self) -> str:
         """The test as a number."""
         t = self.test
@@ -108,7 +115,9 @@ class Pooling:
         out += told
         verdict = {
             None: "Whether one law serves all campaigns cannot be tested",
-            False: "The campaigns do not contradict one law",
+            False: "One law is not contradicted, nor is it shown"
+            if self.doubtful
+            else "The campaigns do not contradict one law",
             True: "The campaigns disagree: one law does not serve them all",
         }[self.rejected]
         out.append(f"{verdict} ({self.statistic}; Wald test by campaign, HC2, approximate Hotelling T^2).")

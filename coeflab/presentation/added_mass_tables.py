@@ -36,7 +36,11 @@ def displaced(body: Body, density: float) -> Table:
         cut = 1e-9 * float(np.trace(inertia))
         moments = (*np.diag(inertia), *(p if abs(p) > cut else 0.0 for p in products))
         rows.append((c.name, *(number(float(v)) for v in (*c.projected_areas, *moments))))
-    headers = ("displaced water", *(f"A{a} m^2" for a in "xyz"), *(f"I{a} kg m^2" for a in ("x", "y", "z", "xy", "xz", "yz")))
+    headers = (
+        "displaced water",
+        *(f"A{a} m^2" for a in "xyz"),
+        *(f"I{a} kg m^2" for a in ("x", "y", "z", "xy", "xz", "yz")),
+    )
     notes = (
         "A: area projected along the axis",
         f"I: moments and products (integral of x y dm) of {density:g} kg/m^3 about the centre of buoyancy",

@@ -15,7 +15,8 @@ from coeflab.presentation.tornado_figure import tornado_figure
 def budget_sections(study: Study) -> tuple[Section, ...]:
     """One section, or none where no coefficient has a budget."""
     found = study.budgets
-    if not found:
+    models = tuple(m for f in study.fits for m in f.models)
+    if not found and not any(m.shared for m in models):
         return ()
     derived = [d for f in study.fits for d in centre_of_pressure(f.coefficients, f.campaign)]
     derived += [d for p in study.parameter_files.values() for d in stability(p)]
@@ -24,7 +25,7 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         budget_tables.grids(found),
         budget_tables.validation(validations(study, found)),
         budget_tables.derived(derived),
-        *(budget_tables.shared(m) for f in study.fits for m in f.models),
+        *(budget_tables.shared(m) for m in models),
     )
     text = (
         "U95 joins every assessed part as a root sum of squares: the scatter of the points, the model form, the grid where "

@@ -112,6 +112,11 @@ def _harvest(study: Study) -> str:
         return "The study holds no tables."
     rows = _counted(sum(len(t) for t in study.tables), "row")
     source = f"{rows} of {_counted(len(campaigns), 'campaign')}: {_listed(campaigns)}."
+    models = sum(len(f.models) for f in study.fits)
+    if not found and models:
+        return (
+            f"Found: {_counted(models, 'fitted model')}, none with coefficients that have a SNAME symbol, from {source}"
+        )
     if not found:
         return f"No coefficient could be determined from {source}"
     uncertain = "each with U95" if bounded == len(found) else f"{bounded} of them with U95"
@@ -142,8 +147,8 @@ def _coefficients(study: Study) -> Section:
         "points cannot tell from a polynomial, only in 25 to 50.",
         "A lone member is compared with the fits that were dropped only because their intervals are too wide; where there "
         "are none, no U95 is given.",
-        "A part that was not assessed is shown by a dash: uncertainty of angle, speed, calibration and length, and for "
-        "computed tables the error of grid and turbulence model, are not in U95.",
+        "A part that was not assessed is shown by a dash and is not in U95; the budget of every coefficient names what is "
+        "missing. The turbulence model of a computation is never in it.",
     )
     single = any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients)
     if single:

@@ -8,6 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
+from coeflab.core.symbols import FLOW_ANGLES
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.table import ABSENT, Table, number, percent, probability
 from coeflab.presentation.variables import domain_in_words
@@ -61,6 +62,8 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
         "left out: rms error of every point predicted from the others (PRESS); runs: probability of so few or so many "
         "runs of one sign by chance; outside: what a reader beyond the domain is to do.",
     )
+    angles = dict.fromkeys(v for m in models for v in m.domain.variables if v in FLOW_ANGLES)
+    notes = (*notes, *(FLOW_ANGLES[v] for v in angles))
     return Table("Quality of the fitted models", headers, rows, notes, frozenset({0, 1, 11, 12}))
 
 

@@ -15,6 +15,9 @@ import numpy as np
 import pytest
 
 from coeflab.kernels.least_squares import BLOCK, Array, classical_variance, factorise, solve
+from coeflab.kernels.linear_model import fit_linear
+from coeflab.kernels.sharpened import sharpened
+from coeflab.kernels.terms import Term, design
 
 DATA = Path(__file__).parent / "data" / "nist"
 
@@ -35,6 +38,40 @@ CERTIFIED = {
     ),
     "noint1": Certified((1,), (2.07438016528926,), (0.165289256198347e-1,)),
 }
+_SPREAD = (
+    2152.32624678170, 2363.55173469681, 779.343524331583, 101.475507550350, 5.64566512170752, 0.112324854679312,
+)  # fmt: skip
+HIGH_DEGREE = {
+    "filip": Certified(
+        tuple(range(11)),
+        (
+            -1467.48961422980, -2772.17959193342, -2316.37108160893, -1127.97394098372, -354.478233703349,
+            -75.1242017393757, -10.8753180355343, -1.06221498588947, -0.670191154593408e-1, -0.246781078275479e-2,
+            -0.402962525080404e-4,
+        ),
+        (
+            298.084530995537, 559.779865474950, 466.477572127796, 227.204274477751, 71.6478660875927,
+            15.2897178747400, 2.23691159816033, 0.221624321934227, 0.142363763154724e-1, 0.535617408889821e-3,
+            0.896632837373868e-5,
+        ),
+    ),
+    "wampler1": Certified(tuple(range(6)), (1.0,) * 6, (0.0,) * 6),
+    "wampler2": Certified(tuple(range(6)), (1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5), (0.0,) * 6),
+    "wampler3": Certified(tuple(range(6)), (1.0,) * 6, _SPREAD),
+    "wampler4": Certified(tuple(range(6)), (1.0,) * 6, tuple(1e2 * e for e in _SPREAD)),
+    "wampler5": Certified(tuple(range(6)), (1.0,) * 6, tuple(1e4 * e for e in _SPREAD)),
+}  # fmt: skip
+LONGLEY = Certified(
+    (),
+    (
+        -3482258.63459582, 15.0618722713733, -0.358191792925910e-1, -2.02022980381683, -1.03322686717359,
+        -0.511041056535807e-1, 1829.15146461355,
+    ),
+    (
+        890420.383607373, 84.9149257747669, 0.334910077722432e-1, 0.488399681651699, 0.214274163161675,
+        0.226073200069370, 455.478499142212,
+    ),
+)  # fmt: skip
 
 
 def read(name: str) -> tuple[list[Fraction], list[Fraction]]:
@@ -82,12 +119,45 @@ def digits(found: Array, wanted: list[float] | list[Fraction]) -> float:
     return -log10(max(worst, 1e-16))
 
 
-@pytest.mark.parametrize("name", CERTIFIED)
+@pytest.mark.parametrize("name", [*CERTIFIED, *HIGH_DEGREE])
 def test_certified_numbers_follow_exactly_from_the_data(name: str) -> None:
     x, y = read(name)
-    coefficients, errors = exact([[v**k for k in CERTIFIED[name].powers] for v in x], y)
-    np.testing.assert_allclose([float(c) for c in coefficients], CERTIFIED[name].coefficients, rtol=5e-15)
-    np.testing.assert_allclose(errors, CERTIFIED[name].errors, rtol=5e-15)
+    wanted = (CERTIFIED | HIGH_DEGREE)[name]
+    coefficients, errors = exact([[v**k for k in wanted.powers] for v in x], y)
+    np.testing.assert_allclose([float(c) for c in coefficients], wanted.coefficients, rtol=5e-15)
+    np.testing.assert_allclose(errors, wanted.errors, rtol=5e-15)
+
+
+@pytest.mark.parametrize("name", HIGH_DEGREE)
+def test_high_degrees_as_the_polynomial_fit_solves_them(name: str) -> None:
+    """Filip's degree 10 and Wampler's degree 5 from raw powers, refined as the plugin refines them."""
+    x, y = read(name)
+    wanted = HIGH_DEGREE[name]
+    columns = {"v": np.array([float(v) for v in x])}
+    terms = tuple(Term((("v", k, False),) if k else ()) for k in wanted.powers)
+    response = np.array([float(v) for v in y])
+    fit = sharpened(fit_linear(design(terms, columns), response), terms, columns, response, None)
+    assert fit.rank == len(terms)
+    assert digits(fit.coefficients, list(wanted.coefficients)) >= 9
+    if name != "wampler2":  # whose responses no binary number holds exactly
+        assert fit.digits <= digits(fit.coefficients, list(wanted.coefficients)) + 1.0
+    if any(wanted.errors):
+        f = factorise(design(terms, columns))
+        assert digits(np.sqrt(classical_variance(f, fit.residuals)), list(wanted.errors)) >= 7
+
+
+def test_longley() -> None:
+    """Six regressors that rise together; the data as statsmodels ships them, confirmed by the exact solution."""
+    longley = pytest.importorskip("statsmodels.datasets").longley.load()
+    y = [Fraction(str(v)) for v in longley.endog]
+    rows = [[Fraction(1), *(Fraction(str(v)) for v in row)] for row in longley.exog.to_numpy()]
+    coefficients, errors = exact(rows, y)
+    np.testing.assert_allclose([float(c) for c in coefficients], LONGLEY.coefficients, rtol=5e-14)
+    np.testing.assert_allclose(errors, LONGLEY.errors, rtol=5e-14)
+    f = factorise(floats(rows))
+    found, residuals = solve(f, np.array([float(v) for v in y]))
+    assert digits(found, list(LONGLEY.coefficients)) >= 9
+    assert digits(np.sqrt(classical_variance(f, residuals)), list(LONGLEY.errors)) >= 9
 
 
 @pytest.mark.parametrize("name", CERTIFIED)
