@@ -48,3 +48,12 @@ def check(
         show.table(model_file_tables.findings(found.findings))
     if not found.passed:
         raise typer.Exit(1)
+
+
+@app.command(epilog="Example: coeflab params schema > parameter_file.md")
+def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schema.")) -> None:
+    """Print what every field of a parameter file means, its unit, and since which version it exists."""
+    from coeflab.model import parameter_file
+    from coeflab.presentation.schema_page import schema_page
+
+    show.text((parameter_file.schema() if json else schema_page()).decode().removesuffix("\n"))

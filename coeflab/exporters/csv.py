@@ -8,7 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from coeflab.core.identifiers import identifier
 from coeflab.model.look_up import LookUp, look_up
-from coeflab.model.parameter_file import ParameterCoefficient, ParameterFile
+from coeflab.model.parameter_coefficient import ParameterCoefficient
+from coeflab.model.parameter_file import ParameterFile
 
 summary = "coefficients.csv: primed and SI values, U95, status, origin; a table_N.csv for each fitted model"
 citations = ("sname1950",)

@@ -20,19 +20,17 @@ from coeflab.model.force_table import ForceTable
 from coeflab.model.gathered import gathered
 from coeflab.model.model_record import recorded
 from coeflab.model.parameter_added_mass import added_mass_record
+from coeflab.model.parameter_coefficient import ParameterCoefficient, ParameterCovariance, UncertaintyParts
 from coeflab.model.parameter_file import (
     CoveredRange,
     InputRecord,
-    ParameterCoefficient,
     ParameterConditions,
-    ParameterCovariance,
     ParameterFile,
-    ParameterMass,
     ParameterPoint,
     ParameterScaling,
     Provenance,
-    UncertaintyParts,
 )
+from coeflab.model.parameter_mass import ParameterMass
 from coeflab.model.potential import potential_part
 from coeflab.model.reference import Reference
 from coeflab.model.scaling import Conditions, Scaling

@@ -16,7 +16,6 @@ from coeflab.model.regression import Area, Rows, collect, response, variable
 from coeflab.model.set_aside import SetAside, joined
 
 
-
 @dataclass(frozen=True, slots=True, eq=False)
 class JointRows:
     """Rows of one response over all tables that have it.

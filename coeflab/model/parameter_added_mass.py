@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.kernels.composition import definiteness
 from coeflab.model.added_mass import AddedMass
-from coeflab.model.schema_types import Finite, Name, Positive, Strict
+from coeflab.model.schema_types import Finite, Name, Positive, Strict, told
 from coeflab.model.triangulation import Triangulation
 
 Row = tuple[Finite, Finite, Finite, Finite, Finite, Finite]
@@ -18,19 +20,24 @@ Matrix = tuple[Row, Row, Row, Row, Row, Row]
 class OtherMethod(Strict):
     """The same matrix by another method, to be compared with."""
 
-    method: Name
-    matrix: Matrix
+    method: Annotated[Name, told("name of the method")]
+    matrix: Annotated[Matrix, told("as that of `added_mass`", "kg, kg m, kg m^2")]
 
 
 class ParameterAddedMass(Strict):
     """M_A, positive, FRD, about the file's reference point; acceleration derivatives are its negatives."""
 
-    body: Name = Field(description="whose shape it was computed from")
-    method: Name
-    density: Positive = Field(description="kg/m^3")
-    matrix: Matrix = Field(description="kg, kg m, kg m^2; rows X Y Z K M N, columns of du dv dw dp dq dr")
-    others: tuple[OtherMethod, ...] = ()
-    statements: tuple[str, ...] = ()
+    body: Annotated[Name, told("whose shape it was computed from")]
+    method: Annotated[Name, told("how; stated where it was read from somebody's model")]
+    density: Annotated[Positive, told("density of the water that the matrix holds for", "kg/m^3")]
+    matrix: Annotated[
+        Matrix,
+        told(
+            "rows X Y Z K M N, columns of the accelerations du dv dw dp dq dr; symmetric, positive", "kg, kg m, kg m^2"
+        ),
+    ]
+    others: Annotated[tuple[OtherMethod, ...], told("the same by other methods, to be compared with")] = ()
+    statements: Annotated[tuple[str, ...], told("assumptions and limits of the method, in words")] = ()
 
     @model_validator(mode="after")
     def _kinetic_energy(self) -> ParameterAddedMass:

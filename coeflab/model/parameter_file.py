@@ -1,8 +1,5 @@
 """The parameter file: JSON, one body, one scaling, one reference point.
 
-Version 1.1: 1.0 and fitted tables. Version 1.2: what the half-widths of these hold, the status ``form_assumed``, added mass
-and the potential part of every coefficient, the centre of gravity and the inertia matrix.
-
 The models below are the schema; ``parameter_file.schema.json`` beside them is generated from them.
 """
 
@@ -13,208 +10,92 @@ import math
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from coeflab.core.errors import CoeflabError, InputError, shown
-from coeflab.core.symbols import derivative
 from coeflab.core.toml import read_text
-from coeflab.kernels.rigid_body import inertia_doubt
 from coeflab.model.parameter_added_mass import ParameterAddedMass
+from coeflab.model.parameter_coefficient import ParameterCoefficient, ParameterCovariance
+from coeflab.model.parameter_mass import ParameterMass
 from coeflab.model.parameter_model import ParameterModel
+from coeflab.model.parameter_versions import SCHEMA_VERSION, as_of, too_new
 from coeflab.model.scaling import Conditions, Scaling
-from coeflab.model.schema_types import Finite, Name, NotNegative, Positive, Strict
+from coeflab.model.schema_types import Finite, Name, Positive, Strict, told
 
-SCHEMA_VERSION = "1.2"
-FIRST_VERSION = "1.0"
 LARGEST = 64 << 20
 SCHEMA_FILE = Path(__file__).with_name("parameter_file.schema.json")
-
-
-class UncertaintyParts(Strict):
-    """95 % half-widths that make up U95; null where not assessed."""
-
-    random: NotNegative | None = None
-    model_form: NotNegative | None = None
-    window: NotNegative | None = None
-    input: NotNegative | None = None
-
-
-class ParameterCoefficient(Strict):
-    """One coefficient."""
-
-    symbol: Annotated[str, Field(description="SNAME symbol with prime, for example Yv'")]
-    value: Finite | None
-    u95: NotNegative | None = Field(description="95 % half-width")
-    unit: Literal["1"] = Field(description="1: nondimensional by the prime system of `scaling`")
-    value_si: Finite | None = Field(description="At the density and speed of `conditions`")
-    unit_si: str
-    status: Literal[
-        "ok", "no_table", "too_few_points", "single_estimator", "not_determined", "stated", "form_assumed"
-    ]  # fmt: skip
-    origin: Literal["fit", "literature", "none"]
-    parts: UncertaintyParts
-    table: str | None = None
-    campaign: str | None = None
-    estimator: str = ""
-    window: tuple[Finite, Finite] | None = Field(default=None, description="radians; r' = r L/U for rates")
-    n_points: Annotated[int, Field(ge=0)] = 0
-    citation: str = ""
-    law: Literal["motion", "rest"] = Field(
-        default="motion",
-        description="motion: the force goes with 1/2 rho U^(2-n) for n motion variables; rest: value_si times the velocities "
-        "whatever U is, damping about a state of rest; since 1.2",
-    )
-    potential: Finite | None = Field(
-        default=None,
-        description="part of the value that -C_A(nu) nu gives, by `added_mass`; the rest is viscous; since 1.2",
-    )
-
-    @model_validator(mode="after")
-    def _honest(self) -> ParameterCoefficient:
-        if not self.symbol.endswith("'"):
-            raise ValueError(f"{self.symbol}: a symbol without prime; write {self.symbol}'")
-        try:
-            derivative(self.symbol)
-        except InputError as why:
-            raise ValueError(str(why)) from None
-        if (self.value is None) != (self.status in ("no_table", "too_few_points", "not_determined")):
-            raise ValueError(f"{self.symbol}: value {self.value} does not go with status {self.status}")
-        if self.u95 is not None and self.value is None:
-            raise ValueError(f"{self.symbol}: an interval without a value")
-        return self
 
 
 class ParameterScaling(Strict):
     """Length of the primes."""
 
-    length: Positive = Field(description="m")
-    length_name: Name
+    length: Annotated[Positive, told("length L of the primes", "m")]
+    length_name: Annotated[Name, told("which length it is, for example LBP or LOA")]
 
 
 class ParameterConditions(Strict):
     """Conditions of the dimensional values."""
 
-    density: Positive = Field(description="kg/m^3")
-    speed: Positive = Field(description="m/s")
-    viscosity: Positive | None = Field(default=None, description="kinematic, m^2/s")
+    density: Annotated[Positive, told("density rho of the water", "kg/m^3")]
+    speed: Annotated[Positive, told("speed U at the reference point", "m/s")]
+    viscosity: Annotated[Positive | None, told("kinematic", "m^2/s")] = None
 
 
 class ParameterPoint(Strict):
     """Point that moments, rates and mass moments refer to."""
 
-    point: tuple[Finite, Finite, Finite] = Field(description="m, from the datum, in `axes`")
-    datum: Name
-    axes: Literal["FRD"] = "FRD"
-
-
-Triple = tuple[Finite, Finite, Finite]
-
-
-class ParameterMass(Strict):
-    """Mass properties about the reference point."""
-
-    mass: Positive = Field(description="kg")
-    mass_moment: Finite = Field(description="x_G m, kg m, positive forward")
-    inertia: Positive | None = Field(default=None, description="transverse (Iy = Iz), kg m^2")
-    mass_prime: Positive
-    mass_moment_prime: Finite
-    centre: Triple | None = Field(
-        default=None, description="centre of gravity from the reference point, m, FRD; since 1.2"
-    )
-    inertia_matrix: tuple[Triple, Triple, Triple] | None = Field(
-        default=None, description="about the reference point, kg m^2, products with their sign in the matrix; since 1.2"
-    )
-
-    @model_validator(mode="after")
-    def _of_a_body(self) -> ParameterMass:
-        if self.inertia_matrix is not None and self.centre is None:
-            raise ValueError("an inertia matrix without the centre of gravity")
-        if self.centre is not None:
-            moment = self.mass * self.centre[0]
-            if not math.isclose(moment, self.mass_moment, rel_tol=1e-6, abs_tol=1e-9 * self.mass):
-                raise ValueError(f"mass_moment {self.mass_moment:g} is not m x_G, {moment:g}")
-        if self.inertia_matrix is not None and self.centre is not None:
-            why = inertia_doubt(self.mass, np.array(self.centre), np.array(self.inertia_matrix))
-            if why:
-                raise ValueError(why)
-        return self
-
-
-class ParameterCovariance(Strict):
-    """Covariance of standard uncertainties (U95 / 2), primed; rows of coefficients without U95 are null."""
-
-    symbols: tuple[str, ...]
-    matrix: tuple[tuple[Finite | None, ...], ...]
-
-    @model_validator(mode="after")
-    def _square(self) -> ParameterCovariance:
-        k = len(self.symbols)
-        if len(self.matrix) != k or any(len(row) != k for row in self.matrix):
-            raise ValueError(f"the covariance of {k} coefficients must be {k} x {k}")
-        if len(set(self.symbols)) != k:
-            raise ValueError("the covariance names a coefficient twice")
-        for i, row in enumerate(self.matrix):
-            for j, value in enumerate(row):
-                other = self.matrix[j][i]
-                if (value is None) != (other is None):
-                    raise ValueError("the covariance is not symmetric")
-                rounding = 1e-12 * max(abs(v) for v in (row[i], self.matrix[j][j], 0.0) if v is not None)
-                if (
-                    value is not None
-                    and other is not None
-                    and not math.isclose(value, other, rel_tol=1e-9, abs_tol=rounding)
-                ):
-                    raise ValueError("the covariance is not symmetric")
-            diagonal = row[i]
-            if diagonal is not None and diagonal < 0.0:
-                raise ValueError(f"the variance of {self.symbols[i]} is negative")
-        return self
+    point: Annotated[tuple[Finite, Finite, Finite], told("x y z from the datum, in `axes`", "m")]
+    datum: Annotated[Name, told("the point of the body that points are measured from, in words")]
+    axes: Annotated[Literal["FRD"], told("x forward, y starboard, z down")] = "FRD"
 
 
 class CoveredRange(Strict):
     """Range of a motion variable that a campaign covers."""
 
-    variable: Name
-    low: Finite
-    high: Finite
-    unit: Literal["rad", "1"]
-    campaign: str
+    variable: Annotated[Name, told("asin(v/U) and asin(w/U) as angles; r' = r L/U and other primes; dr ds db")]
+    low: Annotated[Finite, told("lowest value", "see unit")]
+    high: Annotated[Finite, told("highest value", "see unit")]
+    unit: Annotated[Literal["rad", "1"], told("of low and high")]
+    campaign: Annotated[str, told("which campaign covers it")]
 
 
 class InputRecord(Strict):
     """A file that went in."""
 
-    name: str
-    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+    name: Annotated[str, told("file name")]
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$"), told("of its bytes, hexadecimal")]
 
 
 class Provenance(Strict):
     """Where it all comes from."""
 
-    coeflab_version: str
-    study: str
-    inputs: tuple[InputRecord, ...]
-    citations: tuple[str, ...]
-    notes: tuple[str, ...] = ()
+    coeflab_version: Annotated[str, told("release that wrote the file")]
+    study: Annotated[str, told("name of the study, or of the model file that was read")]
+    inputs: Annotated[tuple[InputRecord, ...], told("every file that went in")]
+    citations: Annotated[tuple[str, ...], told("keys of the works that methods and values rest on")]
+    notes: Annotated[tuple[str, ...], told("what a reader has to know, in words")] = ()
 
 
 class ParameterFile(Strict):
     """Hydrodynamic coefficients of one body with uncertainty and provenance."""
 
-    schema_version: Annotated[str, Field(pattern=r"^1\.\d+$")] = SCHEMA_VERSION
-    name: Name
-    body: Name
-    scaling: ParameterScaling
-    reference_point: ParameterPoint
-    conditions: ParameterConditions
-    mass: ParameterMass | None
-    coefficients: tuple[ParameterCoefficient, ...]
-    covariance: ParameterCovariance
-    covered: tuple[CoveredRange, ...]
-    models: tuple[ParameterModel, ...] = Field(default=(), description="fitted tables and force laws, since 1.1")
-    added_mass: ParameterAddedMass | None = Field(default=None, description="since 1.2")
-    provenance: Provenance
+    schema_version: Annotated[str, Field(pattern=r"^1\.\d+$"), told("version of this schema that the file follows")] = (
+        SCHEMA_VERSION
+    )
+    name: Annotated[Name, told("name of the set of coefficients; exports are named after it")]
+    body: Annotated[Name, told("the vehicle, and in which configuration")]
+    scaling: Annotated[ParameterScaling, told("the prime system: Y' = Y / (1/2 rho U^2 L^2), N' with L^3")]
+    reference_point: Annotated[ParameterPoint, told("where all moments and velocities are taken")]
+    conditions: Annotated[ParameterConditions, told("density and speed of the dimensional values")]
+    mass: Annotated[ParameterMass | None, told("mass properties; null where they are not known")]
+    coefficients: Annotated[tuple[ParameterCoefficient, ...], told("one entry a symbol, none twice")]
+    covariance: Annotated[ParameterCovariance, told("of the coefficients, as far as it is known")]
+    covered: Annotated[tuple[CoveredRange, ...], told("motions that the tables behind the coefficients cover")]
+    models: Annotated[tuple[ParameterModel, ...], told("fitted tables and force laws", since="1.1")] = ()
+    added_mass: Annotated[
+        ParameterAddedMass | None, told("added mass in unbounded fluid; null where it is not known", since="1.2")
+    ] = None
+    provenance: Annotated[Provenance, told("where it all comes from")]
 
     @model_validator(mode="after")
     def _consistent(self) -> ParameterFile:
@@ -237,13 +118,9 @@ class ParameterFile(Strict):
         for response, names in tables:
             if tables.count((response, names)) > 1:
                 raise ValueError(f"{response} over {', '.join(names)} stands more than once")
-        if tables and self.schema_version == FIRST_VERSION:
-            raise ValueError(f"models came with version 1.1; this file says {FIRST_VERSION}")
-        if self.schema_version in (FIRST_VERSION, "1.1"):
-            if self.added_mass:
-                raise ValueError(f"added mass came with version 1.2; this file says {self.schema_version}")
-            if self.mass and self.mass.centre:
-                raise ValueError(f"the centre of gravity came with version 1.2; this file says {self.schema_version}")
+        strange = too_new(self, self.schema_version)
+        if strange:
+            raise ValueError(strange)
         return self
 
     def coefficient(self, symbol: str) -> ParameterCoefficient | None:
@@ -256,24 +133,9 @@ class ParameterFile(Strict):
 
         A file of an earlier version is written as one, without the keys that came later.
         """
-        content = _as_of(self.schema_version, self.model_dump(mode="json"))
+        content = as_of(self.schema_version, self)
         text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
         return (text + "\n").encode()
-
-
-def _as_of(version: str, content: dict[str, Any]) -> dict[str, Any]:
-    """A file's content without what came after a version."""
-    if version in (FIRST_VERSION, "1.1"):
-        del content["added_mass"]
-        if content["mass"] is not None:
-            del content["mass"]["centre"], content["mass"]["inertia_matrix"]
-        for coefficient in content["coefficients"]:
-            del coefficient["potential"], coefficient["law"]
-        for model in content["models"]:
-            del model["holds"]
-    if version == FIRST_VERSION:
-        del content["models"]
-    return content
 
 
 def schema() -> bytes:

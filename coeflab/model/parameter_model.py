@@ -15,7 +15,7 @@ from coeflab.kernels.domain import inside
 from coeflab.kernels.extrapolation import clamped, taper_weight
 from coeflab.kernels.terms import Term, design
 from coeflab.model.fitted_model import Extrapolation
-from coeflab.model.schema_types import Finite, Name, NotNegative, Positive, Strict
+from coeflab.model.schema_types import Finite, Name, NotNegative, Positive, Strict, told
 
 Array = NDArray[np.float64]
 ANGLE_OF = {"alpha": "w", "beta": "v"}
@@ -24,69 +24,77 @@ ANGLE_OF = {"alpha": "w", "beta": "v"}
 class ModelVariable(Strict):
     """A variable of a fitted model."""
 
-    name: Name = Field(description="alpha beta u v w p q r dr ds db")
-    unit: Literal["rad", "1", "m/s", "rad/s"] = Field(description="1: v/U for velocities, r L/U for rates")
+    name: Annotated[Name, told("alpha beta u v w p q r dr ds db")]
+    unit: Annotated[Literal["rad", "1", "m/s", "rad/s"], told("1: v/U for velocities, r L/U for rates")]
 
 
 class ModelFactor(Strict):
     """A power of a variable."""
 
-    variable: Name
-    power: Annotated[int, Field(ge=1, le=40)]
-    absolute: bool = Field(default=False, description="true: |variable|^power")
+    variable: Annotated[Name, told("one of `variables`")]
+    power: Annotated[int, Field(ge=1, le=40), told("exponent")]
+    absolute: Annotated[bool, told("true: |variable|^power")] = False
 
 
 class ModelTerm(Strict):
     """A product of powers with its coefficient; null where the data do not determine it."""
 
-    symbol: Name
-    factors: tuple[ModelFactor, ...] = Field(description="empty for the constant")
-    value: Finite | None
-    half_width_95: NotNegative | None
+    symbol: Annotated[Name, told("name of the coefficient")]
+    factors: Annotated[tuple[ModelFactor, ...], told("their product multiplies the value; empty for the constant")]
+    value: Annotated[Finite | None, told("coefficient of the term", "of the response over that of the factors")]
+    half_width_95: Annotated[NotNegative | None, told("95 % half-width of the value", "as the value")]
 
 
 class ModelDomain(Strict):
     """Where the model may be read, in the order of `variables`."""
 
-    low: tuple[Finite, ...]
-    high: tuple[Finite, ...]
-    half_spaces: tuple[tuple[Finite, ...], ...] = Field(
-        description="rows [a, b] with a.x + b <= 0 inside the convex hull of the data"
-    )
-    extrapolation: Literal["refuse", "clamp", "taper"]
+    low: Annotated[tuple[Finite, ...], told("lowest value of each variable", "of the variable")]
+    high: Annotated[tuple[Finite, ...], told("highest value of each variable", "of the variable")]
+    half_spaces: Annotated[
+        tuple[tuple[Finite, ...], ...], told("rows [a, b] with a.x + b <= 0 inside the convex hull of the data")
+    ]
+    extrapolation: Annotated[
+        Literal["refuse", "clamp", "taper"],
+        told("outside: no value; that of the nearest point of the hull; a blend into that"),
+    ]
 
 
 class ModelArea(Strict):
     """What the coefficient is divided by beside 1/2 rho V^2; moments also by the length of `scaling`."""
 
-    value: Positive = Field(description="m^2")
-    name: Name
+    value: Annotated[Positive, told("the area", "m^2")]
+    name: Annotated[Name, told("what area it is, for example frontal, or L^2")]
 
 
 class ParameterModel(Strict):
     """One response as a linear combination of terms."""
 
-    response: Name
-    unit: Name = Field(description="1: nondimensional")
-    form: str
-    variables: Annotated[tuple[ModelVariable, ...], Field(min_length=1)]
-    terms: Annotated[tuple[ModelTerm, ...], Field(min_length=1)]
-    covariance: tuple[tuple[Finite | None, ...], ...] = Field(
-        description="of standard uncertainties (half_width_95 / 2) of the terms; null where not determined"
-    )
-    domain: ModelDomain
-    n_points: Annotated[int, Field(ge=0)]
-    rms: NotNegative
-    press_rms: NotNegative | None = Field(description="of every point predicted from the others")
-    table: str
-    campaign: str
-    post_selection: bool = Field(default=False, description="true: terms chosen on the same data, intervals too narrow")
-    statements: tuple[str, ...] = ()
-    area: ModelArea | None = None
-    holds: tuple[Name, ...] = Field(
-        default=("random",),
-        description="what half widths and covariance hold: the scatter, the grid, declared inputs; never the form; since 1.2",
-    )
+    response: Annotated[Name, told("force component or coefficient, for example Y' or C_D")]
+    unit: Annotated[Name, told("of the response; 1: nondimensional")]
+    form: Annotated[str, told("family of the form, in words")]
+    variables: Annotated[tuple[ModelVariable, ...], Field(min_length=1), told("what the response depends on")]
+    terms: Annotated[tuple[ModelTerm, ...], Field(min_length=1), told("the response is their sum")]
+    covariance: Annotated[
+        tuple[tuple[Finite | None, ...], ...],
+        told("of standard uncertainties (half_width_95 / 2) of the terms; null where not determined", "of the values"),
+    ]
+    domain: Annotated[ModelDomain, told("where it may be read")]
+    n_points: Annotated[int, Field(ge=0), told("points that it was fitted to")]
+    rms: Annotated[NotNegative, told("root mean square of the residuals", "of the response")]
+    press_rms: Annotated[
+        NotNegative | None, told("root mean square of every point predicted from the others", "of the response")
+    ]
+    table: Annotated[str, told("file of the table")]
+    campaign: Annotated[str, told("campaign of the table")]
+    post_selection: Annotated[bool, told("true: terms chosen on the same data, intervals too narrow")] = False
+    statements: Annotated[tuple[str, ...], told("assumptions and limits, in words")] = ()
+    area: Annotated[ModelArea | None, told("of a coefficient by an area; null where there is none")] = None
+    holds: Annotated[
+        tuple[Name, ...],
+        told(
+            "what half widths and covariance hold: the scatter, the grid, declared inputs; never the form", since="1.2"
+        ),
+    ] = ("random",)
 
     @model_validator(mode="after")
     def _consistent(self) -> ParameterModel:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -16,3 +16,18 @@ class Strict(BaseModel):
     """A frozen model without unknown keys."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def told(meaning: str, unit: str = "", since: str = "") -> Any:
+    """What a field means, to stand in its ``Annotated``; the schema and its page show it.
+
+    Parameters
+    ----------
+    meaning : str
+    unit : str
+        Empty for what has none or states it beside it; ``1`` for primes.
+    since : str
+        Version of the schema that brought it; empty for that of the table which holds it.
+    """
+    extra: dict[str, Any] = {name: text for name, text in (("unit", unit), ("since", since)) if text}
+    return Field(description=meaning, json_schema_extra=extra or None)

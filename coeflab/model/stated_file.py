@@ -17,18 +17,16 @@ from coeflab.core.version import VERSION
 from coeflab.kernels.composition import definiteness
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.parameter_added_mass import ParameterAddedMass
+from coeflab.model.parameter_coefficient import ParameterCoefficient, ParameterCovariance, UncertaintyParts
 from coeflab.model.parameter_file import (
     InputRecord,
-    ParameterCoefficient,
     ParameterConditions,
-    ParameterCovariance,
     ParameterFile,
-    ParameterMass,
     ParameterPoint,
     ParameterScaling,
     Provenance,
-    UncertaintyParts,
 )
+from coeflab.model.parameter_mass import ParameterMass
 from coeflab.model.potential import potential_part
 from coeflab.model.scaling import Conditions, Scaling
 

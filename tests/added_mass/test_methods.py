@@ -16,8 +16,8 @@ from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.scaling import Scaling
 from coeflab.presentation.added_mass_tables import derivatives
-from coeflab.workbench.hulls import added_masses, methods
 from coeflab.workbench import read_body
+from coeflab.workbench.hulls import added_masses, methods
 
 RHO = 1000.0
 BODIES = ("suboff_bare_hull", "spheroid_example", "huuv")
@@ -160,7 +160,12 @@ def test_statements_name_what_is_estimated(tmp_path: Path) -> None:
         '[[part]]\nname = "box"\nform = "box"\nlength = 1\nwidth = 1\nheight = 1\ncentre = [0, 0, 0]\n'
     )
     said = " ".join(primitives.added_mass(body(tmp_path, parts), RHO).statements)
-    for words in ("slat: aspect 20", "puck: shorter than its diameter", "equal volume and proportions", "doublet lattice"):
+    for words in (
+        "slat: aspect 20",
+        "puck: shorter than its diameter",
+        "equal volume and proportions",
+        "doublet lattice",
+    ):
         assert words in said
 
 

@@ -14,8 +14,8 @@ from coeflab.kernels.decimation import is_closed
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.meshing import meshed
 from coeflab.model.shape import Revolution
-from coeflab.workbench.hulls import added_masses
 from coeflab.workbench import read_body
+from coeflab.workbench.hulls import added_masses
 
 BODY = shipped("geometry") / "suboff_aff8" / "body.toml"
 

@@ -17,8 +17,8 @@ from coeflab.core.files import shipped
 from coeflab.kernels.decimation import is_closed
 from coeflab.model.meshing import dense_meridian, meshed
 from coeflab.model.shape import Revolution
-from coeflab.workbench.hulls import added_masses
 from coeflab.workbench import read_body
+from coeflab.workbench.hulls import added_masses
 
 BODY = shipped("geometry") / "remus100" / "body.toml"
 REMUS = Myring(0.191, 0.654, 0.541, 0.191, 2.0, 0.436, 0.0165, 0.0368)

@@ -87,3 +87,10 @@ def test_what_cannot_be_read_is_one_error(coeflab: Run, tmp_path: Path, content:
     assert "m.sdf" in done.stderr
     assert "Traceback" not in done.stderr
     assert len(done.stderr) < 1000
+
+
+def test_the_schema_is_printed_as_a_page_and_as_json(coeflab: Run) -> None:
+    page, schema = coeflab("params", "schema"), coeflab("params", "schema", "--json")
+    assert (page.returncode, schema.returncode) == (0, 0)
+    assert page.stdout == (Path(__file__).parents[2] / "docs" / "parameter_file.md").read_text(encoding="utf-8")
+    assert json.loads(schema.stdout)["properties"]["added_mass"]["since"] == "1.2"

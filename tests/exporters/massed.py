@@ -6,7 +6,8 @@ import numpy as np
 
 from coeflab.kernels.rigid_body import parallel_axis
 from coeflab.model.added_mass import AddedMass
-from coeflab.model.parameter_file import ParameterFile, ParameterMass
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.parameter_mass import ParameterMass
 from tests.model.test_force_law import LENGTH, parameters
 
 MASS, CENTRE = 60.0, np.array([0.04, -0.01, 0.03])

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from coeflab.model.added_mass import AddedMass
-from coeflab.model.parameter_file import ParameterFile, ParameterMass
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.parameter_mass import ParameterMass
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.stated_file import Stated, StatedMass, stated_file
 from tests.exporters import files as made

@@ -14,7 +14,8 @@ from coeflab.core.provenance import Source
 from coeflab.kernels.rigid_body import about_another
 from coeflab.model.assemble import assemble
 from coeflab.model.body import Body, Configuration, MassProperties
-from coeflab.model.parameter_file import ParameterFile, ParameterMass, read_parameter_file
+from coeflab.model.parameter_file import ParameterFile, read_parameter_file
+from coeflab.model.parameter_mass import ParameterMass
 from coeflab.model.scaling import Conditions
 from coeflab.model.study import PlannedParameterFile
 from tests.exporters.massed import CENTRE, INERTIA, MASS, torpedo
