@@ -19,7 +19,7 @@ from coeflab.presentation.svg import COLOURS, POINTS, settings, svg_text
 
 Array = NDArray[np.float64]
 PANELS = 3000
-WIDTH, TALLEST, GAP = 440.0, 110.0, 14.0
+WIDTH, TALLEST, GAP = 340.0, 90.0, 12.0
 
 
 def hull_figure(body: Body, anchor: str) -> Figure:

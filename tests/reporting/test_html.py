@@ -119,7 +119,9 @@ def test_the_validation_makes_a_page_of_moderate_size():
     assert len(text.encode()) < 3_000_000
     drawings = re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)
     budgeted = [c for c in study.coefficients if c.symbol in study.plan.wanted and c.value is not None]
-    assert len(drawings) == 2 * sum(len(f.sweeps) for f in study.fits) + len(budgeted)
+    hulls = {h.body.name for h in study.hulls.values()}
+    assert hulls == {"suboff_aff8", "suboff_bare_hull"}
+    assert len(drawings) == 2 * sum(len(f.sweeps) for f in study.fits) + len(budgeted) + len(hulls)
     assert max(len(d.encode()) for d in drawings) < 60_000
     assert Page(text).crossed == []
     assert text == text_of(study)
