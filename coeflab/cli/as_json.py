@@ -7,6 +7,7 @@ from typing import Any
 
 from coeflab.core.symbols import primed
 from coeflab.model.coefficient import Coefficient
+from coeflab.model.export import Export
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.pooling import Pooling
 from coeflab.model.study import Study
@@ -90,6 +91,20 @@ def pooling(campaign: str, p: Pooling) -> dict[str, Any]:
     }
 
 
+def export(made: Export) -> dict[str, Any]:
+    """What one target makes of a parameter file; forces are X Y Z K M N, SI."""
+    loss = made.loss
+    return {
+        "parameter_file": made.parameters,
+        "target": made.target,
+        "lossless": made.lossless,
+        "not_held": [] if loss is None else list(loss.not_held),
+        "worst_difference": None if loss is None else loss.worst.tolist(),
+        "rms_difference": None if loss is None else loss.rms.tolist(),
+        "largest_force": None if loss is None else loss.largest.tolist(),
+    }
+
+
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
@@ -130,5 +145,6 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
             }
             for c in s.checks
         ],
+        "exports": [export(made) for made in s.exports],
         "files": files,
     }

@@ -32,7 +32,7 @@ def command(
     if loss is not None and not json:
         show.table(loss_tables.forces(loss))
         show.table(loss_tables.parts(parameters))
-    if loss is not None and not loss.lossless and (strict or not accept_loss):
+    if not made.lossless and (strict or not accept_loss):
         raise InputError(
             f"{to} cannot hold all of {parameters.name}",
             "a target that holds everything" if strict else "--accept-loss, once the loss above has been read",
@@ -43,13 +43,9 @@ def command(
     for path in paths:
         write_atomically(path, made.files[path.name])
     if json:
-        show.json_object({
-            "target": to, "files": [str(p) for p in paths], "lossless": loss is None or loss.lossless,
-            "not_held": [] if loss is None else list(loss.not_held),
-            "worst_difference": None if loss is None else loss.worst.tolist(),
-            "rms_difference": None if loss is None else loss.rms.tolist(),
-            "largest_force": None if loss is None else loss.largest.tolist(),
-        })  # fmt: skip
+        from coeflab.cli.as_json import export as export_json
+
+        show.json_object({"files": [str(p) for p in paths], **export_json(made)})
         return
     for path in paths:
         show.text(f"  {path}")

@@ -33,12 +33,12 @@ def too_new(model: BaseModel, version: str) -> str:
         value = getattr(model, name)
         if is_later(since(field), version):
             if value != field.get_default(call_default_factory=True):
-                return f"{name.replace('_', ' ')} came with version {since(field)}; this file says {version}"
+                return f"{name} came with version {since(field)}; this file says {version}"
         else:
             for part in value if isinstance(value, tuple) else (value,):
                 found = too_new(part, version) if isinstance(part, BaseModel) else ""
                 if found:
-                    return found
+                    return f"{name}.{found}"
     return ""
 
 

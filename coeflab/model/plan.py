@@ -12,7 +12,7 @@ from coeflab.core.files import located
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.toml import Section, read_toml
 from coeflab.model.scaling import read_conditions, read_scaling
-from coeflab.model.study import Plan, PlannedJoint, PlannedParameterFile, PlannedTable
+from coeflab.model.study import Plan, PlannedExport, PlannedJoint, PlannedParameterFile, PlannedTable
 
 JOINT = "manoeuvring_model"
 _NAME = re.compile(r"^[\w][\w .+-]{0,79}$")
@@ -110,9 +110,12 @@ def read_plan(path: Path) -> Plan:
     for s in root.sections("references"):
         references.append(_path(s, "path", "cfd_data"))
         s.finish()
-    exports = []
+    exports: list[PlannedExport] = []
     for s in root.sections("export"):
-        exports.append(s.text("to"))
+        planned = PlannedExport(s.text("to"), s.flag("accept_loss", False), s.flag("strict", False), path, s.name)
+        if planned.to in {e.to for e in exports}:
+            raise s.fail("to", f"the target {shown(planned.to)} twice", "every target once")
+        exports.append(planned)
         s.finish()
     plan = Plan(
         name=safe_name(study, "name"),

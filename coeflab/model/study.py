@@ -24,6 +24,7 @@ from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.triangulation import Triangulation
 
 if TYPE_CHECKING:
+    from coeflab.model.export import Export
     from coeflab.model.parameter_file import ParameterFile
 
 
@@ -68,6 +69,35 @@ class PlannedParameterFile:
     method: str = "all"
 
 
+@dataclass(frozen=True, slots=True)
+class PlannedExport:
+    """One ``[[export]]``: every parameter file of the study for one target.
+
+    Attributes
+    ----------
+    to : str
+        The exporter.
+    accept_loss : bool
+        Write although the target cannot hold everything.
+    strict : bool
+        Refuse any loss, whatever else is said.
+    file : Path or None
+        The plan's, for messages.
+    place : str
+        The table in it.
+    """
+
+    to: str
+    accept_loss: bool = False
+    strict: bool = False
+    file: Path | None = None
+    place: str = "export"
+
+    def key(self, name: str) -> str:
+        """Dotted name of a key."""
+        return f"{self.place}.{name}"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
     """What to do, with paths resolved.
@@ -88,7 +118,7 @@ class Plan:
         Fits over several campaigns, after those of the tables.
     references : tuple of Path
     parameter_files : tuple of PlannedParameterFile
-    exports : tuple of str
+    exports : tuple of PlannedExport
     wanted : tuple of str
         Coefficients that must appear, with a status if no table gives them.
     include_uncertain : bool
@@ -106,7 +136,7 @@ class Plan:
     body: Path | None = None
     references: tuple[Path, ...] = ()
     parameter_files: tuple[PlannedParameterFile, ...] = ()
-    exports: tuple[str, ...] = ()
+    exports: tuple[PlannedExport, ...] = ()
     wanted: tuple[str, ...] = ()
     include_uncertain: bool = False
     file: InputFile | None = None
@@ -138,6 +168,7 @@ class Study:
     budgets: tuple[Budget, ...] = ()
     checks: tuple[Check, ...] = ()
     hulls: Mapping[str, Triangulation] = field(default_factory=dict)
+    exports: tuple[Export, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parameter_files", MappingProxyType(dict(self.parameter_files)))

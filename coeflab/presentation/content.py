@@ -15,6 +15,7 @@ from coeflab.presentation.budget_section import budget_sections
 from coeflab.presentation.campaign_sections import campaign_section, filled
 from coeflab.presentation.conventions_section import conventions_section
 from coeflab.presentation.document import Document, Section
+from coeflab.presentation.export_section import export_sections
 
 
 def document(study: Study) -> Document:
@@ -28,6 +29,7 @@ def document(study: Study) -> Document:
         *_models(study),
         *budget_sections(study),
         *added_mass_sections(study),
+        *export_sections(study),
         Section(
             "campaigns",
             "Campaigns",

@@ -2,25 +2,49 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from coeflab.core.symbols import COMPONENTS
-from coeflab.model.loss import Loss
+from coeflab.model.loss import LOSSLESS, Loss
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.table import Table, coefficient, number
+
+NAMED = 3
 
 
 def forces(loss: Loss) -> Table:
     """Difference of the target's force from the file's."""
+    shares = np.where(loss.relative > LOSSLESS, loss.relative, 0.0)
     rows = tuple(
-        (c, "N*m" if c in "KMN" else "N", number(a, 4), number(b, 3), number(r, 3), f"{100.0 * x:.2g} %")
-        for c, a, b, r, x in zip(COMPONENTS, loss.largest, loss.worst, loss.rms, loss.relative, strict=True)
+        (
+            c,
+            "N*m" if c in "KMN" else "N",
+            number(a, 4),
+            number(b * (x > 0.0), 3),
+            number(r * (x > 0.0), 3),
+            f"{100.0 * x:.2g} %",
+        )
+        for c, a, b, r, x in zip(COMPONENTS, loss.largest, loss.worst, loss.rms, shares, strict=True)
     )
-    notes = [f"over {loss.grid}; steady motion, FRD, about the file's reference point"]
+    notes = [
+        f"over {loss.grid}; steady motion, FRD, about the file's reference point; 0 is less than {LOSSLESS:g} of the largest"
+    ]
     notes += [f"not held: {what}" for what in loss.not_held]
     notes += [f"changed: {what}" for what in loss.changes]
     headers = ("", "unit", "largest", "worst difference", "rms difference", "worst of largest")
     return Table(
         f"Force law of {loss.target} against the parameter file", headers, rows, tuple(notes), frozenset({0, 1})
     )
+
+
+def in_short(loss: Loss) -> str:
+    """The loss on one line: what is not held, and the largest difference of a component."""
+    some = ", ".join(loss.not_held[:NAMED]) + (
+        f" and {len(loss.not_held) - NAMED} more" if len(loss.not_held) > NAMED else ""
+    )
+    worst = int(loss.relative.argmax())
+    force = f"{COMPONENTS[worst]} differs by up to {100.0 * loss.relative[worst]:.2g} % of its largest"
+    return f"it has no {some}, and {force}" if some else force
 
 
 def parts(parameters: ParameterFile) -> Table:

@@ -41,7 +41,14 @@ def schema_page() -> bytes:
         for key, field in table["properties"].items():
             absent = "refused" if key in required else f"`{json.dumps(field['default'])}`"
             came = _later(field.get("since", since), since)
-            cells = (f"`{key}`", _type(field), field.get("unit", ""), came, absent, _plain(field["description"]))
+            cells: tuple[str, ...] = (
+                f"`{key}`",
+                _type(field),
+                field.get("unit", ""),
+                came,
+                absent,
+                _plain(field["description"]),
+            )
             out.append(f"| {' | '.join(map(_cell, cells))} |\n")
     return "".join(out).encode()
 
@@ -58,7 +65,9 @@ def _tables(content: Json) -> Iterator[tuple[str, str, Json, str]]:
             for kind, many in _named(field):
                 if kind not in seen:
                     seen.add(kind)
-                    path = f"{'' if name == ParameterFile.__name__ else place.strip('`') + '.'}{key}{'[]' if many else ''}"
+                    path = (
+                        f"{'' if name == ParameterFile.__name__ else place.strip('`') + '.'}{key}{'[]' if many else ''}"
+                    )
                     inner.append((f"`{path}`", kind, content["$defs"][kind], _later(field.get("since", since), since)))
         waiting = inner + waiting
 
@@ -90,11 +99,13 @@ def _type(field: Json) -> str:
             return f"{len(field['prefixItems'])} {'numbers' if first == 'number' else f'x {first}'}"
         each = _type(field["items"])
         return f"list of ({each})" if " or " in each else f"list of {each}"
-    bounds = {"exclusiveMinimum": ">", "minimum": ">=", "maximum": "<=", "maxLength": "of at most"}
+    bounds = {"exclusiveMinimum": ">", "minimum": ">=", "maximum": "<="}
     limits = [f"{sign} {field[name]:g}" for name, sign in bounds.items() if name in field]
+    limits += [f"of at most {field['maxLength']} characters"] if "maxLength" in field else []
     limits += [f"like `{field['pattern']}`"] if "pattern" in field else []
+    kind = str(field["type"])
     words = {"string": "text", "boolean": "true or false", "integer": "whole number"}
-    return " ".join([words.get(field["type"], field["type"]), *limits])
+    return " ".join([words.get(kind, kind), *limits])
 
 
 def _plain(text: str) -> str:

@@ -24,6 +24,7 @@ from coeflab.model.scaling import Scaling
 from coeflab.model.several_campaigns import one_length
 from coeflab.model.study import Plan, PlannedParameterFile, Study
 from coeflab.reporting import REPORTERS
+from coeflab.workbench.exports import exports_of, refuse_unknown
 from coeflab.workbench.hulls import hulls_of
 from coeflab.workbench.reading import read_body, read_tables, settled, together
 
@@ -52,6 +53,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     CoeflabError
         Input that cannot be used.
     """
+    refuse_unknown(plan.exports)
     tables: list[ForceTable] = []
     fits: list[FitResult] = []
     budgets: list[Budget] = []
@@ -81,6 +83,10 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     conditions = plan.conditions or tables[0].conditions
     hulls = hulls_of(groups, conditions.density, progress)
     inputs = _inputs(plan, tables, [b for b in (body, *(h.body for h in hulls.values())) if b is not None])
+    files = {
+        g.name: assemble(g, plan.name, fits, tables, missing, references, body, conditions, inputs, hulls.get(g.name))
+        for g in groups
+    }
     study = Study(
         plan=plan,
         tables=tuple(tables),
@@ -90,15 +96,11 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         references=references,
         comparisons=tuple(c for f in fits for c in compare_set(f.coefficients, references))
         + compare(missing, references, first),
-        parameter_files={
-            g.name: assemble(
-                g, plan.name, fits, tables, missing, references, body, conditions, inputs, hulls.get(g.name)
-            )
-            for g in groups
-        },
+        parameter_files=files,
         hulls=hulls,
         inputs=inputs,
         budgets=tuple(budgets),
+        exports=exports_of(plan.exports, files.values(), progress),
     )
     findings = [c for name in CHECKS.names() for c in CHECKS.load(name).check(study)]
     progress(f"{len(findings)} checks")
@@ -195,6 +197,9 @@ def rendered(study: Study) -> dict[str, bytes]:
         files.update(REPORTERS.load(name).render(study))
     for parameters in study.parameter_files.values():
         files[f"{parameters.name}.parameters.json"] = parameters.to_json()
-        for target in dict.fromkeys(("csv", *study.plan.exports)):
-            files.update(EXPORTERS.load(target).render(parameters))
+        files.update(EXPORTERS.load("csv").render(parameters))
+    for made in study.exports:
+        files.update(
+            {f"{made.folder}/{name}" if made.folder else name: content for name, content in made.files.items()}
+        )
     return files

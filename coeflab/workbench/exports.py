@@ -1,26 +1,18 @@
-"""A parameter file for a simulator: the target's files, and what they lose."""
+"""Parameter files for simulators: the target's files, and what they lose."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
 
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import InputError, PluginError, shown
 from coeflab.exporters import EXPORTERS
+from coeflab.model.export import Export
 from coeflab.model.force_law import force_law
-from coeflab.model.loss import Loss, loss_of
+from coeflab.model.loss import loss_of
 from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.study import PlannedExport
 from coeflab.ports import SimulatorExporter
-from coeflab.presentation.loss_tables import as_text
-
-
-@dataclass(frozen=True, slots=True)
-class Export:
-    """Files by name, and the loss; None for tables, which hold the parameter file as it is."""
-
-    target: str
-    files: Mapping[str, bytes]
-    loss: Loss | None
+from coeflab.presentation.loss_tables import as_text, in_short
 
 
 def export(parameters: ParameterFile, target: str) -> Export:
@@ -40,10 +32,56 @@ def export(parameters: ParameterFile, target: str) -> Export:
         if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable():
             raise InputError(f"a file called {shown(name)}", "a plain file name", column=f"exporter.{target}")
     if not isinstance(plugin, SimulatorExporter):
-        return Export(target, files, None)
+        return Export(parameters.name, target, files, None)
     found = loss_of(
         target, force_law(parameters), parameters, files, plugin.force, plugin.not_held(parameters),
         plugin.changes(parameters),
     )  # fmt: skip
     files[report] = as_text(found, parameters).encode()
-    return Export(target, files, found)
+    return Export(parameters.name, target, files, found)
+
+
+def refuse_unknown(planned: Sequence[PlannedExport]) -> None:
+    """Refuse targets without an exporter before anything is computed.
+
+    Raises
+    ------
+    PluginError
+        Names the plan's file and key.
+    """
+    for p in planned:
+        try:
+            EXPORTERS.load(p.to)
+        except PluginError as why:
+            raise PluginError(f"{p.file}, {shown(p.key('to'))}: {why}" if p.file else str(why)) from None
+
+
+def exports_of(
+    planned: Sequence[PlannedExport], files: Iterable[ParameterFile], progress: Callable[[str], None]
+) -> tuple[Export, ...]:
+    """Every parameter file of a study for every target of its plan.
+
+    Raises
+    ------
+    InputError
+        A target cannot hold a file, or not all of it and the plan does not accept that; names the plan's file and key.
+    """
+    out = []
+    for p, parameters in ((p, parameters) for p in planned for parameters in files):
+        try:
+            made = export(parameters, p.to)
+        except InputError as why:
+            found = f"{why.found} in {parameters.name} for {p.to}"
+            raise InputError(found, why.expected, file=p.file, column=p.key("to"), advice=why.advice) from None
+        if made.loss is not None and not made.lossless and (p.strict or not p.accept_loss):
+            raise InputError(
+                f"{p.to} cannot hold all of {parameters.name}: {in_short(made.loss)}",
+                "a target that holds everything" if p.strict else "accept_loss = true, once the loss has been read",
+                file=p.file,
+                column=p.key("strict" if p.strict else "accept_loss"),
+                advice="Without this [[export]] the study writes the parameter file; `coeflab export FILE --to "
+                f"{p.to}` then prints the whole loss.",
+            )
+        progress(f"exported {parameters.name} for {p.to}")
+        out.append(made)
+    return tuple(out)

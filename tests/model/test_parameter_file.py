@@ -12,9 +12,11 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.model.parameter_file import SCHEMA_FILE, ParameterFile, read_parameter_file, schema
+from coeflab.model.parameter_versions import VERSIONS, is_later
 from coeflab.model.study import Study
 
 SAMPLE = Path(__file__).parents[1] / "data" / "parameters_1_0.json"
+NEWEST = SAMPLE.with_name("parameters_1_2.json")
 FILES = ("suboff_fully_appended", "suboff_bare_hull", "suboff_bare_hull_cfd")
 
 
@@ -43,13 +45,73 @@ def test_bytes_round_trip(suboff: Study, tmp_path: Path, name: str) -> None:
     assert b"NaN" not in raw
 
 
-def test_the_first_version_still_loads() -> None:
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_sample_of_every_version_loads_and_is_written_back_as_it_is(version: str) -> None:
+    """Each was written by a study when its version was the newest; that of 1.2 is of a synthetic vehicle."""
+    sample = SAMPLE.with_name(f"parameters_{version.replace('.', '_')}.json")
+    file = read_parameter_file(sample)
+    assert file.schema_version == version
+    assert file.to_json() == sample.read_bytes()
+    jsonschema.validate(json.loads(sample.read_bytes()), json.loads(schema()), jsonschema.Draft202012Validator)
+
+
+def test_the_first_version_means_what_it_meant() -> None:
     file = read_parameter_file(SAMPLE)
-    assert file.schema_version == "1.0"
     yv = file.coefficient("Yv")
     assert yv is not None
     assert yv.value == pytest.approx(-0.006, abs=0.001)
-    assert file.to_json() == SAMPLE.read_bytes()
+    assert (yv.law, yv.potential, file.models, file.added_mass) == ("motion", None, (), None)
+
+
+def test_version_1_2_means_what_it_meant() -> None:
+    """A spheroid's Munk moment in Nv', mass away from the reference point, intervals that hold declared inputs."""
+    file = read_parameter_file(NEWEST)
+    nv, yr = file.coefficient("Nv"), file.coefficient("Yr")
+    assert nv is not None
+    assert yr is not None
+    assert file.added_mass is not None
+    assert file.mass is not None
+    matrix, density, length = file.added_mass.matrix, file.conditions.density, file.scaling.length
+    assert nv.potential == pytest.approx((matrix[0][0] - matrix[1][1]) / (0.5 * density * length**3))
+    assert yr.potential == pytest.approx(-matrix[0][0] / (0.5 * density * length**3))
+    assert file.mass.centre == pytest.approx((0.01, 0.0, 0.02))
+    assert file.mass.inertia_matrix is not None
+    assert file.mass.inertia_matrix[0][2] == pytest.approx(-0.01 - 40.0 * 0.01 * 0.02)
+    assert file.models[0].holds == ("random", "angle beta", "speed")
+
+
+def unbooked(content: dict[str, Any]) -> None:
+    """Without centre of gravity and potential parts."""
+    content["mass"] = None
+    for coefficient in content["coefficients"]:
+        coefficient["potential"] = None
+
+
+LATER: list[tuple[str, Callable[[dict[str, Any]], object]]] = [
+    ("mass.centre", lambda d: None),
+    ("coefficients.potential", lambda d: d.update(mass=None)),
+    ("models", unbooked),
+    ("added_mass", lambda d: (unbooked(d), d.update(models=[]))),
+]
+
+
+@pytest.mark.parametrize(("named", "without"), LATER, ids=[name for name, _ in LATER])
+def test_what_came_later_is_refused_in_an_earlier_version(
+    tmp_path: Path, named: str, without: Callable[[dict[str, Any]], object]
+) -> None:
+    content = json.loads(NEWEST.read_bytes())
+    without(content)
+    content["schema_version"] = "1.0"
+    (tmp_path / "p.json").write_text(json.dumps(content))
+    message = refused(tmp_path / "p.json")
+    assert f"{named} came with version 1." in message
+    assert "this file says 1.0" in message
+
+
+def test_versions_are_ordered_by_their_numbers() -> None:
+    assert is_later("1.10", "1.9")
+    assert not is_later("1.2", "1.2")
+    assert not is_later("1.1", "1.2")
 
 
 @pytest.mark.parametrize("source", ["study", "sample"])

@@ -1,0 +1,39 @@
+"""A parameter file as one target takes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from coeflab.model.loss import Loss
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """Files by name, and what is lost.
+
+    Attributes
+    ----------
+    parameters : str
+        Name of the parameter file.
+    target : str
+    files : mapping of file name to bytes
+        The loss report among them, where there is a loss to report.
+    loss : Loss or None
+        None for tables, which hold the parameter file as it is.
+    """
+
+    parameters: str
+    target: str
+    files: Mapping[str, bytes]
+    loss: Loss | None
+
+    @property
+    def lossless(self) -> bool:
+        """Whether nothing of the parameter file is lost."""
+        return self.loss is None or self.loss.lossless
+
+    @property
+    def folder(self) -> str:
+        """Where the files stand beside the parameter file: a folder of their own, tables beside it."""
+        return "" if self.loss is None else f"{self.parameters}.{self.target}"

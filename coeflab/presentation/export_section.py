@@ -1,0 +1,59 @@
+"""Exports in a report: what every target makes of a parameter file, and what it loses."""
+
+from __future__ import annotations
+
+from coeflab.model.export import Export
+from coeflab.model.loss import LOSSLESS
+from coeflab.model.study import Study
+from coeflab.model.table import ABSENT, Table
+from coeflab.presentation import loss_tables
+from coeflab.presentation.document import Section
+
+TEXT = (
+    "The files were read again and evaluated by the target's own force law, written from its source, beside the force law of the "
+    "parameter file. A difference is what a simulation with that target has wrong in steady motion, if the parameter file is "
+    "right.",
+    "Where a target adds -C_A(nu) nu itself, first-order derivatives are given to it less their potential part, so that nothing "
+    "counts twice.",
+)
+
+
+def export_sections(study: Study) -> tuple[Section, ...]:
+    """One section, or none where the plan asks for no export."""
+    if not study.exports:
+        return ()
+    each = tuple(
+        Section(f"export-{i}", f"{made.parameters} for {made.target}", tables=(loss_tables.forces(made.loss),))
+        for i, made in enumerate(study.exports)
+        if made.loss is not None
+    )
+    return (Section("exports", "Exports", TEXT, (summary(study.exports),), subsections=each),)
+
+
+def summary(exports: tuple[Export, ...]) -> Table:
+    """One row an export."""
+    rows = tuple((made.parameters, made.target, _verdict(made), _worst(made), _place(made)) for made in exports)
+    headers = ("parameter file", "target", "loss", "worst of largest", "files")
+    notes = ("worst of largest: largest difference of a force component over its largest value in the covered range",)
+    return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4}))
+
+
+def _verdict(made: Export) -> str:
+    if made.loss is None:
+        return "none: tables of the file's own values"
+    if made.lossless:
+        return "none"
+    count = len(made.loss.not_held)
+    return f"accepted: {count} not held" if count else "accepted: the force differs"
+
+
+def _worst(made: Export) -> str:
+    if made.loss is None:
+        return ABSENT
+    worst = float(made.loss.relative.max())
+    return f"{100.0 * worst if worst > LOSSLESS else 0.0:.2g} %"
+
+
+def _place(made: Export) -> str:
+    names = ", ".join(sorted(made.files))
+    return f"{made.folder}/: {names}" if made.folder else names

@@ -1,0 +1,143 @@
+"""Exports that a plan asks for: proved, written to folders of their own, and refused where a loss was not accepted."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from coeflab.core.errors import InputError, PluginError
+from coeflab.model.plan import read_plan
+from coeflab.model.study import Plan, PlannedExport, Study
+from coeflab.presentation.content import document
+from coeflab.workbench import rendered, run
+from coeflab.workbench.exports import export
+from tests.workbench.test_other_units_and_axes import write_template
+
+
+def planned(folder: Path, *tables: str) -> Plan:
+    """The template's plan with [[export]] tables."""
+    path = write_template(folder)
+    path.write_text(path.read_text() + "".join(f"\n[[export]]\n{t}\n" for t in tables))
+    return read_plan(path)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
+    """xdyn holds everything, gazebo has u for U, csv is no simulator."""
+    tables = ('to = "xdyn"\nstrict = true', 'to = "gazebo"\naccept_loss = true', 'to = "csv"')
+    return run(planned(tmp_path_factory.mktemp("plan"), *tables))
+
+
+def test_every_target_has_a_folder_with_its_loss_report(study: Study) -> None:
+    files = rendered(study)
+    parameters = study.parameter_files["my_vehicle"]
+    assert files["my_vehicle.parameters.json"] == parameters.to_json()
+    for target in ("xdyn", "gazebo"):
+        made = export(parameters, target)
+        assert set(made.files) >= {f"my_vehicle.{target}.loss.txt"}
+        for name, content in made.files.items():
+            assert files[f"my_vehicle.{target}/{name}"] == content
+    assert files["my_vehicle.xdyn/my_vehicle.xdyn.loss.txt"].splitlines()[2] == b"Lossless."
+    assert b"not lossless" in files["my_vehicle.gazebo/my_vehicle.gazebo.loss.txt"]
+    assert sum(name.endswith(".coefficients.csv") for name in files) == 1
+
+
+def test_without_exports_nothing_but_tables_is_written(tmp_path: Path) -> None:
+    found = rendered(run(planned(tmp_path)))
+    assert sorted(found) == ["my_vehicle.coefficients.csv", "my_vehicle.parameters.json", "report.html"]
+    assert b'id="exports"' not in found["report.html"]
+
+
+def test_the_report_shows_every_export_with_its_loss(study: Study) -> None:
+    (section,) = (s for s in document(study).sections if s.anchor == "exports")
+    (table,) = section.tables
+    assert [row[:3] for row in table.rows] == [
+        ("my_vehicle", "xdyn", "none"),
+        ("my_vehicle", "gazebo", "accepted: the force differs"),
+        ("my_vehicle", "csv", "none: tables of the file's own values"),
+    ]
+    assert [s.title for s in section.subsections] == ["my_vehicle for xdyn", "my_vehicle for gazebo"]
+    shown = section.subsections[1].tables[0]
+    assert shown.rows[0][0] == "X"
+    assert any(note.startswith("changed: ") for note in shown.notes)
+    assert b'id="export-1"' in rendered(study)["report.html"]
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "expected"),
+    [
+        ('to = "gazebo"', "export[0].accept_loss", "accept_loss = true"),
+        ('to = "gazebo"\naccept_loss = false', "export[0].accept_loss", "accept_loss = true"),
+        ('to = "gazebo"\nstrict = true', "export[0].strict", "a target that holds everything"),
+        ('to = "gazebo"\naccept_loss = true\nstrict = true', "export[0].strict", "a target that holds everything"),
+    ],
+)
+def test_a_loss_has_to_be_accepted(tmp_path: Path, table: str, key: str, expected: str) -> None:
+    with pytest.raises(InputError) as caught:
+        run(planned(tmp_path, table))
+    assert (caught.value.file, caught.value.column) == (tmp_path / "plan.toml", key)
+    assert caught.value.found.startswith("gazebo cannot hold all of my_vehicle: X differs by up to ")
+    assert expected in caught.value.expected
+    assert "\n" not in str(caught.value)
+
+
+def test_a_refusal_names_what_is_not_held(tmp_path: Path) -> None:
+    with pytest.raises(
+        InputError, match=r"uuv_simulator cannot hold all of my_vehicle: it has no Xvv, and X differs by"
+    ):
+        run(planned(tmp_path, 'to = "uuv_simulator"'))
+
+
+def test_what_a_target_cannot_take_at_all_names_the_plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise InputError("an inertia that is not positive", "a body")
+
+    monkeypatch.setattr("coeflab.exporters.xdyn.render", refuse)
+    with pytest.raises(InputError) as caught:
+        run(planned(tmp_path, 'to = "csv"', 'to = "xdyn"'))
+    assert (caught.value.file, caught.value.column) == (tmp_path / "plan.toml", "export[1].to")
+    assert caught.value.found == "an inertia that is not positive in my_vehicle for xdyn"
+
+
+@pytest.mark.parametrize(
+    ("tables", "said"),
+    [
+        (('to = "xdyn"\naccept_los = true',), "accept_los"),
+        (('to = "xdyn"\naccept_loss = "yes"',), "true or false"),
+        (("strict = true",), "export[0].to"),
+        (('to = "csv"', 'to = "csv"'), 'the target "csv" twice'),
+    ],
+)
+def test_tables_that_are_no_export(tmp_path: Path, tables: tuple[str, ...], said: str) -> None:
+    with pytest.raises(InputError) as caught:
+        planned(tmp_path, *tables)
+    assert said in str(caught.value)
+    assert "plan.toml" in str(caught.value)
+
+
+def test_an_unknown_target_is_refused_before_anything_is_read(tmp_path: Path) -> None:
+    plan = planned(tmp_path, 'to = "xdynn"')
+    (tmp_path / "campaign" / "drift.csv").unlink()
+    with pytest.raises(
+        PluginError, match=r'plan.toml, "export\[0\].to": no exporter is called "xdynn": did you mean xdyn'
+    ):
+        run(plan)
+
+
+def test_a_plan_of_a_program_has_no_file_to_name(study: Study) -> None:
+    plan = replace(study.plan, exports=(PlannedExport("gazebo"),))
+    with pytest.raises(InputError, match=r'^"export.accept_loss": found gazebo'):
+        run(plan)
+
+
+def test_json_names_the_losses(study: Study) -> None:
+    from coeflab.cli.as_json import study as as_json
+
+    told = json.loads(json.dumps(as_json(study, [])))["exports"]
+    assert [(t["parameter_file"], t["target"], t["lossless"]) for t in told] == [
+        ("my_vehicle", "xdyn", True), ("my_vehicle", "gazebo", False), ("my_vehicle", "csv", True),
+    ]  # fmt: skip
+    assert len(told[1]["worst_difference"]) == 6
