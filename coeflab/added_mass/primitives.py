@@ -25,7 +25,7 @@ from coeflab.model.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Pla
 
 summary = "closed forms of cylinders, plates, ellipsoids and boxes, composed by the 6 x 6 transform"
 citations = ("huuv2025", "coeflab_plates", "lamb1932", "fossen2011")
-presets: Mapping[str, Mapping[str, str]] = {"lamb": {"cylinder_ends": "lamb"}}
+presets: Mapping[str, Mapping[str, str]] = {"huuv": {"cylinder_ends": "huuv"}}
 
 COMPOSED = "parts do not feel each other's flow"
 CYLINDERS = {
@@ -49,7 +49,7 @@ class Options:
         ``huuv``: HUUV equations 28-31 as corrected. ``lamb``: end-corrected.
     """
 
-    cylinder_ends: str = one_of("huuv", "huuv", "lamb")
+    cylinder_ends: str = one_of("lamb", "lamb", "huuv")
 
 
 def _own(form: Form, density: float, ends: str) -> NDArray[Any]:
@@ -113,6 +113,6 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
         [p.centre for p in shape.parts],
         body.reference_point,
     )
-    method = "primitives" if ends == "huuv" else f"primitives:{ends}"
+    method = "primitives" if ends == "lamb" else f"primitives:{ends}"
     statements = _statements(shape.parts, ends)
     return AddedMass(matrix, body.reference_point, body.datum, body.name, method, statements)

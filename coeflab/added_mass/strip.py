@@ -18,14 +18,14 @@ from coeflab.kernels.section_strips import Strips, ellipsoid_correction, strips
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.mesh import TriangleMesh
-from coeflab.model.shape import Revolution, as_revolution
+from coeflab.model.shape import Revolution, Shape, as_revolution
 
 summary = "sections along x, exact for circles, by boundary elements for any shape; end correction none or lamb"
 citations = ("newman1977", "bryson1954", "lamb1932")
 presets: Mapping[str, Mapping[str, str]] = {"lamb": {"end_correction": "lamb"}}
 
 NONE = "sections only: nothing along {}the axis, ends not corrected"
-POOR, SLENDER, COARSE, ROUNDING = 0.005, 3.0, 80, 1e-9
+POOR, SLENDER, COARSE, ROUNDING = 0.005, 3.0, 80, 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     fine, *coarse = (composed([density * m], [np.eye(3)], [shape.centre_of_volume], body.reference_point) for m in own)
     error = np.abs(fine - coarse[0]) if coarse else None
     method = "strip:lamb" if corrected else "strip"
-    return AddedMass(fine, body.reference_point, body.datum, body.name, method, statements, error)
+    return AddedMass(fine, body.reference_point, body.datum, body.name, method, statements, error, _short(shape))
 
 
 def _of_revolution(shape: Revolution, corrected: bool) -> tuple[NDArray[np.float64], tuple[str, ...]]:
@@ -128,6 +128,11 @@ def _of_mesh(
     return k.applied(found.matrix, shape.volume), k.applied(coarse.matrix, shape.volume), (end, *said)
 
 
+def _short(shape: Shape) -> bool:
+    """Whether sections along x say little: a mesh less than three times as long as wide or deep."""
+    return isinstance(shape, TriangleMesh) and shape.length < SLENDER * float(shape.extents[1:].max())
+
+
 def _sections(found: Strips, shape: TriangleMesh) -> tuple[str, ...]:
     """What was cut, and how well the sections add up to the volume of the mesh."""
     off = found.volume / shape.volume - 1.0
@@ -136,8 +141,8 @@ def _sections(found: Strips, shape: TriangleMesh) -> tuple[str, ...]:
     said.append(
         f"their volume over the mesh's, minus one: {off:+.1e}" + ("; raise stations" if abs(off) > POOR else "")
     )
-    slender = shape.length / float(shape.extents[1:].max())
-    if slender < SLENDER:
+    if _short(shape):
+        slender = shape.length / float(shape.extents[1:].max())
         said.append(f"{slender:.2g} times as long as wide or deep: not slender, the sections are a rough guide")
     if found.trapped > 0.0:
         said.append(f"{found.trapped:.4g} m^3 of water within closed rings moves sideways with the body")

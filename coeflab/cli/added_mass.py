@@ -7,24 +7,35 @@ import typer
 from coeflab.cli import show
 
 EXAMPLE = "coeflab added-mass suboff_bare_hull"
+CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 
 def command(
-    body: str = typer.Argument(..., help="A body.toml, its folder, or a shipped body's name."),
-    method: str = typer.Option("all", "--method", help="all, or one: ellipsoid, primitives, strip, strip:lamb ..."),
+    ctx: typer.Context,
+    body: str = typer.Argument(
+        ..., help="A body.toml, its folder, a shipped body, or a mesh file with --unit and --axes."
+    ),
+    method: str = typer.Option(
+        "all", "--method", help="all, or one: ellipsoid, primitives, strip, strip:lamb, panel ..."
+    ),
+    unit: str = typer.Option("", help="Unit of a mesh file: m, mm, in ..."),
+    axes: str = typer.Option("", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."),
+    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
     density: float = typer.Option(1000.0, "--density", help="Of the water, kg/m^3."),
     json: bool = typer.Option(False, "--json", help="Print {method: 6 x 6 in SI}."),
 ) -> None:
-    """Show a body's added mass by several methods, about its reference point in FRD."""
+    """Show a body's added mass by several methods, about its reference point in FRD.
+
+    With one method any further --option VALUE goes to it: --method panel --panels 9000 (see coeflab formats panel).
+    """
+    from coeflab.cli.fit import further
     from coeflab.core.citations import work
-    from coeflab.core.files import located
     from coeflab.presentation import added_mass_tables as tables
-    from coeflab.workbench import read_body
+    from coeflab.studies.simplify_source import mesh_body
     from coeflab.workbench.hulls import added_masses
 
-    path = located(body, "geometry")
     with show.narrated():
-        found = added_masses(read_body(path / "body.toml" if path.is_dir() else path), density, method)
+        found = added_masses(mesh_body(body, unit, axes, repair), density, method, further(ctx.args))
     if json:
         show.json_object({r.method: r.matrix.tolist() for r in found.results})
         return

@@ -2,8 +2,10 @@
 
 Source: the HUUV paper (Talarczyk et al. 2025), equations 28-31, with these corrections: the plate moves c^2 b and not
 c^2 b^3 (equation 30); the cylinder turns with rho pi r^2 L^3 / 12 about its centre, so that one standing on its end has
-L^3 / 3 and a mast [(r_h + L)^3 - r_h^3] / 3, which come out of the transform to a common point (equation 31); the
-off-diagonal terms m / 20 of equation 33 are dropped for those that the transform gives.
+L^3 / 3 and a mast [(r_h + L)^3 - r_h^3] / 3, which come out of the transform to a common point; a plate's arm takes the k
+of its motion along the normal, not k', beside its own turning term (equation 31); the off-diagonal terms m / 20 of equation
+33 are dropped for those that the transform gives. Equation 30 leaves out what a mast moves along its own axis; here it is
+the tenth of its displaced mass that equation 28 gives every cylinder, below 1 % of the vehicle's heave.
 """
 
 from __future__ import annotations

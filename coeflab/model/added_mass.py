@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,8 @@ class AddedMass:
         What the method assumed, in words.
     error : (6, 6) array, optional
         Estimate of the numerical error of each entry, at least zero, where the method gives one.
+    rough : bool
+        The method itself says that it is only a rough guide for this body.
     """
 
     matrix: NDArray[np.float64]
@@ -39,6 +41,7 @@ class AddedMass:
     method: str
     statements: tuple[str, ...] = ()
     error: NDArray[np.float64] | None = None
+    rough: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", locked(self.matrix))
@@ -73,7 +76,7 @@ class AddedMass:
         if self.error is not None:
             lever = np.abs(velocity_transfer(-shift))
             error = lever.T @ self.error @ lever
-        return AddedMass(matrix, np.asarray(point), self.datum, self.body, self.method, self.statements, error)
+        return replace(self, matrix=matrix, reference_point=np.asarray(point), error=error)
 
     def derivatives(self) -> dict[str, float]:
         """All 36 acceleration derivatives, SI: Xudot, ..., Nrdot."""

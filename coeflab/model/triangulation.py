@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,12 @@ from coeflab.model.shape import Ellipsoid, Parts, Shape
 Array = NDArray[np.float64]
 RULE = (
     "an ellipsoid by Lamb's closed form; else the panel method; else, for parts among which are plates or none that "
-    "touch, their closed forms with corrected ends; else strips with Lamb's end correction; else the ellipsoid of equal "
-    "volume and proportions"
+    "touch, their closed forms with corrected ends; else strips with Lamb's end correction, unless the body is too short for "
+    "strips; else the ellipsoid of equal volume and proportions"
 )
-ORDER = ("panel", "primitives:lamb", "strip:lamb", "ellipsoid", "primitives", "strip")
+ORDER = ("panel", "primitives", "strip:lamb", "ellipsoid", "primitives:huuv", "strip")
 ROUNDING = 1e-12
+SILENT, NOISE = 1e-6, 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,19 +58,30 @@ class Triangulation:
             None of them is.
         """
         order = ("ellipsoid", *ORDER) if _is_ellipsoid(self.body.require_shape()) else ORDER
-        sound = {r.method: r for r in self.results if r.definiteness.holds}
-        found = next((sound[m] for m in order if m in sound), next(iter(sound.values()), None))
+        ranked = sorted(
+            self.results, key=lambda r: (r.rough, order.index(r.method) if r.method in order else len(order))
+        )
+        found = next((r for r in ranked if r.definiteness.holds), None)
         if found is None:
             raise InputError(
                 f"no added mass of {shown(self.body.name)} that is a kinetic energy", "a symmetric, positive matrix"
             )
-        return found
+        return self._symmetric(found)
+
+    def _symmetric(self, found: AddedMass) -> AddedMass:
+        """Without the small entries that symmetry makes vanish and a mesh does not quite."""
+        diagonal = np.diag(found.matrix)
+        noise = self.vanishing()[0] & (np.abs(found.matrix) < NOISE * np.sqrt(np.outer(diagonal, diagonal)))
+        if not np.any(found.matrix[noise]):
+            return found
+        said = f"entries up to {NOISE:.0%} that symmetry makes vanish were left by the mesh and are set to zero"
+        return replace(found, matrix=np.where(noise, 0.0, found.matrix), statements=(*found.statements, said))
 
     @property
     def ordered(self) -> tuple[AddedMass, ...]:
         """The recommended one first."""
         first = self.recommended
-        return (first, *(r for r in self.results if r is not first))
+        return (first, *(r for r in self.results if r.method != first.method))
 
     @property
     def spread(self) -> Array:
@@ -80,7 +92,9 @@ class Triangulation:
         """
         stack = np.array([r.matrix for r in self.results])
         diagonal = np.einsum("nii->ni", stack)
-        speaks = (diagonal > 0.0)[:, :, None] & (diagonal > 0.0)[:, None, :]
+        largest = np.repeat(diagonal.reshape(-1, 2, 3).max(axis=2), 3, axis=1)
+        heard = diagonal > SILENT * largest
+        speaks = heard[:, :, None] & heard[:, None, :]
         own = np.diag(self.recommended.matrix)
         size = np.sqrt(np.outer(own, own))
         high = np.max(np.where(speaks, stack, -np.inf), axis=0)

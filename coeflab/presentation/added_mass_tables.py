@@ -71,7 +71,7 @@ def derivatives(found: Triangulation) -> Table:
     headers = ("SI", *(cell for r in found.results for cell in (r.method, "/m")), "spread")
     notes = [
         f"/m: added mass over the displaced mass, {mass:.5g} kg at {found.density:g} kg/m^3; spread: range over the methods "
-        "that speak of the entry, over the recommended one",
+        "that speak of the entry, over the recommended one; off the diagonal over the root of both diagonal entries",
         f"recommended: {found.recommended.method}, by the rule: {RULE}",
     ]
     notes += [f"{r.method}: {'; '.join([r.verdict, *r.statements])}" for r in found.results]

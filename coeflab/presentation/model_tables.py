@@ -58,7 +58,7 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
     headers = (
         "", "form", "n", "terms", "rms", "left out", "of range", "R2", "AICc", "runs", "condition", "domain", "outside",
     )  # fmt: skip
-    notes = (
+    notes: tuple[str, ...] = (
         "left out: rms error of every point predicted from the others (PRESS); runs: probability of so few or so many "
         "runs of one sign by chance; outside: what a reader beyond the domain is to do.",
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +44,14 @@ def hulls_of(
     return out
 
 
-def added_masses(body: Body, density: float, method: str = "all", *, reproducible: bool = False) -> Triangulation:
+def added_masses(
+    body: Body,
+    density: float,
+    method: str = "all",
+    given: Mapping[str, Any] | None = None,
+    *,
+    reproducible: bool = False,
+) -> Triangulation:
     """Run one method, or all that apply.
 
     Parameters
@@ -54,6 +61,8 @@ def added_masses(body: Body, density: float, method: str = "all", *, reproducibl
         kg/m^3.
     method : str
         ``all``, a plugin's name, or a name with a preset.
+    given : mapping, optional
+        Options of the one method.
     reproducible : bool
         Take the options of each plugin that give the same numbers with and without optional packages.
 
@@ -69,6 +78,8 @@ def added_masses(body: Body, density: float, method: str = "all", *, reproducibl
             f"a density of {density:g} kg/m^3", f"a value above zero, at most {DENSEST:g}", column="density"
         )
     body.require_shape()
+    if given and method == "all":
+        raise InputError(f"options {', '.join(given)} for all methods", "one --method that they are for")
     results: list[AddedMass] = []
     refused: dict[str, str] = {}
     cited: dict[str, None] = {}
@@ -78,7 +89,8 @@ def added_masses(body: Body, density: float, method: str = "all", *, reproducibl
         known = getattr(plugin, "presets", {})
         if preset and preset not in known:
             raise InputError(f'the unknown preset "{preset}" of {plugin_name}', f"one of {', '.join(known) or 'none'}")
-        options = {**(getattr(plugin, "reproducible", {}) if reproducible else {}), **(known[preset] if preset else {})}
+        options = dict(getattr(plugin, "reproducible", {}) if reproducible else {})
+        options |= {**(known[preset] if preset else {}), **(given or {})}
         try:
             found = plugin.added_mass(body, density, options) if options else plugin.added_mass(body, density)
         except InputError as why:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from pathlib import Path
 from subprocess import CompletedProcess
 
 import numpy as np
 import pytest
+import trimesh
 
 Run = Callable[..., CompletedProcess[str]]
 
@@ -25,8 +27,8 @@ def test_suboff_shows_the_gap(coeflab: Run) -> None:
 def test_json_holds_matrices(coeflab: Run) -> None:
     done = coeflab("added-mass", "huuv", "--json", "--density", "1025")
     found = json.loads(done.stdout)
-    assert set(found) == {"ellipsoid", "primitives", "primitives:lamb"}
-    matrix = np.array(found["primitives"])
+    assert set(found) == {"ellipsoid", "primitives", "primitives:huuv"}
+    matrix = np.array(found["primitives:huuv"])
     assert matrix.shape == (6, 6)
     assert matrix[1, 1] == pytest.approx(1025.0 * np.pi * (0.07**2 * 1.2 + 0.02**2 * 0.3), rel=1e-12)
 
@@ -53,3 +55,23 @@ def test_wrong_input(coeflab: Run, arguments: tuple[str, ...], said: str) -> Non
     assert said in done.stderr
     assert "Traceback" not in done.stderr
     assert done.stdout == ""
+
+
+def test_a_mesh_file_with_its_unit_and_axes(coeflab: Run, tmp_path: Path) -> None:
+    trimesh.creation.icosphere(3, 500.0).export(tmp_path / "ball.stl")
+    done = coeflab("added-mass", tmp_path / "ball.stl", "--unit", "mm", "--axes", "FLU", "--method", "panel", "--json")
+    matrix = np.array(json.loads(done.stdout)["panel"])
+    assert np.diag(matrix)[:3] == pytest.approx(0.5 * 1000.0 * 4.0 / 3.0 * np.pi * 0.5**3, rel=0.02)
+    done = coeflab("added-mass", tmp_path / "ball.stl")
+    assert done.returncode == 2
+    assert "--unit" in done.stderr
+
+
+def test_options_go_to_the_one_method(coeflab: Run) -> None:
+    coarse = coeflab("added-mass", "spheroid_example", "--method", "panel", "--panels", "1200", "--kernel", "numpy")
+    assert coarse.returncode == 0
+    assert "plain" in coarse.stdout or "numpy" in coarse.stdout
+    assert coeflab("added-mass", "spheroid_example", "--method", "panel", "--panel", "9").returncode == 2
+    everyone = coeflab("added-mass", "spheroid_example", "--panels", "1200")
+    assert everyone.returncode == 2
+    assert "one --method" in everyone.stderr

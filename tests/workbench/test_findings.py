@@ -80,3 +80,17 @@ def test_the_added_mass_of_a_plan_reaches_file_and_study() -> None:
     assert nv.potential < nv.value < 0.0, "viscous lift takes some of the Munk moment back"
     assert set(found.hulls) == set(found.parameter_files)
     assert any(i.name.startswith("suboff_bare_hull/") for i in found.inputs)
+
+
+def test_the_added_mass_of_another_vehicle_fails(tmp_path: Path) -> None:
+    """A hull of the right datum and three and a half times the length."""
+    (tmp_path / "body.toml").write_text(
+        '[body]\nname = "giant"\nreader = "primitives"\ndatum = "nose, on the hull\'s axis"\nreference_point = [0, 0, 0]\n'
+        '[source]\ncitation = "synthetic"\n[[part]]\nname = "hull"\nform = "spheroid"\nlength = 15.0\ndiameter = 2.0\n'
+        "centre = [-7.5, 0, 0]\n"
+    )
+    table = PlannedTable(shipped("cfd_data") / "suboff_cfd_barehull", ("slope_at_origin",))
+    found = run(Plan(name="s", title="", tables=(table,), wanted=(), hull=tmp_path, method="ellipsoid"))
+    assert found.failed
+    (length,) = [c for c in found.checks if c.name == "hull" and c.severity is Severity.FAIL]
+    assert "15 m against 4.261 m" in length.statistic
