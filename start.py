@@ -51,7 +51,7 @@ def set_up(groups: tuple[str, ...]) -> None:
 def test(arguments: list[str]) -> int:
     """Every gate in turn; stops at the first that does not hold."""
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
-    sources = ["coeflab", "tests", "benchmarks", "cfd_data", "reports", "start.py"]
+    sources = ["coeflab", "tests", "benchmarks", "cfd_data", "geometry", "reports", "start.py"]
     gates = [
         [str(PYTHON), "-m", "ruff", "check", *sources],
         [str(PYTHON), "-m", "ruff", "format", "--check", *sources],

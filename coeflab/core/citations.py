@@ -87,6 +87,13 @@ WORKS: dict[str, str] = {
     "force laws read in xdyn/core and xdyn/force_models.",
     "mujoco": "E. Todorov, T. Erez, Y. Tassa, MuJoCo: A physics engine for model-based control, IROS 2012; documentation, "
     "chapter Fluid forces, and engine_passive.c, commit 01a932e, github.com/google-deepmind/mujoco.",
+    "fmi2": "Functional Mock-up Interface for Model Exchange and Co-Simulation, version 2.0.4, Modelica Association, 2022, "
+    "fmi-standard.org.",
+    "pythonfmu": "PythonFMU 0.7, a framework that packages Python code as co-simulation FMUs, github.com/NTNU-IHB/PythonFMU.",
+    "holoocean": "E. Potokar, S. Ashford, M. Kaess, J. G. Mangelson, HoloOcean: An Underwater Robotics Simulator, ICRA 2022; "
+    "version 2.3, client/src/holoocean/fossen_dynamics/torpedo.py and helper_functions.py.",
+    "stonefish": "P. Cieslak, Stonefish: An Advanced Open-Source Simulation Tool Designed for Marine Robotics, OCEANS 2019; "
+    "Library/src/entities/SolidEntity.cpp, commit 3857913, github.com/patrykcieslak/stonefish.",
 }
 
 

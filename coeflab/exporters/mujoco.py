@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.identifiers import identifier, one_line
-from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.core.xml import numbers, parse_xml, serialised
 from coeflab.kernels.mujoco_fluid import FluidEllipsoid, ellipsoid_of_masses
 from coeflab.model.exported_law import central_inertia, centre_of_gravity, number
-from coeflab.model.force_law import ForceLaw, LawTerm, force_law
+from coeflab.model.force_law import ForceLaw, force_law
 from coeflab.model.inertia import added_mass_of
 from coeflab.model.loss import unheld
 from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.straight_motion import held_when_straight
 
 summary = "MuJoCo: an MJCF body with a fluid ellipsoid; Munk moment and drag, no added inertia"
 citations = ("lamb1932", "mujoco")
@@ -161,21 +161,7 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
 def not_held(parameters: ParameterFile) -> tuple[str, ...]:
     """Added inertia; every term whose derivative at straight motion is not the target's; products; controls."""
     geom, law = _fitted(parameters)
-    speed = parameters.conditions.speed
-    straight = np.array([speed, 0.0, 0.0, 0.0, 0.0, 0.0])
-
-    def held(t: LawTerm) -> bool:
-        if t.term.degree > 1 or t.speed_power != 2 - t.term.degree:
-            return False
-        i = COMPONENTS.index(t.component)
-        if not t.term.factors:
-            theirs, ours = float(geom.force(straight[None])[0, i]), t.coefficient * speed**2
-        else:
-            step = 1e-6 * speed * np.eye(6)[MOTIONS.index(t.term.factors[0][0])]
-            pair = geom.force(np.array([straight + step, straight - step]))
-            theirs, ours = float(pair[0, i] - pair[1, i]) / (2e-6 * speed), t.coefficient * speed
-        return abs(theirs - ours) <= HELD * abs(ours)
-
+    held = held_when_straight(geom.force, parameters.conditions.speed)
     return (_LEFT_OUT, *unheld(law, held, ideal=False))
 
 
@@ -192,6 +178,7 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         f"fluidcoef: blunt and slender drag {e.blunt:.4g} {e.slender:.4g} from X0 and Yv|v|, Kutta lift {e.kutta:.4g} from Yv, Magnus "
         f"lift {e.magnus:.4g} from Yr",
         f"angular drag {e.angular:.4g}: quadratic in r, it stands for Nr at r L/U = {geom.rate:.3g} and the file's speed",
+        "derivatives are met at straight motion; in drift and turning its lift and drag bend away, by the differences in this report",
         "axes: FRD to the body frame x forward, y port, z up",
         "weight is balanced by gravcomp and nothing rights the body: the file states no buoyancy",
     ]

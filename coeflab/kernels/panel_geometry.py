@@ -11,6 +11,8 @@ from coeflab.kernels.least_squares import Array
 from coeflab.kernels.surface_mesh import Faces
 
 SLIVER = 1e-10
+STRETCHED = 3.0
+SHARP = np.sqrt(0.5)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +74,39 @@ def slenderness(second_moments: Array) -> float:
     """Smallest over middle side of the box of those second moments of volume, (3, 3); 1 for a body of revolution."""
     spread = np.sqrt(np.clip(np.linalg.eigvalsh(second_moments), 0.0, None))
     return float(spread[0] / spread[1])
+
+
+def side_of(area: float, count: int) -> float:
+    """Side of an equilateral triangle of which ``count`` have that area together."""
+    return float(np.sqrt(4.0 / np.sqrt(3.0) * area / count))
+
+
+def stretched_share(corners: Array) -> float:
+    """Share of the area in triangles with a side over 3 times that of as many equilateral ones: needles, and giants."""
+    sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2.0
+    whole = float(area.sum())
+    return float(area[sides > STRETCHED * side_of(whole, len(corners))].sum() / whole)
+
+
+def sharpness(vertices: Array, faces: Faces) -> float:
+    """Length of the edges at which the surface turns by more than 45 degrees, over the root of its area.
+
+    4.9 for a cube, 1.4 for a flat-ended cylinder six diameters long, 0 for a smooth body. Edges of more or fewer than two
+    faces are left out.
+    """
+    corner = vertices[faces]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    twice = np.linalg.norm(normal, axis=1)
+    unit = normal / np.maximum(twice, np.finfo(float).tiny)[:, None]
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    key = np.minimum(start, end) * np.int64(len(vertices)) + np.maximum(start, end)
+    order = np.argsort(key, kind="stable")
+    _, first, members = np.unique(key[order], return_index=True, return_counts=True)
+    one, other = order[first[members == 2]], order[first[members == 2] + 1]
+    turned = np.einsum("ij,ij->i", unit[one // 3], unit[other // 3]) < SHARP
+    length = np.linalg.norm(vertices[start[one]] - vertices[end[one]], axis=1)
+    return float(length[turned].sum() / np.sqrt(twice.sum() / 2.0))
 
 
 def thin_share(panels: Panels) -> float:

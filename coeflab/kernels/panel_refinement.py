@@ -1,7 +1,8 @@
 """Added mass at vanishing panel size from two or three refinements, with an estimate of what is left.
 
 Richardson extrapolation (Roache 1998) with one of two orders that theory knows: 2 on a smooth body, 4/3 where a
-right-angled edge makes the potential grow as the power 2/3 of the distance from it. What three refinements show decides.
+right-angled edge makes the potential grow as the power 2/3 of the distance from it. What three refinements show decides;
+on a body with edges it is 4/3 at the most, and what the other order would have given is within the estimate.
 What is left is estimated by the difference of the extrapolations from the finer and from the coarser pair. Were the true
 order p, that would be 2^p - 1 times the error when panels are halved: at least the error itself for every p from 1 on;
 below 1 the rest is made up for, and Roache's factor of 1.25 is kept. It is never taken below a quarter of the correction,
@@ -62,7 +63,7 @@ class Refinement:
         return np.where(noise | np.logical_or.outer(self.void, self.void), 0.0, self.matrix)
 
 
-def refined(matrices: Sequence[Array], counts: Sequence[int]) -> Refinement:
+def refined(matrices: Sequence[Array], counts: Sequence[int], edges: bool = False) -> Refinement:
     """Judge one to three matrices.
 
     Parameters
@@ -71,6 +72,8 @@ def refined(matrices: Sequence[Array], counts: Sequence[int]) -> Refinement:
         About one point, from the most panels to the fewest.
     counts : sequence of int
         Panels of each.
+    edges : bool
+        Whether the body has sharp edges: the order is not 2 then, whatever three refinements show.
     """
     finest = matrices[0]
     if len(matrices) == 1:
@@ -80,9 +83,10 @@ def refined(matrices: Sequence[Array], counts: Sequence[int]) -> Refinement:
     ratios = [float(np.sqrt(a / b)) for a, b in pairwise(counts)]
     changes = [a - b for a, b in pairwise(matrices)]
     if len(matrices) == 2:
-        correction = changes[0] / (ratios[0] ** SMOOTH - 1.0)
+        used = EDGED if edges else SMOOTH
+        correction = changes[0] / (ratios[0] ** used - 1.0)
         limit = finest + correction
-        return Refinement(limit, _floored(TWO_ONLY * np.abs(correction), limit, scale), None, SMOOTH)
+        return Refinement(limit, _floored(TWO_ONLY * np.abs(correction), limit, scale), None, used)
     # A motion that only facets resist would drown the order of the others.
     live = np.abs(np.diag(changes[0])) < 0.5 * np.diag(finest)
     if not np.any(live):
@@ -92,10 +96,12 @@ def refined(matrices: Sequence[Array], counts: Sequence[int]) -> Refinement:
     observed = float(np.log(gain) / np.log(ratios[0]))
     if observed < LOWEST:
         return Refinement(finest, _floored(FINEST_ONLY * np.abs(changes[0]), finest, scale), observed, None)
-    used = SMOOTH if observed >= BETWEEN else EDGED
+    used = SMOOTH if observed >= BETWEEN and not edges else EDGED
     limit, coarser = (m + c / (r**used - 1.0) for m, c, r in zip(matrices, changes, ratios, strict=False))
     spread = SAFETY * np.abs(limit - coarser) / (2.0 ** min(observed, 1.0) - 1.0)
     error = np.maximum(spread, LEAST_SHARE * np.abs(limit - finest))
+    if edges:
+        error = np.maximum(error, np.abs(limit - finest - changes[0] / (ratios[0] ** SMOOTH - 1.0)))
     return Refinement(limit, _floored(error, limit, scale), observed, used)
 
 

@@ -59,6 +59,20 @@ def simplified(of: Solid, most: int) -> tuple[Solid, float]:
     return out, moved
 
 
+def divided(of: Solid, length: float, most: int) -> Solid:
+    """The same surface with its longer edges split to about ``length``, m; to twice, four times, ... that within ``most``.
+
+    Interior vertices are added likewise. A surface that would exceed ``most`` faces at eight times the length is itself.
+    """
+    out = of
+    for longer in (8.0, 4.0, 2.0, 1.0):
+        finer = out.refine_to_length(longer * length)
+        if finer.num_tri() > most:
+            break
+        out = finer
+    return out
+
+
 def box(low: Array, high: Array) -> Solid:
     """A box between two corners, (3,) each, m."""
     from manifold3d import Manifold

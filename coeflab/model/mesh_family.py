@@ -8,7 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
-from coeflab.kernels.panel_geometry import bisected, slivers, split_in_four
+from coeflab.kernels.decimation import decimated
+from coeflab.kernels.panel_geometry import bisected, side_of, slivers, split_in_four, stretched_share
+from coeflab.kernels.solids import divided, solid, surface
+from coeflab.kernels.surface_mesh import mesh_integrals
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.meshing import FEWEST, meshed
 from coeflab.model.shape import Shape
@@ -18,6 +21,7 @@ RATIO = 4
 RUNGS, LEAST_STEP = 28, 3
 LOWEST, HIGHEST = 0.6, 1.1
 PRICE = 0.1
+MOST_STRETCHED, MOST_SPLIT, CHANGE = 0.2, 40, 0.08
 
 
 def family(shape: Shape, panels: int, most: int = 3) -> tuple[Array, ...]:
@@ -27,8 +31,9 @@ def family(shape: Shape, panels: int, most: int = 3) -> tuple[Array, ...]:
     ----------
     shape : Shape
     panels : int
-        Of the finest, about: from 0.6 to 1.1 times that, so that the coarser ones can be similar. Facets of a mesh that
-        has fewer are divided, which leaves its surface as it is; it can have up to twice as many then.
+        Of the finest, about: from 0.6 to 1.1 times that, so that the coarser ones can be similar. Of a mesh, a quarter
+        and more of as many facets are kept, and much fewer divided, to up to twice as many, where they are compact;
+        else long facets are split, and what comes of that is decimated.
     most : int
         1 for the finest alone, which is then not chosen for its likeness to others; or 3.
 
@@ -42,9 +47,9 @@ def family(shape: Shape, panels: int, most: int = 3) -> tuple[Array, ...]:
     InputError
         The shape cannot be meshed.
     """
-    finest = meshed(shape, panels)
     if isinstance(shape, TriangleMesh):
-        return _of_mesh(finest, panels)[:most]
+        return _of_mesh(shape, panels, most)
+    finest = meshed(shape, panels)
     if most == 1:
         return (_corners(finest),)
     ladder = {len(finest.faces): finest}
@@ -78,22 +83,42 @@ def _best(counts: list[int], panels: int) -> tuple[int, ...]:
     return min(pairs, key=miss) if pairs else (fine[0],)
 
 
-def _of_mesh(mesh: TriangleMesh, panels: int) -> tuple[Array, ...]:
-    """The same facets divided where there is room for it; else decimations, which are similar only roughly."""
-    corners = [_corners(mesh)]
-    if len(mesh.faces) * RATIO**2 <= panels:
-        coarse = bisected(corners[0], panels // RATIO**2)
-        middle = split_in_four(coarse)
-        return split_in_four(middle), middle, coarse
-    if len(mesh.faces) * RATIO <= panels:
-        corners.insert(0, split_in_four(corners[0]))
-    while len(corners) < 3:
-        count = len(corners[-1]) // RATIO
-        try:
-            coarser = _corners(meshed(mesh, max(count, FEWEST)))
-        except InputError:
+def _of_mesh(mesh: TriangleMesh, panels: int, most: int) -> tuple[Array, ...]:
+    """Its own facets where they are fit for panels, divided or as they are; else, and for all that is coarser, others."""
+    own = _corners(mesh)
+    if len(own) * RATIO**2 <= panels:
+        coarse = bisected(own, panels // RATIO**2)
+        if stretched_share(coarse) <= MOST_STRETCHED:
+            middle = split_in_four(coarse)
+            return (split_in_four(middle), middle, coarse)[:most]
+    elif panels <= RATIO * len(own) <= RATIO * panels and stretched_share(own) <= MOST_STRETCHED:
+        found = (own, *_coarser(mesh, most - 1))
+        if len(found) == most:
+            return found
+    finest = meshed(_split(mesh, panels), panels)
+    return _corners(finest), *_coarser(finest, most - 1)
+
+
+def _split(mesh: TriangleMesh, panels: int) -> TriangleMesh:
+    """The same surface without long facets, which decimation would leave long; itself where it is not closed as a solid."""
+    if len(mesh.faces) > panels and stretched_share(mesh.vertices[mesh.faces]) <= MOST_STRETCHED:
+        return mesh
+    try:
+        whole = solid(mesh.vertices, mesh.faces)
+    except ValueError:
+        return mesh
+    parted = divided(whole, side_of(mesh.integrals.area, panels), MOST_SPLIT * panels)
+    return TriangleMesh(*surface(parted), mesh.exact_volume)
+
+
+def _coarser(mesh: TriangleMesh, most: int) -> list[Array]:
+    """Decimations to a quarter and a sixteenth; fewer where the body does not bear it."""
+    vertices, faces, out = mesh.vertices, mesh.faces, list[Array]()
+    while len(out) < most:
+        before = len(faces)
+        vertices, faces = decimated(vertices, faces, max(before // RATIO, FEWEST))
+        if LEAST_STEP * len(faces) > before or abs(mesh_integrals(vertices, faces).volume / mesh.volume - 1.0) > CHANGE:
             break
-        if LEAST_STEP * len(coarser) > len(corners[-1]):
-            break
-        corners.append(coarser)
-    return tuple(corners)
+        corners = vertices[faces]
+        out.append(np.asarray(corners[~slivers(corners)]))
+    return out

@@ -23,7 +23,7 @@ RULE = (
 )
 ORDER = ("panel", "primitives", "strip:lamb", "ellipsoid", "primitives:huuv", "strip")
 ROUNDING = 1e-12
-SILENT, NOISE = 1e-6, 0.01
+SILENT, NOISE = 1e-6, 2e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ class Triangulation:
         noise = self.vanishing()[0] & (np.abs(found.matrix) < NOISE * np.sqrt(np.outer(diagonal, diagonal)))
         if not np.any(found.matrix[noise]):
             return found
-        said = f"entries up to {NOISE:.0%} that symmetry makes vanish were left by the mesh and are set to zero"
+        said = f"entries up to {NOISE:.1%} that symmetry makes vanish were left by the mesh and are set to zero"
         return replace(found, matrix=np.where(noise, 0.0, found.matrix), statements=(*found.statements, said))
 
     @property

@@ -21,7 +21,7 @@ def files(folder: Path) -> dict[str, bytes]:
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
 
 
-def test_validation_prints_the_verdict_and_writes_its_files(coeflab: Run, tmp_path: Path) -> None:
+def test_validation_prints_the_verdict_and_a_second_run_changes_no_byte(coeflab: Run, tmp_path: Path) -> None:
     done = coeflab("validate", "suboff")
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
@@ -32,9 +32,6 @@ def test_validation_prints_the_verdict_and_writes_its_files(coeflab: Run, tmp_pa
     written = set(files(tmp_path / "reports" / "suboff"))
     assert {"report.html", "suboff_fully_appended.parameters.json", "suboff_bare_hull.coefficients.csv"} <= written
 
-
-def test_second_run_changes_no_byte(coeflab: Run, tmp_path: Path) -> None:
-    coeflab("validate", "suboff")
     first = files(tmp_path)
     times = {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*") if p.is_file()}
     again = coeflab("validate", "suboff")

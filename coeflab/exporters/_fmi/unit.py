@@ -45,11 +45,11 @@ def inverse(matrix: list[Vector]) -> list[Vector]:
         rows[i] = [x / rows[i][i] for x in rows[i]]
         for k in range(n):
             if k != i:
-                rows[k] = [x - rows[k][i] * y for x, y in zip(rows[k], rows[i])]  # noqa: B905
+                rows[k] = [x - rows[k][i] * y for x, y in zip(rows[k], rows[i])]
     return [row[n:] for row in rows]
 
 
-class Unit(Fmi2Slave):
+class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu has no types
     """One vehicle."""
 
     def __init__(self, **kwargs: Any) -> None:
@@ -124,13 +124,13 @@ class Unit(Fmi2Slave):
         twice = cross(q, turned)
         way = [v[i] + 2.0 * (q0 * turned[i] + twice[i]) for i in range(3)]
         spin = cross(q, w)
-        turning = [-0.5 * sum(a * b for a, b in zip(q, w)), *(0.5 * (q0 * w[i] + spin[i]) for i in range(3))]  # noqa: B905
-        momentum = [sum(a * b for a, b in zip(row, nu)) for row in self.inertia]  # noqa: B905
+        turning = [-0.5 * sum(a * b for a, b in zip(q, w)), *(0.5 * (q0 * w[i] + spin[i]) for i in range(3))]
+        momentum = [sum(a * b for a, b in zip(row, nu)) for row in self.inertia]
         p, h = momentum[:3], momentum[3:]
-        centripetal = [*cross(w, p), *(a + b for a, b in zip(cross(w, h), cross(v, p)))]  # noqa: B905
+        centripetal = [*cross(w, p), *(a + b for a, b in zip(cross(w, h), cross(v, p)))]
         external = self.group("external", *"XYZKMN")
-        force = [a + b - c for a, b, c in zip(self.hydrodynamics(nu), external, centripetal)]  # noqa: B905
-        return way + turning + [sum(a * b for a, b in zip(row, force)) for row in self.inverse]  # noqa: B905
+        force = [a + b - c for a, b, c in zip(self.hydrodynamics(nu), external, centripetal)]
+        return way + turning + [sum(a * b for a, b in zip(row, force)) for row in self.inverse]
 
     def do_step(self, current_time: float, step_size: float) -> bool:  # noqa: ARG002
         """Integrate over one communication step with the inputs held."""
@@ -140,7 +140,7 @@ class Unit(Fmi2Slave):
             start = self.state
             slopes = [self.rates(start)]
             for part in (0.5, 0.5, 1.0):
-                slopes.append(self.rates([s + part * h * d for s, d in zip(start, slopes[-1])]))  # noqa: B905
+                slopes.append(self.rates([s + part * h * d for s, d in zip(start, slopes[-1])]))
             a, b, c, d = slopes
             self.state = [s + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]) for i, s in enumerate(start)]
             size = math.sqrt(sum(x * x for x in self.state[3:7]))
@@ -163,5 +163,5 @@ class Unit(Fmi2Slave):
 
     def write(self, name: str, members: Any, numbers: Any) -> None:
         """Set several variables."""
-        for member, number in zip(members, numbers):  # noqa: B905
+        for member, number in zip(members, numbers):
             self.values[f"{name}.{member}"] = number
