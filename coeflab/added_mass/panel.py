@@ -14,7 +14,14 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, one_of, parse_options
 from coeflab.kernels.panel_added_mass import PanelSolution, memory_needed, panel_added_mass
-from coeflab.kernels.panel_geometry import panels_of, slenderness, slivers, thin_share, unmatched_edges
+from coeflab.kernels.panel_geometry import (
+    panels_of,
+    sharpness,
+    slenderness,
+    slivers,
+    thin_share,
+    unmatched_edges,
+)
 from coeflab.kernels.panel_refinement import Refinement, refined
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
@@ -28,7 +35,7 @@ reproducible: Mapping[str, str] = {"kernel": "numpy"}
 
 Array = NDArray[np.float64]
 FEWEST, MOST = 1_000, 32_000
-THIN, THIN_SHARE = 0.05, 0.5
+THIN, THIN_SHARE, EDGED = 0.05, 0.5, 0.5
 COMPILE_FROM = 5_000
 
 
@@ -72,7 +79,9 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     """
     chosen = parse_options(Options, options or {}, "panel")
     shape = body.require_shape()
-    _gate(shape if isinstance(shape, TriangleMesh) else meshed(shape, chosen.panels))
+    gated = shape if isinstance(shape, TriangleMesh) else meshed(shape, chosen.panels)
+    _gate(gated)
+    edges = sharpness(gated.vertices, gated.faces) > EDGED
     meshes = family(shape, chosen.panels, 3 if chosen.extrapolate == "yes" else 1)
     _fits(len(meshes[0]))
     thin = _thin(meshes[0])
@@ -80,7 +89,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     # On the axis of a body of revolution, so that turning about it stays apart from all else.
     centre = shape.centre_of_volume
     solutions = [panel_added_mass(c, centre, fast) for c, fast in zip(meshes, compiled, strict=True)]
-    found = refined([s.matrix for s in solutions], [s.count for s in solutions])
+    found = refined([s.matrix for s in solutions], [s.count for s in solutions], edges)
     statements = (*_said(solutions, compiled[0], thin), *_judged(found, len(meshes), chosen.extrapolate == "yes"))
     error = None if len(meshes) == 1 else density * found.error
     own = AddedMass(density * found.settled, centre, body.datum, body.name, "panel", statements, error)
@@ -171,7 +180,7 @@ def _judged(found: Refinement, meshes: int, asked: bool) -> list[str]:
     if found.used is None:
         out = [f"the differences between meshes hardly shrink: not extrapolated, {estimate}"]
     elif found.observed is None:
-        out = [f"extrapolated with order 2 from two meshes, order not observed, {estimate}"]
+        out = [f"extrapolated with order {found.used:.2g} from two meshes, order not observed, {estimate}"]
     else:
         edged = (
             "" if found.used == 2.0 else ", as with edges: the error does not fall as the square of the panels' size"

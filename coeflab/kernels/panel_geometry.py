@@ -11,7 +11,7 @@ from coeflab.kernels.least_squares import Array
 from coeflab.kernels.surface_mesh import Faces
 
 SLIVER = 1e-10
-STRETCHED = 3.0
+NEEDLE, GIANT = 2.0, 3.0
 SHARP = np.sqrt(0.5)
 
 
@@ -81,12 +81,15 @@ def side_of(area: float, count: int) -> float:
     return float(np.sqrt(4.0 / np.sqrt(3.0) * area / count))
 
 
-def stretched_share(corners: Array) -> float:
-    """Share of the area in triangles with a side over 3 times that of as many equilateral ones: needles, and giants."""
-    sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
+def unfit_share(corners: Array) -> float:
+    """Share of the area in needles and giants: with a side over twice that of an equilateral triangle of the same area, or
+    over three times that of as many equilateral ones as there are.
+    """
+    longest = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1)
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2.0
     whole = float(area.sum())
-    return float(area[sides > STRETCHED * side_of(whole, len(corners))].sum() / whole)
+    giant = longest > GIANT * side_of(whole, len(corners))
+    return float(area[giant | (longest**2 > NEEDLE**2 * 4.0 / np.sqrt(3.0) * area)].sum() / whole)
 
 
 def sharpness(vertices: Array, faces: Faces) -> float:

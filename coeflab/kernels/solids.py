@@ -60,11 +60,12 @@ def simplified(of: Solid, most: int) -> tuple[Solid, float]:
 
 
 def divided(of: Solid, length: float, most: int) -> Solid:
-    """The same surface with its longer edges split to about ``length``, m; to twice, four times, ... that within ``most``.
+    """The surface without edges much longer than ``length``, m, nor vertices that hardly bend it.
 
-    Interior vertices are added likewise. A surface that would exceed ``most`` faces at eight times the length is itself.
+    It moves by a thousandth of that length at most. Where it would come to more than ``most`` faces, edges are left two,
+    four or eight times as long, or as they are.
     """
-    out = of
+    out = of.simplify(length / 1000.0)
     for longer in (8.0, 4.0, 2.0, 1.0):
         finer = out.refine_to_length(longer * length)
         if finer.num_tri() > most:

@@ -159,7 +159,7 @@ def assemble(
     hull, record = None, None
     if found is not None:
         record = added_mass_record(found, first.reference_point, first.datum)
-        hull = found.recommended.about(first.reference_point)
+        hull = record.as_noun(first.reference_point.tolist(), first.datum)
         if hull.body != group.body:
             notes.append(
                 f"added mass is that of {hull.body}, the coefficients are those of {group.body}: their potential parts are "

@@ -9,14 +9,15 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative
 from coeflab.model.force_law import ForceLaw, LawTerm
 from coeflab.model.frozen import locked
 from coeflab.model.parameter_file import ParameterFile
 
 Array = NDArray[np.float64]
 SPEEDS = (0.5, 1.0, 1.5)
-POINTS = 5
+POINTS, FEW, MANY = 5, 3, 5
+ASSUMED = 0.2
 LOSSLESS = 1e-9
 ANGLES = {"asin(v/U)": "v", "asin(w/U)": "w"}
 
@@ -68,7 +69,8 @@ class Loss:
 def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
     """Velocities (n, 6) over what the file's campaigns cover, at half, full and one and a half times its speed.
 
-    Every combination of five values of each covered motion; straight motion alone where none is covered.
+    Every combination of a few values of each covered motion; straight motion alone where none is covered. A motion that
+    the file has terms of and no campaign covers, such as a rate from literature, is tried to 0.2 either way.
     """
     speed, length = parameters.conditions.speed, parameters.scaling.length
     ranges: dict[str, tuple[float, float]] = {}
@@ -79,8 +81,10 @@ def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
         low, high = np.sin([c.low, c.high]) if c.variable in ANGLES else (c.low, c.high)
         before = ranges.get(name, (low, high))
         ranges[name] = (min(float(low), before[0]), max(float(high), before[1]))
+    assumed = [n for n in MOTIONS[1:] if n not in ranges and n in _moved_by_terms(parameters)]
+    ranges |= dict.fromkeys(assumed, (-ASSUMED, ASSUMED))
     names = list(ranges)
-    values = [np.linspace(*ranges[n], POINTS) for n in names]
+    values = [np.linspace(*ranges[n], POINTS if len(names) < MANY else FEW) for n in names]
     rows = []
     for factor in SPEEDS:
         at = factor * speed
@@ -92,8 +96,15 @@ def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
                 continue
             rates = [primes.get(r, 0.0) * at / length for r in "pqr"]
             rows.append([at * np.sqrt(1.0 - across), *(at * side), *rates])
-    words = ", ".join(f"{n}' {a:.3g} to {b:.3g}" for n, (a, b) in ranges.items()) or "straight motion"
+    words = ", ".join(
+        f"{n}' {a:.3g} to {b:.3g}{' (covered by no campaign)' if n in assumed else ''}" for n, (a, b) in ranges.items()
+    )
+    words = words or "straight motion"
     return np.array(rows), f"{words}; U {', '.join(f'{f * speed:.3g}' for f in SPEEDS)} m/s; {len(rows)} states"
+
+
+def _moved_by_terms(parameters: ParameterFile) -> set[str]:
+    return {f for c in parameters.coefficients if c.value for f in derivative(c.symbol).factors if f in MOTIONS}
 
 
 def loss_of(

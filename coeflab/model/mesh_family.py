@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.kernels.decimation import decimated
-from coeflab.kernels.panel_geometry import bisected, side_of, slivers, split_in_four, stretched_share
+from coeflab.kernels.panel_geometry import bisected, side_of, slivers, split_in_four, unfit_share
 from coeflab.kernels.solids import divided, solid, surface
 from coeflab.kernels.surface_mesh import mesh_integrals
 from coeflab.model.mesh import TriangleMesh
@@ -21,7 +21,7 @@ RATIO = 4
 RUNGS, LEAST_STEP = 28, 3
 LOWEST, HIGHEST = 0.6, 1.1
 PRICE = 0.1
-MOST_STRETCHED, MOST_SPLIT, CHANGE = 0.2, 40, 0.08
+MOST_UNFIT, MOST_SPLIT, CHANGE = 0.2, 40, 0.08
 
 
 def family(shape: Shape, panels: int, most: int = 3) -> tuple[Array, ...]:
@@ -88,10 +88,10 @@ def _of_mesh(mesh: TriangleMesh, panels: int, most: int) -> tuple[Array, ...]:
     own = _corners(mesh)
     if len(own) * RATIO**2 <= panels:
         coarse = bisected(own, panels // RATIO**2)
-        if stretched_share(coarse) <= MOST_STRETCHED:
+        if unfit_share(coarse) <= MOST_UNFIT:
             middle = split_in_four(coarse)
             return (split_in_four(middle), middle, coarse)[:most]
-    elif panels <= RATIO * len(own) <= RATIO * panels and stretched_share(own) <= MOST_STRETCHED:
+    elif panels <= RATIO * len(own) <= RATIO * panels and unfit_share(own) <= MOST_UNFIT:
         found = (own, *_coarser(mesh, most - 1))
         if len(found) == most:
             return found
@@ -101,8 +101,6 @@ def _of_mesh(mesh: TriangleMesh, panels: int, most: int) -> tuple[Array, ...]:
 
 def _split(mesh: TriangleMesh, panels: int) -> TriangleMesh:
     """The same surface without long facets, which decimation would leave long; itself where it is not closed as a solid."""
-    if len(mesh.faces) > panels and stretched_share(mesh.vertices[mesh.faces]) <= MOST_STRETCHED:
-        return mesh
     try:
         whole = solid(mesh.vertices, mesh.faces)
     except ValueError:

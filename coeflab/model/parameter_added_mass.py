@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import numpy as np
@@ -48,6 +49,10 @@ class ParameterAddedMass(Strict):
                 f"scaled eigenvalue {found.smallest:.1e}"
             )
         return self
+
+    def as_noun(self, point: Sequence[float], datum: str) -> AddedMass:
+        """The matrix in use, about the file's reference point."""
+        return AddedMass(np.array(self.matrix), np.array(point), datum, self.body, self.method, self.statements)
 
 
 def added_mass_record(found: Triangulation, point: np.ndarray, datum: str) -> ParameterAddedMass:

@@ -19,6 +19,7 @@ from coeflab.model.parameter_coefficient import ParameterCoefficient, ParameterC
 from coeflab.model.parameter_mass import ParameterMass
 from coeflab.model.parameter_model import ParameterModel
 from coeflab.model.parameter_versions import SCHEMA_VERSION, as_of, too_new
+from coeflab.model.potential import potential_part
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.schema_types import Finite, Name, Positive, Strict, told
 
@@ -121,7 +122,21 @@ class ParameterFile(Strict):
         strange = too_new(self, self.schema_version)
         if strange:
             raise ValueError(strange)
+        self._potential_parts(primes)
         return self
+
+    def _potential_parts(self, primes: Scaling) -> None:
+        """Raise where a potential part is not what the added mass gives."""
+        booked = [c for c in self.coefficients if c.potential is not None]
+        if booked and self.added_mass is None:
+            raise ValueError(f"{booked[0].symbol}: a potential part without an added mass")
+        if self.added_mass is None:
+            return
+        hull = self.added_mass.as_noun(self.reference_point.point, self.reference_point.datum)
+        for c in booked:
+            due = potential_part(c.symbol, hull, primes, self.added_mass.density) or 0.0
+            if not math.isclose(c.potential or 0.0, due, rel_tol=1e-6, abs_tol=1e-9):
+                raise ValueError(f"{c.symbol}: potential {c.potential:g} is not that of the added mass, {due:g}")
 
     def coefficient(self, symbol: str) -> ParameterCoefficient | None:
         """The coefficient of a symbol, with or without prime."""

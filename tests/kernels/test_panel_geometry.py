@@ -8,10 +8,13 @@ import pytest
 from coeflab.kernels.panel_geometry import (
     bisected,
     panels_of,
+    sharpness,
+    side_of,
     slenderness,
     slivers,
     split_in_four,
     thin_share,
+    unfit_share,
     unmatched_edges,
 )
 from coeflab.kernels.structured_surface import box_surface
@@ -76,3 +79,31 @@ def test_bisection_makes_slivers_compact() -> None:
     found = bisected(long, 300)
     assert 300 <= len(found) < 400
     assert panels_of(found).size.max() < 2.5
+
+
+def test_the_side_of_equilateral_triangles() -> None:
+    assert side_of(np.sqrt(3.0), 4) == pytest.approx(1.0)
+
+
+def test_needles_and_giants_are_unfit() -> None:
+    vertices, faces = box_surface(np.array([1.0, 1.0, 1.0]), 600)
+    corners = vertices[faces]
+    assert unfit_share(corners) == 0.0
+    assert unfit_share(corners * [1.0, 1.0, 20.0]) == pytest.approx(80.0 / 82.0, rel=0.01)
+    giant = 20.0 * corners[:1]
+    own = panels_of(np.concatenate([corners, giant])).area
+    assert unfit_share(np.concatenate([corners, giant])) == pytest.approx(own[-1] / own.sum())
+
+
+def test_sharp_edges_over_the_root_of_the_area() -> None:
+    cube = box_surface(np.array([2.0, 2.0, 2.0]), 300)
+    assert sharpness(*cube) == pytest.approx(12.0 / np.sqrt(6.0))
+    angle = np.arange(12) * np.pi / 6.0
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    vertices = np.concatenate([np.insert(ring, 2, z, axis=1) for z in (0.0, 4.0)] + [[[0.0, 0, 0], [0.0, 0, 4]]])
+    k, n = np.arange(12), (np.arange(12) + 1) % 12
+    quads = np.concatenate([np.stack(t, axis=1) for t in ((k, n, n + 12), (k, n + 12, k + 12))])
+    ends = np.concatenate([np.stack(t, axis=1) for t in ((n, k, 0 * k + 24), (k + 12, n + 12, 0 * k + 25))])
+    side = 2.0 * np.sin(np.pi / 12.0)
+    area = 12.0 * (4.0 * side + np.sin(np.pi / 6.0))
+    assert sharpness(vertices, np.concatenate([quads, ends])) == pytest.approx(24.0 * side / np.sqrt(area))

@@ -40,6 +40,14 @@ def test_the_estimate_holds_the_error(order: float, count: int) -> None:
     assert np.all(np.abs(found.matrix - TRUE) <= found.error)
 
 
+@pytest.mark.parametrize("order", [1.0, 4.0 / 3.0, 1.5, 2.0, 3.0])
+@pytest.mark.parametrize("count", [2, 3])
+def test_edges_are_not_given_second_order(order: float, count: int) -> None:
+    found = refined(planted(order, count), COUNTS[:count], edges=True)
+    assert found.used == pytest.approx(4.0 / 3.0)
+    assert np.all(np.abs(found.matrix - TRUE) <= found.error * (1.0 + 1e-9))
+
+
 def test_what_hardly_shrinks_is_not_extrapolated() -> None:
     found = refined([TRUE + SLOPE, TRUE - SLOPE, TRUE + SLOPE], COUNTS)
     assert found.used is None

@@ -15,6 +15,7 @@ from coeflab.model.body import Body
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_law import force_law
+from coeflab.model.loss import covered_grid
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.shape import Box, Part, Parts
@@ -104,3 +105,20 @@ def test_another_body_is_named() -> None:
 def test_the_file_comes_back() -> None:
     file = parameters({"Nv": -0.014}, HULL)
     assert ParameterFile.model_validate_json(file.to_json()) == file
+
+
+def test_a_potential_part_that_the_added_mass_does_not_give_is_refused() -> None:
+    content = parameters({"Nv": -0.014}, HULL).model_dump()
+    content["coefficients"][0]["potential"] = 0.0
+    with pytest.raises(ValueError, match="is not that of the added mass"):
+        ParameterFile.model_validate(content)
+    content["added_mass"] = None
+    with pytest.raises(ValueError, match="without an added mass"):
+        ParameterFile.model_validate(content)
+
+
+def test_a_rate_that_no_campaign_covers_is_tried_all_the_same() -> None:
+    nu, words = covered_grid(parameters({"Yv": -0.03, "Nr": -0.004}))
+    assert "r' -0.2 to 0.2 (covered by no campaign)" in words
+    assert np.ptp(nu[:, 5]) > 0.0
+    assert not np.any(nu[:, [2, 3, 4]])
