@@ -18,6 +18,7 @@ from coeflab.model.table import ABSENT, Table, number
 
 Array = NDArray[np.float64]
 TOLD = np.radians(0.05)
+POOR_AREA, POOR_VOLUME = 0.05, 0.02
 RULES = (
     "A cylinder keeps volume and projected area across its axis; a plate keeps area and centre of its projection "
     "along the normal and the ratio of second moments along chord (fore and aft) and span; ellipsoids and boxes keep the volume, and second moments up to one factor.",
@@ -114,6 +115,11 @@ class Simplification:
             rows.append((p.part.name, kind + clear, size, number(p.volume, 5), number(p.part.form.volume, 5), *errors))
         notes = ["errors: form over mesh, less one; A: projected areas along the part's own axes"]
         notes += [f"{p.part.name}: {remark}" for p in self.parts for remark in p.remarks]
+        poor = [
+            p.part.name for p in self.parts if p.part.form.volume and np.nanmax(np.abs(p.projected_errors)) > POOR_AREA
+        ]
+        if poor:
+            notes.append(f"LOOK AT {', '.join(poor)}: a projected area is off by more than {POOR_AREA:.0%}")
         headers = ("part", "form", "m", "mesh m^3", "form m^3", "V", "A x", "A y", "A z")
         return Table("Parts", headers, tuple(rows), (*notes, *self.statements), frozenset({0, 1, 2}))
 
@@ -139,7 +145,13 @@ class Simplification:
             rows.append((f"centre of volume {axis} m", f"{a:.5f}", f"{b:.5f}", f"{b - a:+.5f} m"))
         for axis, a, b in zip("xyz", self.mesh.integrals.projected, self._projected(), strict=True):
             rows.append((f"projected area along {axis} m^2", number(a, 5), number(b, 5), _percent(b / a - 1.0)))
-        notes = ("projected areas: sums over the parts, what hides what is not looked at", *RULES)
+        notes: tuple[str, ...] = ("projected areas: sums over the parts, what hides what is not looked at", *RULES)
+        if abs(self.shape.volume / whole - 1.0) > POOR_VOLUME:
+            notes = (
+                f"LOOK: the parts displace {self.shape.volume / whole - 1.0:+.1%} of the mesh's volume, and the centre moves "
+                "with it; plates displace nothing",
+                *notes,
+            )
         return Table("Whole body", ("", "mesh", "parts", "error"), tuple(rows), notes)
 
     def _projected(self) -> Array:
