@@ -99,6 +99,8 @@ def export(made: Export) -> dict[str, Any]:
         "target": made.target,
         "lossless": made.lossless,
         "not_held": [] if loss is None else list(loss.not_held),
+        "changes": [] if loss is None else list(loss.changes),
+        "grid": None if loss is None else loss.grid,
         "worst_difference": None if loss is None else loss.worst.tolist(),
         "rms_difference": None if loss is None else loss.rms.tolist(),
         "largest_force": None if loss is None else loss.largest.tolist(),

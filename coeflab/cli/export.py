@@ -32,7 +32,12 @@ def command(
     if loss is not None and not json:
         show.table(loss_tables.forces(loss))
         show.table(loss_tables.parts(parameters))
-    if not made.lossless and (strict or not accept_loss):
+    refused = not made.lossless and (strict or not accept_loss)
+    if refused and json:
+        from coeflab.cli.as_json import export as export_json
+
+        show.json_object({"files": [], **export_json(made)})
+    if refused:
         raise InputError(
             f"{to} cannot hold all of {parameters.name}",
             "a target that holds everything" if strict else "--accept-loss, once the loss above has been read",

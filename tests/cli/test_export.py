@@ -1,0 +1,55 @@
+"""``coeflab export`` as a real process."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from tests.cli.conftest import Run
+
+PARAMS = Path(__file__).parents[1] / "data" / "parameters_1_2.json"
+
+
+def test_a_target_that_holds_everything_needs_no_word(coeflab: Run, tmp_path: Path) -> None:
+    done = coeflab("export", PARAMS, "--to", "mss", "--out", tmp_path / "m", "--strict")
+    assert done.returncode == 0, done.stderr
+    written = {p.suffix for p in (tmp_path / "m").iterdir()}
+    assert written == {".m", ".txt"}
+    (report,) = (tmp_path / "m").glob("*.loss.txt")
+    assert "Lossless." in report.read_text()
+
+
+def test_a_loss_is_shown_and_must_be_accepted(coeflab: Run, tmp_path: Path) -> None:
+    out = tmp_path / "g"
+    refused = coeflab("export", PARAMS, "--to", "gazebo", "--out", out)
+    assert refused.returncode == 2
+    assert "--accept-loss" in refused.stderr
+    assert "Force law of gazebo against the parameter file" in refused.stdout
+    assert not out.exists()
+    strict = coeflab("export", PARAMS, "--to", "gazebo", "--out", out, "--accept-loss", "--strict")
+    assert strict.returncode == 2
+    assert not out.exists()
+    done = coeflab("export", PARAMS, "--to", "gazebo", "--out", out, "--accept-loss")
+    assert done.returncode == 0, done.stderr
+    first = {p.name: p.read_bytes() for p in out.iterdir()}
+    assert any(name.endswith(".sdf") for name in first)
+    coeflab("export", PARAMS, "--to", "gazebo", "--out", out, "--accept-loss")
+    assert {p.name: p.read_bytes() for p in out.iterdir()} == first
+
+
+def test_json_says_what_is_lost_even_when_it_is_refused(coeflab: Run, tmp_path: Path) -> None:
+    refused = coeflab("export", PARAMS, "--to", "gazebo", "--out", tmp_path / "g", "--json")
+    assert refused.returncode == 2
+    said = json.loads(refused.stdout)
+    assert said["files"] == []
+    assert said["lossless"] is False
+    assert max(said["worst_difference"]) > 0.0
+    assert not (tmp_path / "g").exists()
+
+
+def test_an_unknown_target_and_a_file_that_is_none(coeflab: Run, tmp_path: Path) -> None:
+    wrong = coeflab("export", PARAMS, "--to", "gazeboo")
+    assert wrong.returncode == 2
+    assert "gazebo" in wrong.stderr
+    (tmp_path / "p.json").write_text("{}")
+    assert coeflab("export", tmp_path / "p.json", "--to", "mss").returncode == 2
