@@ -65,6 +65,15 @@ def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.Tes
     return report
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """The same for a module that skips itself while it is collected."""
+    report = yield
+    if os.environ.get("COEFLAB_FORBID_SKIPS") and report.skipped:
+        report.outcome, report.longrepr = "failed", f"skipped where skips are forbidden: {report.longrepr}"
+    return report
+
+
 @pytest.fixture(scope="session")
 def suboff() -> Study:
     """The SUBOFF study, run once."""
