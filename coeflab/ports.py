@@ -15,9 +15,13 @@ from coeflab.model.campaign import Campaign
 from coeflab.model.check import Check
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
+from coeflab.model.glider import Glider
+from coeflab.model.manoeuvre import Figure, Manoeuvre
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.scaling import Scaling
 from coeflab.model.study import Study
+from coeflab.model.trajectory import Trajectory
+from coeflab.model.vehicle import Vehicle
 
 
 @runtime_checkable
@@ -58,9 +62,20 @@ class AddedMassMethod(Plugin, Protocol):
 
 @runtime_checkable
 class Simulator(Plugin, Protocol):
-    """Integrates the motion that a parameter file describes."""
+    """Moves a vehicle through a manoeuvre."""
 
-    def simulate(self, parameters: ParameterFile, options: Mapping[str, Any]) -> Any: ...
+    def simulate(self, vehicle: Vehicle | Glider, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -> Trajectory: ...
+
+
+@runtime_checkable
+class ManoeuvrePlugin(Plugin, Protocol):
+    """Says what a manoeuvre orders, and reads its figures off the motion."""
+
+    plane: str
+
+    def plan(self, vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre: ...
+
+    def figures(self, trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]: ...
 
 
 @runtime_checkable
@@ -74,7 +89,8 @@ class Exporter(Plugin, Protocol):
 class SimulatorExporter(Exporter, Protocol):
     """An exporter whose target has a force law of its own, which proves what the export is worth.
 
-    ``adds_coriolis`` says whether the target itself adds -C_A(nu) nu from the added mass that it is given.
+    ``adds_coriolis`` says whether the target itself adds -C_A(nu) nu from the added mass that it is given. ``not_held`` are terms
+    of the law that it has no place for, ``missing`` what it needs and the file does not have.
     """
 
     adds_coriolis: bool
@@ -82,6 +98,8 @@ class SimulatorExporter(Exporter, Protocol):
     def force(self, files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]: ...
 
     def not_held(self, parameters: ParameterFile) -> tuple[str, ...]: ...
+
+    def missing(self, parameters: ParameterFile) -> tuple[str, ...]: ...
 
     def changes(self, parameters: ParameterFile) -> tuple[str, ...]: ...
 

@@ -7,7 +7,24 @@ import sys
 
 import typer
 
-from coeflab.cli import added_mass, compare, export, fit, formats, inspect, new, params, run, simplify, table, validate
+from coeflab.cli import (
+    added_mass,
+    compare,
+    export,
+    fit,
+    formats,
+    glide,
+    inspect,
+    new,
+    params,
+    run,
+    simplify,
+    simulate,
+    table,
+    trim,
+    tune,
+    validate,
+)
 
 app = typer.Typer(
     name="coeflab",
@@ -19,7 +36,23 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-for module in (validate, run, fit, inspect, new, formats, table, compare, added_mass, simplify, export):
+for module in (
+    validate,
+    run,
+    fit,
+    inspect,
+    new,
+    formats,
+    table,
+    compare,
+    added_mass,
+    simplify,
+    export,
+    simulate,
+    trim,
+    tune,
+    glide,
+):
     app.command(
         name=module.__name__.rpartition(".")[2].replace("_", "-"),
         epilog=f"Example: {module.EXAMPLE}",

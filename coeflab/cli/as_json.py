@@ -6,11 +6,14 @@ import math
 from typing import Any
 
 from coeflab.core.symbols import primed
+from coeflab.model.acceptance import Acceptance
 from coeflab.model.coefficient import Coefficient
 from coeflab.model.export import Export
 from coeflab.model.fitted_model import FittedModel
+from coeflab.model.manoeuvre import Figure
 from coeflab.model.pooling import Pooling
 from coeflab.model.study import Study
+from coeflab.studies.simulate import Simulation
 
 
 def coefficient(c: Coefficient, scaling: str) -> dict[str, Any]:
@@ -99,6 +102,7 @@ def export(made: Export) -> dict[str, Any]:
         "target": made.target,
         "lossless": made.lossless,
         "not_held": [] if loss is None else list(loss.not_held),
+        "lost": [] if loss is None else [{"kind": x.kind.value, "what": x.what} for x in loss.lost],
         "changes": [] if loss is None else list(loss.changes),
         "grid": None if loss is None else loss.grid,
         "worst_difference": None if loss is None else loss.worst.tolist(),
@@ -150,3 +154,60 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
         "exports": [export(made) for made in s.exports],
         "files": files,
     }
+
+
+def figures(found: tuple[Figure, ...]) -> list[dict[str, Any]]:
+    """Figures of a manoeuvre; absent values are null and carry a status."""
+    return [
+        {
+            "name": f.name, "value": f.value, "unit": f.unit, "status": f.status, "why": f.why or None,
+            "interval_95": None if f.low is None else [f.low, f.high], "definition": f.definition,
+        }
+        for f in found
+    ]  # fmt: skip
+
+
+def simulation(made: Simulation) -> dict[str, Any]:
+    """A simulated manoeuvre without its time series."""
+    t = made.trajectory
+    return {
+        "vehicle": made.vehicle.name,
+        "manoeuvre": made.manoeuvre.name,
+        "free": list(made.vehicle.free),
+        "ended": t.ended.value,
+        "why": t.why or None,
+        "duration": float(t.time[-1]),
+        "outside": sorted(name for name, flags in t.outside.items() if flags.any()),
+        "determined_until": None if math.isinf(made.determined) else made.determined,
+        "figures": figures(made.figures),
+        "statements": list(made.statements),
+    }
+
+
+def acceptance(found: Acceptance) -> dict[str, Any]:
+    """A publication reproduced, table by table."""
+    return {
+        "name": found.name,
+        "title": found.title,
+        "passed": found.holds,
+        "tables": {
+            t.key: {
+                "title": t.title,
+                "source": t.source,
+                "passed": t.holds,
+                "rows": [
+                    {
+                        "case": r.case, "quantity": r.quantity, "unit": r.unit, "published": r.published, "found": r.found,
+                        "difference": r.difference, "relative": r.relative, "tolerance": r.tolerance, "basis": r.basis,
+                        "passed": r.holds,
+                    }
+                    for r in t.rows
+                ],
+                "statements": list(t.statements),
+            }
+            for t in found.tables
+        },
+        "errata": list(found.errata),
+        "statements": list(found.statements),
+        "citations": list(found.citations),
+    }  # fmt: skip

@@ -99,8 +99,20 @@ def _rooms() -> tuple[Registry[Any], ...]:
     from coeflab.exporters import EXPORTERS
     from coeflab.fits import FITS
     from coeflab.importers import IMPORTERS
+    from coeflab.manoeuvres import MANOEUVRES
     from coeflab.parameter_importers import PARAMETER_IMPORTERS
     from coeflab.reporting import REPORTERS
     from coeflab.simulators import SIMULATORS
 
-    return (IMPORTERS, BODIES, FITS, ADDED_MASS, SIMULATORS, EXPORTERS, PARAMETER_IMPORTERS, CHECKS, REPORTERS)
+    return (
+        IMPORTERS,
+        BODIES,
+        FITS,
+        ADDED_MASS,
+        SIMULATORS,
+        MANOEUVRES,
+        EXPORTERS,
+        PARAMETER_IMPORTERS,
+        CHECKS,
+        REPORTERS,
+    )

@@ -3,19 +3,61 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import typer
+
+from coeflab.cli import show
+
+if TYPE_CHECKING:
+    from coeflab.model.acceptance import Acceptance
 
 EXAMPLE = "coeflab validate suboff"
 
 
 def command(
-    name: str = typer.Argument(..., help="Name of the validation, for example suboff."),
+    name: str = typer.Argument(..., help="Name of the validation: suboff, huuv, flyingfish or thauv."),
     out: Path | None = typer.Option(None, help="Folder for the files; default reports/NAME."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Hold shipped tables against published derivatives; write report, parameter files and tables."""
-    from coeflab.cli.carry_out import carry_out
+    """Hold shipped tables against published derivatives, or reproduce a published vehicle; write what comes out."""
+    from coeflab.cli.carry_out import REPORTS, carry_out
+    from coeflab.model.acceptance import Acceptance
     from coeflab.studies.validate import validation
 
-    carry_out(validation(name), out, json)
+    with show.progress(json) as say:
+        say(f"computing {name}")
+        found = validation(name)
+    if isinstance(found, Acceptance):
+        _side_by_side(found, out if out is not None else Path(REPORTS) / name, json)
+    else:
+        carry_out(found, out, json)
+
+
+def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
+    from coeflab.core.files import write_atomically
+    from coeflab.presentation import acceptance_tables
+
+    files = {f"{found.name}.csv": acceptance_tables.acceptance_csv(found)}
+    files |= {name: content for name, _, content in found.figures}
+    paths = [folder / name for name in sorted(files)]
+    for path in paths:
+        write_atomically(path, files[path.name])
+    if json:
+        from coeflab.cli.as_json import acceptance
+
+        show.json_object({**acceptance(found), "files": [str(p) for p in paths]})
+    else:
+        show.text(found.title)
+        show.text()
+        for table in acceptance_tables.tables(found):
+            show.table(table)
+        show.table(acceptance_tables.errata(found))
+        for line in found.statements:
+            show.text(line)
+        rows = [r for t in found.tables for r in t.rows]
+        show.text(f"Verdict: {sum(r.holds for r in rows)} of {len(rows)} numbers within what is allowed.")
+        for path in paths:
+            show.text(f"  {path}")
+    if not found.holds:
+        raise typer.Exit(1)

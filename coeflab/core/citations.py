@@ -7,6 +7,10 @@ WORKS: dict[str, str] = {
     "Technical and Research Bulletin 1-5, 1950.",
     "gertler1967": "M. Gertler, G. R. Hagen, Standard Equations of Motion for Submarine Simulation, NSRDC 2510, 1967.",
     "feldman1979": "J. Feldman, DTNSRDC Revised Standard Submarine Equations of Motion, DTNSRDC/SPD-0393-09, 1979.",
+    "imo_msc137": "IMO, Standards for Ship Manoeuvrability, resolution MSC.137(76), 2002, and its explanatory notes, "
+    "MSC/Circ.1053.",
+    "ittc_free_running": "ITTC, Free Running Model Tests, recommended procedure 7.5-02-06-01.",
+    "ittc_roll_decay": "ITTC, Estimation of Roll Damping, recommended procedure 7.5-02-07-04.5.",
     "roddy1990": "R. F. Roddy, Investigation of the Stability and Control Characteristics of Several Configurations of "
     "the DARPA SUBOFF Model (DTRC Model 5470) from Captive-Model Experiments, DTRC/SHD-1298-08, 1990.",
     "groves1989": "N. C. Groves, T. T. Huang, M. S. Chang, Geometric Characteristics of DARPA SUBOFF Models, "
@@ -14,6 +18,9 @@ WORKS: dict[str, str] = {
     "steady_cfd": "Calculation of Linear Damping Coefficients by Numerical Simulation of Steady State Experiments, "
     "Table 4 (steady CFD, PMM CFD 2012, experiment 1990).",
     "coeflab_cfd": "Steady RANS of the SUBOFF bare hull made for this project with OpenFOAM 1912.",
+    "hairer1996": "E. Hairer, G. Wanner, Solving Ordinary Differential Equations II: Stiff and Differential-Algebraic "
+    "Problems, 2nd edition, Springer, 1996, section IV.2.",
+    "hindmarsh1983": "A. C. Hindmarsh, ODEPACK, a systematized collection of ODE solvers, Scientific Computing, IMACS, 1983.",
     "fossen2011": "T. I. Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, Wiley, 2011.",
     "mackinnon1985": "J. G. MacKinnon, H. White, Some heteroskedasticity-consistent covariance matrix estimators with "
     "improved finite sample properties, J. Econometrics 29, 1985.",
@@ -28,7 +35,9 @@ WORKS: dict[str, str] = {
     "Uncertainty Analysis for Manoeuvring Predictions based on Captive Manoeuvring Tests, 7.5-02-06-04.",
     "tj_flyingfish": "Modeling and operating point analysis for aquatic translational motion of a cross-medium vehicle "
     "(TJ-FlyingFish), equations 13-18, 25-30, 49 and 50.",
-    "thauv": "Analysis of a New Twin Hybrid Autonomous Underwater Vehicle (THAUV), equations 28-30 and Table 3.",
+    "thauv": "Analysis of a New Twin Hybrid Autonomous Underwater Vehicle (THAUV), equations 5, 9-30 and Table 3.",
+    "leonard_graver2001": "N. E. Leonard, J. G. Graver, Model-based feedback control of autonomous underwater gliders, IEEE J. "
+    "Oceanic Engineering 26(4), 2001.",
     "huuv2025": "T. Talarczyk, M. Morawski, M. Malec, M. Garncarz, Identification of Motion Model Parameters for a Small "
     "Hybrid-Propelled Unmanned Underwater Vehicle (HUUV), 2025.",
     "allen1974": "D. M. Allen, The relationship between variable selection and data augmentation and a method for "

@@ -18,12 +18,22 @@ from coeflab.model.parameter_added_mass import ParameterAddedMass
 from coeflab.model.parameter_coefficient import ParameterCoefficient, ParameterCovariance
 from coeflab.model.parameter_mass import ParameterMass
 from coeflab.model.parameter_model import ParameterModel
-from coeflab.model.parameter_versions import SCHEMA_VERSION, as_of, too_new
+from coeflab.model.parameter_vehicle import ParameterHydrostatics, ParameterSurface, ParameterThruster
+from coeflab.model.parameter_versions import (
+    FIRST_VERSION,
+    SCHEMA_VERSION,
+    advice,
+    as_of,
+    is_later,
+    readable,
+    too_new,
+    without,
+)
 from coeflab.model.potential import potential_part
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.schema_types import Finite, Name, Positive, Strict, told
 
-LARGEST = 64 << 20
+LARGEST = 16 << 20
 SCHEMA_FILE = Path(__file__).with_name("parameter_file.schema.json")
 
 
@@ -96,6 +106,11 @@ class ParameterFile(Strict):
     added_mass: Annotated[
         ParameterAddedMass | None, told("added mass in unbounded fluid; null where it is not known", since="1.2")
     ] = None
+    hydrostatics: Annotated[
+        ParameterHydrostatics | None, told("buoyancy and gravity; null: neutrally buoyant, centres together", since="1.3")
+    ] = None
+    thrusters: Annotated[tuple[ParameterThruster, ...], told("thrusters, none twice", since="1.3")] = ()
+    surfaces: Annotated[tuple[ParameterSurface, ...], told("limits of control surfaces, none twice", since="1.3")] = ()
     provenance: Annotated[Provenance, told("where it all comes from")]
 
     @model_validator(mode="after")
@@ -115,6 +130,9 @@ class ParameterFile(Strict):
         unknown = sorted(set(self.covariance.symbols) - set(symbols))
         if unknown:
             raise ValueError(f"the covariance names {', '.join(unknown)}, which are no coefficients")
+        for names in ([t.name for t in self.thrusters], [c.control for c in self.surfaces]):
+            if len(set(names)) < len(names):
+                raise ValueError(f"{max(names, key=names.count)} stands more than once")
         tables = [(m.response, m.names) for m in self.models]
         for response, names in tables:
             if tables.count((response, names)) > 1:
@@ -184,27 +202,48 @@ def read_parameter_file(path: Path) -> ParameterFile:
     def refuse(token: str) -> float:
         raise ValueError(f"{token} is no JSON number")
 
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            keys = [k for k, _ in pairs]
+            raise ValueError(f"{shown(max(keys, key=keys.count))} twice in one object")
+        return found
+
     text = read_text(path, LARGEST)
     try:
-        content = json.loads(text, parse_constant=refuse)
+        content = json.loads(text, parse_constant=refuse, object_pairs_hook=once)
     except json.JSONDecodeError as why:
         raise InputError(why.msg, "JSON", file=path, line=why.lineno, column=f"character {why.colno}") from None
-    except (ValueError, RecursionError) as why:
-        raise InputError(str(why), "a parameter file in JSON", file=path) from None
-    if isinstance(content, dict) and not str(content.get("schema_version", "")).startswith("1."):
-        raise InputError(
-            f"schema_version {shown(content.get('schema_version'))}",
-            f"1.x (this release writes {SCHEMA_VERSION})",
-            file=path,
-            column="schema_version",
-        )
+    except RecursionError:
+        raise InputError("too deep nesting", "a parameter file in JSON", file=path) from None
+    except ValueError as why:
+        raise InputError(str(why).partition(";")[0], "a parameter file in JSON", file=path) from None
+    if not isinstance(content, dict):
+        raise InputError(f"a {type(content).__name__}", "an object", file=path, column="file")
+    version = readable(content.get("schema_version"), path)
     try:
-        return ParameterFile.model_validate_json(text)
+        return _validated(content, version)
     except ValidationError as why:
         first = why.errors()[0]
         place = ".".join(str(p) for p in first["loc"]) or "file"
         more = f" ({why.error_count() - 1} more)" if why.error_count() > 1 else ""
         found, expected = _in_words(first["type"], first["msg"], first["input"])
-        raise InputError(found, expected + more, file=path, column=place) from None
+        if is_later(version, SCHEMA_VERSION):
+            found += f" in a file of schema_version {version}"
+            expected, more = f"schema_version {FIRST_VERSION} to {SCHEMA_VERSION}, which this release of coeflab reads", ""
+        raise InputError(found, expected + more, file=path, column=place, advice=advice(version)) from None
     except CoeflabError as why:
         raise InputError(str(why), "a valid parameter file", file=path) from None
+
+
+def _validated(content: dict[str, Any], version: str) -> ParameterFile:
+    """The file; of a later version without the keys that nobody here knows and that say nothing."""
+    try:
+        return ParameterFile.model_validate_json(json.dumps(content))
+    except ValidationError as why:
+        if not is_later(version, SCHEMA_VERSION):
+            raise
+        unknown = [e["loc"] for e in why.errors() if e["type"] == "extra_forbidden" and e["input"] in (None, [], {}, "")]
+        if not unknown:
+            raise
+    return ParameterFile.model_validate_json(json.dumps(without(content, unknown)))

@@ -1,25 +1,29 @@
-"""Validations: shipped plans that hold real tables against published derivatives."""
+"""Validations: shipped plans that hold real tables against published derivatives, and published systems reproduced."""
 
 from __future__ import annotations
 
 import difflib
+import importlib
 from pathlib import Path
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped
+from coeflab.model.acceptance import Acceptance
 from coeflab.model.plan import read_plan
 from coeflab.model.study import Plan
 
 PLAN = "plan.toml"
+PUBLISHED = ("flyingfish", "huuv", "thauv")
 
 
 def validations() -> tuple[str, ...]:
     """Names of the shipped validations."""
-    return tuple(sorted(p.parent.name for p in shipped("cfd_data").glob(f"*/{PLAN}")))
+    plans = (p.parent.name for p in shipped("cfd_data").glob(f"*/{PLAN}"))
+    return tuple(sorted((*plans, *PUBLISHED)))
 
 
-def validation(name: str) -> Plan:
-    """The plan of a shipped validation.
+def validation(name: str) -> Plan | Acceptance:
+    """The plan of a shipped validation, or a publication as it comes out.
 
     Raises
     ------
@@ -33,4 +37,7 @@ def validation(name: str) -> Plan:
             f"one of {', '.join(validations())}",
             advice=f"Did you mean {near[0]}?" if near else "",
         )
+    if name in PUBLISHED:
+        found: Acceptance = importlib.import_module(f"coeflab.studies.validations.{name}").acceptance()
+        return found
     return read_plan(Path(shipped("cfd_data")) / name / PLAN)

@@ -21,12 +21,13 @@ from coeflab.core.registry import Registry
 from coeflab.exporters import EXPORTERS
 from coeflab.fits import FITS
 from coeflab.importers import IMPORTERS
+from coeflab.manoeuvres import MANOEUVRES
 from coeflab.parameter_importers import PARAMETER_IMPORTERS
 from coeflab.reporting import REPORTERS
 from coeflab.simulators import SIMULATORS
 
 ROOMS: tuple[Registry[Any], ...] = (
-    IMPORTERS, BODIES, FITS, ADDED_MASS, SIMULATORS, EXPORTERS, PARAMETER_IMPORTERS, CHECKS, REPORTERS,
+    IMPORTERS, BODIES, FITS, ADDED_MASS, SIMULATORS, MANOEUVRES, EXPORTERS, PARAMETER_IMPORTERS, CHECKS, REPORTERS,
 )  # fmt: skip
 PLUGINS = [pytest.param(room, name, id=f"{room.package}.{name}") for room in ROOMS for name in room.names()]
 

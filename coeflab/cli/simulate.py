@@ -1,0 +1,121 @@
+"""``coeflab simulate``: a parameter file through a manoeuvre."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from coeflab.cli import show
+
+if TYPE_CHECKING:
+    from coeflab.studies.simulate import Simulation
+
+EXAMPLE = "coeflab simulate reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag"
+CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
+TABLES = ("csv", "parquet")
+
+
+def command(
+    ctx: typer.Context,
+    file: Path = typer.Argument(..., help="A parameter file."),
+    manoeuvre: str = typer.Option("turning_circle", help="Name of the manoeuvre (see coeflab formats)."),
+    free: str = typer.Option(
+        "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
+    ),
+    hold: str = typer.Option("", metavar="u", help="Motions that are held after all, such as u for a constant speed."),
+    current: str = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down."),
+    integrator: str = typer.Option("adaptive", help="adaptive (scipy), or rk4 (fixed steps)."),
+    step: float = typer.Option(0.0, help="Step of rk4 in s; 0: chosen."),
+    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
+    computed_added_mass: bool = typer.Option(
+        False, "--computed-added-mass", help="Leave measured acceleration derivatives aside."
+    ),
+    to: str = typer.Option("csv", help="Format of the motion: csv or parquet."),
+    out: Path | None = typer.Option(None, help="Folder for motion and figure; nothing is written without it."),
+    help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the manoeuvre, and stop."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Move the vehicle of a parameter file through a manoeuvre and read its figures off.
+
+    Any further --option VALUE goes to the manoeuvre: --rudder "20 deg", --speed "3 kn". See --help-options. Exit code 1
+    where the motion could not be computed to its end.
+    """
+    from coeflab.cli.fit import further
+    from coeflab.core.errors import InputError, shown
+    from coeflab.model.parameter_file import read_parameter_file
+    from coeflab.studies.simulate import simulate
+
+    if help_options:
+        from coeflab.cli.formats import explain
+
+        explain(manoeuvre)
+        return
+    if to not in TABLES:
+        raise InputError(shown(to), f"one of {', '.join(TABLES)}", column="--to")
+    parameters = read_parameter_file(file)
+    how: dict[str, Any] = {"integrator": integrator, "step": step, **_current(current)}
+    made = simulate(
+        parameters, manoeuvre, further(ctx.args), how, _listed(free), _listed(hold),
+        tables=tables, measured=not computed_added_mass,
+    )  # fmt: skip
+    written = [] if out is None else _write(made, out, to)
+    if json:
+        from coeflab.cli.as_json import simulation
+
+        show.json_object({**simulation(made), "files": [str(p) for p in written]})
+    else:
+        _print(made, written)
+    if made.trajectory.why:
+        raise typer.Exit(1)
+
+
+def _listed(text: str) -> tuple[str, ...]:
+    return tuple(text.replace(",", " ").split())
+
+
+def _current(text: str) -> dict[str, float]:
+    from coeflab.core.errors import InputError, shown
+
+    if not text:
+        return {}
+    try:
+        north, east, down = (float(v) for v in text.replace(",", " ").split())
+    except ValueError:
+        raise InputError(shown(text), "three numbers in m/s: north,east,down", column="--current") from None
+    return {"north": north, "east": east, "down": down}
+
+
+def _print(made: Simulation, written: list[Path]) -> None:
+    from coeflab.presentation.motion_tables import figure_table
+
+    name = f"{made.manoeuvre.name.replace('_', ' ')} of {made.vehicle.name}"
+    show.table(figure_table(made.figures, name, made.vehicle.length))
+    for line in made.statements:
+        show.text(f"  {line}")
+    if made.trajectory.why:
+        show.text(f"  {made.trajectory.ended.value}: {made.trajectory.why}")
+    for path in written:
+        show.text(f"  {path}")
+
+
+def _write(made: Simulation, folder: Path, to: str) -> list[Path]:
+    from coeflab.core.errors import InputError
+    from coeflab.core.files import write_atomically
+    from coeflab.presentation.motion_figure import motion_figures
+    from coeflab.presentation.motion_tables import motion_csv, motion_parquet
+    from coeflab.presentation.sheet import sheet
+
+    name = made.manoeuvre.name
+    try:
+        table = motion_csv(made.trajectory) if to == "csv" else motion_parquet(made.trajectory)
+    except ImportError:
+        raise InputError(
+            "--to parquet without pyarrow", "the extra", column="--to", advice='pip install "coeflab[parquet]"'
+        ) from None
+    rows = [(f,) for f in motion_figures(made.trajectory.until(made.determined), name, made.vehicle.length)]
+    content = {f"{name}.{to}": table, f"{name}.svg": sheet(rows)}
+    for file, data in content.items():
+        write_atomically(folder / file, data)
+    return [folder / file for file in content]

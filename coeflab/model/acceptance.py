@@ -1,0 +1,113 @@
+"""Published results beside what we find: what was printed, what comes out, and whether it holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Basis = Literal["printed", "derived", "in-sample"]
+BASES: dict[Basis, str] = {
+    "printed": "a number that the paper prints",
+    "derived": "worked out independently from what the paper prints",
+    "in-sample": "the model was calibrated on this very number",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """One number of a publication and ours.
+
+    Attributes
+    ----------
+    case, quantity : str
+        Row and column of the table, for example ``0, 60 %`` and ``u``.
+    unit : str
+        ``1`` for numbers without one.
+    published : float
+    found : float or None
+        None where the computation gave no number.
+    tolerance : float
+        Largest difference that counts as agreement: of ``unit``, or a ratio where ``relative``.
+    basis : {"printed", "derived", "in-sample"}
+    relative : bool
+    """
+
+    case: str
+    quantity: str
+    unit: str
+    published: float
+    found: float | None
+    tolerance: float
+    basis: Basis = "printed"
+    relative: bool = False
+
+    @property
+    def difference(self) -> float | None:
+        """Found minus published; over the published one where ``relative``."""
+        if self.found is None:
+            return None
+        apart = self.found - self.published
+        return apart / abs(self.published) if self.relative and self.published else apart
+
+    @property
+    def holds(self) -> bool:
+        """Whether the difference is no larger than the tolerance."""
+        return self.difference is not None and abs(self.difference) <= self.tolerance
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedTable:
+    """Rows of one published table or figure.
+
+    Attributes
+    ----------
+    key : str
+        Short, for JSON: ``steady_turns``.
+    title : str
+    rows : tuple of Compared
+    source : str
+        Table, figure or equation of the publication.
+    statements : tuple of str
+        What a reader has to know, in words.
+    """
+
+    key: str
+    title: str
+    rows: tuple[Compared, ...]
+    source: str
+    statements: tuple[str, ...] = ()
+
+    @property
+    def holds(self) -> bool:
+        """Whether every row does."""
+        return all(r.holds for r in self.rows)
+
+
+@dataclass(frozen=True, slots=True)
+class Acceptance:
+    """A publication reproduced.
+
+    Attributes
+    ----------
+    name, title : str
+    tables : tuple of ComparedTable
+    errata : tuple of str
+        Errors of the publication, each with what stands in their place.
+    statements : tuple of str
+    citations : tuple of str
+    figures : tuple of (str, str, bytes)
+        File name, caption, SVG.
+    """
+
+    name: str
+    title: str
+    tables: tuple[ComparedTable, ...]
+    errata: tuple[str, ...]
+    statements: tuple[str, ...]
+    citations: tuple[str, ...]
+    figures: tuple[tuple[str, str, bytes], ...] = ()
+
+    @property
+    def holds(self) -> bool:
+        """Whether every table does."""
+        return all(t.holds for t in self.tables)

@@ -1,0 +1,180 @@
+"""What every manoeuvre begins with: a straight run at a speed, and which way a control turns the vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.symbols import ANGULAR, CONTROLS, MOTIONS
+from coeflab.kernels.linearisation import linearised, modes
+from coeflab.model.manoeuvre import UPRIGHT, Figure
+from coeflab.model.trajectory import Trajectory
+from coeflab.model.vehicle import THRUST, Vehicle
+
+Array = NDArray[np.float64]
+STEP = 1e-4
+UNCOVERED = "no data cover it"
+
+
+def along(vehicle: Vehicle, speed: float) -> Array:
+    """(6,) straight ahead at a speed; the file's own where zero is asked for."""
+    nu = np.zeros(6)
+    nu[0] = speed or vehicle.speed
+    return nu
+
+
+def propulsion(vehicle: Vehicle, speed: float) -> tuple[dict[str, float], str]:
+    """Orders that keep the speed on a straight course, and what that means, in words.
+
+    Raises
+    ------
+    InputError
+        The file has no resistance although the speed is free.
+    """
+    if "u" not in vehicle.free:
+        return {}, f"speed held at {speed:g} m/s, whatever thrust that takes"
+    needed = vehicle.resistance(speed)
+    if needed <= 0.0:
+        raise InputError(
+            f"a resistance of {needed:g} N at {speed:g} m/s", "a force against the motion, such as X0 or Xu|u|",
+            column="coefficients", advice="Hold the speed: --hold u.",
+        )  # fmt: skip
+    return {THRUST: needed}, f"thrust constant at {needed:.4g} N, which a straight run at {speed:g} m/s takes"
+
+
+def turning_sense(vehicle: Vehicle, control: str, about: str, speed: float) -> float:
+    """+1 where a positive angle first turns the vehicle the positive way about an axis (``r``, ``q``), otherwise -1.
+
+    Raises
+    ------
+    InputError
+        No coefficient of the file speaks of that control, or it gives no moment.
+    """
+    if not any(v[0] == control for t in vehicle.terms for v, _, _ in t.factors):
+        known = [c for c in CONTROLS if any(v[0] == c for t in vehicle.terms for v, _, _ in t.factors)]
+        raise InputError(
+            f"no coefficient of {control}", f"a derivative such as {'N' if about == 'r' else 'M'}{control}",
+            column="coefficients",
+            advice=f"The file has {', '.join(known)}." if known else "Order thrusters instead, with --command NAME=VALUE.",
+        )  # fmt: skip
+    nu = along(vehicle, speed)[None, :]
+    angles = np.zeros((2, 3))
+    angles[:, CONTROLS.index(control)] = 1.0, -1.0
+    rate = [vehicle.acceleration(nu, np.array([UPRIGHT]), a[None, :] * STEP, np.zeros(6)) for a in angles]
+    turning = float((rate[0] - rate[1])[0, MOTIONS.index(about)])
+    if turning == 0.0:
+        raise InputError(f"{control} without a moment", f"an effect of {control} on {about}", column="coefficients")
+    return 1.0 if turning > 0.0 else -1.0
+
+
+def within_limit(vehicle: Vehicle, control: str, angle: float, key: str) -> float:
+    """The angle, if the surface can take it.
+
+    Raises
+    ------
+    InputError
+        Beyond the surface's limit.
+    """
+    surface = next((s for s in vehicle.surfaces if s.control == control), None)
+    if surface is not None and abs(angle) > surface.limit * (1.0 + 1e-9):
+        raise InputError(
+            f"{np.degrees(angle):g} deg",
+            f"at most {np.degrees(surface.limit):g} deg, the limit of {control}",
+            column=key,
+        )
+    return angle
+
+
+def thruster_orders(vehicle: Vehicle, commands: Sequence[str]) -> dict[str, float]:
+    """``left=0 right=60`` as orders.
+
+    Raises
+    ------
+    InputError
+        Not NAME=NUMBER, or a name that the vehicle does not have.
+    """
+    out: dict[str, float] = {}
+    for text in commands:
+        name, _, value = text.partition("=")
+        try:
+            out[name] = float(value)
+        except ValueError:
+            raise InputError(shown(text), "NAME=NUMBER, such as left=60", column="commands") from None
+    known = {*CONTROLS}
+    vehicle.wrench({k: v for k, v in out.items() if k not in known})
+    return out
+
+
+def linear_growth(vehicle: Vehicle, plane: Sequence[str], speed: float) -> float:
+    """Largest real part of the eigenvalues of small motions about a straight course with the speed held, 1/s.
+
+    Positive: the course is unstable, and only nonlinear terms end the growth.
+    """
+    at = [MOTIONS.index(m) for m in plane if m != "u" and m in vehicle.free]
+    if not at:
+        return 0.0
+    held = replace(vehicle, free=tuple(MOTIONS[i] for i in at))
+    nu = along(vehicle, speed)
+    upright = np.array([UPRIGHT])
+
+    def rates(small: Array) -> Array:
+        moved = nu.copy()
+        moved[at] = small
+        return np.asarray(held.acceleration(moved[None, :], upright, np.zeros((1, 3)), np.zeros(6))[0, at])
+
+    scale = np.array([nu[0] / vehicle.length if MOTIONS[i] in ANGULAR else nu[0] for i in at])
+    return float(modes(linearised(rates, nu[at], scale))[0].real)
+
+
+def has_rotary_limit(vehicle: Vehicle, rate: str, components: Sequence[str]) -> bool:
+    """Whether a term of second or higher degree in a rate, beyond its product with V or u, stands in these components."""
+    return any(
+        t.component in components
+        and any(v[0] == rate for v, _, _ in t.factors)
+        and sum(n for v, n, _ in t.factors if v[0] in ("v", "w", "p", "q", "r")) > 1
+        for t in vehicle.terms
+    )
+
+
+def unlimited(vehicle: Vehicle, rate: str, speed: float) -> str:
+    """Why a steady turn in a rate (``r``, ``q``) is not determined, in words; empty where the file's terms limit it."""
+    other, components = ("v", "YN") if rate == "r" else ("w", "ZM")
+    if has_rotary_limit(vehicle, rate, components) or linear_growth(vehicle, (other, rate), speed) <= 0.0:
+        return ""
+    return (
+        f"straight motion is unstable, and the file has no nonlinear term in {rate} of {components[0]} or {components[1]} "
+        "that would limit the turn"
+    )
+
+
+def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking: str = "") -> Figure:
+    """The figure with a word on motions that no data cover before the time it was read off.
+
+    Parameters
+    ----------
+    figure : Figure
+    trajectory : Trajectory
+    until : float or None
+        When it was read off, s.
+    lacking : str
+        Of `unlimited`; then there is no value once the motion has left a range that data cover.
+    """
+    if figure.value is None or until is None:
+        return figure
+    before = trajectory.time <= until
+    names = [name for name, flags in trajectory.outside.items() if np.any(flags & before)]
+    if not names:
+        return figure
+    beyond = f"beyond the data: {', '.join(names)}"
+    if lacking and any(not name.endswith(UNCOVERED) for name in names):
+        return replace(figure, value=None, status="not determined", why=f"{beyond}; {lacking}")
+    return replace(figure, status="extrapolated", why=beyond)
+
+
+def undetermined(figure: Figure, lacking: str) -> Figure:
+    """A figure of a steady turn; without a value where nothing limits the turn."""
+    return replace(figure, value=None, status="not determined", why=lacking) if lacking else figure

@@ -1,0 +1,168 @@
+"""The force law of a parameter file as arrays: derivatives, controls and fitted tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from coeflab.core.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, derivative
+from coeflab.kernels.motion_law import BASE, WIND, MotionLaw
+from coeflab.kernels.terms import parse_suffix
+from coeflab.model.force_law import force_law
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.parameter_model import ParameterModel
+from coeflab.model.regression import MOMENT_COEFFICIENTS
+
+FREE = (-np.inf, np.inf)
+AHEAD = ("u", 10.0, -1.0, 1.0, False)
+Variable = tuple[str, float, float, float, bool]
+
+
+@dataclass(frozen=True, slots=True)
+class MotionTerm:
+    """One term before it becomes a row of arrays.
+
+    Attributes
+    ----------
+    symbol : str
+        Of the coefficient, primed as in the file, or response and term of a table.
+    component : str
+        X Y Z K M N, or D S L.
+    coefficient : float
+        SI.
+    per_prime : float
+        SI coefficient of one unit of what the file states, so that draws of it can be scaled.
+    speed_power : int
+    factors : tuple of (Variable, power, absolute)
+    """
+
+    symbol: str
+    component: str
+    coefficient: float
+    per_prime: float
+    speed_power: int
+    factors: tuple[tuple[Variable, int, bool], ...]
+
+
+def motion_terms(parameters: ParameterFile, tables: bool) -> tuple[tuple[MotionTerm, ...], tuple[str, ...]]:
+    """Every term, and what has to be said of them.
+
+    A fitted table speaks for the components that no derivative speaks for; with ``tables`` it is the other way round.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    tables : bool
+        Whether fitted tables come first.
+    """
+    derivatives = _derivatives(parameters)
+    fitted, statements = _fitted(parameters)
+    spoken = {t.component for t in derivatives if any(v[0] not in CONTROLS for v, _, _ in t.factors)}
+    by_table = {c for t in fitted for c in _body(t.component)}
+    if tables:
+        derivatives = tuple(t for t in derivatives if t.component not in by_table)
+    else:
+        fitted = tuple(t for t in fitted if not _body(t.component) & spoken)
+    return derivatives + fitted, statements if fitted else ()
+
+
+def _body(component: str) -> set[str]:
+    return {"X", "Y", "Z"} if component in WIND else {component}
+
+
+def _derivatives(parameters: ParameterFile) -> tuple[MotionTerm, ...]:
+    """Derivatives and controls. A force that has only V in it, such as X0, turns with the direction of motion."""
+    primes = {c.symbol.removesuffix("'"): c for c in parameters.coefficients}
+    out = []
+    for t in force_law(parameters).terms:
+        value = primes[t.symbol].value
+        factors = tuple((_free(v), n, a) for v, n, a in t.term.factors)
+        if not factors and t.component == "X" and t.speed_power == 2:
+            factors = ((AHEAD, 1, False),)
+        per_prime = t.coefficient / value if value else 0.0
+        out.append(MotionTerm(t.symbol + "'", t.component, t.coefficient, per_prime, t.speed_power, factors))
+    for c in parameters.coefficients:
+        d = derivative(c.symbol)
+        if c.value is None or not any(f in CONTROLS for f in d.factors):
+            continue
+        term = parse_suffix(d.text[1:])
+        motions = sum(n for v, n, _ in term.factors if v not in CONTROLS)
+        scale = 0.5 * parameters.conditions.density * parameters.scaling.length ** d.powers[1]
+        factors = tuple((_free(v), n, a) for v, n, a in term.factors)
+        out.append(MotionTerm(c.symbol, d.component, scale * c.value, scale, 2 - motions, factors))
+    return tuple(out)
+
+
+def _free(name: str) -> Variable:
+    return (name, 0.0, *FREE, False)
+
+
+def _fitted(parameters: ParameterFile) -> tuple[tuple[MotionTerm, ...], tuple[str, ...]]:
+    out: list[MotionTerm] = []
+    statements = []
+    for m in parameters.models:
+        place = _place(m, parameters)
+        if place is None:
+            statements.append(f"the table of {m.response} is no force that a motion needs and was left out")
+            continue
+        component, scale, power = place
+        variables = _variables(m, parameters.scaling.length)
+        for t in m.terms:
+            if t.value is None:
+                statements.append(f"{m.response}: {t.symbol} is not determined by the data and counts as zero")
+                continue
+            factors = tuple((variables[f.variable], f.power, f.absolute) for f in t.factors)
+            out.append(MotionTerm(f"{m.response} {t.symbol}", component, scale * t.value, scale, power, factors))
+        statements.append(f"{m.response}: beyond the box of its data the value at the edge stands in")
+    return tuple(out), tuple(statements)
+
+
+def _place(model: ParameterModel, parameters: ParameterFile) -> tuple[str, float, int] | None:
+    """Component, SI force of one unit of the response, power of the speed."""
+    pressure, length = 0.5 * parameters.conditions.density, parameters.scaling.length
+    name = model.response.removesuffix("'")
+    component = MOMENT_COEFFICIENTS.get(name) or (name[2:] if name.startswith("C_") and name[2:] in WIND else name)
+    if component not in (*COMPONENTS, *WIND):
+        return None
+    arm = length if component in "KMN" else 1.0
+    if model.unit != "1":
+        return component, 1.0, 0
+    return component, pressure * (model.area.value if model.area else length**2) * arm, 2
+
+
+def _variables(model: ParameterModel, length: float) -> dict[str, Variable]:
+    out: dict[str, Variable] = {}
+    for v, low, high in zip(model.variables, model.domain.low, model.domain.high, strict=True):
+        prime = 0.0
+        if v.unit == "1":
+            prime = 1.0 if v.name in LINEAR else length if v.name in ANGULAR else 0.0
+        out[v.name] = (v.name, prime, low, high, True)
+    return out
+
+
+def as_arrays(terms: Iterable[MotionTerm], ideal: np.ndarray) -> MotionLaw:
+    """The terms as a `MotionLaw`, in their order."""
+    listed = list(terms)
+    variables = list(dict.fromkeys(v for t in listed for v, _, _ in t.factors))
+    at = {v: i for i, v in enumerate(variables)}
+    signed = np.zeros((len(listed), len(variables)), dtype=np.int64)
+    absolute = np.zeros_like(signed)
+    for row, t in enumerate(listed):
+        for v, n, a in t.factors:
+            (absolute if a else signed)[row, at[v]] += n
+    order = (*COMPONENTS, *WIND)
+    return MotionLaw(
+        source=np.array([BASE.index(v[0]) for v in variables], dtype=np.int64),
+        prime=np.array([v[1] for v in variables], dtype=np.float64),
+        low=np.array([v[2] for v in variables], dtype=np.float64),
+        high=np.array([v[3] for v in variables], dtype=np.float64),
+        tabled=np.array([v[4] for v in variables], dtype=bool),
+        component=np.array([order.index(t.component) for t in listed], dtype=np.int64),
+        coefficient=np.array([t.coefficient for t in listed], dtype=np.float64),
+        speed_power=np.array([t.speed_power for t in listed], dtype=np.int64),
+        signed=signed,
+        absolute=absolute,
+        ideal=ideal,
+    )

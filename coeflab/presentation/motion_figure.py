@@ -1,0 +1,137 @@
+"""Figures of a motion: the track, and speeds, angles, rates and controls over time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from coeflab.core.symbols import CONTROLS
+from coeflab.model.trajectory import Trajectory
+from coeflab.presentation.document import Figure
+from coeflab.presentation.panel import BOTTOM, LEFT, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
+from coeflab.presentation.series import STYLES
+from coeflab.presentation.svg import COLOURS, settings, svg_text
+
+Array = NDArray[np.float64]
+FLAT = 1e-9
+STILL = 1e-12
+
+
+def track_figure(trajectory: Trajectory, anchor: str, length: float) -> Figure:
+    """The track in its plane, with the body drawn at equal times; grey where the motion leaves what data cover."""
+    x = np.asarray(trajectory.position)
+    vertical = float(np.ptp(x[:, 2])) > float(np.ptp(x[:, 1]))
+    across, up = (x[:, 0], x[:, 2]) if vertical else (x[:, 1], x[:, 0])
+    names = ("north  [m]", "depth  [m]") if vertical else ("east  [m]", "north  [m]")
+    top = TOP + 24.0
+    ranges = _equal(across, up, (WIDTH - LEFT - RIGHT) / (top - BOTTOM), length)
+    beyond = _outside(trajectory)
+    title = f"Track in the {'vertical' if vertical else 'horizontal'} plane"
+    description = (
+        f"{names[1].split()[0]} against {names[0].split()[0]} of the reference point, {trajectory.time[-1]:g} s."
+    )
+    with settings():
+        figure = drawing()
+        axes = panel(
+            figure, BOTTOM, top - BOTTOM, across=ranges[0], up=ranges[1], name_up=names[1], name_across=names[0]
+        )
+        axes.plot(across, np.where(beyond, np.nan, up), color=COLOURS["a"], linewidth=1.4, zorder=3)
+        axes.plot(
+            across,
+            np.where(beyond, up, np.nan),
+            color=COLOURS["muted"],
+            linewidth=1.4,
+            linestyle=(0, (3, 2)),
+            zorder=2.8,
+        )
+        axes.plot(across[:1], up[:1], linestyle="none", marker="o", markersize=4.0, color=COLOURS["a"], zorder=4)
+        _bodies(axes, trajectory, across, up, vertical, length)
+        if vertical:
+            axes.invert_yaxis()
+        handles: list[Any] = [Line2D([], [], color=COLOURS["a"], linewidth=1.4, label="track")]
+        if np.any(beyond):
+            handles.append(
+                Line2D([], [], color=COLOURS["muted"], linewidth=1.4, linestyle=(0, (3, 2)), label="beyond the data")
+            )
+        legend(figure, handles, top)
+        svg = svg_text(figure, anchor, title, description)
+    return Figure(anchor, svg, title, f"{title}; the dot is the start, the strokes are the body.", description)
+
+
+def _equal(x: Array, y: Array, ratio: float, length: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Ranges with one scale on both axes."""
+    (x0, x1), (y0, y1) = (limits(v, 0.08) or (-1.0, 1.0) for v in (x, y))
+    wide = max(x1 - x0, ratio * (y1 - y0), 2.0 * length)
+    tall = wide / ratio
+    cx, cy = (x0 + x1) / 2.0, (y0 + y1) / 2.0
+    return (cx - wide / 2.0, cx + wide / 2.0), (cy - tall / 2.0, cy + tall / 2.0)
+
+
+def _bodies(axes: Axes, trajectory: Trajectory, across: Array, up: Array, vertical: bool, length: float) -> None:
+    psi, theta = trajectory.angles[:, 2], trajectory.angles[:, 1]
+    ahead = (np.cos(theta), -np.sin(theta)) if vertical else (np.sin(psi), np.cos(psi))
+    times = np.linspace(trajectory.time[0], trajectory.time[-1], 13)
+    for i in np.unique(np.searchsorted(trajectory.time, times).clip(0, len(trajectory.time) - 1)):
+        dx, dy = 0.5 * length * ahead[0][i], 0.5 * length * ahead[1][i]
+        axes.plot(
+            [across[i] - dx, across[i] + dx], [up[i] - dy, up[i] + dy], color=COLOURS["b"], linewidth=2.2,
+            solid_capstyle="round", alpha=0.8, zorder=3.4,
+        )  # fmt: skip
+
+
+def _outside(trajectory: Trajectory) -> NDArray[np.bool_]:
+    out = np.zeros(len(trajectory.time), dtype=bool)
+    for flags in trajectory.outside.values():
+        out |= flags
+    return out
+
+
+def history_figures(trajectory: Trajectory, anchor: str) -> tuple[Figure, ...]:
+    """Speeds, angles and rates that change, and the controls, each over time."""
+    nu, angles = trajectory.velocity, np.degrees(trajectory.angles)
+    speeds = {"u": nu[:, 0], "v": nu[:, 1], "w": nu[:, 2], "V": trajectory.speed}
+    turns = {"roll": angles[:, 0], "pitch": angles[:, 1], "heading": np.degrees(trajectory.heading)}
+    rates = {name: np.degrees(nu[:, 3 + i]) for i, name in enumerate("pqr")}
+    ordered = {n: np.degrees(c) for n, c in trajectory.controls.items() if n in CONTROLS or n.endswith(".tilt")}
+    groups: list[tuple[str, str, Mapping[str, Array], str]] = [
+        ("speed", "speed  [m/s]", speeds, "Speeds through the water"),
+        ("angle", "angle  [deg]", {**turns, **ordered}, "Attitude and control angles"),
+        ("rate", "rate  [deg/s]", rates, "Rates"),
+    ]
+    if np.ptp(trajectory.position[:, 2]) > FLAT:
+        groups.append(("depth", "depth  [m]", {"depth": trajectory.position[:, 2]}, "Depth"))
+    out = []
+    for key, name_up, series, title in groups:
+        moving = {n: v for n, v in series.items() if np.ptp(v) > STILL or np.any(np.abs(v) > STILL)}
+        if moving:
+            out.append(_history(trajectory.time, moving, f"{anchor}-{key}", name_up, title))
+    return tuple(out)
+
+
+def _history(time: Array, series: Mapping[str, Array], anchor: str, name_up: str, title: str) -> Figure:
+    span = (float(time[0]), float(time[-1]))
+    up = limits(np.concatenate(list(series.values())), 0.06) or (-1.0, 1.0)
+    description = f"{title} over {span[1] - span[0]:g} s: {', '.join(series)}."
+    with settings():
+        figure = drawing(240.0)
+        top = 240.0 - 4.0 - 2 * 12.2 - 8.0
+        axes = panel(figure, BOTTOM, top - BOTTOM, across=span, up=up, name_up=name_up, name_across="time  [s]")
+        handles: list[Any] = []
+        for i, (name, values) in enumerate(series.items()):
+            style = STYLES[i % len(STYLES)]
+            look: dict[str, Any] = {"color": style.colour, "linestyle": style.line, "linewidth": 1.3}
+            axes.plot(time, values, zorder=2.5, **look)
+            handles.append(Line2D([], [], label=name, **look))
+        legend(figure, handles, top)
+        svg = svg_text(figure, anchor, title, description)
+    return Figure(anchor, svg, title, f"{title}.", description)
+
+
+def motion_figures(trajectory: Trajectory, anchor: str, length: float) -> tuple[Figure, ...]:
+    """The track and all histories."""
+    return track_figure(trajectory, f"{anchor}-track", length), *history_figures(trajectory, anchor)

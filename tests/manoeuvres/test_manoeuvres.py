@@ -1,0 +1,203 @@
+"""Figures of manoeuvres against closed forms, and what they do not depend on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from coeflab.core.errors import InputError
+from coeflab.manoeuvres import MANOEUVRES
+from coeflab.model.manoeuvre import Figure
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.studies.simulate import Simulation, simulate
+from tests.manoeuvres.vehicles import DENSITY, INERTIA, LENGTH, MASS, SPEED, STABLE, UNSTABLE, made, with_limits
+
+Q = 0.5 * DENSITY * LENGTH**2
+HORIZONTAL = ("u", "v", "r")
+
+
+def figures(found: Simulation) -> dict[str, Figure]:
+    return {f.name: f for f in found.figures}
+
+
+def value(found: Simulation, name: str) -> float:
+    figure = figures(found)[name]
+    assert figure.value is not None, (name, figure.status, figure.why)
+    return figure.value
+
+
+def run(file: ParameterFile, manoeuvre: str, free: tuple[str, ...] = HORIZONTAL, **options: Any) -> Simulation:
+    return simulate(file, manoeuvre, options, free=free)
+
+
+def test_the_approach_thrust_keeps_the_speed() -> None:
+    found = run(made(), "straight_run", duration=30.0)
+    assert value(found, "steady speed") == pytest.approx(SPEED, rel=1e-9)
+    assert value(found, "distance") == pytest.approx(30.0 * SPEED, rel=1e-9)
+    assert value(found, "deviation") == 0.0
+
+
+@pytest.mark.parametrize("astern", [0.5, 1.0, 3.0])
+def test_stopping_against_the_closed_form(astern: float) -> None:
+    """m du/dt = -T - k u^2: t = m / sqrt(k T) [atan(u sqrt(k/T))], s = m / 2k ln((T + k u0^2) / (T + k u1^2))."""
+    k = 4e-3 * Q
+    thrust, last = astern * k * SPEED**2, 0.01 * SPEED
+    found = run(made(), "stop", astern=astern)
+    root = np.sqrt(k / thrust)
+    time = MASS / np.sqrt(k * thrust) * (np.arctan(SPEED * root) - np.arctan(last * root))
+    reach = MASS / (2.0 * k) * np.log((thrust + k * SPEED**2) / (thrust + k * last**2))
+    assert value(found, "stopping time") == pytest.approx(time, rel=1e-6)
+    assert value(found, "track reach") == pytest.approx(reach, rel=1e-5)
+    assert value(found, "head reach") == pytest.approx(reach, rel=1e-5)
+
+
+def test_without_thrust_a_quadratic_resistance_never_stops_it() -> None:
+    found = figures(run(made(), "stop", astern=0.0, longest=50.0))
+    assert {f.status for f in found.values()} == {"not reached"}
+    assert "after 50 s" in found["track reach"].why
+
+
+def test_a_small_steady_turn_is_the_linear_one() -> None:
+    """0 = Yv v + (Yr - m') r + Ydr d and 0 = Nv v + Nr r + Ndr d, primed, x_G = 0; from the primes, not the simulator."""
+    rudder = np.radians(1.0)
+    m = MASS / (0.5 * DENSITY * LENGTH**3)
+    a = np.array([[STABLE["Yv"], STABLE["Yr"] - m], [STABLE["Nv"], STABLE["Nr"]]])
+    v, r = np.linalg.solve(a, -np.array([STABLE["Ydr"], STABLE["Ndr"]]) * -rudder)
+    found = simulate(
+        made(), "turning_circle", {"rudder": rudder, "turns": 0.5, "longest": 4000.0}, hold=("u",), free=HORIZONTAL
+    )
+    assert r > 0.0
+    assert value(found, "steady turning diameter") == pytest.approx(2.0 * LENGTH / r, rel=2e-3)
+    assert value(found, "steady drift") == pytest.approx(np.arcsin(v), rel=1e-3)
+    assert value(found, "tactical diameter") == pytest.approx(2.0 * LENGTH / r, rel=0.1)
+    assert value(found, "advance") == pytest.approx(LENGTH / r, rel=0.1)
+
+
+def test_port_is_the_mirror_image_of_starboard() -> None:
+    pair = [figures(run(made(), "turning_circle", rudder=0.2, side=side)) for side in ("starboard", "port")]
+    for name, figure in pair[0].items():
+        other = pair[1][name].value
+        assert figure.value is not None
+        assert other is not None
+        mirrored = -other if name in ("steady yaw rate", "steady drift") else other
+        assert figure.value == pytest.approx(mirrored, rel=1e-5), name
+
+
+BRIEF: dict[str, dict[str, Any]] = {"spiral": {"steps": 1, "hold": 10.0}, "pull_out": {"turn": 5.0, "after": 10.0}}
+
+
+@pytest.mark.parametrize("name", ["turning_circle", "zigzag", "spiral", "pull_out"])
+def test_the_sign_that_a_source_gives_its_rudder_does_not_matter(name: str) -> None:
+    """Half of the literature calls a rudder to port positive; the same vehicle turns to the same side."""
+    other = {s: -v if s.endswith("dr") else v for s, v in STABLE.items()}
+    found, mirrored = (run(made(values), name, **BRIEF.get(name, {})) for values in (STABLE, other))
+    for a, b in zip(found.figures, mirrored.figures, strict=True):
+        assert (a.name, a.status) == (b.name, b.status)
+        assert a.value == pytest.approx(b.value, rel=1e-9, abs=1e-12)
+    assert found.trajectory.heading[5] > 0.0
+
+
+def test_the_zigzag_reverses_at_its_angles() -> None:
+    found = run(made(), "zigzag", rudder="20 deg", heading="15 deg", executes=5)
+    t = found.trajectory
+    assert value(found, "first overshoot") > 0.0
+    for k, when in enumerate(t.reached[:4]):
+        assert when is not None
+        psi = np.interp(when, t.time, t.heading)
+        assert psi == pytest.approx((-1.0) ** k * np.radians(15.0), abs=1e-4)
+    assert value(found, "initial turning time") < value(found, "reach")
+    assert np.max(np.abs(t.controls["dr"])) == pytest.approx(np.radians(20.0))
+
+
+def test_a_slow_rudder_overshoots_more() -> None:
+    quick = value(run(with_limits(made(), 0.5, None), "zigzag"), "first overshoot")
+    slow = value(run(with_limits(made(), 0.5, np.radians(3.0)), "zigzag"), "first overshoot")
+    assert slow > quick + np.radians(0.5)
+
+
+def test_a_stable_vehicle_has_no_loop_and_no_residual_rate() -> None:
+    spiral = run(made(), "spiral", steps=1, hold=25.0)
+    assert value(spiral, "loop height") == pytest.approx(0.0, abs=1e-5)
+    right, left = value(spiral, "yaw rate at +15 deg, down"), value(spiral, "yaw rate at -15 deg, down")
+    assert right > 0.0
+    assert left == pytest.approx(-right, rel=1e-4)
+    out = run(made(), "pull_out")
+    assert value(out, "residual yaw rate, starboard") == pytest.approx(0.0, abs=1e-6)
+
+
+def test_an_unstable_one_with_a_limit_in_r_has_both() -> None:
+    """A term in r|r| ends the growth, so loop and residual rates are determined: 0 = N + steady Y by elimination."""
+    limited = made({**UNSTABLE, "Nr|r|": -4e-2})
+    spiral = run(limited, "spiral", steps=1, largest="30 deg", hold=25.0)
+    assert value(spiral, "loop height") > 0.05
+    out = run(limited, "pull_out")
+    right, left = value(out, "residual yaw rate, starboard"), value(out, "residual yaw rate, port")
+    assert right > 0.0
+    assert left == pytest.approx(-right, rel=1e-3)
+    assert value(spiral, "loop height") == pytest.approx(2.0 * right, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "lost"),
+    [("turning_circle", "steady turning diameter"), ("spiral", "loop height"), ("pull_out", "residual yaw rate, port")],
+)
+def test_an_unstable_one_without_such_a_term_is_not_determined(name: str, lost: str) -> None:
+    found = run(made(UNSTABLE), name, **BRIEF.get(name, {}))
+    figure = figures(found)[lost]
+    assert (figure.value, figure.status) == (None, "not determined")
+    assert "no nonlinear term in r" in figure.why
+
+
+def test_a_dive_mirrors_a_rise() -> None:
+    dive = run(made(), "depth_change", ("u", "w", "q"))
+    rise = run(made(), "depth_change", ("u", "w", "q"), way="rise")
+    for a, b in zip(dive.figures, rise.figures, strict=True):
+        assert a.value == pytest.approx(b.value, rel=1e-6), a.name
+    assert dive.trajectory.position[-1, 2] > 0.0 > rise.trajectory.position[-1, 2]
+
+
+def test_the_period_of_a_free_roll() -> None:
+    """Small undamped roll: T = 2 pi sqrt(Ix / (m g BG))."""
+    lever = 0.02
+    found = run(made(metacentric=lever), "free_decay", ("p",), angle="1 deg", duration=30.0)
+    period = 2.0 * np.pi * np.sqrt(INERTIA[0, 0] / (MASS * 9.81 * lever))
+    assert value(found, "period") == pytest.approx(period, rel=1e-4)
+    assert value(found, "damping ratio") == pytest.approx(0.0, abs=1e-4)
+
+
+def test_figures_beyond_the_data_say_so() -> None:
+    found = figures(run(made(), "turning_circle", rudder=0.2))
+    assert found["advance"].status == "extrapolated"
+    assert "r': no data cover it" in found["advance"].why
+
+
+@pytest.mark.parametrize(
+    ("manoeuvre", "values", "options", "says"),
+    [
+        ("zigzag", {k: v for k, v in STABLE.items() if not k.endswith("dr")}, {}, "no coefficient of dr"),
+        ("depth_change", {k: v for k, v in STABLE.items() if not k.endswith("ds")}, {}, "no coefficient of ds"),
+        ("zigzag", {k: v for k, v in STABLE.items() if k != "X0"}, {}, "a resistance of -0 N"),
+        ("zigzag", STABLE, {"ruder": 0.1}, "unknown option"),
+        ("zigzag", STABLE, {"rudder": "200 deg"}, "200 deg"),
+        ("turning_circle", STABLE, {"commands": "left=1"}, 'the command "left"'),
+        ("turning_circle", STABLE, {"commands": "left"}, 'found "left"; expected NAME=NUMBER'),
+        ("free_decay", STABLE, {}, "p held"),
+    ],
+)
+def test_what_cannot_be_done(manoeuvre: str, values: dict[str, float], options: dict[str, Any], says: str) -> None:
+    free = ("u", "w", "q") if manoeuvre == "depth_change" else HORIZONTAL
+    with pytest.raises(InputError, match=says):
+        simulate(made(values), manoeuvre, options, free=free)
+
+
+def test_a_rudder_beyond_its_limit_is_refused() -> None:
+    with pytest.raises(InputError, match="at most 10 deg, the limit of dr"):
+        run(with_limits(made(), np.radians(10.0), None), "turning_circle", rudder="15 deg")
+
+
+def test_every_manoeuvre_is_tried_here() -> None:
+    assert set(MANOEUVRES.names()) == {
+        "depth_change", "free_decay", "pull_out", "spiral", "stop", "straight_run", "turning_circle", "zigzag",
+    }  # fmt: skip
