@@ -45,10 +45,11 @@ def limits(values: Array, margin: float) -> Range | None:
 
 
 def ticks(within: Range, most: int) -> Array:
-    """Round values inside a range."""
-    at = np.asarray(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]).tick_values(*within), dtype=float)
-    room = 1e-9 * (within[1] - within[0])
-    return at[(at >= within[0] - room) & (at <= within[1] + room)]
+    """Round values inside a range, rising even where the range falls (a depth, which grows downward)."""
+    low, high = min(within), max(within)
+    at = np.asarray(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high), dtype=float)
+    room = 1e-9 * (high - low)
+    return at[(at >= low - room) & (at <= high + room)]
 
 
 def tick_texts(at: Array) -> list[str]:

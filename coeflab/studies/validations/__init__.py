@@ -1,0 +1,1 @@
+"""Published vehicles reproduced: each module gives an ``Acceptance``."""

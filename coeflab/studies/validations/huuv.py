@@ -1,0 +1,218 @@
+"""HUUV: steady turns of a vehicle steered by two thrusters, and coefficients tuned to its printed turns."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coeflab.kernels.least_squares import Array
+from coeflab.kernels.parts import plate_coefficient
+from coeflab.kernels.steady_turn import SteadyTurns, coriolis, run, steady_turns
+from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
+from coeflab.model.huuv import MATLAB, TRACKER, Huuv, Turns, read_huuv, thrust
+from coeflab.model.huuv_parameters import parameter_file
+from coeflab.model.steady_motion import steady_motions, wrenches
+from coeflab.model.tuning import Tuning, largest_correlations, moved_in_words
+from coeflab.model.vehicle import vehicle
+from coeflab.presentation.tuning_figure import Groups, agreement_figure, curves_figure
+from coeflab.studies.validations.huuv_fit import BASE, TOLD, hidden, tuned
+
+ACCEPTED, LASTS, SEED = 1e-3, 120.0, 20251105
+LIMITS = {"u": ("m/s", 0.007), "beta": ("deg", 0.40), "radius": ("m", 0.027)}
+ABOUT = {"u": ("m/s", 0.063), "beta": ("deg", 1.1), "radius": ("m", 0.14)}
+ROUGHLY = 0.1
+INTERCEPT, EITHER_WAY = 2.30, 0.15
+PLATES = ((1.0, 0.579), (2.0, 0.756), (3.0, 0.831), (5.0, 0.896))
+SIGNS = (
+    "Computed in FRD, where these turns to port have r < 0 and v > 0; the table has sizes. Only the sign of the thrusters' "
+    "moment changes between the two triads."
+)
+
+
+def acceptance() -> Acceptance:
+    """Everything that the paper's equations and its Fig. 17 let us judge."""
+    huuv = read_huuv()
+    halves = {source: tuned(huuv, source) for source in (MATLAB, TRACKER)}
+    return Acceptance(
+        "huuv",
+        "HUUV: steady turns under two thrusters, and coefficients tuned to the printed turns",
+        (
+            _solved(huuv),
+            _simulated(huuv),
+            _through_file(huuv),
+            _skew(huuv),
+            _origin(huuv),
+            _tuned(halves[MATLAB]),
+            _told(halves[TRACKER]),
+            _hidden(huuv, halves[MATLAB]),
+            _equations(huuv),
+        ),
+        huuv.errata,
+        _statements(huuv, halves),
+        ("huuv2025",),
+        _figures(huuv, halves),
+    )
+
+
+def _case(turns: Turns, row: int) -> str:
+    return f"{turns.left[row]:g}, {turns.right[row]:g} %"
+
+
+def _wrench(huuv: Huuv, turns: Turns) -> Array:
+    c = huuv.constants
+    return thrust(turns.left, turns.right, c["slope"], c["intercept"], c["arm"], huuv.dead_zone)
+
+
+def _rows(huuv: Huuv, found: Array) -> tuple[Compared, ...]:
+    """Operating points beside velocities u v r."""
+    turns, ours = huuv.accepted, SteadyTurns(found, np.ones(len(found), bool), np.ones(len(found), bool))
+    rows: list[Compared] = []
+    for i, (u, beta, radius) in enumerate(turns.figures):
+        case = _case(turns, i)
+        rows.append(Compared(case, "u", "m/s", float(u), float(found[i, 0]), ACCEPTED, "derived", True))
+        drift = float(np.degrees(abs(ours.drift[i])))
+        rows.append(Compared(case, "|beta|", "deg", float(np.degrees(beta)), drift, ACCEPTED, "derived", True))
+        if np.isfinite(radius):
+            rows.append(Compared(case, "R", "m", float(radius), float(ours.radius[i]), ACCEPTED, "derived", True))
+        if np.isfinite(huuv.accepted_rate[i]):
+            rate = float(abs(found[i, 2]))
+            rows.append(Compared(case, "|r|", "rad/s", float(huuv.accepted_rate[i]), rate, ACCEPTED, "derived", True))
+    return tuple(rows)
+
+
+def _solved(huuv: Huuv) -> ComparedTable:
+    found = steady_turns(huuv.theta, _wrench(huuv, huuv.accepted))
+    stable = "all are stable" if np.all(found.stable) else "some are not stable"
+    return ComparedTable(
+        "steady_turns", "Steady turns by root finding", _rows(huuv, found.velocity), "equations 1, 5-7, 34-38",
+        (f"Forces vanish to 1e-8 of the thrust; {stable}.", SIGNS),
+    )  # fmt: skip
+
+
+def _simulated(huuv: Huuv) -> ComparedTable:
+    times = np.array([0.0, LASTS])
+    ends = np.array([run(huuv.theta, one, times)[-1] for one in _wrench(huuv, huuv.accepted)])
+    return ComparedTable(
+        "simulated", f"The same after {LASTS:g} s from rest", _rows(huuv, ends), "equations 1, 5-7, 34-38", (SIGNS,)
+    )
+
+
+def _through_file(huuv: Huuv) -> ComparedTable:
+    made = vehicle(parameter_file(huuv), free=("u", "v", "r"))
+    turns = huuv.accepted
+    commands = [{"left": float(a), "right": float(b)} for a, b in zip(turns.left, turns.right, strict=True)]
+    found, _ = steady_motions(made, wrenches(made, commands))
+    return ComparedTable(
+        "through_file", "The same from the parameter file huuv.parameters.json", _rows(huuv, found[:, [0, 1, 5]]),
+        "equations 1, 5-7, 34-38", ("Tables C_D, C_S and C_n over beta, yaw damping over r, thrusters with a dead zone.",),
+    )  # fmt: skip
+
+
+def _skew(huuv: Huuv) -> ComparedTable:
+    velocity = np.random.default_rng(SEED).normal(size=(1000, 3))
+    matrices = coriolis(huuv.theta, velocity)
+    rows = (
+        Compared("1000 random motions", "largest |C + C^T|", "kg m/s", 0.0,
+                 float(np.max(np.abs(matrices + np.swapaxes(matrices, 1, 2)))), 1e-12, "derived"),
+        Compared("1000 random motions", "largest power of C nu", "W", 0.0,
+                 float(np.max(np.abs(np.einsum("ni,nij,nj->n", velocity, matrices, velocity)))), 1e-12, "derived"),
+    )  # fmt: skip
+    return ComparedTable("coriolis", "Coriolis forces do no work", rows, "equation 1, matrix C")
+
+
+def _origin(huuv: Huuv) -> ComparedTable:
+    fit = tuned(huuv, MATLAB, BASE)
+    rows = tuple(
+        Compared("fit of seven", TOLD[n], p.unit, huuv.constants[n], p.after, 1e-3, "in-sample", True)
+        for n in BASE
+        if (p := fit.parameter(n))
+    )
+    said = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
+    return ComparedTable(
+        "origin", "Where the constants of the steady turns come from", rows, "Fig. 17 b, d, f",
+        (f"Quadratic yaw damping held at 1, none linear. Root mean square: {said}; its radius does not reach 0.027 m.",),
+    )  # fmt: skip
+
+
+def _at_most(case: str, name: str, unit: str, largest: float, found: float) -> Compared:
+    """A limit from above: what counts is the part beyond it."""
+    return Compared(case, f"{name} beyond {largest:g}", unit, 0.0, max(0.0, found - largest), 0.0, "derived")
+
+
+def _tuned(fit: Tuning) -> ComparedTable:
+    rows = [
+        Compared("MATLAB", "thrust intercept", "N", INTERCEPT, -fit.parameter("intercept").after, EITHER_WAY, "derived")
+    ]
+    rows += [_at_most("MATLAB", f"rms of {n}", unit, most, fit.quantity(n).rms()) for n, (unit, most) in LIMITS.items()]
+    said = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
+    return ComparedTable(
+        "tuned_matlab", "Tuned to the paper's simulation, 28 turns", tuple(rows), "Fig. 17 b, d, f",
+        (f"Root mean square: {said}.", *(moved_in_words(p) for p in fit.parameters), *fit.together, *fit.statements),
+    )  # fmt: skip
+
+
+def _told(fit: Tuning) -> ComparedTable:
+    rows = tuple(
+        Compared("TRACKER", f"rms of {n}", unit, about, fit.quantity(n).rms(), ROUGHLY, "derived", True)
+        for n, (unit, about) in ABOUT.items()
+    )
+    return ComparedTable(
+        "tuned_tracker", "Tuned to the pool, 28 turns", rows, "Fig. 17 a, c, e",
+        (*(moved_in_words(p) for p in fit.parameters), *fit.together, *fit.statements),
+    )  # fmt: skip
+
+
+def _hidden(huuv: Huuv, fit: Tuning) -> ComparedTable:
+    """Held constants that the turns would not tell apart from what is free."""
+    rows, said = [], []
+    for name in ("m", "my", "arm"):
+        found = hidden(huuv, fit, MATLAB, name)
+        rows.append(Compared("MATLAB", f"sets that {TOLD[name]} hides in", "1", 1.0, float(len(found)), 0.0, "derived"))
+        said += list(found)
+    both = sum("beta^3" in text and "r|r|" in text for text in fit.together)
+    rows.append(Compared("MATLAB", "sets of M_mr (r|r|) and C_m (beta^3)", "1", 1.0, float(both), 0.0, "derived"))
+    return ComparedTable(
+        "hidden", "What the turns do not determine", tuple(rows), "Fig. 17 b, d, f",
+        (*said, "So C_S is known only up to the mass, and the yaw equation only up to the arm and m_y - m_x."),
+    )  # fmt: skip
+
+
+def _equations(huuv: Huuv) -> ComparedTable:
+    c = huuv.constants
+    rows = [
+        Compared("equation 34", "intercept without a step", "N", 2.3156, c["slope"] * huuv.dead_zone, 1e-4, "derived"),
+        Compared("equation 12", "n1 over m_y - m_x", "1", 1.0, c["n1"] / (c["my"] - c["mx"]), 0.02, "in-sample"),
+    ]
+    rows += [
+        Compared(f"equation 30, aspect {a:g}", "k", "1", k, plate_coefficient(a), 0.01, "derived", True)
+        for a, k in PLATES
+    ]
+    return ComparedTable(
+        "equations", "Equations 12, 30 and 34 as corrected", tuple(rows), "equations 12, 28-34",
+        ("Cylinders and plates of equations 28-32: `coeflab added-mass BODY --method primitives:huuv`.",),
+    )  # fmt: skip
+
+
+def _statements(huuv: Huuv, halves: dict[str, Tuning]) -> tuple[str, ...]:
+    pairs = ", ".join(f"{TOLD[a]} with {TOLD[b]} {r:+.2f}" for a, b, r in largest_correlations(halves[MATLAB]))
+    reach = max(float(np.degrees(np.nanmax(t.figures[:, 1]))) for t in huuv.turns.values())
+    return (
+        "m_x, m_y, m_yr, the thruster arm and the moments of inertia are chosen: the paper prints none of them.",
+        f"Incidence reaches {reach:.3g} deg; the paper's tables end at 25 deg. Astern the hull is its own mirror image.",
+        f"Correlations on the MATLAB half: {pairs}.",
+        "The paper scaled C_S, C_m and M_mr by 2 by hand; here they are least squares with intervals where there are any.",
+    )
+
+
+def _figures(huuv: Huuv, halves: dict[str, Tuning]) -> tuple[tuple[str, str, bytes], ...]:
+    out = []
+    for source, fit in halves.items():
+        turns = huuv.turns[source]
+        commands = sorted(set(turns.left.tolist()))
+        member = np.searchsorted(commands, turns.left)
+        groups = Groups(turns.right, "right thruster  [%]", member, tuple(f"left {c:g} %" for c in commands))
+        for kind, figure in (
+            ("turns", curves_figure(fit, groups, f"huuv-{source}-turns")),
+            ("agreement", agreement_figure(fit, f"huuv-{source}-agreement")),
+        ):
+            out.append((f"huuv_{source}_{kind}.svg", figure.caption, figure.svg.encode()))
+    return tuple(out)

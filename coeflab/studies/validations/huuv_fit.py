@@ -1,0 +1,108 @@
+"""HUUV: coefficients tuned to the printed turns, and which held constants the turns could not tell apart from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from coeflab.kernels.least_squares import Array
+from coeflab.kernels.output_error import Estimate, Problem, estimate, examine, problem
+from coeflab.kernels.steady_turn import COEFFICIENTS, sensitivities, steady_turns, turn_figures
+from coeflab.model.huuv import Huuv, Turns, thrust, thrust_rates
+from coeflab.model.tuning import TunedQuantity, Tuning, statements, together_in_words, tuned_parameters
+
+NAMES = (*COEFFICIENTS, "slope", "intercept", "arm")
+AT_SLOPE = len(COEFFICIENTS)
+BASE = ("intercept", "d0", "d2", "s1", "s3", "n1", "n3")
+FREE = (*BASE, "nr", "nrr")
+UNITS = {
+    **dict.fromkeys(("m", "mx", "my"), "kg"), "myr": "kg m", "nr": "N m s", "nrr": "N m s^2", "intercept": "N", "arm": "m",
+    **dict.fromkeys(("d0", "d2", "s1", "s3"), "kg/m"), **dict.fromkeys(("n1", "n3"), "kg"),
+}  # fmt: skip
+TOLD = {
+    "m": "mass m", "my": "added mass m_y", "arm": "thruster arm y_ct", "intercept": "thrust intercept",
+    "d0": "drag C_D (constant)", "d2": "drag C_D (beta^2)", "s1": "side force C_S (beta)", "s3": "side force C_S (beta^3)",
+    "n1": "yaw moment C_m (beta)", "n3": "yaw moment C_m (beta^3)", "nr": "yaw damping M_mr (r)",
+    "nrr": "yaw damping M_mr (r|r|)",
+}  # fmt: skip
+LEAST = {"d2": 20.0, "s3": 100.0, "n3": 30.0, "nr": 0.1, "nrr": 1.0}
+QUANTITIES = (("u", "m/s", 1.0), ("beta", "deg", 180.0 / np.pi), ("radius", "m", 1.0))
+ERRORS = {"matlab": (0.01, np.radians(0.3), 0.02), "tracker": (0.06, np.radians(1.1), 0.14)}
+
+
+def turning_problem(huuv: Huuv, turns: Turns, errors: Sequence[float], free: Sequence[str], start: Array) -> Problem:
+    """Turns as outputs of the free parameters, with exact derivatives.
+
+    Parameters
+    ----------
+    huuv : Huuv
+    turns : Turns
+    errors : sequence of float
+        Standard errors of u, beta in rad and radius.
+    free : sequence of str
+        Some of `NAMES`.
+    start : (16,) array
+        Values of all `NAMES`.
+    """
+    at = [NAMES.index(name) for name in free]
+
+    def operating(parameters: Array) -> tuple[Array, tuple[float, float, float], Array]:
+        whole = start.copy()
+        whole[at] = parameters
+        propulsion = (float(whole[AT_SLOPE]), float(whole[AT_SLOPE + 1]), float(whole[AT_SLOPE + 2]))
+        wrench = thrust(turns.left, turns.right, *propulsion, huuv.dead_zone)
+        return whole[:AT_SLOPE], propulsion, steady_turns(whole[:AT_SLOPE], wrench).velocity
+
+    def model(sets: Array) -> Array:
+        return np.array([turn_figures(operating(one)[2])[0].ravel() for one in sets])
+
+    def jacobian(parameters: Array) -> Array:
+        theta, propulsion, velocity = operating(parameters)
+        by_theta, by_thrust = sensitivities(theta, velocity)
+        by_propulsion = by_thrust @ thrust_rates(turns.left, turns.right, *propulsion, huuv.dead_zone)
+        moves = turn_figures(velocity)[1] @ np.concatenate([by_theta, by_propulsion], axis=-1)
+        return np.asarray(moves.reshape(-1, len(NAMES))[:, at])
+
+    sizes = np.array([max(abs(start[i]), LEAST.get(name, 1e-9)) for i, name in zip(at, free, strict=True)])
+    weights = np.tile(errors, len(turns.left))
+    return problem(model, turns.figures.ravel(), weights, start[at], sizes=sizes, jacobian=jacobian)
+
+
+def start_of(huuv: Huuv) -> Array:
+    """(16,) the shipped constants in the order of `NAMES`."""
+    return np.array([huuv.constants[name] for name in NAMES])
+
+
+def tuned(huuv: Huuv, source: str, free: Sequence[str] = FREE, errors: Sequence[float] | None = None) -> Tuning:
+    """The fit to one half of Fig. 17, from the shipped constants."""
+    turns = huuv.turns[source]
+    p = turning_problem(huuv, turns, errors or ERRORS[source], free, start_of(huuv))
+    found = estimate(p)
+    return Tuning(
+        f"huuv_{source}", tuned_parameters(free, [UNITS[n] for n in free], p, found), found.correlation, found.covariance,
+        _quantities(p, found), tuple(together_in_words([TOLD[n] for n in free], c, found.parameters) for c in found.undetermined),
+        found.singular, found.birge, found.freedom, found.converged, statements(p, found),
+    )  # fmt: skip
+
+
+def _quantities(p: Problem, found: Estimate) -> tuple[TunedQuantity, ...]:
+    before, after = (p.outputs(x).reshape(-1, 3) for x in (p.start, found.parameters))
+    measured, errors = p.measured.reshape(-1, 3), p.errors.reshape(-1, 3)
+    return tuple(
+        TunedQuantity(name, unit, *(factor * a[:, k] for a in (measured, before, after, errors)))
+        for k, (name, unit, factor) in enumerate(QUANTITIES)
+    )
+
+
+def hidden(huuv: Huuv, tuning: Tuning, source: str, constant: str) -> tuple[str, ...]:
+    """What the turns would leave open if one held constant were free too, in words; only what names that constant."""
+    whole = start_of(huuv)
+    for one in tuning.parameters:
+        whole[NAMES.index(one.name)] = one.after
+    # M_mr (r|r|) and C_m (beta^3) hide each other in any case, so that one of them is enough here.
+    free = [p.name for p in tuning.parameters if p.name != "nrr"] + [constant]
+    p = turning_problem(huuv, huuv.turns[source], ERRORS[source], free, whole)
+    found = examine(p, p.start)
+    names = [TOLD[n] for n in free]
+    return tuple(together_in_words(names, c, p.start) for c in found.undetermined if c[-1] != 0.0)

@@ -1,0 +1,49 @@
+"""Vehicles and manoeuvres of the simulators' tests; all synthetic."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from coeflab.model.added_mass import AddedMass
+from coeflab.model.manoeuvre import Manoeuvre, Phase, Until
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.parameter_vehicle import ParameterHydrostatics, ParameterSurface
+from coeflab.model.vehicle import Vehicle, vehicle
+from tests.exporters.massed import CENTRE, MASS, torpedo, with_mass
+from tests.model.test_force_law import parameters
+
+SPEED, RUDDER, RATE = 1.5, 0.3, 0.5
+
+
+def swimmer() -> Vehicle:
+    """The torpedo with a rudder that turns at 0.5 rad/s and its centre of buoyancy above that of gravity."""
+    surface = ParameterSurface(control="dr", limit=0.6, rate=RATE)
+    afloat = ParameterHydrostatics(volume=MASS / 1000.0, centre_of_buoyancy=(CENTRE[0], CENTRE[1], CENTRE[2] - 0.05))
+    return vehicle(torpedo().model_copy(update={"surfaces": (surface,), "hydrostatics": afloat}))
+
+
+def massive(
+    added: np.ndarray | None = None, centre: np.ndarray = CENTRE, values: dict[str, float] | None = None,
+    free: Sequence[str] = (), **more: object,
+) -> Vehicle:  # fmt: skip
+    """The torpedo's mass with an added mass and coefficients of one's own."""
+    hull = None if added is None else AddedMass(added, np.zeros(3), "nose", "body of tow", "panel")
+    file: ParameterFile = with_mass(parameters(values or {}, hull), centre).model_copy(update=more)
+    return vehicle(file, free)
+
+
+def coasting(seconds: float, velocity: Sequence[float], thrust: float = 0.0) -> Manoeuvre:
+    return Manoeuvre("coast", (Phase("coast", {"thrust": thrust}, seconds),), np.array(velocity, dtype=float))
+
+
+def zigzag(v: Vehicle, angle: float = 0.25) -> Manoeuvre:
+    """Rudder over at 2 s, against the heading at each overshoot, then amidships."""
+    phases = (
+        Phase("approach", {"thrust": v.resistance(SPEED)}, 2.0),
+        Phase("port", {"dr": RUDDER}, 60.0, Until("heading", False, -angle)),
+        Phase("starboard", {"dr": -RUDDER}, 60.0, Until("heading", True, angle)),
+        Phase("amidships", {"dr": 0.0}, 4.0),
+    )
+    return Manoeuvre("zigzag", phases, np.array([SPEED, 0.0, 0.0, 0.0, 0.0, 0.0]))

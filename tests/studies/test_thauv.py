@@ -1,0 +1,84 @@
+"""The THAUV paper reproduced, and what would break it."""
+
+from __future__ import annotations
+
+import pytest
+
+from coeflab.model.acceptance import Acceptance, ComparedTable
+from coeflab.studies.validations.thauv import acceptance
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def thauv() -> Acceptance:
+    return acceptance()
+
+
+def _table(thauv: Acceptance, key: str) -> ComparedTable:
+    return next(t for t in thauv.tables if t.key == key)
+
+
+def test_every_number_holds(thauv: Acceptance) -> None:
+    assert [t.key for t in thauv.tables] == ["engine", "steady_glides", "speeds", "left_out", "cycle", "gains"]
+    assert [(t.key, r.case, r.quantity) for t in thauv.tables for r in t.rows if not r.holds] == []
+
+
+def test_steady_glides_to_a_ten_thousandth(thauv: Acceptance) -> None:
+    rows = _table(thauv, "steady_glides").rows
+    assert len(rows) == 12
+    assert {r.tolerance for r in rows} == {1e-4}
+    assert {r.published for r in rows if r.quantity == "V"} == {0.39950, 0.39164, 0.42286, 0.28489, 0.27944, 0.30525}
+
+
+def test_published_speeds_are_called_in_sample_and_left_out_ones_stand_beside(thauv: Acceptance) -> None:
+    speeds, left_out = _table(thauv, "speeds"), _table(thauv, "left_out")
+    assert [r.published for r in speeds.rows] == [0.25, 0.32, 0.34, 0.43, 0.54, 0.57]
+    assert {(r.basis, r.tolerance) for r in speeds.rows} == {("in-sample", 0.005)}
+    assert any("in-sample" in s for s in speeds.statements)
+    apart = [abs(r.difference or 0.0) for r in left_out.rows if "left out" in r.case]
+    assert len(apart) == 6
+    assert max(apart) == pytest.approx(0.00374, abs=1e-4)
+    assert max(apart) > max(abs(r.difference or 0.0) for r in speeds.rows)
+
+
+def test_the_cycle_settles(thauv: Acceptance) -> None:
+    rows = _table(thauv, "cycle").rows
+    assert max(abs(r.difference or 0.0) for r in rows if r.quantity == "V of the steady glide") < 1e-8
+
+
+def test_errata_and_doubts_are_named(thauv: Acceptance) -> None:
+    errata, said = " ".join(thauv.errata), " ".join(thauv.statements)
+    for words in (
+        "Equation 9",
+        "Equation 18",
+        "Equation 19",
+        "mass plus added mass",
+        "Table 2",
+        "swapped",
+        "483 g",
+        "degrees",
+    ):
+        assert words in errata
+    for words in (
+        "Munk moment",
+        "236.7 kg is 3.6 times",
+        "by up to 0.025 m/s",
+        "no pitch damping",
+        "12 of the 12",
+        "calibrated",
+    ):
+        assert words in said
+
+
+def test_figures(thauv: Acceptance) -> None:
+    assert [name for name, _, _ in thauv.figures] == [
+        "motion.svg", "polar_thauv_case_01.svg", "polar_thauv_case_02.svg", "polar_thauv_case_03.svg",
+    ]  # fmt: skip
+    assert all(svg.startswith(b"<svg") for _, _, svg in thauv.figures)
+    for axis in (b"V", b"x", b"depth", b"alpha"):
+        assert axis in thauv.figures[0][2]
+
+
+def test_the_same_twice(thauv: Acceptance) -> None:
+    assert acceptance() == thauv
