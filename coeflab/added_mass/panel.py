@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.machine import physical_memory, stage
 from coeflab.core.options import bounded, one_of, parse_options
 from coeflab.kernels.panel_added_mass import PanelSolution, memory_needed, panel_added_mass
 from coeflab.kernels.panel_geometry import (
@@ -27,10 +27,11 @@ from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.mesh_family import family
+from coeflab.model.mesh_volume import volume_gap
 from coeflab.model.meshing import meshed
 
 summary = "triangular panels on the surface, potential formulation, Richardson extrapolation with an error estimate"
-citations = ("newman1977", "hess1967", "vanoosterom1983", "wilton1984", "roache1998")
+citations = ("newman1977", "hess1967", "vanoosterom1983", "wilton1984", "roache1998", "cohensteiner2003")
 reproducible: Mapping[str, str] = {"kernel": "numpy"}
 
 Array = NDArray[np.float64]
@@ -80,7 +81,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     chosen = parse_options(Options, options or {}, "panel")
     shape = body.require_shape()
     gated = shape if isinstance(shape, TriangleMesh) else meshed(shape, chosen.panels)
-    _gate(gated)
+    _gate(gated, made=gated is not shape)
     edges = sharpness(gated.vertices, gated.faces) > EDGED
     meshes = family(shape, chosen.panels, 3 if chosen.extrapolate == "yes" else 1)
     _fits(len(meshes[0]))
@@ -88,19 +89,25 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     compiled = [_compiled(chosen.kernel, len(corners)) for corners in meshes]
     # On the axis of a body of revolution, so that turning about it stays apart from all else.
     centre = shape.centre_of_volume
-    solutions = [panel_added_mass(c, centre, fast) for c, fast in zip(meshes, compiled, strict=True)]
+    solutions = []
+    for corners, fast in zip(meshes, compiled, strict=True):
+        stage(f"flow about {len(corners):,} panels")
+        solutions.append(panel_added_mass(corners, centre, fast))
     found = refined([s.matrix for s in solutions], [s.count for s in solutions], edges)
-    statements = (*_said(solutions, compiled[0], thin), *_judged(found, len(meshes), chosen.extrapolate == "yes"))
+    gap = volume_gap(body, gated, meshes)
+    found = replace(found, error=found.error + gap.cost(found.matrix))
+    judged = _judged(found, len(meshes), chosen.extrapolate == "yes")
+    statements = (*_said(solutions, compiled[0], thin), gap.said, *judged)
     error = None if len(meshes) == 1 else density * found.error
     own = AddedMass(density * found.settled, centre, body.datum, body.name, "panel", statements, error)
     there = own.about(body.reference_point)
     return replace(there, matrix=(there.matrix + there.matrix.T) / 2.0)
 
 
-def _gate(mesh: TriangleMesh) -> None:
-    """Refuse what the method cannot do."""
+def _gate(mesh: TriangleMesh, made: bool) -> None:
+    """Refuse what the method cannot do; faces without area where parts that we meshed were united are just left out."""
     flat = int(np.count_nonzero(slivers(mesh.vertices[mesh.faces])))
-    if flat:
+    if flat and not made:
         raise InputError(f"{flat} faces without area", "triangles", advice="Clean the mesh of degenerate faces.")
     torn = unmatched_edges(mesh.faces)
     if torn:
@@ -142,7 +149,7 @@ def _compiled(kernel: str, panels: int) -> bool:
 
 def _fits(panels: int) -> None:
     """Refuse more panels than the machine's memory holds, where the system tells that."""
-    there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else None
+    there = physical_memory()
     needed = memory_needed(panels)
     if there is not None and needed > there:
         raise InputError(

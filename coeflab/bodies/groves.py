@@ -31,7 +31,7 @@ LARGEST_RADIUS = 5.0 / 6.0
 BOW_END, MIDDLE_END, AFTERBODY_END, CAP_END = 3.333333, 10.645833, 13.979167, 14.291667
 CAP_RADIUS, K0, K1 = 0.1175, 10.0, 44.6244
 NODES, GRADING = 96, 4
-HULL_PANELS = 60_000
+HULL_PANELS, FEWEST_HULL = 60_000, 64
 SAIL, PLANE = (48, 24, 12), (40, 20)
 
 _X = Polynomial([0.0, 1.0])
@@ -144,14 +144,38 @@ def appended(with_sail: bool, with_planes: bool) -> Configuration:
 
 
 def mesh(with_sail: bool, with_planes: bool, hull_panels: int = HULL_PANELS) -> TriangleMesh:
-    """The hull with its appendages as one closed mesh; the exact volume by equations is known to it."""
+    """The hull with its appendages as one closed mesh; the exact volume by equations is known to it.
+
+    Parameters
+    ----------
+    with_sail, with_planes : bool
+    hull_panels : int
+        On the hull; what is attached has triangles as much larger or smaller than by default as the hull.
+    """
+    whole = _whole(with_sail, with_planes, hull_panels)
+    volume, share = appended(with_sail, with_planes).volume, hull_panels / len(whole.faces)
+
+    def remade(panels: int) -> TriangleMesh:
+        other = _whole(with_sail, with_planes, max(round(panels * share), FEWEST_HULL))
+        return TriangleMesh(other.vertices, other.faces, volume)
+
+    return TriangleMesh(whole.vertices, whole.faces, volume, remade)
+
+
+def _whole(with_sail: bool, with_planes: bool, hull_panels: int) -> TriangleMesh:
+    fine = np.sqrt(hull_panels / HULL_PANELS)
     solids = [meshed(meridian(), hull_panels)]
     if with_sail:
-        solids.append(_solid(sail_sections(*SAIL), 0.0))
+        solids.append(_solid(sail_sections(*_counts(SAIL, fine)), 0.0))
     if with_planes:
-        solids += [_solid(plane_sections(*PLANE)[:, :, [0, 2, 1]], turn * np.pi / 2.0) for turn in range(4)]
-    whole = united(solids)
-    return TriangleMesh(whole.vertices, whole.faces, appended(with_sail, with_planes).volume)
+        sections = plane_sections(*_counts(PLANE, fine))[:, :, [0, 2, 1]]
+        solids += [_solid(sections, turn * np.pi / 2.0) for turn in range(4)]
+    return united(solids)
+
+
+def _counts(finest: tuple[int, ...], fine: float) -> tuple[int, ...]:
+    """Even counts along a section, so that its checkerboard of diagonals keeps its symmetry."""
+    return tuple(max(2, 2 * round(count * fine / 2.0)) for count in finest)
 
 
 def _solid(sections: Array, roll: float) -> TriangleMesh:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from coeflab.model.table import Table
 
+SLOW = 2.0
 COLOURS = {"pass": "green", "fail": "bold red", "warn": "yellow", "no verdict": "dim", "no table": "dim"}
 
 
@@ -100,19 +101,47 @@ def progress(quiet: bool) -> Iterator[Callable[[str], None]]:
 
 @contextmanager
 def narrated() -> Iterator[None]:
-    """Passes on to standard error what readers say of long work, such as a mesh of a million faces."""
+    """Passes on to standard error what readers say of large meshes; on a terminal also what is being done, once it lasts."""
     import logging
 
-    class Echo(logging.Handler):
-        def emit(self, record: logging.LogRecord) -> None:
-            typer.echo(record.getMessage(), err=True)
+    from coeflab.core.machine import STAGE
 
-    logger, handler = logging.getLogger("coeflab"), Echo(logging.INFO)
-    before = logger.level
-    logger.addHandler(handler)
-    logger.setLevel(logging.INFO)
+    with _slow_status() as update:
+
+        class Echo(logging.Handler):
+            def emit(self, record: logging.LogRecord) -> None:
+                if record.name == STAGE:
+                    update(record.getMessage())
+                else:
+                    typer.echo(record.getMessage(), err=True)
+
+        logger, handler = logging.getLogger("coeflab"), Echo(logging.INFO)
+        before = logger.level
+        logger.addHandler(handler)
+        logger.setLevel(logging.INFO)
+        try:
+            yield
+        finally:
+            logger.setLevel(before)
+            logger.removeHandler(handler)
+
+
+@contextmanager
+def _slow_status() -> Iterator[Callable[[str], None]]:
+    """A line on standard error that appears after two seconds, while it is a terminal."""
+    if not sys.stderr.isatty():
+        yield lambda _: None
+        return
+    from threading import Timer
+
+    from rich.console import Console
+
+    status = Console(stderr=True).status("working")
+    timer = Timer(SLOW, status.start)
+    timer.daemon = True
+    timer.start()
     try:
-        yield
+        yield status.update
     finally:
-        logger.setLevel(before)
-        logger.removeHandler(handler)
+        timer.cancel()
+        status.stop()

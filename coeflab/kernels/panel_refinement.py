@@ -93,7 +93,7 @@ def refined(matrices: Sequence[Array], counts: Sequence[int], edges: bool = Fals
         return Refinement(finest, _floored(FINEST_ONLY * np.abs(changes[0]), finest, scale), None, None)
     shared = np.logical_and.outer(live, live)
     gain = np.linalg.norm((changes[1] / scale)[shared]) / np.linalg.norm((changes[0] / scale)[shared])
-    observed = float(np.log(gain) / np.log(ratios[0]))
+    observed = _order(float(gain), ratios)
     if observed < LOWEST:
         return Refinement(finest, _floored(FINEST_ONLY * np.abs(changes[0]), finest, scale), observed, None)
     used = SMOOTH if observed >= BETWEEN and not edges else EDGED
@@ -103,6 +103,21 @@ def refined(matrices: Sequence[Array], counts: Sequence[int], edges: bool = Fals
     if edges:
         error = np.maximum(error, np.abs(limit - finest - changes[0] / (ratios[0] ** SMOOTH - 1.0)))
     return Refinement(limit, _floored(error, limit, scale), observed, used)
+
+
+def _order(gain: float, ratios: Sequence[float]) -> float:
+    """Order at which the coarser of two differences is ``gain`` times the finer; within 12, beyond which it says nothing."""
+    from scipy.optimize import brentq
+
+    first, second = np.log(ratios)
+
+    def short(order: float) -> float:
+        return float(np.expm1(order * second) / -np.expm1(-order * first)) - gain
+
+    small, large = 1e-9, 12.0
+    if short(small) > 0.0:
+        return 0.0
+    return large if short(large) < 0.0 else float(brentq(short, small, large))
 
 
 def _floored(error: Array, limit: Array, scale: Array) -> Array:

@@ -106,3 +106,15 @@ def hull_of(points: Array) -> Solid:
     from manifold3d import Manifold
 
     return Manifold.hull_points(np.ascontiguousarray(points))
+
+
+def form_solid(form: str, sizes: tuple[float, ...], rotation: Array, centre: Array) -> Solid:
+    """A cylinder (radius, length), ellipsoid (semi-axes) or box (sides) in its place."""
+    from manifold3d import Manifold
+
+    if form == "cylinder":
+        radius, length = sizes
+        made = Manifold.cylinder(length, radius, radius, ROUND, True).rotate((0.0, 90.0, 0.0))
+    else:
+        made = (Manifold.sphere(1.0, ROUND) if form == "ellipsoid" else Manifold.cube((1.0,) * 3, True)).scale(sizes)
+    return made.transform(np.column_stack([rotation, centre]))

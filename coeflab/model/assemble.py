@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from coeflab.core.datums import same_datum
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import derivative, primed
@@ -90,7 +91,7 @@ def _triple(values: np.ndarray) -> tuple[float, float, float]:
 def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tuple[MassProperties | None, list[str]]:
     """Mass properties about the set's reference point; none where only another datum or another axis leads there."""
     shift = among.reference_point - body.reference_point
-    if body.datum != among.datum or np.any(np.abs(shift[1:]) > 1e-6):
+    if not same_datum(body.datum, among.datum) or np.any(np.abs(shift[1:]) > 1e-6):
         return None, ["mass properties left out: the body states them about a point that no shift along x leads from"]
     if abs(shift[0]) <= 1e-6:
         return mass, []
@@ -143,7 +144,7 @@ def assemble(
         first.scaling.require(s.scaling)
         if f.body != group.body:
             raise ScalingMismatchError(f"{f.campaign} is about {f.body}, the parameter file {group.name} {group.body}.")
-        if s.datum != first.datum or not np.allclose(s.reference_point, first.reference_point, atol=1e-9):
+        if not same_datum(s.datum, first.datum) or not np.allclose(s.reference_point, first.reference_point, atol=1e-9):
             raise ScalingMismatchError(
                 f"{f.campaign} and {chosen[0].campaign} have other reference points; give the study a reference_point."
             )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -26,6 +27,8 @@ class TriangleMesh:
         Counter-clockwise seen from outside.
     exact_volume : float, optional
         Of the body that the mesh stands for, m^3, where that is known.
+    remade : callable, optional
+        Meshes that body anew from its equations, with about so many faces; None where the mesh is all that is known.
     integrals : MeshIntegrals
         Volume, centre, second moments, area and projected areas of the facets.
 
@@ -38,6 +41,7 @@ class TriangleMesh:
     vertices: Array
     faces: NDArray[np.int64]
     exact_volume: float | None = None
+    remade: Callable[[int], TriangleMesh] | None = None
     integrals: MeshIntegrals = field(init=False)
 
     def __post_init__(self) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.machine import stage
 from coeflab.kernels.decimation import decimated
 from coeflab.kernels.panel_geometry import bisected, side_of, slivers, split_in_four, unfit_share
 from coeflab.kernels.solids import divided, solid, surface
@@ -47,7 +48,7 @@ def family(shape: Shape, panels: int, most: int = 3) -> tuple[Array, ...]:
     InputError
         The shape cannot be meshed.
     """
-    if isinstance(shape, TriangleMesh):
+    if isinstance(shape, TriangleMesh) and shape.remade is None:
         return _of_mesh(shape, panels, most)
     finest = meshed(shape, panels)
     if most == 1:
@@ -85,6 +86,7 @@ def _best(counts: list[int], panels: int) -> tuple[int, ...]:
 
 def _of_mesh(mesh: TriangleMesh, panels: int, most: int) -> tuple[Array, ...]:
     """Its own facets where they are fit for panels, divided or as they are; else, and for all that is coarser, others."""
+    stage(f"panels from {len(mesh.faces):,} faces")
     own = _corners(mesh)
     if len(own) * RATIO**2 <= panels:
         coarse = bisected(own, panels // RATIO**2)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.machine import stage
 from coeflab.kernels.mesh_topology import (
     Labels,
     degenerate,
@@ -26,9 +27,10 @@ from coeflab.kernels.triangle_pairs import crossing_faces
 Array = NDArray[np.float64]
 Faces = NDArray[np.int64]
 MOST_TESTED, MOST_SHELLS = 50_000, 1000
-NOTHING, JOINED, OVERLAP = 1e-9, 1e-6, 1e-6
+NOTHING, JOINED, OVERLAP, SHEET = 1e-9, 1e-6, 1e-6, 1e-6
 ON_REQUEST = "Mend it where it was made, or set repair = true under [mesh]."
 NEARLY = "Its vertices nearly meet: set repair = true under [mesh] to join them."
+PLATE = "Describe it as a plate in a body.toml of reader primitives: the formulas of plates need no thickness."
 BY_HAND = "Mend it where it was made; repair does not close holes or untangle surfaces."
 
 
@@ -57,10 +59,14 @@ def examined(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
     def fail(found: str, expected: str, advice: str = ON_REQUEST) -> InputError:
         return InputError(found, expected, file=file, advice=advice)
 
+    stage(f"joining the corners of {len(faces):,} faces")
     vertices, faces = welded(vertices, faces)
+    if _thickness(vertices) < SHEET:
+        raise fail("a plate of zero thickness: all corners lie in one plane", "a surface that encloses a volume", PLATE)
     flat = int(degenerate(vertices, faces).sum())
     if flat:
         raise fail(f"{flat} degenerate faces of {len(faces)}, whose corners lie on a line", "faces with an area")
+    stage(f"looking for holes and turned faces among {len(faces):,}")
     twice = int(repeated(faces).sum())
     if twice:
         raise fail(f"{twice} duplicate faces of {len(faces)}", "every face once")
@@ -74,6 +80,7 @@ def examined(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
         raise fail(
             f"inconsistent winding: neighbours face opposite sides at {border.turned} edges", "all faces outward"
         )
+    stage(f"separating the shells of {len(faces):,} faces")
     count, shell = shells(faces)
     _outward(*shell_volumes(vertices, faces, shell), fail)
     if count > 1:
@@ -88,6 +95,13 @@ def examined(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
         elif crossing:
             raise fail(f"a surface that cuts through itself, in {crossing} pairs of faces", "a simple surface", BY_HAND)
     return SoundMesh(vertices, faces, said)
+
+
+def _thickness(vertices: Array) -> float:
+    """Smallest over largest size, along the principal axes of the corners."""
+    away = vertices - vertices.mean(axis=0)
+    sizes = np.ptp(away @ np.linalg.eigh(away.T @ away)[1], axis=0)
+    return float(sizes.min() / sizes.max()) if sizes.max() > 0.0 else 0.0
 
 
 def _nearly_closed(vertices: Array, faces: Faces) -> bool:

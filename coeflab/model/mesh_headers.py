@@ -8,6 +8,7 @@ from pathlib import Path
 
 from coeflab.core.errors import InputError, shown
 from coeflab.model.glb_header import glb_faces
+from coeflab.model.obj_corners import require_corners
 
 LARGEST_TEXT = 320 << 20
 PLY_HEADER = 1 << 16
@@ -17,6 +18,7 @@ PLY_BYTES = {
     **dict.fromkeys(("int", "uint", "int32", "uint32", "float", "float32"), 4),
     **dict.fromkeys(("double", "float64"), 8),
 }
+CORNER_ZERO = re.compile(rb"^[ \t]*f[^\n]*[ \t]0+(?=[ \t/\r\n])", re.MULTILINE)
 EXPORT = "Export it again, or copy it again: it may have been cut short."
 
 
@@ -66,6 +68,8 @@ def obj_faces(path: Path) -> int:
     faces = sum(max(len(f[1].split()) - 2, 0) for f in re.finditer(rb"^\s*f\s+(.*)$", text, re.MULTILINE))
     if not faces or not re.search(rb"^\s*v\s", text, re.MULTILINE):
         raise InputError("no vertices and faces", "an OBJ with lines v and f", file=path)
+    if CORNER_ZERO.search(text):
+        require_corners(path)
     return faces
 
 
@@ -98,6 +102,17 @@ def ply_faces(path: Path) -> int:
     if not binary:
         _text(path)
     return counts["face"]
+
+
+def text_of(path: Path, faces: int) -> int:
+    """Bytes of a mesh file that is text, whose faces have been counted; 0 of a binary one."""
+    size, kind = path.stat().st_size, path.suffix.lower()
+    if kind == ".ply":
+        with path.open("rb") as stream:
+            head = stream.read(PLY_HEADER).partition(b"end_header")[0]
+        return size if b"format ascii" in head else 0
+    text = kind == ".obj" or (kind == ".stl" and size != 84 + 50 * faces)
+    return size if text else 0
 
 
 def _ply_least(words: list[str], binary: bool) -> int:

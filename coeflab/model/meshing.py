@@ -31,7 +31,7 @@ def meshed(shape: Shape, panels: int) -> TriangleMesh:
     A body of revolution gets structured rings with every vertex on its meridian, a cylinder, an ellipsoid and a box
     likewise; meshes of one body at two counts are similar, so that an error of order h^2 can be extrapolated. Parts share
     the count by the root of their surface, and are united where they meet. A mesh that has no more faces than asked is
-    returned as it is, another is decimated.
+    returned as it is, another is remade from its body's equations where these are known, else decimated.
 
     Parameters
     ----------
@@ -54,7 +54,9 @@ def meshed(shape: Shape, panels: int) -> TriangleMesh:
     if not FEWEST <= panels <= MOST:
         raise InputError(f"a mesh of {panels} triangles", f"from {FEWEST} to {MOST}", column="panels")
     if isinstance(shape, TriangleMesh):
-        return shape if len(shape.faces) <= panels else _decimated(shape, panels)
+        if len(shape.faces) <= panels:
+            return shape
+        return shape.remade(panels) if shape.remade else _decimated(shape, panels)
     if isinstance(shape, Revolution):
         x, radius, around = rings(*dense_meridian(shape), panels)
         vertices, faces = revolved(x, radius, around)

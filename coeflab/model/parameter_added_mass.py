@@ -8,6 +8,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import model_validator
 
+from coeflab.core.datums import same_datum
 from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.kernels.composition import definiteness
 from coeflab.model.added_mass import AddedMass
@@ -71,7 +72,7 @@ def added_mass_record(found: Triangulation, point: np.ndarray, datum: str) -> Pa
         The body measures points from another datum.
     """
     chosen, *others = found.ordered
-    if chosen.datum != datum:
+    if not same_datum(chosen.datum, datum):
         raise ScalingMismatchError(
             f"the added mass of {chosen.body} is stated from {shown(chosen.datum)}, the parameter file from {shown(datum)}; "
             "give both the same datum."

@@ -12,7 +12,7 @@ from coeflab.model.table import ABSENT, Table, coefficient, number
 from coeflab.model.triangulation import RULE, Triangulation
 
 SHOWN = ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot", "Yrdot", "Zqdot")
-TRANSLATIONS = "uvw"
+TRANSLATIONS, MARK = "uvw", "*"
 
 
 def particulars(body: Body) -> Table:
@@ -68,15 +68,28 @@ def derivatives(found: Triangulation) -> Table:
         i, j = COMPONENTS.index(symbol[0]), "uvwpqr".index(symbol[1])
         apart = ABSENT if np.isnan(spread[i, j]) else f"{100.0 * spread[i, j]:.1f} %"
         rows.append((symbol, *(c for pair in zip([number(v) for v in values], ratios) for c in pair), apart))
-    headers = ("SI", *(cell for r in found.results for cell in (r.method, "/m")), "spread")
+    headers = ("SI", *(cell for r in found.results for cell in (_marked(r, found), "/m")), "spread")
     notes = [
         f"/m: added mass over the displaced mass, {mass:.5g} kg at {found.density:g} kg/m^3; spread: range over the methods "
         "that speak of the entry, over the recommended one; off the diagonal over the root of both diagonal entries",
-        f"recommended: {found.recommended.method}, by the rule: {RULE}",
+        f"{MARK} recommended: {found.recommended.method}, by the rule: {RULE}",
+        *_verdicts(found),
     ]
-    notes += [f"{r.method}: {'; '.join([r.verdict, *r.statements])}" for r in found.results]
+    notes += [f"{r.method}: {'; '.join(r.statements)}" for r in found.results if r.statements]
     notes += [f"{name}: not used: {why}" for name, why in found.refused.items()]
     return Table("Acceleration derivatives", headers, tuple(rows), tuple(notes))
+
+
+def _marked(result: AddedMass, found: Triangulation) -> str:
+    return f"{MARK} {result.method}" if result.method == found.recommended.method else result.method
+
+
+def _verdicts(found: Triangulation) -> list[str]:
+    """Each verdict once, and the methods that it is on unless it is on all."""
+    by: dict[str, list[str]] = {}
+    for r in found.results:
+        by.setdefault(r.verdict, []).append(r.method)
+    return [f"{'every matrix' if len(by) == 1 else ', '.join(methods)}: {verdict}" for verdict, methods in by.items()]
 
 
 def symmetry(found: Triangulation) -> Table:
@@ -96,7 +109,7 @@ def primes(found: Triangulation) -> Table:
     by = found.body.scaling
     if by is None:
         return Table("Primes", (), ())
-    rows, notes = [], [f"primed by {by} and 1/2 rho"]
+    rows, notes = [], [f"primed by {by} and 1/2 rho; {MARK} recommended"]
     measured = {m.symbol: m for m in found.body.measured}
     for symbol in dict.fromkeys((*SHOWN, *measured)):
         values = [r.primed(symbol, by, found.density) if _settled(r, symbol) else 0.0 for r in found.results]
@@ -109,7 +122,7 @@ def primes(found: Triangulation) -> Table:
         rows.append((f"{symbol}'", *cells))
     headers: list[str] = ["prime"]
     for r in found.results:
-        headers += [r.method, "gap"] if measured else [r.method]
+        headers += [_marked(r, found), "gap"] if measured else [_marked(r, found)]
     if measured:
         headers.append("measured")
         notes.append("gap: computed over measured, less one; potential theory is not tuned to the measurement")

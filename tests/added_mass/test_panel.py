@@ -11,6 +11,7 @@ from coeflab.added_mass import panel
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.kernels.ellipsoid import ellipsoid_added_mass
+from coeflab.kernels.panel_geometry import slivers
 from coeflab.kernels.structured_surface import box_surface
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
@@ -59,7 +60,7 @@ def test_a_slender_spheroid_is_lambs_within_a_thousandth(kernel: str) -> None:
     assert np.diag(found.matrix) == pytest.approx(np.diag(exact), rel=1e-3)
     assert held(found, exact)
     assert f"({kernel})" in found.statements[0]
-    assert "extrapolated with order 2" in found.statements[1]
+    assert "extrapolated with order 2" in found.statements[2]
 
 
 @pytest.mark.parametrize(
@@ -75,7 +76,7 @@ def test_the_error_estimate_holds_the_error(axes: tuple[float, float, float], pa
 def test_a_body_with_edges_says_that_it_converges_slowly() -> None:
     """A cube: polarisability -1.6383 (Sihvola et al. 2004)."""
     found = solved(Box(1.0, 1.0, 1.0), panels=4000)
-    assert "the error does not fall as the square of the panels' size" in found.statements[1]
+    assert "the error does not fall as the square of the panels' size" in found.statements[2]
     assert np.diag(found.matrix)[:3] == pytest.approx(638.3, rel=0.01)
     assert abs(found.matrix[0, 0] - 638.3) < found.error[0, 0]
 
@@ -84,8 +85,9 @@ def test_a_flat_ended_cylinder() -> None:
     """Length five diameters; 0.877 across and 0.127 along were computed once with another panel code, to a per cent."""
     found = solved(Cylinder(0.5, 5.0), panels=8000)
     mass = RHO * np.pi * 0.25 * 5.0
-    assert found.matrix[1, 1] / mass == pytest.approx(0.877, rel=0.005)
-    assert found.matrix[0, 0] / mass == pytest.approx(0.128, rel=0.01)
+    assert found.error is not None
+    assert np.diag(found.matrix)[:3] / mass == pytest.approx([0.127, 0.877, 0.877], rel=0.01)
+    assert np.all(np.diag(found.error)[:3] < 0.03 * np.diag(found.matrix)[:3])
 
 
 def test_two_spheres_far_apart_add_up_about_any_point() -> None:
@@ -116,36 +118,73 @@ def test_facets_of_a_coarse_mesh_are_divided() -> None:
     assert abs(found.about(np.full(3, 0.5)).matrix[0, 0] - 638.3) < found.error[0, 0]
 
 
-def test_a_cylinder_of_cad_holds_its_error() -> None:
-    """Facets from end to end; the values of the flat-ended cylinder above. Its edges keep the order from being 2."""
-    mesh = rod(64, 5.0)
-    found = panel.added_mass(body(mesh), RHO, {"panels": 3000})
+def bracket(outer: np.ndarray, volume: float, mesh: TriangleMesh, inner: float) -> tuple[np.ndarray, np.ndarray]:
+    """Least and most added mass along x, y, z of a body that lies within another and holds that one shrunk to ``inner``.
+
+    Added mass and displaced mass together grow with the body (the polarisation tensor of an insulating inclusion is
+    monotone in the inclusion: Ammari & Kang, Polarization and Moment Tensors, 2007).
+    """
+    own = RHO * mesh.volume
+    return inner**3 * (outer + RHO * volume) - own, outer + RHO * volume - own
+
+
+def test_a_cylinder_of_cad_lies_between_two_cylinders() -> None:
+    """64 facets from end to end hold a cylinder smaller by cos(pi / 64), and lie within the round one."""
+    mesh, whole = rod(64, 5.0), solved(Cylinder(0.5, 5.0), panels=8000)
+    found = panel.added_mass(body(mesh), RHO, {"panels": 3000}).about(mesh.centre_of_volume)
     assert found.error is not None
-    mass = RHO * mesh.volume
-    here = found.about(mesh.centre_of_volume)
-    assert here.error is not None
-    assert here.matrix[1, 1] / mass == pytest.approx(0.877, rel=0.005)
-    assert here.matrix[0, 0] / mass == pytest.approx(0.128, rel=0.015)
-    assert np.all(np.diag(here.error)[:3] < 0.03 * np.diag(here.matrix)[:3])
-    assert "extrapolated with order 1.3" in found.statements[1]
+    assert whole.error is not None
+    outer, doubt, ours = (np.diag(m)[:3] for m in (whole.matrix, whole.error, found.matrix))
+    low, high = bracket(outer, 1.25 * np.pi, mesh, float(np.cos(np.pi / 64.0)))
+    own = np.diag(found.error)[:3]
+    assert np.all((high - low) < 0.04 * outer)
+    assert np.all((low - doubt - own <= ours) & (ours <= high + doubt + own))
+    assert np.all(np.abs(ours - outer) <= own + doubt)
+    assert np.all(own < 0.025 * ours)
+    assert "extrapolated with order 1.3" in found.statements[2]
 
 
-def test_a_stretched_mesh_of_a_spheroid_has_an_error() -> None:
-    """Triangles six times as long as wide; the facets lie inside the spheroid and lack 0.4 % of its volume."""
+@pytest.mark.slow
+def test_with_edges_the_estimate_falls_as_theory_says() -> None:
+    """Order 4/3: four times as many panels leave 0.4 of the error, and the facets' own share stays."""
+    mesh = rod(256, 5.0)
+    coarse, fine = (
+        panel.added_mass(body(mesh), RHO, {"panels": n}).about(mesh.centre_of_volume) for n in (3000, 12_000)
+    )
+    assert coarse.error is not None
+    assert fine.error is not None
+    assert np.all(np.diag(fine.error)[1:3] < 0.4 * np.diag(coarse.error)[1:3])
+    assert np.all(np.abs(np.diag(fine.matrix) - np.diag(coarse.matrix))[:3] <= np.diag(coarse.error)[:3])
+
+
+@pytest.mark.parametrize("panels", [2000, 4000])
+def test_a_stretched_mesh_of_a_spheroid_holds_lamb(panels: int) -> None:
+    """Triangles six times as long as wide; the facets lie inside the spheroid and lack 0.4 % of its volume.
+
+    No refinement of them can know: the estimate must carry it, and Lamb's values lie within, without an allowance.
+    """
     ball = meshed(Parts((part(Ellipsoid(1.0, 1.0, 1.0)),)), 5000)
     mesh = TriangleMesh(ball.vertices * np.array([6.0, 1.0, 1.0]), ball.faces)
-    found = panel.added_mass(body(mesh), RHO, {"panels": 4000})
+    corner = ball.vertices[ball.faces]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    inner = float(np.min(np.einsum("ij,ij->i", normal, corner[:, 0]) / np.linalg.norm(normal, axis=1)))
     exact = np.diag(ellipsoid_added_mass(np.array([6.0, 1.0, 1.0]), RHO))
-    missing = 1.0 - mesh.volume / (8.0 * np.pi)
+    found = panel.added_mass(body(mesh), RHO, {"panels": panels})
     assert found.error is not None
-    assert np.diag(found.matrix)[:3] == pytest.approx(exact[:3], rel=3.0 * missing)
-    assert np.all(np.abs(np.diag(found.matrix) - exact)[:3] <= np.diag(found.error)[:3] + 2.0 * missing * exact[:3])
+    ours, own = np.diag(found.matrix), np.diag(found.error)
+    assert np.all(np.abs(ours - exact) <= own)
+    low, high = bracket(exact[:3], 8.0 * np.pi, mesh, inner)
+    assert np.all((low <= ours[:3]) & (ours[:3] <= high))
+    missing = 1.0 - mesh.volume / (8.0 * np.pi)
+    assert np.all(ours[:3] < exact[:3])
+    assert np.all(own[:3] >= 1.9 * missing * exact[:3])
+    assert np.all(own[:3] < 0.02 * exact[:3])
 
 
 def test_one_mesh_has_no_error_estimate() -> None:
     found = solved(Ellipsoid(2.0, 1.0, 1.0), panels=1000, extrapolate="no")
     assert found.error is None
-    assert found.statements[1] == "one mesh: its error is unknown"
+    assert found.statements[2] == "one mesh: its error is unknown"
 
 
 def test_errors_grow_with_the_distance_of_the_point() -> None:
@@ -193,6 +232,17 @@ def test_panels_larger_than_the_thickness_are_refused() -> None:
     found = refused(Parts((part(Box(3.0, 1.0, 0.055)),)), panels=1000)
     assert found.found.startswith("a body thinner than its panels are large on ")
     assert "more panels" in found.advice
+
+
+def test_parts_that_touch_in_a_point_are_solved() -> None:
+    """Two spheres at the ends of a rod; uniting them can leave a face without area where pole meets pole."""
+    ball, rod_between = Ellipsoid(1.0, 1.0, 1.0), Cylinder(0.2, 2.0)
+    shape = Parts((part(ball, 2.0, "fore"), part(ball, -2.0, "aft"), part(rod_between, 0.0, "rod")))
+    assert np.any(slivers(meshed(shape, 6000).vertices[meshed(shape, 6000).faces]))
+    found = panel.added_mass(body(shape), RHO, {"panels": 6000})
+    alone = 2.0 * RHO * 2.0 * np.pi / 3.0
+    assert alone < found.matrix[1, 1] < 1.2 * alone
+    assert 0.9 * alone < found.matrix[0, 0] < alone
 
 
 def test_a_plate_is_refused() -> None:

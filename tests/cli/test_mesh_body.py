@@ -81,5 +81,5 @@ def test_large_meshes_are_announced_on_standard_error(coeflab: Run, tmp_path: Pa
     (tmp_path / "body.toml").write_text(text)
     done = coeflab("added-mass", tmp_path, "--method", "strip:lamb", "--json")
     assert done.returncode == 0
-    assert done.stderr == f"ball.stl: {len(whole.faces)} faces, about 2.0 GB of memory\n"
+    assert done.stderr == f"ball.stl: {len(whole.faces)} faces, about 0.9 GB of memory\n"
     assert list(json.loads(done.stdout)) == ["strip:lamb"]

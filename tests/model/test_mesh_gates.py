@@ -105,10 +105,23 @@ def test_every_gate(fault: str) -> None:
 
 
 def test_nothing_enclosed() -> None:
+    """A bent sheet of two sides that all but touch."""
     ball = trimesh.creation.icosphere(subdivisions=1)
-    flat = np.array(ball.vertices) * [1.0, 1.0, 2e-9]
+    x, y, z = np.array(ball.vertices).T
     with pytest.raises(InputError, match="zero volume"):
-        examined(flat, np.asarray(ball.faces), FILE)
+        examined(np.column_stack([x, y, 0.3 * x**2 + 2e-9 * z]), np.asarray(ball.faces), FILE)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.4])
+@pytest.mark.parametrize("faces", [CUBE_FACES, CUBE_FACES[:2]])
+def test_a_plate_without_thickness_is_sent_to_the_plate_formulas(turn: float, faces: np.ndarray) -> None:
+    """Two sheets on each other, or one alone; along the axes or tilted, and far from the origin."""
+    c, s = np.cos(turn), np.sin(turn)
+    tilted = CUBE * [1.0, 1.0, 1e-8] @ np.array([[1.0, 0.0, 0.0], [0.0, c, s], [0.0, -s, c]]) + 100.0
+    top = faces if len(faces) > 2 else CUBE_FACES[[np.ptp(CUBE[f][:, 2]) == 0.0 for f in CUBE_FACES]][:2]
+    with pytest.raises(InputError, match="plate of zero thickness") as caught:
+        examined(tilted, top, FILE)
+    assert "reader primitives" in caught.value.advice
 
 
 def test_too_many_shells(monkeypatch: pytest.MonkeyPatch) -> None:

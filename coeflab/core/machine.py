@@ -1,0 +1,20 @@
+"""What the machine has, and how long work is told of on it."""
+
+from __future__ import annotations
+
+import logging
+import os
+
+STAGE = "coeflab.stage"
+
+
+def physical_memory() -> int | None:
+    """Bytes, where the system tells that."""
+    if not hasattr(os, "sysconf"):
+        return None
+    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+
+def stage(what: str) -> None:
+    """Say what is being done now; the command line shows it on a terminal once work takes long."""
+    logging.getLogger(STAGE).info(what)

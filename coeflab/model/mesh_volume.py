@@ -1,0 +1,87 @@
+"""How far the volume of panels is from that of the body they stand for, and what that may cost its added mass."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.kernels.facet_volume import enclosed, facet_deficit
+from coeflab.model.body import Body
+from coeflab.model.mesh import TriangleMesh
+
+Array = NDArray[np.float64]
+NEGLIGIBLE, STRONGEST, SAME_BODY = 1e-3, 2.0, 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class VolumeGap:
+    """Volume of panels over that of the body, less one.
+
+    Attributes
+    ----------
+    finest : float
+        Of the finest panels as they are.
+    left : float
+        Of all panels, extrapolated as the square of their size: what no refinement of these panels takes away.
+    body : str
+        Whose volume that is, in words.
+    """
+
+    finest: float
+    left: float
+    body: str
+
+    @property
+    def matters(self) -> bool:
+        """Whether what is left is more than 0.1 %."""
+        return abs(self.left) > NEGLIGIBLE
+
+    def cost(self, matrix: Array) -> Array:
+        """(6, 6) what may be missing from an added mass: twice what is left of the volume, of the size of each entry.
+
+        Of a long spheroid that is too thin all over, the entry along x goes with the square of the volume, those across
+        with the volume itself; of one that is too small all over, the moments with its power 5/3.
+        """
+        root = np.sqrt(np.abs(np.diag(matrix)))
+        return np.asarray(STRONGEST * abs(self.left) * np.outer(root, root)) * self.matters
+
+    @property
+    def said(self) -> str:
+        """The same in words."""
+        out = f"volume of the finest panels {self.finest:+.2%} from {self.body}, {self.left:+.2%} once extrapolated"
+        return f"{out}: carried in the error estimate" if self.matters else out
+
+
+def volume_gap(body: Body, mesh: TriangleMesh, meshes: Sequence[Array]) -> VolumeGap:
+    """Hold panels against the volume of the body's equations; else as stated, within 5 %; else as its facets suggest.
+
+    Parameters
+    ----------
+    body : Body
+    mesh : TriangleMesh
+        The body's own, or one made of its shape.
+    meshes : sequence of (n, 3, 3) arrays
+        Panel, corner, component, m; the finest first.
+    """
+    volumes = [enclosed(corners) for corners in meshes]
+    limit = volumes[0]
+    if len(meshes) > 1:
+        limit += (volumes[0] - volumes[1]) / (len(meshes[0]) / len(meshes[1]) - 1.0)
+    whole, name = _whole(body, mesh)
+    return VolumeGap(volumes[0] / whole - 1.0, limit / whole - 1.0, name)
+
+
+def _whole(body: Body, mesh: TriangleMesh) -> tuple[float, str]:
+    if mesh.exact_volume is not None:
+        return mesh.exact_volume, "the body's by its equations"
+    # The first configuration is computed from the shape itself; the others were stated.
+    stated = [(abs(mesh.volume / c.volume - 1.0), c.volume, c.name) for c in body.configurations[1:] if c.volume]
+    if body.shape is mesh and stated:
+        off, volume, name = min(stated)
+        if off <= SAME_BODY:
+            return volume, f"that of {name}"
+    smooth = mesh.volume + facet_deficit(mesh.vertices, mesh.faces)
+    return smooth, "a smooth surface through the corners of its facets, estimated by the angles between these"
