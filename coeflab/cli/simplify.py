@@ -20,6 +20,9 @@ def command(
     boxes: Path | None = typer.Option(
         None, "--boxes", help="A TOML file of [[box]] with name, x, y, z as [low, high]."
     ),
+    split: str = typer.Option(
+        "", "--split", help='convex: cut what is like no form into nearly convex pieces (needs "coeflab[convex]").'
+    ),
     parts: int | None = typer.Option(None, "--parts", min=1, help="How many parts there must be; else an error."),
     out: Path | None = typer.Option(None, "--out", help="Folder to write; without it NAME_simplified."),
     force: bool = typer.Option(False, "--force", help="Replace files that differ."),
@@ -27,9 +30,10 @@ def command(
 ) -> None:
     """Write a body.toml of simple parts in place of a mesh, with an overlay as SVG and GLB.
 
-    Cuts off the boxes, then separates shells, then cuts appendages from a round hull.
+    Cuts off the boxes, then separates shells, then cuts appendages from a round hull; with --split convex it cuts
+    further what no form fits.
     """
-    from coeflab.core.errors import OutputError
+    from coeflab.core.errors import InputError, OutputError, shown
     from coeflab.core.files import write_atomically
     from coeflab.model.named_box import parse_box, read_boxes
     from coeflab.presentation.body_figure import body_figure
@@ -37,8 +41,10 @@ def command(
     from coeflab.studies.simplify import simplify
     from coeflab.studies.simplify_source import mesh_body
 
+    if split not in ("", "convex"):
+        raise InputError(shown(split), "convex, or no --split", column="--split")
     named = tuple(parse_box(text) for text in box) + (read_boxes(boxes) if boxes is not None else ())
-    found = simplify(mesh_body(mesh, unit, axes, repair), named, parts)
+    found = simplify(mesh_body(mesh, unit, axes, repair), named, parts, split == "convex")
     name = found.body.name
     folder = out if out is not None else Path(name)
     figure = body_figure(name, found.shape, found.mesh, "overlay")

@@ -13,15 +13,16 @@ from numpy.typing import NDArray
 
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.shape import Parts
+from coeflab.presentation.body_axes import BELOW, LEFT, rulers
 from coeflab.presentation.body_view import BEHIND, Sheet, View
 from coeflab.presentation.document import Figure
 from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets, picture_surface
 from coeflab.presentation.svg import COLOURS, POINTS, settings, svg_text
 
 Array = NDArray[np.float64]
-WIDTH, MARGIN, GAP, CAPTION, LABELS = 680.0, 14.0, 26.0, 16.0, 20.0
+WIDTH, MARGIN, GAP, CAPTION, LABELS = 680.0, 14.0, 18.0, 27.0, 20.0
 TALLEST_VIEWS, TALLEST_OBLIQUE = 420.0, 300.0
-LABELLED, LETTER = 14, 4.7
+LABELLED, LETTER, TITLED = 14, 4.7, 50.0
 AZIMUTH, ELEVATION = np.radians(52.0), np.radians(24.0)
 
 
@@ -54,13 +55,18 @@ def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str)
     drawn = None if mesh is None else picture_surface(mesh)
     points = np.concatenate([*of_parts, *([] if drawn is None else [drawn[0]])])
     size = np.maximum(np.ptp(points, axis=0), 1e-3 * float(np.ptp(points, axis=0).max()))
-    scale = min((WIDTH - 2.0 * MARGIN - GAP) / (size[0] + size[1]), TALLEST_VIEWS / (size[1] + size[2]))
+    scale = _scale(size)
     tilted = np.ptp(points @ OBLIQUE.axes[:2].T, axis=0)
     larger = min((WIDTH - 2.0 * MARGIN) / tilted[0], TALLEST_OBLIQUE / tilted[1])
-    rows = [CAPTION + 2.0 * LABELS + larger * tilted[1], CAPTION + scale * size[2], CAPTION + scale * size[1]]
+    rows = [
+        CAPTION + 2.0 * LABELS + larger * tilted[1],
+        CAPTION + scale * size[2] + BELOW,
+        CAPTION + scale * size[1] + BELOW,
+    ]
     height = sum(rows) + 3.0 * GAP + 2.0 * MARGIN
     tops = height - MARGIN - np.cumsum([0.0, rows[0] + GAP, rows[1] + GAP])
-    right = MARGIN + scale * size[0] + GAP
+    first = MARGIN + LEFT
+    right = first + scale * size[0] + GAP + LEFT
     title = f"{name}: simple parts" + (" over the mesh" if mesh is not None else "")
     with settings():
         figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
@@ -71,20 +77,29 @@ def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str)
         middle = (WIDTH - larger * tilted[0]) / 2.0
         for view, left, top, by in (
             (OBLIQUE, middle, tops[0], larger),
-            (SIDE, MARGIN, tops[1], scale),
+            (SIDE, first, tops[1], scale),
             (FRONT, right, tops[1], scale),
-            (TOP, MARGIN, tops[2], scale),
+            (TOP, first, tops[2], scale),
         ):
             room = LABELS if view is OBLIQUE else 0.0
             sheet = _placed(axes, view, points, (left, top - CAPTION - room), by)
-            axes.text(MARGIN if room else left, top - 9.0, view.title, fontsize=8.0, color=COLOURS["muted"])
+            axes.text(MARGIN if room else left - LEFT, top - 6.0, view.title, fontsize=8.0, color=COLOURS["muted"])
             sheet.body(shape, drawn)
             if room:
                 _labels(sheet, shape, (tops[0] - CAPTION - room, tops[1] + GAP + room))
-        _scale_bar(axes, right, tops[2] - rows[2], scale, float(size.max()))
+            else:
+                rulers(sheet, points)
         _legend(axes, shape, mesh is not None)
         svg = svg_text(figure, anchor, title, _description(shape, mesh))
     return Figure(anchor, svg, title, _caption(mesh), _description(shape, mesh))
+
+
+def _scale(size: Array) -> float:
+    """Points per metre of the three views, such that side and front view with their titles fit beside each other."""
+    across = WIDTH - 2.0 * (MARGIN + LEFT) - GAP
+    tall = TALLEST_VIEWS / (size[1] + size[2])
+    both = across / (size[0] + size[1])
+    return float(min(tall, both if both * size[1] >= TITLED else (across - TITLED) / size[0]))
 
 
 def _placed(axes: Axes, view: View, points: Array, corner: tuple[float, float], scale: float) -> Sheet:
@@ -123,15 +138,6 @@ def _spread(wanted: list[float], widths: list[float]) -> list[float]:
         out[i] = min(out[i], most - widths[i] / 2.0)
         most = out[i] - widths[i] / 2.0
     return out
-
-
-def _scale_bar(axes: Axes, left: float, bottom: float, scale: float, longest: float) -> None:
-    most = min(longest / 4.0, (WIDTH - MARGIN - left) / scale)
-    step = 10.0 ** np.floor(np.log10(most))
-    length = float(step * max(k for k in (1.0, 2.0, 5.0) if k * step <= most * (1.0 + 1e-9)))
-    x, y = [left, left, left + length * scale, left + length * scale], bottom + 4.0
-    axes.plot(x, [y + 3.0, y, y, y + 3.0], color=COLOURS["muted"], linewidth=0.8)
-    axes.text(left, y + 7.0, f"{length:g} m", fontsize=8.0, color=COLOURS["muted"])
 
 
 def _legend(axes: Axes, shape: Parts, with_mesh: bool) -> None:

@@ -23,6 +23,7 @@ FLOAT, UNSIGNED, VERTICES, ELEMENTS = 5126, 5125, 34962, 34963
 FILM = 0.3
 # glTF has y up and looks along z: forward becomes z, up y, port x. The quaternion (x, y, z, w) of that rotation.
 FROM_FRD = [0.5, -0.5, 0.5, 0.5]
+AXES = "vertices FRD: x forward, y starboard, z down, from the datum; this node turns them to y up, z forward"
 
 
 def body_scene(name: str, shape: Parts, mesh: TriangleMesh | None = None) -> bytes:
@@ -39,7 +40,7 @@ def body_scene(name: str, shape: Parts, mesh: TriangleMesh | None = None) -> byt
     Notes
     -----
     Vertices are in FRD, m, from the datum; the root node turns them to glTF's axes. Nodes carry form and volume in
-    ``extras``. Faces have no normals, so viewers shade them flat, as glTF asks.
+    ``extras``, the root unit and axes. Faces have no normals, so viewers shade them flat, as glTF asks.
     """
     out = _Scene()
     forms = dict.fromkeys(form_name(p.form) for p in shape.parts)
@@ -50,7 +51,9 @@ def body_scene(name: str, shape: Parts, mesh: TriangleMesh | None = None) -> byt
         out.node(part.name, *_triangles(facets), material[kind], {"form": kind, "volume_m3": part.form.volume})
     if mesh is not None:
         vertices, faces = picture_surface(mesh)
-        out.node("mesh", vertices, faces, out.material("mesh", COLOURS["band"], FILM), {"volume_m3": mesh.volume})
+        taken = {p.name for p in shape.parts}
+        label = next(n for n in ("mesh", "the mesh", f"mesh of {name}") if n not in taken)
+        out.node(label, vertices, faces, out.material("mesh", COLOURS["band"], FILM), {"volume_m3": mesh.volume})
     return out.file(name)
 
 
@@ -112,7 +115,8 @@ class _Scene:
     def file(self, name: str) -> bytes:
         """Header, JSON chunk and binary chunk."""
         children = list(range(len(self.lists["nodes"])))
-        root = self._add("nodes", {"name": name, "rotation": FROM_FRD, "children": children})
+        said = {"units": "m", "axes": AXES}
+        root = self._add("nodes", {"name": name, "rotation": FROM_FRD, "children": children, "extras": said})
         content = {
             "asset": {"version": "2.0", "generator": "coeflab"},
             "scene": 0,

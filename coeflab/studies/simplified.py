@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.kernels.part_forms import Likeness
+from coeflab.kernels.part_forms import MISFIT, SHARED, Likeness
 from coeflab.model.body import Body
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.part_file import part_file, written
@@ -18,13 +18,15 @@ from coeflab.model.table import ABSENT, Table, number
 
 Array = NDArray[np.float64]
 TOLD = np.radians(0.05)
-POOR_AREA, POOR_VOLUME = 0.05, 0.02
+POOR, POOR_VOLUME = 0.05, 0.02
 RULES = (
-    "A cylinder keeps volume and projected area across its axis; a plate keeps area and centre of its projection "
-    "along the normal and the ratio of second moments along chord (fore and aft) and span; ellipsoids and boxes keep the volume, and second moments up to one factor.",
-    "An attachment is cut off where it meets the hull's surface, so its form begins there on average; it keeps the "
-    "attachment's centre.",
-    "A plate has no thickness: its volume and its edges are left out.",
+    "A thin body (mean thickness under 0.2 of the shorter of mean chord and span) is a plate of the area that it "
+    "projects along its normal and of the span at the middle of it, hence of its aspect ratio; it has no thickness: volume and edges are left out.",
+    "Any other is the cylinder, spheroid, ellipsoid or box with the least misfit: error of the length, plus errors of the three "
+    "projected areas over their sum. Each keeps volume and length (a cylinder that fits better so: volume and area across), "
+    "those of three sizes the largest projected area too.",
+    f"Where the least misfit is over {MISFIT:g}, or the form shares under {SHARED:.0%} of the volume, the class is other.",
+    "An attachment is cut off where it meets the hull's surface; its form keeps the attachment's centre.",
 )
 
 
@@ -41,6 +43,8 @@ class SimplifiedPart:
         Of the piece, m^3.
     projected : (3,) array
         Of the piece along the part's own axes, m^2.
+    extents : (3,) array
+        Of the piece along the part's own axes, m.
     cut : bool
         Whether it was cut from a hull.
     turned : float
@@ -51,6 +55,7 @@ class SimplifiedPart:
     likeness: Likeness
     volume: float
     projected: Array
+    extents: Array
     cut: bool
     turned: float
 
@@ -65,15 +70,28 @@ class SimplifiedPart:
         return np.array([shadow(self.part.form, axis) for axis in np.eye(3)]) / self.projected - 1.0
 
     @property
+    def length_error(self) -> float:
+        """Of the form over the piece, less one, along the own axis on which the piece is longest; a plate's in span."""
+        longest = int(np.argmax(self.extents)) if self.part.form.volume else 1
+        return float(2.0 * self.part.form.half_extents(np.eye(3))[longest] / self.extents[longest] - 1.0)
+
+    @property
+    def poor(self) -> tuple[str, ...]:
+        """What is off by more than 5 %, in words; of a plate only the area along its normal counts."""
+        errors = dict(zip(("A x", "A y", "A z"), self.projected_errors, strict=True)) | {"length": self.length_error}
+        kept = errors if self.part.form.volume else {"A z": errors["A z"]}
+        return tuple(f"{name} {_percent(e)}" for name, e in kept.items() if abs(e) > POOR)
+
+    @property
     def remarks(self) -> tuple[str, ...]:
         """What it was found to be, in words."""
         like = self.likeness
-        kind = (
-            like.form if like.clear else f"neither cylinder, plate, ellipsoid nor box; an equal volume as {like.form}"
-        )
+        held = "equal area" if like.form == "plate" else "equal volume"
+        kind = like.form if like.clear else f"other, as no form is good; a {like.form} of {held} stands in"
+        kind = kind.replace("a ellipsoid", "an ellipsoid")
         out = [f"{'attachment' if self.cut else 'body'} of {self.volume:.5g} m^3: {kind} ({like.reason})"]
         if not like.clear:
-            out.append("look at it in the overlay; a --box around each of its bodies splits it")
+            out.append("look at it in the overlay; --box around each of its bodies, or --split convex, divides it")
         if self.turned > TOLD:
             out.append(f"pose tidied: turned by {np.degrees(self.turned):.1f} deg to right angles")
         return tuple(out)
@@ -110,17 +128,15 @@ class Simplification:
         for p in self.parts:
             kind, sizes = written(p.part.form)
             size = ", ".join(f"{key.replace('_', ' ')} {value:g}" for key, value in sizes.items())
-            clear = "" if p.likeness.clear else " (stand-in)"
-            errors = [_percent(e) for e in (p.volume_error, *p.projected_errors)]
-            rows.append((p.part.name, kind + clear, size, number(p.volume, 5), number(p.part.form.volume, 5), *errors))
-        notes = ["errors: form over mesh, less one; A: projected areas along the part's own axes"]
-        notes += [f"{p.part.name}: {remark}" for p in self.parts for remark in p.remarks]
-        poor = [
-            p.part.name for p in self.parts if p.part.form.volume and np.nanmax(np.abs(p.projected_errors)) > POOR_AREA
+            clear = kind if p.likeness.clear else f"other ({kind})"
+            errors = [_percent(e) for e in (p.volume_error, *p.projected_errors, p.length_error)]
+            rows.append((p.part.name, clear, size, number(p.volume, 5), number(p.part.form.volume, 5), *errors))
+        notes = [
+            "errors: form over mesh, less one; A: projected areas along the part's own axes; length: the largest extent, of a plate in span"
         ]
-        if poor:
-            notes.append(f"LOOK AT {', '.join(poor)}: a projected area is off by more than {POOR_AREA:.0%}")
-        headers = ("part", "form", "m", "mesh m^3", "form m^3", "V", "A x", "A y", "A z")
+        notes += [f"{p.part.name}: {remark}" for p in self.parts for remark in p.remarks]
+        notes += [f"LOOK AT {p.part.name}: {', '.join(p.poor)}" for p in self.parts if p.poor]
+        headers = ("part", "form", "m", "mesh m^3", "form m^3", "V", "A x", "A y", "A z", "length")
         return Table("Parts", headers, tuple(rows), (*notes, *self.statements), frozenset({0, 1, 2}))
 
     def total_table(self) -> Table:
@@ -165,7 +181,8 @@ class Simplification:
                 "name": p.part.name, "form": written(p.part.form)[0], "sizes": written(p.part.form)[1],
                 "centre": p.part.centre.tolist(), "rotation": p.part.rotation.tolist(),
                 "mesh_volume": p.volume, "volume": p.part.form.volume, "volume_error": p.volume_error,
-                "projected_area_errors": p.projected_errors.tolist(), "stand_in": not p.likeness.clear,
+                "projected_area_errors": p.projected_errors.tolist(), "length_error": p.length_error,
+                "class": p.likeness.kind, "stand_in": not p.likeness.clear, "look_at": list(p.poor),
                 "remarks": list(p.remarks),
             }
             for p in self.parts
@@ -176,6 +193,11 @@ class Simplification:
             "mesh_volume": sum(p.volume for p in self.parts) + self.unassigned,
             "volume": self.shape.volume,
             "unassigned": self.unassigned,
+            "mesh_centre_of_volume": self.mesh.centre_of_volume.tolist(),
+            "centre_of_volume": self.shape.centre_of_volume.tolist(),
+            "mesh_projected_areas": self.mesh.integrals.projected.tolist(),
+            "projected_areas": self._projected().tolist(),
+            "rules": list(RULES),
             "statements": list(self.statements),
         }
 
@@ -192,7 +214,9 @@ class Simplification:
         remarks = {}
         for p in self.parts:
             v, (x, y, z) = _percent(p.volume_error), (_percent(e) for e in p.projected_errors)
-            errors = f"errors: volume {v}; projected area along its x {x}, y {y}, z {z}"
+            errors = (
+                f"errors: volume {v}; projected area along its x {x}, y {y}, z {z}; length {_percent(p.length_error)}"
+            )
             remarks[p.part.name] = (*p.remarks, errors)
         return part_file(self.body, self.shape, opening, remarks)
 

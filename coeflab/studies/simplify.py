@@ -13,23 +13,27 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import Source
 from coeflab.kernels import solids
 from coeflab.kernels.attitude import angles, rotation, snapped
+from coeflab.kernels.convex_pieces import convex_pieces
+from coeflab.kernels.form_fits import Piece
 from coeflab.kernels.part_forms import Likeness, likeness
 from coeflab.kernels.segmentation import segments, without_overlap
-from coeflab.kernels.surface_mesh import mesh_integrals
 from coeflab.model.body import Body, Configuration
 from coeflab.model.mesh import TriangleMesh
+from coeflab.model.meshing import meshed
 from coeflab.model.named_box import NamedBox
 from coeflab.model.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate
 from coeflab.studies.simplified import Simplification, SimplifiedPart
 
 Array = NDArray[np.float64]
-MOST_FACES, KEPT_FACES = 1_000_000, 200_000
-SNAP = np.radians(2.0)
+MOST_FACES, KEPT_FACES, DRAWN_FACES = 1_000_000, 200_000, 20_000
+SNAP, SNAP_CUT = np.radians(0.3), np.radians(2.0)
 SNAP_OFFSET = 5e-4
+ROUNDING = 1e-9
 RESOLUTION = 1e-5
 FORMS: dict[str, Any] = {"cylinder": Cylinder, "plate": Plate, "ellipsoid": Ellipsoid, "box": Box}
+PLURAL = {"cylinder": "cylinders", "plate": "plates", "ellipsoid": "ellipsoids", "box": "boxes", "other": "others"}
 SECTORS = ("starboard", "starboard_bottom", "bottom", "port_bottom", "port", "port_top", "top", "starboard_top")
-SLIVERS, REMNANT, HAIR = 2e-4, 0.2, 1e-6
+SLIVERS, REMNANT, HAIR, CHIPS = 2e-4, 0.2, 1e-6, 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,34 +45,46 @@ class _Piece:
     cut: bool
 
 
-def simplify(body: Body, boxes: Sequence[NamedBox] = (), expected: int | None = None) -> Simplification:
+def simplify(
+    body: Body, boxes: Sequence[NamedBox] = (), expected: int | None = None, convex: bool = False
+) -> Simplification:
     """Replace a mesh by simple parts.
 
     Parameters
     ----------
     body : Body
-        Whose shape is a mesh.
+        Whose shape is a mesh, or a body of revolution, which is meshed first.
     boxes : sequence of NamedBox
         What is inside a box becomes a part of that name, before anything else is cut; what little it leaves between
         itself and the hull goes with it.
     expected : int, optional
         How many parts there must be.
+    convex : bool
+        Cut what no form is like into nearly convex pieces (`convex_pieces`); a named box stays one part.
 
     Raises
     ------
     InputError
-        Another shape, a surface that is not closed, a shell that looks inward, a box that holds nothing, another number
-        of parts than expected, nothing but plates.
+        Simple parts already, a surface that is not closed, a shell that looks inward, a box that holds nothing, another number
+        of parts than expected, nothing but plates, convex pieces without the package vhacdx.
     """
-    mesh = body.require_shape()
-    if not isinstance(mesh, TriangleMesh):
-        raise InputError(f"{body.name}, which is no mesh", "a body of reader mesh, or a mesh file")
+    shape = body.require_shape()
+    if isinstance(shape, Parts):
+        raise InputError(f"{body.name}, which is made of simple parts already", "a mesh, or a body given by equations")
+    mesh = shape if isinstance(shape, TriangleMesh) else meshed(shape, DRAWN_FACES)
     whole, statements = _whole(mesh)
+    if mesh is not shape:
+        statements.insert(0, f"meshed from its equations with {len(mesh.faces)} faces")
     _refuse_idle_boxes(boxes, mesh)
     found, unassigned, shared = _pieces(whole, boxes)
     if shared > SLIVERS * mesh.volume:
         statements.append(f"shells overlap by {shared:.4g} m^3, which goes to the larger one")
-    likes = [likeness(*solids.surface(p.solid)) for p in found]
+    likes = [likeness(p.solid) for p in found]
+    if convex:
+        found, likes, lost, said = _convex(found, likes)
+        unassigned += lost
+        statements += said
+    unassigned = unassigned if abs(unassigned) > ROUNDING * mesh.volume else 0.0
     if all(like.form == "plate" for like in likes):
         raise InputError("nothing but plates", "at least one part that displaces water")
     if expected is not None and len(found) != expected:
@@ -78,8 +94,8 @@ def simplify(body: Body, boxes: Sequence[NamedBox] = (), expected: int | None = 
         )  # fmt: skip
     length = float(mesh.extents.max())
     parts = _named([_part(p, like, length) for p, like in zip(found, likes, strict=True)])
-    shape = Parts(tuple(p.part for p in parts))
-    return Simplification(_body(body, shape), shape, mesh, parts, unassigned, tuple(statements))
+    made = Parts(tuple(p.part for p in parts))
+    return Simplification(_body(body, made), made, mesh, parts, unassigned, tuple(statements))
 
 
 def _whole(mesh: TriangleMesh) -> tuple[solids.Solid, list[str]]:
@@ -167,19 +183,40 @@ def _pieces(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece
     return out, unassigned, shared
 
 
+def _convex(found: list[_Piece], likes: list[Likeness]) -> tuple[list[_Piece], list[Likeness], float, list[str]]:
+    """Pieces and their forms, those that are like nothing cut further; volume that became slivers; what was done."""
+    out, forms, lost, said = [], [], 0.0, []
+    for piece, like in zip(found, likes, strict=True):
+        if like.clear or piece.name:
+            out.append(piece)
+            forms.append(like)
+            continue
+        try:
+            least = CHIPS * piece.solid.volume()
+            parts = [p for p in convex_pieces(piece.solid) if p.volume() > least]
+        except ImportError:
+            raise InputError(
+                "--split convex without the package vhacdx", "vhacdx", advice='Install "coeflab[convex]".'
+            ) from None
+        lost += piece.solid.volume() - sum(p.volume() for p in parts)
+        said.append(f"what is like no form, {piece.solid.volume():.5g} m^3, cut into {len(parts)} nearly convex pieces")
+        out += [replace(piece, solid=p) for p in parts]
+        forms += [likeness(p) for p in parts]
+    return out, forms, lost, said
+
+
 def _part(piece: _Piece, like: Likeness, length: float) -> SimplifiedPart:
     """The form in round numbers: sizes to 1e-5 of the body's length, angles to 0.01 deg, near-right angles right."""
     decimals = int(np.ceil(-np.log10(RESOLUTION * length)))
-    turn = snapped(like.rotation, SNAP)
+    turn = snapped(like.rotation, SNAP_CUT if piece.cut or piece.name else SNAP)
     turned = float(np.arccos(np.clip((np.trace(turn.T @ like.rotation) - 1.0) / 2.0, -1.0, 1.0)))
     turn = rotation(*(np.radians(np.round(np.degrees(a), 2)) for a in angles(turn)))
     centre = np.where(np.abs(like.centre) < np.array([0.0, 1.0, 1.0]) * SNAP_OFFSET * length, 0.0, like.centre)
     sizes = [round(s, decimals) if s > 100.0 * RESOLUTION * length else float(f"{s:.3g}") for s in like.sizes]
     form: Form = FORMS[like.form](*sizes)
     part = Part(piece.name, form, np.asarray(np.round(centre, decimals) + 0.0), turn)
-    vertices, faces = solids.surface(piece.solid)
-    own = mesh_integrals(vertices @ turn, faces)
-    return SimplifiedPart(part, like, own.volume, own.projected, piece.cut, turned)
+    own = Piece.of(solids.surface(piece.solid))
+    return SimplifiedPart(part, like, own.volume, own.projected(turn), own.extents(turn), piece.cut, turned)
 
 
 def _named(parts: list[SimplifiedPart]) -> tuple[SimplifiedPart, ...]:
@@ -203,13 +240,13 @@ def _place(p: SimplifiedPart, hull: SimplifiedPart) -> str:
     offset = turn.T @ (p.part.centre - hull.part.centre)
     half = hull.part.form.half_extents(turn.T @ hull.part.rotation)
     if np.hypot(offset[1], offset[2]) < 0.2 * max(half[1:]):
-        return f"{p.likeness.form}_{'fore' if offset[0] > 0.0 else 'aft'}"
-    return f"{p.likeness.form}_{SECTORS[round(np.arctan2(offset[2], offset[1]) / (np.pi / 4.0)) % 8]}"
+        return f"{p.likeness.kind}_{'fore' if offset[0] > 0.0 else 'aft'}"
+    return f"{p.likeness.kind}_{SECTORS[round(np.arctan2(offset[2], offset[1]) / (np.pi / 4.0)) % 8]}"
 
 
 def _counted(likes: Sequence[Likeness]) -> list[str]:
-    forms = [like.form for like in likes]
-    return [f"{forms.count(f)} {f}{'s' if forms.count(f) > 1 else ''}" for f in dict.fromkeys(forms)]
+    forms = [like.kind for like in likes]
+    return [f"{forms.count(f)} {PLURAL[f] if forms.count(f) > 1 else f}" for f in dict.fromkeys(forms)]
 
 
 def _body(body: Body, shape: Parts) -> Body:

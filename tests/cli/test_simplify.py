@@ -12,6 +12,8 @@ from subprocess import CompletedProcess
 
 import numpy as np
 import pytest
+import trimesh
+from manifold3d import Manifold
 
 from coeflab.core.files import shipped
 from coeflab.kernels.solids import box, surface
@@ -19,6 +21,7 @@ from coeflab.model.shape import Cylinder, Plate
 from coeflab.workbench import read_body
 
 Run = Callable[..., CompletedProcess[str]]
+BRACKET = Manifold.cube((100.0, 30.0, 10.0)) + Manifold.cube((10.0, 30.0, 80.0))
 NUMBER = re.compile(r"(?<![\w.])[+-]?\d+(?:\.\d+)?(?:e-?\d+)?(?![\w.])")
 STL = shipped("geometry") / "huuv_mesh" / "huuv.stl"
 FILES = ("body.toml", "overlay.svg", "overlay.glb")
@@ -70,7 +73,8 @@ def test_the_shipped_parts_against_the_dimensions_that_made_the_mesh() -> None:
     assert isinstance(hull, Cylinder)
     assert isinstance(mast, Cylinder)
     assert isinstance(port, Plate)
-    assert (hull.radius, hull.length) == pytest.approx((0.07, 1.2), rel=0.03)
+    assert hull.length == pytest.approx(1.2, rel=1e-4)
+    assert hull.radius == pytest.approx(0.07, rel=0.04)
     assert (mast.radius, mast.length) == pytest.approx((0.02, 0.3), rel=0.02)
     assert (port.chord, port.span) == pytest.approx((0.12, 0.24), rel=0.021)
     assert parts["cylinder_top"].centre[2] - mast.length / 2.0 == pytest.approx(-0.37, abs=0.003)
@@ -137,6 +141,38 @@ def test_overlapping_shells_are_united_on_request(coeflab: Run, tmp_path: Path) 
     assert found == {"hull": ("box", pytest.approx(0.32, rel=1e-5)), "sail": ("box", pytest.approx(0.024, rel=1e-5))}
 
 
+@pytest.mark.slow
+def test_json_agrees_with_the_text(coeflab: Run) -> None:
+    text = coeflab("simplify", "huuv_mesh", "--out", "a").stdout
+    said = json.loads(coeflab("simplify", "huuv_mesh", "--out", "a", "--json").stdout)
+    lines = {line.split()[0]: line for line in text.splitlines()[2 : 2 + len(said["parts"])]}
+    for part in said["parts"]:
+        errors = [part["volume_error"], *part["projected_area_errors"], part["length_error"]]
+        written = re.findall(r"([+-]?\d+\.\d) %", lines[part["name"]])
+        assert [float(w) for w in written] == pytest.approx([100.0 * e for e in errors], abs=0.0501)
+        assert f" {part['class']} " in lines[part["name"]]
+        for remark in part["remarks"]:
+            assert f"{part['name']}: {remark}" in text
+    assert all(rule in text for rule in said["rules"])
+    areas = [f"{m:.5g}" for m in said["mesh_projected_areas"]]
+    assert all(f"{axis} m^2" in text and a in text for axis, a in zip("xyz", areas))
+
+
+@pytest.mark.slow
+def test_a_bracket_is_split_on_request(coeflab: Run, tmp_path: Path) -> None:
+    """Two arms of 100 mm by 30 mm by 10 mm and 70 mm by 30 mm by 10 mm; without --split it is like nothing."""
+    trimesh.Trimesh(*surface(BRACKET), process=False).export(tmp_path / "bracket.stl")
+    declared = ("bracket.stl", "--unit", "mm", "--axes", "FRD", "--json")
+    whole = json.loads(coeflab("simplify", *declared, "--out", "whole").stdout)
+    assert [p["class"] for p in whole["parts"]] == ["other"]
+    split = json.loads(coeflab("simplify", *declared, "--out", "split", "--split", "convex").stdout)
+    assert [p["class"] for p in split["parts"]] == ["box", "box"]
+    assert split["volume"] == pytest.approx(51e-6, rel=5e-3)
+    scene = trimesh.load_scene(tmp_path / "split" / "overlay.glb")
+    assert set(scene.geometry) == {"hull", split["parts"][1]["name"], "mesh"}
+    assert scene.extents.max() == pytest.approx(0.1, rel=0.02)
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -145,7 +181,8 @@ def test_overlapping_shells_are_united_on_request(coeflab: Run, tmp_path: Path) 
         (("huuv.stl", "--unit", "kg", "--axes", "FLU"), "a unit of another dimension"),
         (("huuv.stl", "--unit", "mm", "--axes", "forward,port,down"), "left-handed"),
         (("huuv_mesh", "--unit", "mm"), "A body.toml says these itself"),
-        (("huuv",), "huuv, which is no mesh"),
+        (("huuv",), "huuv, which is made of simple parts already"),
+        (("huuv_mesh", "--split", "concave"), "expected convex, or no --split"),
         (("suboff",), "without a shape"),
         (("nothing.stl",), "no file or folder"),
         (("huuv_mesh", "--box", "mast=9:10,0:1,0:1"), "which holds no vertex of the mesh"),
