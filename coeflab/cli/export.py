@@ -20,8 +20,9 @@ def command(
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Write what a simulator loads, prove it by the simulator's own force law, and say what is lost."""
-    from coeflab.core.errors import InputError
+    from coeflab.core.errors import InputError, shown
     from coeflab.core.files import write_atomically
+    from coeflab.core.identifiers import file_stem
     from coeflab.model.parameter_file import read_parameter_file
     from coeflab.presentation import loss_tables
     from coeflab.workbench.exports import export
@@ -32,18 +33,18 @@ def command(
     if loss is not None and not json:
         show.table(loss_tables.forces(loss))
         show.table(loss_tables.parts(parameters))
-    refused = not made.lossless and (strict or not accept_loss)
+    refused = loss is not None and not made.lossless and (strict or not accept_loss)
     if refused and json:
         from coeflab.cli.as_json import export as export_json
 
         show.json_object({"files": [], **export_json(made)})
-    if refused:
+    if loss is not None and refused:
         raise InputError(
-            f"{to} cannot hold all of {parameters.name}",
+            f"{to} cannot hold all of {shown(parameters.name)}: {loss_tables.in_short(loss)}",
             "a target that holds everything" if strict else "--accept-loss, once the loss above has been read",
             file=file,
         )
-    folder = out if out is not None else file.parent / f"{parameters.name}.{to}"
+    folder = out if out is not None else file.parent / (made.folder or f"{file_stem(parameters.name)}.{to}")
     paths = [folder / name for name in sorted(made.files)]
     for path in paths:
         write_atomically(path, made.files[path.name])

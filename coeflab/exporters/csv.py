@@ -6,7 +6,7 @@ import csv
 import io
 from collections.abc import Iterable, Mapping, Sequence
 
-from coeflab.core.identifiers import identifier
+from coeflab.core.identifiers import file_stem, identifier
 from coeflab.model.look_up import LookUp, look_up
 from coeflab.model.parameter_coefficient import ParameterCoefficient
 from coeflab.model.parameter_file import ParameterFile
@@ -39,10 +39,12 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     Text that a spreadsheet would take for a formula is set behind an apostrophe. A value is empty where the model may not
     be read.
     """
-    files = {f"{parameters.name}.coefficients.csv": _table([HEADER, *map(_coefficient, parameters.coefficients)])}
+    files = {
+        f"{file_stem(parameters.name)}.coefficients.csv": _table([HEADER, *map(_coefficient, parameters.coefficients)])
+    }
     for k, model in enumerate(parameters.models, 1):
         response = identifier(model.response)
-        files[f"{parameters.name}.table_{k}_{response}.csv"] = _table(_look_up(look_up(model)))
+        files[f"{file_stem(parameters.name)}.table_{k}_{response}.csv"] = _table(_look_up(look_up(model)))
     return files
 
 

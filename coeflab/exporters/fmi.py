@@ -24,19 +24,20 @@ from coeflab.core.identifiers import identifier, one_line
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.core.xml import sayable
 from coeflab.model.exported_law import centre_of_gravity, number
-from coeflab.model.inertia import added_mass_of
+from coeflab.model.lost import missing_mass, missing_water
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.written_law import (
     WrittenTerm,
     not_written,
-    set_aside_accelerations,
     written_accelerations,
+    written_changes,
     written_terms,
 )
 
 summary = "FMI 2.0: an FMU for co-simulation, six degrees of freedom under the file's own law"
 citations = ("sname1950", "fossen2011", "fmi2", "pythonfmu")
 adds_coriolis = False
+not_held = not_written
 
 STEP = 0.01
 SLOWEST = 1e-9
@@ -232,26 +233,17 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
     return out
 
 
-def not_held(parameters: ParameterFile) -> tuple[str, ...]:
-    """Products with an acceleration; everything else is a term."""
-    return not_written(parameters)
+def missing(parameters: ParameterFile) -> tuple[str, ...]:
+    """Mass, moments of inertia and added mass, where the file has none."""
+    unset = "the unit does not start before you set them"
+    return (*missing_mass(parameters, unset, f"mass.Ixx is open, {unset}"), *missing_water(parameters))
 
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the law is written, in words."""
-    _, source = added_mass_of(parameters)
-    aside = set_aside_accelerations(parameters)
-    said = [
-        "axes, signs, primes and reference point are the file's; positions are north, east, down",
-        "totals are written: the unit adds no C_A(nu) nu; products of the ideal fluid that nothing measured speaks of are the "
-        "parameters ideal.*",
-        f"added mass: {source}",
+    return (
+        *written_changes(parameters, "the unit", "the parameters ideal.*", "the parameters acceleration.*"),
+        "positions are north, east, down",
         "weight and buoyancy are equal and act at one point, and the water is at rest: the file states no buoyancy; a righting "
         "moment goes to the inputs external.*",
-    ]
-    unknown = [v["name"] for v in _mass(parameters) if v["name"][5:] in ("m", "Ixx", "Iyy", "Izz") and not v["start"]]
-    if unknown:
-        said.append(f"{', '.join(unknown)}: not in the file; the unit does not start before you set it")
-    if aside:
-        said.append(f"{', '.join(aside)}: the added mass of the file stands in their place")
-    return tuple(said)
+    )

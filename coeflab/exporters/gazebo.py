@@ -10,21 +10,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from coeflab.core.identifiers import identifier
-from coeflab.core.xml import parse_xml
 from coeflab.kernels.kirchhoff import ideal_quadratics
 from coeflab.model.exported_law import common_changes, exported_law
-from coeflab.model.gz_link import read_gz_link
-from coeflab.model.gz_sdf import placed, sdf, tags
-from coeflab.model.loss import unheld
+from coeflab.model.gz_sdf import missing_in_sdf, not_in_sdf, placed, sdf, sdf_force, tags
 from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.second_order import FLU, slot
+from coeflab.model.second_order import FLU
 
 summary = "gz-sim: SDF 1.10 with <fluid_added_mass>, viscous parts in the Hydrodynamics plugin"
 citations = ("fossen2011", "gz_sim")
 adds_coriolis = True
+force, not_held, missing = sdf_force, not_in_sdf, missing_in_sdf
 
 VERSION = "1.10"
 
@@ -41,24 +38,13 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     return {f"{identifier(parameters.name)}.sdf": sdf(parameters, VERSION, written, fluid)}
 
 
-def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The system's own law (`coeflab.model.gz_link`, with file and lines of its source), turned to FRD."""
-    (content,) = files.values()
-    return np.asarray(read_gz_link(parse_xml(content.decode())).force(nu * FLU) * FLU)
-
-
-def not_held(parameters: ParameterFile) -> tuple[str, ...]:
-    """Terms that are no product of one or two velocities, and controls."""
-    return unheld(exported_law(parameters).law, lambda t: slot(t) is not None, ideal=True)
-
-
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """What was changed, in words."""
     h = exported_law(parameters)
     added = (
-        "no added mass is known: totals are written and no <fluid_added_mass>; the vehicle accelerates as if in air"
+        "no added mass is known: totals are written and no <fluid_added_mass>"
         if h.inert
         else f"gz-sim adds -C_A(nu) nu of <fluid_added_mass> ({h.statements[0]}): the viscous part of every term, total less what it "
         "adds, is written, so that nothing counts twice"
     )
-    return (added, *common_changes(parameters, h), *placed(parameters))
+    return (added, *common_changes(parameters, h, whole=True), *placed(parameters))

@@ -10,20 +10,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from coeflab.core.identifiers import identifier
-from coeflab.core.xml import parse_xml
 from coeflab.model.exported_law import common_changes, exported_law, number
-from coeflab.model.gz_link import FORCES, VELOCITIES, read_gz_link
-from coeflab.model.gz_sdf import placed, sdf, tags
-from coeflab.model.loss import unheld
+from coeflab.model.gz_link import FORCES, VELOCITIES
+from coeflab.model.gz_sdf import missing_in_sdf, not_in_sdf, placed, sdf, sdf_force, tags
 from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.second_order import FLU, slot
+from coeflab.model.second_order import FLU
 
 summary = "gz-sim: SDF 1.9, added mass and total damping in the Hydrodynamics plugin, its Coriolis disabled"
 citations = ("fossen2011", "gz_sim")
 adds_coriolis = False
+force, not_held, missing = sdf_force, not_in_sdf, missing_in_sdf
 
 VERSION = "1.9"
 
@@ -37,24 +35,13 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     return {f"{identifier(parameters.name)}.sdf": sdf(parameters, VERSION, [*written, *tags(h.form)], None)}
 
 
-def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The system's own law (`coeflab.model.gz_link`, with file and lines of its source), turned to FRD."""
-    (content,) = files.values()
-    return np.asarray(read_gz_link(parse_xml(content.decode())).force(nu * FLU) * FLU)
-
-
-def not_held(parameters: ParameterFile) -> tuple[str, ...]:
-    """Terms that are no product of one or two velocities, and controls."""
-    return unheld(exported_law(parameters).law, lambda t: slot(t) is not None, ideal=True)
-
-
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """What was changed, in words."""
     h = exported_law(parameters)
     out = [
         "the plugin's own Coriolis term has its sign reversed and is disabled: totals are written, and what the ideal fluid "
         "adds beyond them as products such as <xVR>",
-        "no added mass is known: the vehicle accelerates as if in air"
+        "no added mass is known: no <xDotU> is written"
         if h.inert
         else f"added mass ({h.statements[0]}) as <xDotU> ..., negative",
     ]
@@ -63,4 +50,4 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
             f"UNSTABLE: an added mass of {heaviest:.4g} kg is not below the vehicle's {parameters.mass.mass:.4g} kg, and the "
             "plugin integrates it explicitly; use the target gazebo"
         )
-    return (*out, *common_changes(parameters, h), *placed(parameters))
+    return (*out, *common_changes(parameters, h, whole=True), *placed(parameters))

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.identifiers import identifier
 from coeflab.kernels.fossen_torpedo import CROSS_FLOW, WATER, Torpedo, lifting_area
-from coeflab.model.exported_law import centre_of_gravity
+from coeflab.model.exported_law import central_inertia, centre_of_gravity
 from coeflab.model.force_law import ForceLaw, LawTerm, force_law
 from coeflab.model.loss import unheld
 from coeflab.model.parameter_file import ParameterFile
@@ -31,6 +31,8 @@ adds_coriolis = False
 NEVER = 1e9
 _DEFAULTS = {"area_fraction": 0.7, "zeta_roll": 0.3, "zeta_pitch": 0.8, "r44": 0.3, "e": 0.7}
 _LEFT_OUT = "the added mass of the file: HoloOcean computes its own, of a spheroid of this length and diameter"
+
+_INERTIA = "the moments of inertia of the file: HoloOcean computes those of the spheroid"
 
 
 def _fitted(parameters: ParameterFile) -> tuple[Torpedo, ForceLaw, tuple[str, ...]]:
@@ -117,7 +119,13 @@ def not_held(parameters: ParameterFile) -> tuple[str, ...]:
     def held(t: LawTerm) -> bool:
         return straight(t) or (t.symbol == "Xww" and "e" in found)
 
-    return (_LEFT_OUT, *unheld(law, held, ideal=False))
+    inertia = (_INERTIA,) if central_inertia(parameters) is not None else ()
+    return (_LEFT_OUT, *inertia, *unheld(law, held, ideal=False))
+
+
+def missing(parameters: ParameterFile) -> tuple[str, ...]:  # noqa: ARG001 - the port's signature
+    """Nothing: without a mass there is no export, and the rest is the spheroid's."""
+    return ()
 
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:

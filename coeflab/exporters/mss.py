@@ -16,14 +16,15 @@ from numpy.typing import NDArray
 from coeflab.core.arithmetic import evaluate
 from coeflab.core.identifiers import identifier, one_line
 from coeflab.core.matlab import assignments
+from coeflab.core.reserved import matlab
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
-from coeflab.model.inertia import added_mass_of
+from coeflab.model.lost import missing_water
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.written_law import (
     WrittenTerm,
     not_written,
-    set_aside_accelerations,
     written_accelerations,
+    written_changes,
     written_controls,
     written_terms,
 )
@@ -31,13 +32,9 @@ from coeflab.model.written_law import (
 summary = "MSS: a MATLAB or Octave function of force and added mass, with a struct of SNAME coefficients"
 citations = ("sname1950", "fossen2011", "mss")
 adds_coriolis = False
+not_held, missing = not_written, missing_water
 
-KEYWORDS = frozenset({
-    "break", "case", "catch", "classdef", "continue", "do", "else", "elseif", "end", "end_try_catch",
-    "end_unwind_protect", "endfor", "endfunction", "endif", "endparfor", "endswitch", "endwhile", "for", "function",
-    "global", "if", "otherwise", "parfor", "persistent", "return", "spmd", "switch", "try", "until", "unwind_protect",
-    "unwind_protect_cleanup", "while", "nu", "delta", "tau", "h", "MA",
-})  # fmt: skip
+OWN = frozenset({"nu", "delta", "tau", "h", "MA", "U", *MOTIONS, *COMPONENTS, *CONTROLS})
 _PLACES = {"prime": "h.", "rest": "h.rest.", "potential": "h.ideal."}
 _HEADINGS = {
     "prime": "Primed by rho and L: totals, potential part included",
@@ -113,7 +110,7 @@ def _facts(parameters: ParameterFile) -> list[str]:
 
 def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     """One function file; its name is the parameter file's, as an identifier."""
-    function = identifier(parameters.name, KEYWORDS)
+    function = identifier(parameters.name, matlab() | OWN)
     terms = written_terms(parameters)
     accelerations, source = written_accelerations(parameters)
     lines = [*_head(function, parameters), *_facts(parameters)]
@@ -165,21 +162,9 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
     return np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
 
 
-def not_held(parameters: ParameterFile) -> tuple[str, ...]:
-    """Products with an acceleration; everything else is an expression."""
-    return not_written(parameters)
-
-
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the law is written, in words."""
-    _, source = added_mass_of(parameters)
-    aside = set_aside_accelerations(parameters)
-    said = [
-        "axes, signs, primes and reference point are the file's; r2 = 1/2 rho L^2, r3 = 1/2 rho L^3 and so on",
-        "totals are written: the function adds no C_A(nu) nu; products of the ideal fluid that nothing measured speaks of "
-        "stand as h.ideal",
-        f"MA: {source}",
-    ]
-    if aside:
-        said.append(f"{', '.join(aside)}: the added mass of the file stands in their place")
-    return tuple(said)
+    return (
+        *written_changes(parameters, "the function", "h.ideal", "MA"),
+        "r2 in the function is 1/2 rho L^2, r3 is 1/2 rho L^3 and so on; U is never below 1e-9 m/s",
+    )

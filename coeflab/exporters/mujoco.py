@@ -22,6 +22,7 @@ from coeflab.model.exported_law import central_inertia, centre_of_gravity, numbe
 from coeflab.model.force_law import ForceLaw, force_law
 from coeflab.model.inertia import added_mass_of
 from coeflab.model.loss import unheld
+from coeflab.model.lost import missing_mass
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.straight_motion import held_when_straight
 
@@ -165,6 +166,13 @@ def not_held(parameters: ParameterFile) -> tuple[str, ...]:
     return (_LEFT_OUT, *unheld(law, held, ideal=False))
 
 
+def missing(parameters: ParameterFile) -> tuple[str, ...]:
+    """Mass and moments of inertia, where the file has none."""
+    return missing_mass(
+        parameters, "those of the ellipsoid, solid and as heavy as the file says or water, stand until you write yours"
+    )
+
+
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the ellipsoid was made, in words."""
     geom, _ = _fitted(parameters)
@@ -185,13 +193,5 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     if geom.wanted != geom.forward:
         said.append(
             f"Nv would need the centre at {geom.wanted:+.4g} m, more than a length away: it stays, and Nv is the Munk moment alone"
-        )
-    if parameters.mass is None:
-        said.append(
-            "no mass in the parameter file: that of the ellipsoid filled with water stands until you write the vehicle's"
-        )
-    elif parameters.mass.inertia_matrix is None:
-        said.append(
-            "roll inertia is not in the parameter file: the transverse one stands in its place, or a solid ellipsoid's for all three"
         )
     return tuple(said)

@@ -8,7 +8,6 @@ controls dimU``; currents and the Euler step are those of vehicles/remus100.py, 
 from __future__ import annotations
 
 import ast
-import keyword
 from collections.abc import Mapping
 from typing import Any
 
@@ -16,15 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.identifiers import identifier, one_line
+from coeflab.core.reserved import python
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.model.exported_law import centre_of_gravity
-from coeflab.model.inertia import added_mass_of
+from coeflab.model.lost import missing_mass, missing_water
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.written_law import (
     WrittenTerm,
     not_written,
-    set_aside_accelerations,
     written_accelerations,
+    written_changes,
     written_controls,
     written_terms,
 )
@@ -33,7 +33,8 @@ summary = "Python Vehicle Simulator: a vehicle class with dynamics(), its law in
 citations = ("sname1950", "fossen2011", "python_vehicle_simulator")
 adds_coriolis = False
 
-RESERVED = frozenset({*keyword.kwlist, *keyword.softkwlist, "np", "math"})
+not_held = not_written
+
 _PLACES = {"prime": "self.", "rest": "self.rest_", "potential": "self.ideal_"}
 _HEADINGS = {
     "prime": "Primed by rho and L: totals, potential part included",
@@ -117,7 +118,7 @@ def _place(group: str, name: str) -> str:
 
 def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     """One class file; class and file bear the parameter file's name as an identifier."""
-    name = identifier(parameters.name, RESERVED)
+    name = identifier(parameters.name, python())
     terms = written_terms(parameters)
     accelerations, source = written_accelerations(parameters)
     p, mass = parameters, parameters.mass
@@ -245,26 +246,15 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
     raise ValueError(ast.dump(node))
 
 
-def not_held(parameters: ParameterFile) -> tuple[str, ...]:
-    """Products with an acceleration; everything else is an expression."""
-    return not_written(parameters)
+def missing(parameters: ParameterFile) -> tuple[str, ...]:
+    """Mass, moments of inertia and added mass, where the file has none."""
+    asks = "dynamics() asks for them, hydrodynamics() does not"
+    return (*missing_mass(parameters, asks, "dynamics() asks for Ix"), *missing_water(parameters))
 
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the law is written, in words."""
-    _, source = added_mass_of(parameters)
-    aside = set_aside_accelerations(parameters)
-    said = [
-        "axes, signs, primes and reference point are the file's; r2 = 1/2 rho L^2, r3 = 1/2 rho L^3 and so on",
-        "totals are written, and the class adds no C_A(nu) nu (remus100.py zeroes its Munk terms); products of the ideal "
-        "fluid that nothing measured speaks of stand as ideal_*",
-        f"MA: {source}",
-    ]
-    unknown = ["m"] if parameters.mass is None else []
-    unknown += [n for n, value in zip(("Ix", "Iy", "Iz"), _moments(parameters), strict=True) if value is None]
-    if unknown:
-        said.append(f"{', '.join(unknown)}: not in the file; dynamics() asks for them, hydrodynamics() does not")
-    said.append("weight and buoyancy are equal and act at one point until r_bb is given: the file states no buoyancy")
-    if aside:
-        said.append(f"{', '.join(aside)}: the added mass of the file stands in their place")
-    return tuple(said)
+    return (
+        *written_changes(parameters, "the class (as remus100.py, which zeroes its Munk terms)", "ideal_*", "MA"),
+        "weight and buoyancy are equal and act at one point until r_bb is given: the file states no buoyancy",
+    )

@@ -1,14 +1,13 @@
 """Stonefish: a scenario with one robot, its mesh, and the drags along its axes; nothing else of a force law.
 
 The mesh is an ellipsoid, for Stonefish computes drag, buoyancy and added mass from a mesh and the file states none. Its form
-drag grows with the cube of the speed and its friction in proportion to it: together they meet the file's resistance, in value
-and slope, at the file's speed.
+drag grows with the cube of the speed and its friction in proportion to it. How they are chosen is said in
+`coeflab.model.stonefish_link` and, with figures, in the loss report.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
@@ -18,14 +17,14 @@ from coeflab.core.errors import InputError
 from coeflab.core.identifiers import identifier, one_line
 from coeflab.core.xml import numbers, parse_xml, serialised
 from coeflab.kernels.mujoco_fluid import ellipsoid_of_masses
-from coeflab.kernels.stonefish_fluid import added, ellipsoid_mesh, raw_drag, weighed
-from coeflab.kernels.transforms import force_transfer, velocity_transfer
+from coeflab.kernels.stonefish_fluid import added, ellipsoid_mesh
 from coeflab.model.exported_law import central_inertia, centre_of_gravity, number
 from coeflab.model.force_law import force_law
 from coeflab.model.inertia import added_mass_of
 from coeflab.model.loss import unheld
+from coeflab.model.lost import missing_mass
 from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.second_order import second_order
+from coeflab.model.stonefish_link import ChosenDrags, StonefishLink, chosen_drags
 from coeflab.model.straight_motion import held_when_straight
 
 summary = "Stonefish: a scenario with drags along the axes of an ellipsoid mesh; no derivatives, no Munk moment"
@@ -35,36 +34,9 @@ adds_coriolis = True
 Array = NDArray[np.float64]
 HELD = 1e-6
 _LEFT_OUT = (
-    "resistance with the square of the speed: Stonefish has the cube and the first power, which meet it at the file's speed",
+    "resistance with the square of the speed: Stonefish has the cube and the first power",
     "the added mass of the file: Stonefish takes one number from the mesh for all directions, and no Munk moment",
 )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Link:
-    """Vertices and faces, m, FRD from the reference point; centre of gravity; coefficients; density."""
-
-    vertices: Array
-    faces: NDArray[np.int64]
-    centre: Array
-    form: Array
-    skin: Array
-    density: float
-
-    @property
-    def corners(self) -> Array:
-        return np.asarray(self.vertices[self.faces] - self.centre)
-
-    def force(self, nu: Array) -> Array:
-        """(n, 6), FRD, about the reference point: drags, and what the added mass takes up in turning."""
-        own = nu @ velocity_transfer(self.centre).T
-        v, w = own[:, :3], own[:, 3:]
-        form_force, form_torque, skin_force, skin_torque = raw_drag(self.corners, v, w)
-        half, whole = 0.5 * self.density * self.form, self.density * self.skin
-        mass, moments = added(self.corners, self.density)
-        force = weighed(form_force, half) + weighed(skin_force, whole) - np.cross(w, mass * v)
-        torque = weighed(form_torque, half) + weighed(skin_torque, whole) - np.cross(w, moments * w)
-        return np.asarray(np.hstack([force, torque]) @ force_transfer(-self.centre).T)
 
 
 def _axes(parameters: ParameterFile) -> Array:
@@ -94,19 +66,12 @@ def _axes(parameters: ParameterFile) -> Array:
     return np.array([long, thick, thick])
 
 
-def _fitted(parameters: ParameterFile) -> _Link:
-    """The link; where the file has no drag along an axis, or one that drives, that coefficient is zero."""
-    rho, speed, centre = parameters.conditions.density, parameters.conditions.speed, centre_of_gravity(parameters)
+def _fitted(parameters: ParameterFile) -> ChosenDrags:
+    """The link with its drags."""
+    centre, none = centre_of_gravity(parameters), np.zeros(3)
     vertices, faces = ellipsoid_mesh(_axes(parameters), centre)
     vertices = np.array([[float(f"{x:.12g}") for x in vertex] for vertex in vertices])
-    law, axis = second_order(force_law(parameters)), np.arange(3)
-    square, linear = -law.absolute[axis, axis, axis], -law.linear[axis, axis]
-    square, linear = np.maximum(square, 0.0), np.maximum(linear, 0.0)
-    form_force, _, skin_force, _ = raw_drag(vertices[faces] - centre, np.eye(3), np.zeros((3, 3)))
-    fronts, sides = -np.diag(form_force), -np.diag(skin_force)
-    form = 2.0 * square / (2.0 * speed) / (rho * fronts)
-    skin = (linear + square * speed / 2.0) / (rho * sides)
-    return _Link(vertices, faces, centre, form, skin, rho)
+    return chosen_drags(parameters, StonefishLink(vertices, faces, centre, none, none, parameters.conditions.density))
 
 
 def _row(values: Array) -> str:
@@ -121,7 +86,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     InputError
         As `_axes` says, or an inertia that is not positive.
     """
-    link, name = _fitted(parameters), identifier(parameters.name)
+    link, name = _fitted(parameters).link, identifier(parameters.name)
     root = Element("scenario")
     environment = SubElement(root, "environment")
     SubElement(environment, "ned", latitude="0.0", longitude="0.0")
@@ -169,42 +134,42 @@ def force(files: Mapping[str, bytes], nu: Array) -> Array:
     if cg is not None:
         centre = np.array(numbers(cg.get("xyz"), (3,), "cg"))
     form, skin = (np.array(numbers(drags.get(n), (3,), n)) for n in ("quadratic_drag", "viscous_drag"))
-    return _Link(vertices, faces, centre, form, skin, float(water.get("density", "1000"))).force(nu)
+    return StonefishLink(vertices, faces, centre, form, skin, float(water.get("density", "1000"))).force(nu)
 
 
 def not_held(parameters: ParameterFile) -> tuple[str, ...]:
     """The form of the resistance; the added mass; every other term, product and control."""
-    link, law = _fitted(parameters), force_law(parameters)
+    link, law = _fitted(parameters).link, force_law(parameters)
     straight = held_when_straight(link.force, parameters.conditions.speed)
     return (*_LEFT_OUT, *unheld(law, lambda t: t.symbol == "X0" and straight(t), ideal=False))
 
 
+def missing(parameters: ParameterFile) -> tuple[str, ...]:
+    """Mass and moments of inertia, where the file has none."""
+    return missing_mass(
+        parameters, "Stonefish takes those of the mesh, as heavy as the file says or water, until you write yours"
+    )
+
+
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How mesh and drags were made, in words."""
-    link, speed = _fitted(parameters), parameters.conditions.speed
+    drags, speed = _fitted(parameters), parameters.conditions.speed
+    link = drags.link
     a, b, c = _axes(parameters)
     mass, _ = added(link.corners, link.density)
     said = [
         f"the mesh is an ellipsoid of semi-axes {a:.4g} {b:.4g} {c:.4g} m about the centre of gravity: the file states no shape",
         "Stonefish's quadratic_drag grows with the cube of the speed and its viscous_drag with the first power (in its source, "
-        f"whatever their names): a drag k v^2 is written as k/(2U) v^3 + k U/2 v, which meets it in value and slope at U = {speed:g} m/s",
+        f"whatever their names): a drag k v^2 as k/(2U) v^3 + k U/2 v meets it in value and slope at U = {speed:g} m/s, and is 25 % above "
+        "it at half that speed and 8 % at one and a half times it",
+        drags.in_words(),
         f"Stonefish adds {mass:.4g} kg to the mass, alike in all directions, from the mesh; in a turn that mass has its inertia, -m w x v, which the differences in this report hold",
         "axes and reference point are the file's",
     ]
     if not np.all(link.form > 0.0):
         none = ", ".join(n for n, k in zip("xyz", link.form, strict=True) if k == 0.0)
-        said.append(f"no quadratic drag along {none} in the file: zero is written, not Stonefish's default")
+        said.append(f"no quadratic drag along {none}: zero is written, not Stonefish's default")
     inertia = central_inertia(parameters)
-    if parameters.mass is None:
-        said.append(
-            "no mass in the parameter file: that of the mesh filled with water stands until you write the vehicle's"
-        )
-    elif inertia is None:
-        said.append("no moment of inertia in the parameter file: Stonefish takes that of the mesh, scaled to the mass")
-    elif parameters.mass.inertia_matrix is None:
-        said.append(
-            "roll inertia is not in the parameter file: the transverse one stands in its place; write the vehicle's"
-        )
-    elif np.any(inertia - np.diag(np.diag(inertia))):
+    if inertia is not None and np.any(inertia - np.diag(np.diag(inertia))):
         said.append("products of inertia are left out: Stonefish takes three moments")
     return tuple(said)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from coeflab.core.identifiers import file_stem
 from coeflab.core.toml_text import toml_text
 from coeflab.model.look_up import LookUp, look_up
 from coeflab.model.parameter_file import ParameterFile
@@ -37,7 +38,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         "coefficient": [{k: v for k, v in c.items() if k in _OF_COEFFICIENT} for c in p["coefficients"]],
         "table": [_table(look_up(m)) for m in parameters.models],
     }
-    return {f"{parameters.name}.tables.toml": toml_text(content).encode()}
+    return {f"{file_stem(parameters.name)}.tables.toml": toml_text(content).encode()}
 
 
 def _table(of: LookUp) -> dict[str, Any]:

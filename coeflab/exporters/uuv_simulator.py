@@ -30,6 +30,7 @@ from coeflab.model.exported_law import (
 from coeflab.model.force_law import LawTerm
 from coeflab.model.fossen_link import MATRICES, read_fossen_link
 from coeflab.model.loss import unheld
+from coeflab.model.lost import missing_mass, missing_water
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.second_order import FLU, ROUNDING, SURGE, products_once, slot
 
@@ -123,12 +124,18 @@ def not_held(parameters: ParameterFile) -> tuple[str, ...]:
     return unheld(exported_law(parameters).law, _held, ideal=True)
 
 
+def missing(parameters: ParameterFile) -> tuple[str, ...]:
+    """Mass, moments of inertia and added mass, where the file has none."""
+    dropped = "Gazebo leaves out a link without them until you write the vehicle's"
+    return (*missing_mass(parameters, dropped), *missing_water(parameters))
+
+
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """What was changed, in words."""
     law, at = exported_law(parameters), centre_of_gravity(parameters)
     out = [
         "axes: none, the plugin itself turns Gazebo's x forward, y port, z up to x forward, y starboard, z down",
-        "no added mass is known: totals are written and <added_mass> is zero; the vehicle accelerates as if in air"
+        "no added mass is known: totals are written and <added_mass> is zero"
         if law.inert
         else f"the plugin adds -C_A(nu) nu of <added_mass> ({law.statements[0]}): <linear_damping_forward_speed> has the viscous "
         "part of every product with u, total less what the plugin adds, so that nothing counts twice",
@@ -143,4 +150,4 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
             "plugin's force acts; quadratic damping keeps its numbers"
         )
     out.append("neutrally buoyant, centre of buoyancy in the centre of gravity: the parameter file states neither")
-    return (*out, *common_changes(parameters, law))
+    return (*out, *common_changes(parameters, law, whole=False))

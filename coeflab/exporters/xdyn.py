@@ -20,11 +20,12 @@ from coeflab.kernels.composition import definiteness, moved
 from coeflab.kernels.rigid_body import about_another, rigid_body_inertia
 from coeflab.kernels.transforms import force_transfer, velocity_transfer
 from coeflab.model.inertia import added_mass_of
+from coeflab.model.lost import missing_water
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.written_law import (
     WrittenTerm,
     not_written,
-    set_aside_accelerations,
+    written_changes,
     written_controls,
     written_terms,
 )
@@ -33,6 +34,7 @@ from coeflab.model.xdyn_body import ADDED, DAMPING, HERE, RIGID, xdyn_body
 summary = "xdyn: a YAML simulation file with inertia, added mass, damping and manoeuvring expressions"
 citations = ("sname1950", "fossen2011", "xdyn")
 adds_coriolis = False
+not_held = not_written
 
 FORCES = "hydrodynamic_forces"
 GRAVITY, VISCOSITY = 9.80665, 1e-6
@@ -202,9 +204,10 @@ def force(files: Mapping[str, bytes], nu: Array) -> Array:
     return np.asarray(body.force(nu @ velocity_transfer(-shift).T) @ force_transfer(shift).T)
 
 
-def not_held(parameters: ParameterFile) -> tuple[str, ...]:
-    """Products with an acceleration; everything else is an expression."""
-    return not_written(parameters)
+def missing(parameters: ParameterFile) -> tuple[str, ...]:
+    """Rigid-body inertia about a known centre of gravity, and added mass, where the file has none."""
+    rigid = () if _rigid(parameters) is not None else (_absent(parameters).removesuffix("."),)
+    return (*rigid, *missing_water(parameters))
 
 
 def _absent(parameters: ParameterFile) -> str:
@@ -217,13 +220,11 @@ def _absent(parameters: ParameterFile) -> str:
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the law is written, in words."""
-    centre, aside = _centre(parameters), set_aside_accelerations(parameters)
-    terms = written_terms(parameters)
+    centre, terms = _centre(parameters), written_terms(parameters)
     said = [
-        "axes, signs and primes are the file's; r2 = 1/2 rho L^2, r3 = 1/2 rho L^3 and so on",
-        "totals are written: xdyn adds no C_A(nu) nu; products of the ideal fluid that nothing measured speaks of stand as "
-        "expressions ending in _ideal",
-        f"added mass about the body frame's origin: {added_mass_of(parameters)[1]}",
+        *written_changes(
+            parameters, "xdyn", "expressions ending in _ideal", "added mass about the body frame's origin"
+        ),
         "velocities over the ground stand for those through the water; currents are for linear and quadratic damping only",
     ]
     if centre is None:
@@ -234,12 +235,13 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
             f"the body frame has its origin at the centre of gravity, ({x}, {y}, {z}) m from the reference point; the "
             "expressions use the velocities at the reference point, and forces act there"
         )
-    if _rigid(parameters) is None:
-        said.append(_absent(parameters).removesuffix("."))
     if any(_damped(t, centre is None or not centre.any()) for t in terms):
         said.append("damping about a state of rest stands as damping matrices, with the opposite sign")
-    if aside:
-        said.append(f"{', '.join(aside)}: the added mass of the file stands in their place")
+    if any(m.area is not None for m in parameters.models):
+        said.append(
+            "no hydrodynamic polar is written for C_D and the like: xdyn's takes C_L, C_D and C_m as functions of one angle in one "
+            "plane, and would add to the expressions of the coefficients"
+        )
     if parameters.conditions.viscosity is None:
         said.append(f"viscosity {VISCOSITY:g} m^2/s, which no expression uses, stands where the file has none")
     return tuple(said)

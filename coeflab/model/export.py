@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from coeflab.core.identifiers import file_stem
 from coeflab.model.loss import Loss
 
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """Files by name, and what is lost.
+    """Files by name, and what is lost. Names of files and folders are made of the parameter file's by `file_stem`.
 
     Attributes
     ----------
@@ -36,4 +37,4 @@ class Export:
     @property
     def folder(self) -> str:
         """Where the files stand beside the parameter file: a folder of their own, tables beside it."""
-        return "" if self.loss is None else f"{self.parameters}.{self.target}"
+        return "" if self.loss is None else f"{file_stem(self.parameters)}.{self.target}"

@@ -13,7 +13,7 @@ from coeflab.kernels.transforms import skew
 from coeflab.model.force_law import ForceLaw, force_law
 from coeflab.model.inertia import added_mass_of
 from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.second_order import SecondOrder, second_order, slot
+from coeflab.model.second_order import SecondOrder, resists, second_order, slot
 
 Array = NDArray[np.float64]
 
@@ -102,23 +102,18 @@ def central_inertia(parameters: ParameterFile) -> Array | None:
     return central * np.eye(3)
 
 
-def common_changes(parameters: ParameterFile, law: ExportedLaw) -> tuple[str, ...]:
-    """What any such export changes, in words."""
+def common_changes(parameters: ParameterFile, law: ExportedLaw, *, whole: bool) -> tuple[str, ...]:
+    """What any such export changes, in words; `whole` says whether the target takes v^2 and w^2 of the resistance."""
     out = [f"numbers are SI: primes times 1/2 rho L^k at {parameters.conditions.density:g} kg/m^3", *law.statements[1:]]
-    speed = [t.symbol for t in law.law.terms if t.speed_power and slot(t) is not None and t.coefficient]
+    terms = [t for t in law.law.terms if t.coefficient]
+    if whole and any(resists(t) for t in terms):
+        out.append(
+            "X0 U^2 is written as u|u| + v^2 + w^2, alike on every course ahead; <coeflab_x0> repeats it for our reader, the target passes it over"
+        )
+    speed = [t.symbol for t in terms if t.speed_power and slot(t) is not None and not (whole and resists(t))]
     if speed:
         out.append(
             f"u stands for U in {', '.join(speed)} (u v for U v, u|u| or u^2 for U^2): alike on a straight course ahead, in drift "
             "less by 1 - cos(beta) of a term in U, 1 - cos^2(beta) of one in U^2"
-        )
-    if parameters.mass is None:
-        out.append("no mass in the parameter file: the target's default stands until you write the vehicle's")
-    elif central_inertia(parameters) is None:
-        out.append(
-            "no moment of inertia in the parameter file: the target's default stands until you write the vehicle's"
-        )
-    elif parameters.mass.inertia_matrix is None:
-        out.append(
-            "roll inertia is not in the parameter file: the transverse one stands in its place; write the vehicle's"
         )
     return tuple(out)

@@ -22,6 +22,7 @@ from coeflab.model.frozen import locked
 Array = NDArray[np.float64]
 FORCES, VELOCITIES = "xyzkmn", "UVWPQR"
 SYSTEM = {"filename": "gz-sim-hydrodynamics-system", "name": "gz::sim::systems::Hydrodynamics"}
+RESISTANCE = "coeflab_x0"
 FLUID = tuple((i, j) for i in range(6) for j in range(i, 6))
 FLUID_TAGS = {(i, j): "xyzpqr"[i] + "xyzpqr"[j] for i, j in FLUID}
 DENSITIES = ("water_density", "waterDensity", "uniform_fluid_density", "default_density")
@@ -44,6 +45,8 @@ class GzLink:
         <xU> ... <nR>.
     signed, absolute : (6, 6, 6) arrays
         <xVR> and <yVabsU>, by force, velocity, velocity.
+    resistance : float
+        <coeflab_x0>, which gz-sim passes over: what <xUabsU>, <xVV> and <xWW> hold in common as X0 U^2.
     plugin_mass : (6, 6) array
         <xDotU> ..., Fossen's sign: negative.
     disable_coriolis, disable_added_mass : bool
@@ -72,6 +75,7 @@ class GzLink:
     centre: Array
     inertia: Array | None
     density: float | None
+    resistance: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("linear", "signed", "absolute", "plugin_mass", "fluid_mass", "centre"):
@@ -138,6 +142,7 @@ def read_gz_link(root: Element, file: Path | str | None = None) -> GzLink:
         centre=np.array(pose[:3]),
         inertia=symmetric(axes),
         density=density,
+        resistance=_one(plugin, RESISTANCE, file) or 0.0,
     )
 
 

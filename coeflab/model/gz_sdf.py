@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from xml.etree.ElementTree import Element, SubElement
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.identifiers import identifier, one_line
-from coeflab.core.xml import serialised
-from coeflab.model.exported_law import central_inertia, centre_of_gravity, number
-from coeflab.model.gz_link import FLUID_TAGS, FORCES, SYSTEM, VELOCITIES
+from coeflab.core.xml import parse_xml, serialised
+from coeflab.model.exported_law import central_inertia, centre_of_gravity, exported_law, number
+from coeflab.model.gz_link import FLUID_TAGS, FORCES, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
+from coeflab.model.loss import unheld
+from coeflab.model.lost import missing_mass, missing_water
 from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.second_order import FLU, SecondOrder
+from coeflab.model.second_order import FLU, SecondOrder, slot
 
 Array = NDArray[np.float64]
 LINK = "base_link"
@@ -74,7 +77,7 @@ def _inertial(link: Element, parameters: ParameterFile, fluid: Array | None) -> 
 
 
 def tags(form: SecondOrder) -> list[tuple[str, str]]:
-    """Tags of the plugin for a form in FRD, without zeros."""
+    """Tags of the plugin for a form in FRD, without zeros; the last says what its reader is to take for X0."""
     turned = form.turned(FLU)
     out = []
     for i, j in np.argwhere(turned.linear):
@@ -83,6 +86,8 @@ def tags(form: SecondOrder) -> list[tuple[str, str]]:
         out.append((f"{FORCES[i]}{VELOCITIES[j]}abs{VELOCITIES[k]}", number(turned.absolute[i, j, k])))
     for i, j, k in np.argwhere(turned.signed):
         out.append((FORCES[i] + VELOCITIES[j] + VELOCITIES[k], number(turned.signed[i, j, k])))
+    if form.resistance:
+        out.append((RESISTANCE, number(form.resistance)))
     return out
 
 
@@ -91,3 +96,20 @@ def placed(parameters: ParameterFile) -> tuple[str, ...]:
     at = FLU[:3] * centre_of_gravity(parameters) + 0.0
     moved = (f"centre of gravity at {at[0]:.6g} {at[1]:.6g} {at[2]:.6g} m, in <inertial><pose>",) if np.any(at) else ()
     return (AXES, "the link's origin is the reference point", *moved, WEIGHTLESS)
+
+
+def sdf_force(files: Mapping[str, bytes], nu: Array) -> Array:
+    """The system's own law (`coeflab.model.gz_link`, with file and lines of its source) of a rendered model, turned to FRD."""
+    (content,) = files.values()
+    return np.asarray(read_gz_link(parse_xml(content.decode())).force(nu * FLU) * FLU)
+
+
+def not_in_sdf(parameters: ParameterFile) -> tuple[str, ...]:
+    """Terms that are no product of one or two velocities, and controls."""
+    return unheld(exported_law(parameters).law, lambda t: slot(t) is not None, ideal=True)
+
+
+def missing_in_sdf(parameters: ParameterFile) -> tuple[str, ...]:
+    """Mass, moments of inertia and added mass, where the file has none."""
+    default = "SDFormat's default, 1 kg or 1 kg m^2, stands until you write the vehicle's"
+    return (*missing_mass(parameters, default), *missing_water(parameters))

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative
 from coeflab.model.parameter_file import ParameterFile
 
+SAME = 1e-9
 Array = NDArray[np.float64]
 
 
@@ -35,3 +36,14 @@ def added_mass_of(parameters: ParameterFile) -> tuple[Array, str]:
     if not known:
         return matrix, "no added mass is known"
     return matrix, f"acceleration derivatives {', '.join(known)} only; every other entry is unknown and written as zero"
+
+
+def converted(parameters: ParameterFile) -> tuple[str, ...]:
+    """What was done to an added mass that holds for another density than the file's; in words, empty where nothing was."""
+    hull, density = parameters.added_mass, parameters.conditions.density
+    if hull is None or abs(hull.density - density) <= SAME * density:
+        return ()
+    return (
+        f"the added mass of {hull.body} is stated for {hull.density:.6g} kg/m^3 and multiplied by {density / hull.density:.6g} for "
+        f"the file's {density:.6g} kg/m^3, here and in the potential parts",
+    )

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative
 from coeflab.model.force_law import ForceLaw, LawTerm
 from coeflab.model.frozen import locked
+from coeflab.model.lost import Lost
 from coeflab.model.parameter_file import ParameterFile
 
 Array = NDArray[np.float64]
@@ -30,26 +31,30 @@ class Loss:
     ----------
     target : str
     not_held : tuple of str
-        What the target cannot represent, in words, symbol first.
+        Terms that the target cannot represent, in words, symbol first.
+    lost : tuple of Lost
+        What is lost beside terms.
     changes : tuple of str
         What was changed in sign, axes or form, and why.
-    worst, rms, largest : (6,) array
-        Largest and root-mean-square difference of the target's force from the file's, and the file's largest force, over
-        the grid; N and N m.
+    worst, rms, largest, size : (6,) array
+        Largest and root-mean-square difference of the target's force from the file's, and the file's largest and
+        root-mean-square force, over the grid; N and N m.
     grid : str
         The velocities that were tried, in words.
     """
 
     target: str
     not_held: tuple[str, ...]
+    lost: tuple[Lost, ...]
     changes: tuple[str, ...]
     worst: Array
     rms: Array
     largest: Array
+    size: Array
     grid: str
 
     def __post_init__(self) -> None:
-        for name in ("worst", "rms", "largest"):
+        for name in ("worst", "rms", "largest", "size"):
             object.__setattr__(self, name, locked(getattr(self, name)))
 
     @property
@@ -61,9 +66,15 @@ class Loss:
         return np.divide(self.worst, scale, out=np.where(self.worst > 0.0, np.inf, 0.0), where=scale > 0.0)
 
     @property
+    def worse_than_nothing(self) -> tuple[str, ...]:
+        """Components in which the target is further from the file than no force at all would be, in the root mean square."""
+        least = LOSSLESS * self.largest.max(initial=0.0)
+        return tuple(c for c, r, s in zip(COMPONENTS, self.rms, self.size, strict=True) if r > max(s, least))
+
+    @property
     def lossless(self) -> bool:
-        """Whether the target holds everything, and its force is the file's to rounding."""
-        return not self.not_held and bool(np.all(self.relative <= LOSSLESS))
+        """Whether the target holds everything, has what it needs, and its force is the file's to rounding."""
+        return not self.not_held and not self.lost and bool(np.all(self.relative <= LOSSLESS))
 
 
 def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
@@ -114,6 +125,7 @@ def loss_of(
     files: Mapping[str, bytes],
     force: Callable[[Mapping[str, bytes], Array], Array],
     not_held: tuple[str, ...],
+    lost: tuple[Lost, ...],
     changes: tuple[str, ...],
 ) -> Loss:
     """Evaluate a target's law, from its own files, beside the law of the parameter file.
@@ -127,7 +139,15 @@ def loss_of(
     ours, theirs = law.force(nu), force(files, nu)
     apart = np.abs(theirs - ours)
     return Loss(
-        target, not_held, changes, apart.max(axis=0), np.sqrt((apart**2).mean(axis=0)), np.abs(ours).max(axis=0), words
+        target,
+        not_held,
+        lost,
+        changes,
+        apart.max(axis=0),
+        np.sqrt((apart**2).mean(axis=0)),
+        np.abs(ours).max(axis=0),
+        np.sqrt((ours**2).mean(axis=0)),
+        words,
     )
 
 
@@ -143,10 +163,11 @@ def unheld(law: ForceLaw, held: Callable[[LawTerm], bool], *, ideal: bool) -> tu
         Whether it has the ideal fluid's products that no measured term speaks of.
     """
     terms = tuple(t.symbol for t in law.terms if t.coefficient != 0.0 and not held(t))
-    products = tuple(
-        f"{COMPONENTS[i]}{MOTIONS[j]}{MOTIONS[k]} of the ideal fluid"
+    names = [
+        f"{COMPONENTS[i]}{MOTIONS[j]}{MOTIONS[k]}"
         for i, j, k in product(range(6), range(6), range(6))
         if j <= k and law.ideal[i, j, k] != 0.0
-    )
+    ]
+    products = (f"the ideal fluid's {', '.join(names)}",) if names else ()
     controls = tuple(f"{s} (control or acceleration)" for s in law.left_out if not s.endswith("dot"))
     return (*terms, *(() if ideal else products), *controls)

@@ -1,7 +1,7 @@
 """Forces of first and second order in the six velocities: the form that most simulators hold.
 
 Where a force law says U, the form says u: U v becomes |u| v, U^2 becomes u^2. Both agree on straight courses ahead and differ
-by 1 - cos(beta) in drift.
+by 1 - cos(beta) in drift. The resistance X0 U^2 alone stands whole, as u|u| + v^2 + w^2, which is U^2 on every course ahead.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
 ROUNDING = 1e-12
 SURGE = 0
+ACROSS = (1, 2)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,11 +32,14 @@ class SecondOrder:
     signed : (6, 6, 6) array
         Zero below the diagonal j = k, so that every product stands once.
     absolute : (6, 6, 6) array
+    resistance : float
+        What u|u|, v^2 and w^2 in X hold in common as one resistance X0 U^2.
     """
 
     linear: Array
     signed: Array
     absolute: Array
+    resistance: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "linear", locked(self.linear))
@@ -52,7 +56,10 @@ class SecondOrder:
         s = signs
         both = np.outer(s, s)
         return SecondOrder(
-            self.linear * both, self.signed * both[:, :, None] * s[None, None, :], self.absolute * both[:, :, None]
+            self.linear * both,
+            self.signed * both[:, :, None] * s[None, None, :],
+            self.absolute * both[:, :, None],
+            self.resistance,
         )
 
     def less(self, quadratics: Array) -> SecondOrder:
@@ -67,7 +74,7 @@ class SecondOrder:
             held, place = (absolute, at) if at else (signed, (i, j, k))
             left = held[place] - once[i, j, k]
             held[place] = 0.0 if abs(left) <= ROUNDING * abs(once[i, j, k]) else left
-        return SecondOrder(self.linear, signed, absolute)
+        return SecondOrder(self.linear, signed, absolute, self.resistance)
 
 
 def products_once(quadratics: Array) -> Array:
@@ -105,9 +112,15 @@ def slot(term: LawTerm) -> Slot | None:
             return None
 
 
+def resists(term: LawTerm) -> bool:
+    """Whether a term is the resistance X0 U^2."""
+    return term.component == "X" and term.term.degree == 0 and term.speed_power == 2
+
+
 def second_order(law: ForceLaw) -> SecondOrder:
     """A force law, its ideal fluid's products among them, without the terms that have no `slot`."""
     arrays = {"linear": np.zeros((6, 6)), "signed": products_once(law.ideal), "absolute": np.zeros((6, 6, 6))}
+    resistance = 0.0
     for t in law.terms:
         place = slot(t)
         if place is None:
@@ -115,4 +128,8 @@ def second_order(law: ForceLaw) -> SecondOrder:
         kind, j, k = place
         at = (COMPONENTS.index(t.component), j) if kind == "linear" else (COMPONENTS.index(t.component), j, k)
         arrays[kind][at] += t.coefficient
-    return SecondOrder(**arrays)
+        if resists(t):
+            resistance += t.coefficient
+            for across in ACROSS:
+                arrays["signed"][SURGE, across, across] += t.coefficient
+    return SecondOrder(arrays["linear"], arrays["signed"], arrays["absolute"], resistance)

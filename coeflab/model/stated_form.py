@@ -10,7 +10,7 @@ from coeflab.kernels.kirchhoff import ideal_quadratics
 from coeflab.kernels.rigid_body import inertia_doubt
 from coeflab.kernels.transforms import skew
 from coeflab.model.scaling import Conditions, Scaling
-from coeflab.model.second_order import ROUNDING, SURGE, SecondOrder, products_once
+from coeflab.model.second_order import ACROSS, ROUNDING, SURGE, SecondOrder, products_once
 from coeflab.model.stated_file import Law, StatedMass, matrix_doubts
 
 Array = NDArray[np.float64]
@@ -39,7 +39,8 @@ def stated_coefficients(
     Notes
     -----
     |u| v is read as the first-order derivative Yv, total with what the simulator adds, unless the file has damping at rest of
-    the same name too; then it keeps its bars. A product that is just the ideal fluid's is left to the added
+    the same name too; then it keeps its bars. What the form calls its resistance is read as X0, taken
+    from u|u|, v^2 and w^2. A product that is just the ideal fluid's is left to the added
     mass.
     """
     kept = kept_matrix(matrix)
@@ -47,6 +48,7 @@ def stated_coefficients(
     own = products_once(added)
     half = 0.5 * conditions.density
     out: Coefficients = {}
+    signed, absolute = form.signed.copy(), form.absolute.copy()
 
     def motion(symbol: str, value: float) -> None:
         out[symbol] = (float(value / (half * scaling.length ** derivative(symbol).powers[1])), "motion")
@@ -54,21 +56,32 @@ def stated_coefficients(
     for i, j in np.argwhere(form.linear):
         symbol = COMPONENTS[i] + MOTIONS[j]
         out[symbol] = (float(form.linear[i, j] / scaling.factor(symbol, conditions)), "rest")
-    for i, j, k in np.argwhere(form.absolute):
+    if form.resistance:
+        motion("X0", form.resistance)
+        _take(absolute[SURGE, SURGE, SURGE:], form.resistance)
+        for across in ACROSS:
+            _take(signed[SURGE, across, across:], form.resistance)
+    for i, j, k in np.argwhere(absolute):
         name = COMPONENTS[i] + MOTIONS[j]
         if k == SURGE and j != SURGE and name not in out:
-            motion(name, form.absolute[i, j, k] + own[i, SURGE, j])
+            motion(name, absolute[i, j, k] + own[i, SURGE, j])
             own[i, SURGE, j] = ideal[i, SURGE, j] = 0.0
         else:
-            motion(f"{name}|{MOTIONS[k]}|", form.absolute[i, j, k])
-    total = form.signed + own
+            motion(f"{name}|{MOTIONS[k]}|", absolute[i, j, k])
+    total = signed + own
     apart = np.abs(total - ideal) > ROUNDING * np.maximum(np.abs(total), np.abs(ideal))
     for i, j, k in np.argwhere(apart):
         motion(COMPONENTS[i] + MOTIONS[j] + MOTIONS[k], total[i, j, k])
     if kept is None:
-        for i, j in np.argwhere(matrix):
-            motion(f"{COMPONENTS[i]}{MOTIONS[j]}dot", -matrix[i, j])
+        for i, j in np.argwhere((matrix != 0.0) | (matrix.T != 0.0)):
+            motion(f"{COMPONENTS[i]}{MOTIONS[j]}dot", 0.0 - matrix[i, j])
     return out
+
+
+def _take(row: Array, part: float) -> None:
+    """Take a part from the first entry of a row; what rounding leaves is zero."""
+    left = row[0] - part
+    row[0] = 0.0 if abs(left) <= ROUNDING * abs(part) else left
 
 
 def stated_mass(mass: float | None, centre: Array, inertia: Array | None, notes: list[str]) -> StatedMass | None:

@@ -144,9 +144,22 @@ def not_written(parameters: ParameterFile) -> tuple[str, ...]:
     return tuple(f"{s} (product with an acceleration)" for s in dots if len(derivative(s).factors) > 1)
 
 
-def set_aside_accelerations(parameters: ParameterFile) -> tuple[str, ...]:
-    """Acceleration derivatives in whose place the added mass of the file stands."""
-    if parameters.added_mass is None:
-        return ()
-    dots = [s for s in force_law(parameters).left_out if s.endswith("dot")]
-    return tuple(s for s in dots if len(derivative(s).factors) == 1)
+def written_changes(parameters: ParameterFile, target: str, ideal: str, matrix: str) -> tuple[str, ...]:
+    """How any program has the law, in words.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    target : str
+        Who adds no C_A(nu) nu.
+    ideal : str
+        As what the ideal fluid's products stand.
+    matrix : str
+        What the added mass is called.
+    """
+    return (
+        "axes, signs, primes and reference point are the file's; primes are multiplied by 1/2 rho L^k U^n in the program",
+        f"totals are written, for {target} adds no C_A(nu) nu; products of the ideal fluid that nothing measured speaks of stand as "
+        f"{ideal}",
+        f"{matrix}: {added_mass_of(parameters)[1]}",
+    )

@@ -43,8 +43,7 @@ def _verdict(made: Export) -> str:
         return "none: tables of the file's own values"
     if made.lossless:
         return "none"
-    count = len(made.loss.not_held)
-    return f"accepted: {count} not held" if count else "accepted: the force differs"
+    return f"accepted: {loss_tables.counted(made.loss) or 'the force differs'}"
 
 
 def _worst(made: Export) -> str:

@@ -11,7 +11,7 @@ from coeflab.kernels.solids import Surface
 from coeflab.model.body import Body
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.meshing import meshed
-from coeflab.presentation.body_figure import CAPTION, MARGIN, SIDE, TOP
+from coeflab.presentation.body_figure import MARGIN, SIDE, TOP
 from coeflab.presentation.body_view import Sheet, View
 from coeflab.presentation.document import Figure
 from coeflab.presentation.part_facets import picture_surface
@@ -19,7 +19,7 @@ from coeflab.presentation.svg import COLOURS, POINTS, settings, svg_text
 
 Array = NDArray[np.float64]
 PANELS = 3000
-WIDTH, TALLEST, GAP = 340.0, 90.0, 12.0
+WIDTH, TALLEST, GAP, CAPTION = 340.0, 90.0, 12.0, 16.0
 
 
 def hull_figure(body: Body, anchor: str) -> Figure:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
+
 import numpy as np
 
 from coeflab.core.symbols import COMPONENTS
 from coeflab.model.loss import LOSSLESS, Loss
+from coeflab.model.lost import Kind
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.table import Table, coefficient, number
 
@@ -29,7 +33,13 @@ def forces(loss: Loss) -> Table:
     notes = [
         f"over {loss.grid}; steady motion, FRD, about the file's reference point; 0 is less than {LOSSLESS:g} of the largest"
     ]
+    notes += [
+        f"WORSE THAN NO FORCE: {c}, whose rms difference is {number(loss.rms[i], 3)} where the file's own rms is {number(loss.size[i], 3)}"
+        for i, c in enumerate(COMPONENTS)
+        if c in loss.worse_than_nothing
+    ]
     notes += [f"not held: {what}" for what in loss.not_held]
+    notes += [str(each) for each in loss.lost]
     notes += [f"changed: {what}" for what in loss.changes]
     headers = ("", "unit", "largest", "worst difference", "rms difference", "worst of largest")
     return Table(
@@ -38,13 +48,24 @@ def forces(loss: Loss) -> Table:
 
 
 def in_short(loss: Loss) -> str:
-    """The loss on one line: what is not held, and the largest difference of a component."""
-    some = ", ".join(loss.not_held[:NAMED]) + (
-        f" and {len(loss.not_held) - NAMED} more" if len(loss.not_held) > NAMED else ""
-    )
+    """The loss on one line: what is not held, what else is lost, and the largest difference of a component."""
+    said = [f"it has no {_some(loss.not_held, NAMED)}"] if loss.not_held else []
+    said += [_some([str(x) for x in loss.lost], 1)] if loss.lost else []
     worst = int(loss.relative.argmax())
-    force = f"{COMPONENTS[worst]} differs by up to {100.0 * loss.relative[worst]:.2g} % of its largest"
-    return f"it has no {some}, and {force}" if some else force
+    if loss.relative[worst] > LOSSLESS or not said:
+        said.append(f"{COMPONENTS[worst]} differs by up to {100.0 * loss.relative[worst]:.2g} % of its largest")
+    return ", and ".join(said)
+
+
+def counted(loss: Loss) -> str:
+    """How much is lost, by kind."""
+    kinds = Counter(x.kind for x in loss.lost)
+    kinds[Kind.NOT_HELD] += len(loss.not_held)
+    return ", ".join(f"{kinds[kind]} {kind}" for kind in Kind if kinds[kind])
+
+
+def _some(words: Sequence[str], most: int) -> str:
+    return ", ".join(words[:most]) + (f" and {len(words) - most} more" if len(words) > most else "")
 
 
 def parts(parameters: ParameterFile) -> Table:
@@ -65,7 +86,9 @@ def parts(parameters: ParameterFile) -> Table:
 def as_text(loss: Loss, parameters: ParameterFile) -> str:
     """The loss report: plain text, the same bytes for the same file."""
     lines = [f"Loss report: {parameters.name} ({parameters.body}) for {loss.target}", ""]
-    lines.append("Lossless." if loss.lossless else "This export is not lossless.")
+    lines.append(
+        "Lossless." if loss.lossless else f"This export is not lossless: {counted(loss) or 'the force differs'}."
+    )
     for table in (forces(loss), parts(parameters)):
         if table.rows:
             lines += ["", table.title, *_aligned(table), *(f"  {n}" for n in table.notes)]

@@ -22,6 +22,9 @@ JSON Schema. A program that reads these files should refuse a first digit of `sc
   adds `C_A(nu) nu` itself must be given `value - potential`.
 - U95 is a 95 % half-width, twice the standard uncertainty of the covariances.
 - A file of an earlier version loads in every later release, and is written back as what it is.
+- A later minor version adds keys and changes the meaning of none; its writers set what says nothing to null or leave it empty.
+  So a file of a later version is read where every key that is not named here is null or empty: those are passed over.
+  Otherwise it is refused, because a key that is not understood may change what the rest means, as `law` did in 1.2.
 
 ## Versions
 

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from coeflab.core.errors import InputError, PluginError, shown
+from coeflab.core.identifiers import PREFIX, file_stem
 from coeflab.exporters import EXPORTERS
 from coeflab.model.export import Export
 from coeflab.model.force_law import force_law
+from coeflab.model.inertia import converted
 from coeflab.model.loss import loss_of
+from coeflab.model.lost import Kind, Lost, lost_by_all
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.study import PlannedExport
 from coeflab.ports import SimulatorExporter
 from coeflab.presentation.loss_tables import as_text, in_short
+
+LONGEST = 255
 
 
 def export(parameters: ParameterFile, target: str) -> Export:
@@ -27,18 +32,38 @@ def export(parameters: ParameterFile, target: str) -> Export:
     """
     plugin = EXPORTERS.load(target)
     files = dict(plugin.render(parameters))
-    report = f"{parameters.name}.{target}.loss.txt"
-    for name in (*files, report):
-        if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable():
-            raise InputError(f"a file called {shown(name)}", "a plain file name", column=f"exporter.{target}")
+    _refuse_places(files, parameters, target)
     if not isinstance(plugin, SimulatorExporter):
         return Export(parameters.name, target, files, None)
+    lost = (*(Lost(Kind.MISSING, said) for said in plugin.missing(parameters)), *lost_by_all(parameters))
+    changes = (*plugin.changes(parameters), *converted(parameters), *_renamed(files, parameters))
     found = loss_of(
-        target, force_law(parameters), parameters, files, plugin.force, plugin.not_held(parameters),
-        plugin.changes(parameters),
-    )  # fmt: skip
-    files[report] = as_text(found, parameters).encode()
+        target, force_law(parameters), parameters, files, plugin.force, plugin.not_held(parameters), lost, changes
+    )
+    files[f"{file_stem(parameters.name)}.{target}.loss.txt"] = as_text(found, parameters).encode()
     return Export(parameters.name, target, files, found)
+
+
+def _refuse_places(files: Mapping[str, bytes], parameters: ParameterFile, target: str) -> None:
+    """Refuse file names that lead out of the folder or that no file can bear."""
+    for name in files:
+        if "/" in name or "\\" in name or name.startswith(".") or not name.isprintable() or len(name) > LONGEST:
+            theirs = parameters.name in name
+            raise InputError(
+                f"a file called {shown(name)}", "a name that files can be given" if theirs else "a plain file name",
+                column="name" if theirs else f"exporter.{target}",
+            )  # fmt: skip
+
+
+def _renamed(files: Mapping[str, bytes], parameters: ParameterFile) -> tuple[str, ...]:
+    """What files are called where it is not the parameter file's name."""
+    stems = sorted({name.partition(".")[0] for name in files} - {parameters.name})
+    if not stems:
+        return ()
+    return (
+        f"files are called {', '.join(stems)}: of the name {shown(parameters.name)} letters and digits are kept, at most 63, and "
+        f"{PREFIX} stands before a digit or a word that the target or a file system reserves",
+    )
 
 
 def refuse_unknown(planned: Sequence[PlannedExport]) -> None:

@@ -53,3 +53,50 @@ def test_an_unknown_target_and_a_file_that_is_none(coeflab: Run, tmp_path: Path)
     assert "gazebo" in wrong.stderr
     (tmp_path / "p.json").write_text("{}")
     assert coeflab("export", tmp_path / "p.json", "--to", "mss").returncode == 2
+
+
+def changed(folder: Path, **keys: object) -> Path:
+    """The sample file with some keys changed; what holds a mapping is changed within."""
+    content = json.loads(PARAMS.read_text())
+    for key, value in keys.items():
+        content[key] = {**content[key], **value} if isinstance(value, dict) else value
+    path = folder / "changed.parameters.json"
+    path.write_text(json.dumps(content))
+    return path
+
+
+def test_strict_refuses_the_added_mass_of_another_body(coeflab: Run, tmp_path: Path) -> None:
+    file = changed(tmp_path, added_mass={"body": "another"})
+    strict = coeflab("export", file, "--to", "mss", "--strict", "--accept-loss")
+    assert strict.returncode == 2
+    assert "mismatch: the added mass is that of another" in strict.stdout
+    assert not list(tmp_path.glob("*.mss"))
+    assert coeflab("export", file, "--to", "mss").returncode == 2
+    accepted = coeflab("export", file, "--to", "mss", "--accept-loss")
+    assert accepted.returncode == 0, accepted.stderr
+    (report,) = tmp_path.glob("*.mss/*.loss.txt")
+    assert "mismatch: the added mass is that of another" in report.read_text()
+
+
+def test_strict_refuses_a_mass_that_is_not_there(coeflab: Run, tmp_path: Path) -> None:
+    file = changed(tmp_path, mass=None)
+    assert coeflab("export", file, "--to", "mss", "--out", tmp_path / "m", "--strict").returncode == 0
+    strict = coeflab("export", file, "--to", "xdyn", "--out", tmp_path / "x", "--strict")
+    assert strict.returncode == 2
+    assert "missing: Rigid-body inertia" in strict.stdout
+    assert not (tmp_path / "x").exists()
+
+
+def test_a_name_that_leads_elsewhere_stays_in_the_folder(coeflab: Run, tmp_path: Path) -> None:
+    (tmp_path / "in").mkdir()
+    file = changed(tmp_path / "in", name="../../up/sin")
+    for target in ("mss", "csv"):
+        done = coeflab("export", file, "--to", target)
+        assert done.returncode == 0, done.stderr
+    assert [p.name for p in tmp_path.iterdir()] == ["in"]
+    written = sorted(p.relative_to(tmp_path / "in").as_posix() for p in (tmp_path / "in").rglob("*.*") if p.is_file())
+    assert written == [
+        "changed.parameters.json", "up_sin_46c498a5.csv/up_sin_46c498a5.coefficients.csv",
+        "up_sin_46c498a5.csv/up_sin_46c498a5.table_1_Y.csv", "up_sin_46c498a5.mss/up_sin.m",
+        "up_sin_46c498a5.mss/up_sin_46c498a5.mss.loss.txt",
+    ]  # fmt: skip

@@ -16,6 +16,8 @@ from coeflab.kernels.kirchhoff import ideal_force
 from coeflab.model.force_law import force_law
 from coeflab.model.gz_link import GzLink, read_gz_link
 from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.study import Study
+from coeflab.workbench.exports import export
 from tests.exporters import files as made
 from tests.exporters import of_second_order as second
 from tests.model.test_force_law import HULL, Q, drifting, parameters
@@ -175,3 +177,24 @@ def test_the_real_parser_takes_sdf_1_9(file: ParameterFile, tmp_path: Path) -> N
     twice = content(gazebo_plugin, file).replace("</link>", '</link><link name="base_link"/>')
     path.write_text(twice, encoding="utf-8")
     assert "Error" in checked(path)
+
+
+@BOTH
+def test_the_resistance_is_exact_on_every_course_ahead(target: ModuleType) -> None:
+    """X0 U^2 in drift, trim and turning; by <xUabsU>, <xVV> and <xWW>, where <xUabsU> alone lacks sin^2(beta) of it."""
+    file = parameters({"X0": -1.5e-3, "Xvv": 4e-3}, HULL)
+    nu = velocities()
+    nu[:, 0] = np.abs(nu[:, 0])
+    theirs = target.force(target.render(file), nu)[:, 0]
+    np.testing.assert_allclose(theirs, force_law(file).force(nu)[:, 0], rtol=1e-12, atol=1e-9)
+    text = content(target, file)
+    assert tag(text, "xWW") == tag(text, "xUabsU") == tag(text, "coeflab_x0")
+    assert tag(text, "xWW") == pytest.approx(-1.5e-3 * Q)
+
+
+@BOTH
+@pytest.mark.parametrize("name", ["suboff_fully_appended", "suboff_bare_hull"])
+def test_suboff_loses_nothing_in_surge(suboff: Study, target: ModuleType, name: str) -> None:
+    loss = export(suboff.parameter_files[name], target.__name__.rpartition(".")[2]).loss
+    assert loss.relative[0] < 1e-12
+    assert "X0" not in " ".join(c for c in loss.changes if c.startswith("u stands for U"))

@@ -12,6 +12,7 @@ import pytest
 
 from coeflab.core.identifiers import one_line
 from coeflab.core.matlab import assignments
+from coeflab.core.reserved import matlab
 from coeflab.exporters import mss
 from coeflab.model.force_law import force_law
 from coeflab.parameter_importers import mss as importer
@@ -117,7 +118,7 @@ def test_hostile_names_stay_names(name: str) -> None:
     (file, content), *others = mss.render(made.named(name)).items()
     assert not others
     assert re.fullmatch(r"[A-Za-z]\w{0,62}\.m", file, re.ASCII)
-    assert file.removesuffix(".m") not in mss.KEYWORDS
+    assert file.removesuffix(".m") not in matlab()
     lines = assignments(content.decode())
     benign = assignments(next(iter(mss.render(made.plain()).values())).decode())
     assert [(a.line, a.target) for a in lines] == [(a.line, a.target) for a in benign]

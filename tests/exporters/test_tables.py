@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 import tomllib
 from pathlib import Path
 
@@ -13,7 +14,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.core.errors import InputError
 from coeflab.core.toml_text import toml_text
 from coeflab.exporters import csv as csv_exporter
 from coeflab.exporters import toml as toml_exporter
@@ -109,11 +109,8 @@ def test_hostile_names_are_text(name: str) -> None:
     file = made.named(name)
     assert only(toml_exporter.render(file))["name"] == name
     for target in ("toml", "csv", "mss"):
-        if "/" in name or "\\" in name or not name.isprintable():
-            with pytest.raises(InputError, match="plain file name"):
-                export(file, target)
-        else:
-            assert all("/" not in n for n in export(file, target).files)
+        for written in export(file, target).files:
+            assert re.fullmatch(r"\w[\w .+-]{0,110}", written)
 
 
 TEXTS = st.text(max_size=20)

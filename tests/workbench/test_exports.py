@@ -26,8 +26,8 @@ def planned(folder: Path, *tables: str) -> Plan:
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory: pytest.TempPathFactory) -> Study:
-    """xdyn holds everything, gazebo has u for U, csv is no simulator."""
-    tables = ('to = "xdyn"\nstrict = true', 'to = "gazebo"\naccept_loss = true', 'to = "csv"')
+    """mss holds the law, gazebo has u for U, csv is no simulator."""
+    tables = ('to = "mss"\naccept_loss = true', 'to = "gazebo"\naccept_loss = true', 'to = "csv"')
     return run(planned(tmp_path_factory.mktemp("plan"), *tables))
 
 
@@ -35,12 +35,12 @@ def test_every_target_has_a_folder_with_its_loss_report(study: Study) -> None:
     files = rendered(study)
     parameters = study.parameter_files["my_vehicle"]
     assert files["my_vehicle.parameters.json"] == parameters.to_json()
-    for target in ("xdyn", "gazebo"):
+    for target in ("mss", "gazebo"):
         made = export(parameters, target)
         assert set(made.files) >= {f"my_vehicle.{target}.loss.txt"}
         for name, content in made.files.items():
             assert files[f"my_vehicle.{target}/{name}"] == content
-    assert files["my_vehicle.xdyn/my_vehicle.xdyn.loss.txt"].splitlines()[2] == b"Lossless."
+    assert files["my_vehicle.mss/my_vehicle.mss.loss.txt"].splitlines()[2] == b"This export is not lossless: 1 missing."
     assert b"not lossless" in files["my_vehicle.gazebo/my_vehicle.gazebo.loss.txt"]
     assert sum(name.endswith(".coefficients.csv") for name in files) == 1
 
@@ -55,11 +55,11 @@ def test_the_report_shows_every_export_with_its_loss(study: Study) -> None:
     (section,) = (s for s in document(study).sections if s.anchor == "exports")
     (table,) = section.tables
     assert [row[:3] for row in table.rows] == [
-        ("my_vehicle", "xdyn", "none"),
-        ("my_vehicle", "gazebo", "accepted: the force differs"),
+        ("my_vehicle", "mss", "accepted: 1 missing"),
+        ("my_vehicle", "gazebo", "accepted: 2 missing"),
         ("my_vehicle", "csv", "none: tables of the file's own values"),
     ]
-    assert [s.title for s in section.subsections] == ["my_vehicle for xdyn", "my_vehicle for gazebo"]
+    assert [s.title for s in section.subsections] == ["my_vehicle for mss", "my_vehicle for gazebo"]
     shown = section.subsections[1].tables[0]
     assert shown.rows[0][0] == "X"
     assert any(note.startswith("changed: ") for note in shown.notes)
@@ -79,14 +79,15 @@ def test_a_loss_has_to_be_accepted(tmp_path: Path, table: str, key: str, expecte
     with pytest.raises(InputError) as caught:
         run(planned(tmp_path, table))
     assert (caught.value.file, caught.value.column) == (tmp_path / "plan.toml", key)
-    assert caught.value.found.startswith("gazebo cannot hold all of my_vehicle: X differs by up to ")
+    assert caught.value.found.startswith("gazebo cannot hold all of my_vehicle: missing: roll inertia: the file has")
     assert expected in caught.value.expected
     assert "\n" not in str(caught.value)
 
 
 def test_a_refusal_names_what_is_not_held(tmp_path: Path) -> None:
     with pytest.raises(
-        InputError, match=r"uuv_simulator cannot hold all of my_vehicle: it has no Xvv, and X differs by"
+        InputError,
+        match=r"uuv_simulator cannot hold all of my_vehicle: it has no Xvv, and missing: .* and X differs by",
     ):
         run(planned(tmp_path, 'to = "uuv_simulator"'))
 
@@ -138,6 +139,6 @@ def test_json_names_the_losses(study: Study) -> None:
 
     told = json.loads(json.dumps(as_json(study, [])))["exports"]
     assert [(t["parameter_file"], t["target"], t["lossless"]) for t in told] == [
-        ("my_vehicle", "xdyn", True), ("my_vehicle", "gazebo", False), ("my_vehicle", "csv", True),
+        ("my_vehicle", "mss", False), ("my_vehicle", "gazebo", False), ("my_vehicle", "csv", True),
     ]  # fmt: skip
     assert len(told[1]["worst_difference"]) == 6

@@ -1,0 +1,129 @@
+"""What a simulator loses of a parameter file beside terms of its force law, each with its kind."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative, primed
+from coeflab.model.inertia import added_mass_of
+from coeflab.model.parameter_added_mass import ParameterAddedMass
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.parameter_model import ParameterModel
+
+SAME = 1e-6
+ROLL = "it stands in its place; write the vehicle's"
+WAYS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+
+
+class Kind(StrEnum):
+    """Why something is lost."""
+
+    NOT_HELD = "not held"
+    MISSING = "missing"
+    REPLACED = "replaced"
+    MISMATCH = "mismatch"
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """One loss.
+
+    Attributes
+    ----------
+    kind : Kind
+        Not held: the target has no place for it. Missing: the target needs it and the parameter file has none. Replaced: another
+        value of the same file stands in its place. Mismatch: two parts of the file are those of two bodies.
+    what : str
+    """
+
+    kind: Kind
+    what: str
+
+    def __str__(self) -> str:
+        return f"{self.kind}: {self.what}"
+
+
+def lost_by_all(parameters: ParameterFile) -> tuple[Lost, ...]:
+    """What every simulator loses: fitted tables, accelerations beside an added mass, and an added mass of another body."""
+    tables = tuple(Lost(Kind.NOT_HELD, _table(m)) for m in parameters.models if not _by_coefficients(m, parameters))
+    hull = parameters.added_mass
+    if hull is None:
+        return tables
+    out = [*tables, *(Lost(Kind.REPLACED, said) for said in _accelerations(parameters, hull))]
+    if hull.body != parameters.body:
+        out.append(
+            Lost(
+                Kind.MISMATCH,
+                f"the added mass is that of {hull.body}, the coefficients are those of {parameters.body}: the potential parts, and "
+                "what stands for viscous, are those of another shape",
+            )
+        )
+    return tuple(out)
+
+
+def _by_coefficients(model: ParameterModel, parameters: ParameterFile) -> bool:
+    """Whether coefficients of the file state the same force component."""
+    component = model.response.removesuffix("/V^2").removesuffix("'")
+    return component in COMPONENTS and any(
+        c.value is not None and derivative(c.symbol).component == component for c in parameters.coefficients
+    )
+
+
+def _table(model: ParameterModel) -> str:
+    return (
+        f"{model.response} over {', '.join(model.names)} ({model.form}): simulators are given the coefficients alone; the targets "
+        "csv and toml hold the table"
+    )
+
+
+def _accelerations(parameters: ParameterFile, hull: ParameterAddedMass) -> list[str]:
+    """Acceleration derivatives that differ from the added mass in their place."""
+    matrix, length = np.array(hull.matrix), parameters.scaling.length
+    out = []
+    for c in parameters.coefficients:
+        d = derivative(c.symbol)
+        if not c.value or len(d.factors) != 1 or not d.factors[0].endswith("dot"):
+            continue
+        entry = matrix[COMPONENTS.index(d.component), MOTIONS.index(d.factors[0].removesuffix("dot"))]
+        computed = float(-entry / (0.5 * hull.density * length ** d.powers[1]))
+        if abs(computed - c.value) > SAME * abs(c.value):
+            out.append(
+                f"{primed(d.text)} {c.value:.4g} ({c.origin}) is not used: the added mass of {hull.body} by {hull.method} has "
+                f"{computed:.4g}, {computed / c.value:.3g} times it"
+            )
+    return out
+
+
+def missing_mass(parameters: ParameterFile, otherwise: str, roll: str = ROLL) -> tuple[str, ...]:
+    """Mass and moments of inertia that a target of six degrees of freedom needs and the file does not have.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    otherwise : str
+        What the target does without them.
+    roll : str
+        What it does where the file has the transverse moment alone.
+    """
+    mass = parameters.mass
+    if mass is None:
+        return (f"mass and moments of inertia: the file has none; {otherwise}",)
+    if mass.inertia is None and mass.inertia_matrix is None:
+        return (f"moments of inertia: the file has none; {otherwise}",)
+    if mass.inertia_matrix is None:
+        return (f"roll inertia: the file has the transverse one alone; {roll}",)
+    return ()
+
+
+def missing_water(parameters: ParameterFile) -> tuple[str, ...]:
+    """Added mass that a target carries and the file does not have."""
+    diagonal = np.diag(added_mass_of(parameters)[0])
+    if not np.any(diagonal):
+        return ("added mass: the file has none; the vehicle accelerates as if in air",)
+    unknown = [way for way, m in zip(WAYS, diagonal, strict=True) if m == 0.0]
+    if parameters.added_mass is None and unknown:
+        return (f"added mass in {', '.join(unknown)}: not in the file; zero is written",)
+    return ()

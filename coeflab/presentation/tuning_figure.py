@@ -1,0 +1,131 @@
+"""Figures of a tuned model: what was measured, and what the model gave before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from coeflab.model.table import number
+from coeflab.model.tuning import TunedQuantity, Tuning
+from coeflab.presentation.document import Figure
+from coeflab.presentation.panel import BOTTOM, drawing, legend, limits, panel
+from coeflab.presentation.series import STYLES
+from coeflab.presentation.svg import COLOURS, settings, svg_text
+
+Array = NDArray[np.float64]
+TALL, APART, NAMED, HEAD, ROW = 118.0, 26.0, 40.0, 12.0, 12.2
+BEFORE: dict[str, Any] = {
+    "linestyle": "none", "marker": "o", "markersize": 4.2, "markerfacecolor": "none", "markeredgecolor": COLOURS["b"],
+    "markeredgewidth": 0.8,
+}  # fmt: skip
+AFTER: dict[str, Any] = {
+    "linestyle": "none", "marker": "o", "markersize": 3.6, "markerfacecolor": COLOURS["a"], "markeredgewidth": 0.0,
+}  # fmt: skip
+BARE: dict[str, Any] = {"linewidth": 0.9, "linestyle": (0, (3.0, 2.2))}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Groups:
+    """Cases as curves: where each lies on the axis, and to which curve it belongs.
+
+    Attributes
+    ----------
+    x : (n,) array
+    name_x : str
+        Label of the axis.
+    member : (n,) int array
+        Number of the curve.
+    names : tuple of str
+        Of the curves.
+    """
+
+    x: Array
+    name_x: str
+    member: NDArray[np.int_]
+    names: tuple[str, ...]
+
+
+def agreement_figure(tuning: Tuning, anchor: str) -> Figure:
+    """Model against measurement, one panel a quantity: on the line they agree."""
+    title = f"{tuning.name}: model against measurement, before and after"
+    caption = f"Every case of {_listed(tuning)}. {_scatter(tuning)} On the line the model gives what was measured."
+    description = f"Points of {_listed(tuning)}, model over measurement, before (hollow) and after (filled) the fit."
+    marks = [Line2D([], [], label="before", **BEFORE), Line2D([], [], label="after", **AFTER)]
+    with settings():
+        tall = len(tuning.quantities) * (TALL + NAMED) + HEAD + ROW
+        figure = drawing(tall)
+        for k, q in enumerate(tuning.quantities):
+            bottom = tall - HEAD - ROW - TALL - k * (TALL + NAMED)
+            both = limits(np.concatenate([q.measured, q.after, q.before]), 0.06) or (-1.0, 1.0)
+            across = limits(q.measured, 0.06) or (-1.0, 1.0)
+            axes = panel(
+                figure, bottom, TALL, across=across, up=both, name_up=f"model {q.name}  [{q.unit}]",
+                name_across=f"measured {q.name}  [{q.unit}]",
+            )  # fmt: skip
+            axes.plot(across, across, color=COLOURS["muted"], linewidth=0.8, zorder=1)
+            axes.plot(q.measured, q.before, zorder=2.5, **BEFORE)
+            axes.plot(q.measured, q.after, zorder=3, **AFTER)
+        legend(figure, marks, tall - HEAD - ROW)
+        svg = svg_text(figure, anchor, title, description)
+    return Figure(anchor, svg, title, caption, description)
+
+
+def curves_figure(tuning: Tuning, groups: Groups, anchor: str) -> Figure:
+    """Every quantity over one variable, one curve a group: measured points, the model before (dashed) and after."""
+    title = f"{tuning.name}: {_listed(tuning)} over {groups.name_x.partition('  ')[0]}"
+    caption = f"Points: measured. Dashed: model before, solid: after. {_scatter(tuning)}"
+    description = f"{_listed(tuning)} over {groups.name_x.partition('  ')[0]} in curves of {', '.join(groups.names)}."
+    marks = [
+        Line2D(
+            [], [], label=f"measured, {name}", color=style.colour, linestyle="none", marker=style.marker, markersize=3.8
+        )
+        for name, style in zip(groups.names, STYLES, strict=False)
+    ]
+    marks += [
+        Line2D([], [], label="model before", color=COLOURS["ink"], **BARE),
+        Line2D([], [], label="model after", color=COLOURS["ink"], linewidth=1.3),
+    ]
+    rows = (len(marks) + 1) // 2
+    across = limits(groups.x, 0.04) or (-1.0, 1.0)
+    with settings():
+        tall = BOTTOM + len(tuning.quantities) * TALL + (len(tuning.quantities) - 1) * APART + HEAD + rows * ROW
+        figure = drawing(tall)
+        for k, q in enumerate(reversed(tuning.quantities)):
+            up = limits(np.concatenate([q.measured, q.after, q.before]), 0.08) or (-1.0, 1.0)
+            axes = panel(
+                figure, BOTTOM + k * (TALL + APART), TALL, across=across, up=up, name_up=f"{q.name}  [{q.unit}]",
+                name_across=groups.name_x if k == 0 else "",
+            )  # fmt: skip
+            _curves(axes, q, groups)
+        legend(figure, marks, tall - HEAD - rows * ROW)
+        svg = svg_text(figure, anchor, title, description)
+    return Figure(anchor, svg, title, caption, description)
+
+
+def _curves(axes: Axes, q: TunedQuantity, groups: Groups) -> None:
+    for number_, style in zip(range(len(groups.names)), STYLES, strict=False):
+        mine = np.flatnonzero(groups.member == number_)
+        mine = mine[np.argsort(groups.x[mine], kind="stable")]
+        x = groups.x[mine]
+        axes.plot(x, q.before[mine], color=style.colour, zorder=2.2, **BARE)
+        axes.plot(x, q.after[mine], color=style.colour, linewidth=1.3, zorder=2.6)
+        axes.plot(
+            x, q.measured[mine], linestyle="none", marker=style.marker, markersize=3.8, markerfacecolor=style.colour,
+            markeredgewidth=0.0, zorder=3,
+        )  # fmt: skip
+
+
+def _listed(tuning: Tuning) -> str:
+    names: Sequence[str] = [q.name for q in tuning.quantities]
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _scatter(tuning: Tuning) -> str:
+    said = [f"{q.name} {number(q.rms(after=False), 2)} to {number(q.rms(), 2)} {q.unit}" for q in tuning.quantities]
+    return f"Root mean square before and after: {', '.join(said)}."
