@@ -24,7 +24,7 @@ def check(
 ) -> None:
     """Read a parameter file or a simulator's model, say what it holds, and what of it cannot be.
 
-    The exit code is 1 where a finding fails.
+    The exit code is 1 where a finding fails, and 2 where the file cannot be read, whatever its format.
     """
     from coeflab.core.errors import InputError
     from coeflab.presentation import model_file_tables

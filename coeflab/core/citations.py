@@ -79,6 +79,8 @@ WORKS: dict[str, str] = {
     "Engineering 30, 1983.",
     "wilton1984": "D. R. Wilton et al., Potential integrals for uniform and linear source distributions on polygonal and "
     "polyhedral domains, IEEE Trans. Antennas and Propagation 32, 1984.",
+    "cohensteiner2003": "D. Cohen-Steiner, J.-M. Morvan, Restricted Delaunay triangulations and normal cycle, Symposium on "
+    "Computational Geometry, 2003.",
     "eberly2002": "D. Eberly, Polyhedral Mass Properties (Revisited), Geometric Tools, 2002.",
     "bryson1954": "A. E. Bryson, Evaluation of the inertia coefficients of the cross-section of a slender body, "
     "J. Aeronautical Sciences 21, 1954.",

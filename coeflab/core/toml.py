@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import difflib
 import tomllib
 from pathlib import Path
@@ -160,13 +161,16 @@ def read_text(path: Path, largest: int = LARGEST) -> str:
     Raises
     ------
     InputError
-        Missing, a folder, empty, too large, or not UTF-8.
+        Missing, a folder or device, empty, too large, or not UTF-8.
     """
     try:
         if path.is_dir():
             raise InputError("a folder", "a file", file=path)
         if not path.exists():
-            raise InputError("no such file", "a file that exists", file=path)
+            found = "a link that leads to no file" if path.is_symlink() else "no such file"
+            raise InputError(found, "a file that exists", file=path)
+        if not path.is_file():
+            raise InputError("a device or pipe", "a file", file=path)
         if path.stat().st_size > largest:
             raise InputError(f"{path.stat().st_size} bytes", f"at most {largest} bytes", file=path)
         content = path.read_bytes()
@@ -176,8 +180,13 @@ def read_text(path: Path, largest: int = LARGEST) -> str:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as why:
         line = content.count(b"\n", 0, why.start) + 1
+        wide = " of UTF-16" if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) else ""
         raise InputError(
-            f"the byte 0x{content[why.start]:02x}", "UTF-8 text", file=path, line=line, advice="Save the file as UTF-8."
+            f"the byte 0x{content[why.start]:02x}{wide}",
+            "UTF-8 text",
+            file=path,
+            line=line,
+            advice="Save the file as UTF-8.",
         ) from None
     if not text.strip():
         raise InputError("an empty file", "content", file=path)

@@ -31,7 +31,9 @@ class Xacro(Mapping[str, float]):
 
     def __init__(self, root: Element, file: Path | str | None = None) -> None:
         self._file = file
-        self._raw = {e.get("name", ""): e.get("value", "") for e in root.iter(f"{SPACE}property")}
+        properties = [(e.get("name", ""), e.get("value", "")) for e in root.iter(f"{SPACE}property")]
+        self._raw = dict(properties)
+        self._twice = {name for name, value in properties if self._raw[name] != value}
         self._arguments = {e.get("name", ""): e.get("default", "") for e in root.iter(f"{SPACE}arg")}
         self._done: dict[tuple[int, str], str] = {}
         self._depth = 0
@@ -42,7 +44,7 @@ class Xacro(Mapping[str, float]):
         Raises
         ------
         InputError
-            A name that the document does not define, an expression that is no arithmetic, properties that need each other,
+            A name that the document does not define or defines twice, an expression that is no arithmetic, properties that need each other,
             or more than 64 KiB of text.
         """
         if self._depth > DEEPEST:
@@ -77,6 +79,8 @@ class Xacro(Mapping[str, float]):
                 f"{shown(name)}, which this file does not define", "every property and argument in the file", file=self._file,
                 advice="Run xacro first and check the URDF that it prints.",
             )  # fmt: skip
+        if among is self._raw and name in self._twice:
+            raise InputError(f"{shown(name)} with two values", "every property once", file=self._file)
         key = (id(among), name)
         if key not in self._done:
             self._done[key] = self.text(among[name])

@@ -11,6 +11,7 @@ from coeflab.core.toml import read_text
 
 LARGEST = 8 << 20
 DEEPEST = 200
+MOST = 100_000
 _DECLARED = re.compile(r"<!\s*(DOCTYPE|ENTITY|ELEMENT|ATTLIST|NOTATION)", re.IGNORECASE)
 _NO_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
@@ -22,7 +23,7 @@ def parse_xml(text: str, file: Path | str | None = None) -> ElementTree.Element:
     ------
     InputError
         A document type or an entity (both can make a small file unfold to any size, or read other files), elements deeper
-        than 200, or no well-formed XML, with its line.
+        than 200 or more than 100,000, or no well-formed XML, with its line.
     """
     declared = _DECLARED.search(text)
     if declared:
@@ -46,12 +47,15 @@ class _Bounded(ElementTree.TreeBuilder):
 
     def __init__(self, file: Path | str | None) -> None:
         super().__init__()
-        self._file, self._depth = file, 0
+        self._file, self._depth, self._count = file, 0, 0
 
     def start(self, tag: str, attrs: dict[str, str], /) -> ElementTree.Element:
         self._depth += 1
+        self._count += 1
         if self._depth > DEEPEST:
             raise InputError(f"elements more than {DEEPEST} deep", "a model file", file=self._file)
+        if self._count > MOST:
+            raise InputError(f"more than {MOST} elements", "a model file", file=self._file)
         return super().start(tag, attrs)
 
     def end(self, tag: str, /) -> ElementTree.Element:
@@ -67,6 +71,19 @@ def read_xml(path: Path) -> ElementTree.Element:
     InputError
     """
     return parse_xml(read_text(path, LARGEST), path)
+
+
+def once(parent: ElementTree.Element | None, file: Path | str | None = None) -> None:
+    """Refuse an element that holds two of the same name, of which a reader would take either.
+
+    Raises
+    ------
+    InputError
+    """
+    tags = [e.tag for e in parent] if parent is not None else []
+    for tag in dict.fromkeys(tags):
+        if tags.count(tag) > 1:
+            raise InputError(f"<{tag}> {tags.count(tag)} times", "once", file=file, column=f"<{parent.tag}>")  # type: ignore[union-attr]
 
 
 def sayable(text: str) -> str:

@@ -10,6 +10,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.toml import read_text
 
 DEEPEST = 60
+MOST = 20_000
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 
@@ -19,15 +20,17 @@ def parse_yaml(text: str, file: Path | str | None = None) -> dict[str, Any]:
     Raises
     ------
     InputError
-        A tag, an alias (a small file of aliases unfolds to any size), a key that stands twice, more than 60 levels, more
-        than one document, no mapping, or no YAML; with its line.
+        A tag, an alias (a small file of aliases unfolds to any size), a key that stands twice, more than 60 levels or
+        20,000 keys and values, more than one document, no mapping, or no YAML; with its line.
     """
     import yaml
 
     stack: list[list[Any]] = []  # of every open collection: its keys so far, None for a list; whether a key comes next
     try:
-        for event in yaml.parse(text, Loader=yaml.SafeLoader):
+        for count, event in enumerate(yaml.parse(text, Loader=yaml.SafeLoader)):
             line = event.start_mark.line + 1
+            if count > MOST:
+                raise InputError(f"more than {MOST} keys and values", "a model file", file=file, line=line)
             if isinstance(event, yaml.AliasEvent):
                 raise InputError("an alias", "YAML without aliases", file=file, line=line)
             if getattr(event, "tag", None) is not None:

@@ -66,7 +66,7 @@ class _March:
     def run(self, every: int) -> Marching:
         """All steps."""
         steps = self.orders.steps(self.step)
-        self.out = blank(len(self.phase), self.orders.count, np.arange(steps // every + 1) * every * self.step)
+        self.out = blank(len(self.phase), self.orders, self.step, every)
         self.out.records[:, 0] = self.state.T
         for j in range(1, steps + 1):
             remain = np.where(self.live, self.step, 0.0)

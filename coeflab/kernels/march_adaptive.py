@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,7 +49,7 @@ def march_adaptive(
     method : str
         A solver class of `scipy.integrate`.
     """
-    out = blank(1, orders.count, np.arange(orders.steps(interval) + 1) * interval)
+    out = blank(1, orders, interval, 1)
     out.records[0, 0] = start
     at, begin = _At(0.0, start.copy()), orders.begin.copy()
     with warnings.catch_warnings(), np.errstate(all="ignore"):
@@ -112,6 +113,9 @@ class _Phase:
         here = watched_value(watched, state[:, None])[0]
         return float(self.orders.sign[self.number] * (here - self.orders.value[self.number]))
 
+    def _level_inside(self, time: float, inside: Callable[[float], Array]) -> float:
+        return self.level(inside(time))
+
     def move(self, at: _At, until: float, out: Marching, tolerance: float, method: str) -> _At:
         """As far as a time, smooth all the way, or to the event before it."""
         from scipy import integrate
@@ -137,7 +141,7 @@ class _Phase:
                 after = self.level(state)
                 met = level < 0.0 <= after
                 if met:
-                    now = float(brentq(lambda t: self.level(inside(t)), at.time, now, xtol=1e-12, rtol=1e-14))
+                    now = float(brentq(self._level_inside, at.time, now, (inside,), xtol=1e-12, rtol=1e-14))
                     state = _upright(inside(now))
                 self._record(out, at.time, now, inside)
                 fast = float(np.linalg.norm(state[7:10])) > self.fastest
@@ -148,11 +152,11 @@ class _Phase:
             return _At(at.time, at.state, ended=NOT_FINITE)
         return at
 
-    def _record(self, out: Marching, after: float, until: float, inside: object) -> None:
+    def _record(self, out: Marching, after: float, until: float, inside: Callable[[float], Array]) -> None:
         near = NEAR * out.times[-1] / max(len(out.times) - 1, 1)
         first, last = np.searchsorted(out.times, (after + near, until + near), side="right")
         for row in range(int(first), int(last)):
-            out.records[0, row] = _upright(inside(min(out.times[row], until)))  # type: ignore[operator]
+            out.records[0, row] = _upright(inside(min(out.times[row], until)))
 
 
 def _upright(state: Array) -> Array:

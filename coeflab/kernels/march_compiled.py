@@ -9,6 +9,7 @@ import math
 
 import numba
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.kernels.dynamics import FIRST, FLAT, Dynamics
 from coeflab.kernels.least_squares import Array
@@ -18,7 +19,7 @@ from coeflab.kernels.orders import NEAR, NOT_FINITE, TOO_FAST, Marching, Orders,
 
 # Few arrays, because every call counts the references of each: the source column of each variable; its prime, low and high;
 # powers of V; rows of the pool and component of each term; whether incidence is needed; coefficients.
-Law = tuple[Ints, Array, Ints, Ints, bool, Array]
+Law = tuple[Ints, Array, Ints, NDArray[np.uint64], bool, Array]
 PAIRS = len(FIRST)
 INVERSE, LOAD, CURRENT = PAIRS, PAIRS + 6, PAIRS + 7  # rows of the body's array, below the forms of the pairs
 jitted = numba.njit(cache=True, error_model="numpy")
@@ -146,7 +147,7 @@ def _level(watched: int, sign: float, value: float, s: Array) -> float:
         here = s[7]
     else:
         here = math.sqrt(s[7] ** 2 + s[8] ** 2 + s[9] ** 2)
-    return sign * (here - value)
+    return float(sign * (here - value))
 
 
 @jitted
@@ -178,10 +179,30 @@ def _step(
 
 
 @jitted
+def _crossing(
+    law: Law, body: Array, s: Array, begin: Array, target: Array, rate: Array, wrench: Array, since: float, longest: float,
+    space: tuple[Array, ...], out: Array, before: float, after: float, watched: int, sign: float, value: float,
+) -> float:  # fmt: skip
+    """Step length at which the quantity crosses, and the state there into ``out``; as `coeflab.kernels.march` finds it."""
+    a, at_a, b, at_b, side, length = 0.0, before, longest, after, 0, longest
+    for _ in range(SECANTS):
+        length = min(max((a * at_b - b * at_a) / (at_b - at_a), a), b) if at_b > at_a else b
+        _step(law, body, s, begin, target, rate, wrench, since, length, space, out)
+        here = _level(watched, sign, value, out)
+        if here < 0.0:
+            at_b = 0.5 * at_b if side < 0 else at_b
+            a, at_a, side = length, here, -1
+        else:
+            at_a = 0.5 * at_a if side > 0 else at_a
+            b, at_b, side = length, here, 1
+    return length
+
+
+@jitted
 def _member(
-    i: int, law: Law, body: Array, angles: Array, begun_at: Array, rate: Array, wrenches: Array, watched: Ints,
+    i: np.int64, law: Law, body: Array, angles: Array, begun_at: Array, rate: Array, wrenches: Array, watched: Ints,
     sign: Array, value: Array, longest: Array, start: Array, step: float, steps: int, every: int, fastest: float,
-    records: Array, switch_time: Array, switch_state: Array, met: Array, ended: Ints, end_time: Array, end_state: Array,
+    records: Array, switch_time: Array, switch_state: Array, met: NDArray[np.bool_], ended: Ints, end_time: Array, end_state: Array,
 ) -> None:  # fmt: skip
     """The whole course of one member."""
     pool = np.empty(1 + len(law[2]) + 2 * len(law[0]))
@@ -206,20 +227,13 @@ def _member(
             new = _level(watched[phase], sign[phase], value[phase], trial)
             crossed = level < 0.0 <= new
             if crossed:
-                a, at_a, b, at_b, side = 0.0, level, length, new, 0
-                for _ in range(SECANTS):
-                    length = min(max((a * at_b - b * at_a) / (at_b - at_a), a), b) if at_b > at_a else b
-                    _step(law, body, s, begin, target, rate, wrench, since, length, space, trial)
-                    here = _level(watched[phase], sign[phase], value[phase], trial)
-                    if here < 0.0:
-                        at_b = 0.5 * at_b if side < 0 else at_b
-                        a, at_a, side = length, here, -1
-                    else:
-                        at_a = 0.5 * at_a if side > 0 else at_a
-                        b, at_b, side = length, here, 1
+                length = _crossing(
+                    law, body, s, begin, target, rate, wrench, since, length, space, trial,
+                    level, new, watched[phase], sign[phase], value[phase],
+                )  # fmt: skip
             sound = True
-            for j in range(14):
-                sound = sound and math.isfinite(trial[j])
+            for x in trial:
+                sound = sound and math.isfinite(x)
             if not sound:
                 ended[i], end_time[i], live = NOT_FINITE, now, False
                 break
@@ -247,19 +261,19 @@ def _member(
 
 @numba.njit(cache=True, parallel=True, error_model="numpy")
 def _all(
-    shared: tuple[Ints, Array, Ints, Ints, bool], coefficient: Array, bodies: Array, angles: Array, begun_at: Array, rate: Array, wrenches: Array, watched: Ints, sign: Array,
+    shared: tuple[Ints, Array, Ints, NDArray[np.uint64], bool], coefficient: Array, bodies: Array, angles: Array, begun_at: Array, rate: Array, wrenches: Array, watched: Ints, sign: Array,
     value: Array, longest: Array, start: Array, step: float, steps: int, every: int, fastest: float, records: Array,
-    switch_time: Array, switch_state: Array, met: Array, ended: Ints, end_time: Array, end_state: Array,
+    switch_time: Array, switch_state: Array, met: NDArray[np.bool_], ended: Ints, end_time: Array, end_state: Array,
 ) -> None:  # fmt: skip
     """Every member on copies of its own: two cores that count the references of one array wait for each other."""
     for unsigned in numba.prange(len(start)):
         i = np.int64(unsigned)
         source, bounds, powers, gathered, angled = shared
-        own = coefficient[min(i, len(coefficient) - 1)].copy()
+        own = coefficient[i % len(coefficient)].copy()
         law = (source.copy(), bounds.copy(), powers.copy(), gathered.copy(), angled, own)
-        body = bodies[min(i, len(bodies) - 1)].copy()
+        body = bodies[i % len(bodies)].copy()
         _member(
-            i, law, body, angles, begun_at, rate, wrenches[min(i, len(wrenches) - 1)], watched, sign, value, longest,
+            i, law, body, angles, begun_at, rate, wrenches[i % len(wrenches)], watched, sign, value, longest,
             start[i], step, steps, every, fastest, records[i], switch_time[i], switch_state[i], met[i], ended, end_time,
             end_state[i],
         )  # fmt: skip
@@ -271,7 +285,7 @@ def march(
     """As `coeflab.kernels.march.march`."""
     law = dynamics.law
     steps = orders.steps(step)
-    out = blank(len(start), orders.count, np.arange(steps // every + 1) * every * step)
+    out = blank(len(start), orders, step, every)
     gathered = np.column_stack([law.gathered.T, law.component]).astype(np.uint64)
     terms = (law.source, np.column_stack([law.prime, law.low, law.high]), law.powers, gathered, law.angled)
     _all(

@@ -74,8 +74,8 @@ class MotionLaw:
         rows = []
         for power, signed, absolute in zip(self.speed_power, self.signed, self.absolute, strict=True):
             row = [1 + int(np.searchsorted(self.powers, power))] if power else []
-            row += [at_variable + v for v in np.flatnonzero(signed) for _ in range(signed[v])]
-            row += [at_absolute + v for v in np.flatnonzero(absolute) for _ in range(absolute[v])]
+            row += [at_variable + int(v) for v in np.flatnonzero(signed) for _ in range(signed[v])]
+            row += [at_absolute + int(v) for v in np.flatnonzero(absolute) for _ in range(absolute[v])]
             rows.append(row)
         longest = max((len(r) for r in rows), default=0)
         filled = [r + [0] * (max(longest, 1) - len(r)) for r in rows]
@@ -120,7 +120,7 @@ class MotionLaw:
         out = along[:6]
         if np.any(self.component >= 6):
             out[:3] += np.array(body_forces(base[ALPHA], base[BETA], along[6], along[7], along[8]))
-        return out
+        return np.asarray(out)
 
     def _products(self, base: Array) -> Array:
         """(t, n) every term before its coefficient."""
@@ -137,7 +137,7 @@ class MotionLaw:
         out = pool[self.gathered[0]]
         for rows in self.gathered[1:]:
             out *= pool[rows]
-        return out
+        return np.asarray(out)
 
     def _values(self, base: Array) -> Array:
         """(v, n) variables as they are, not yet held."""

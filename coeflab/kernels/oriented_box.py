@@ -67,18 +67,23 @@ def _normals(points: Array) -> Array:
 
 def _about(points: Array, normal: Array) -> tuple[Array, float]:
     """Smallest box with one face across a normal: rectangles along the edges of the outline."""
-    from scipy.spatial import ConvexHull
-
     normal = normal / np.linalg.norm(normal)
     second = np.cross(normal, np.eye(3)[int(np.argmin(np.abs(normal)))])
     second /= np.linalg.norm(second)
     plane = np.column_stack([second, np.cross(normal, second)])
-    flat = points @ plane
+    along, area = smallest_rectangle(points @ plane)
+    turn = np.column_stack([plane @ along, plane @ [-along[1], along[0]], normal])
+    return turn, float(area * np.ptp(points @ normal))
+
+
+def smallest_rectangle(flat: Array) -> tuple[Array, float]:
+    """Direction of a side and area of the smallest rectangle about (n, 2) points; a side lies on an edge of their hull."""
+    from scipy.spatial import ConvexHull
+
     outline = flat[ConvexHull(flat).vertices]
     edge = np.roll(outline, -1, axis=0) - outline
     along = edge / np.linalg.norm(edge, axis=1)[:, None]
     across = np.column_stack([-along[:, 1], along[:, 0]])
     area = np.ptp(outline @ along.T, axis=0) * np.ptp(outline @ across.T, axis=0)
     k = int(np.argmin(np.round(area / area.min(), 9)))
-    turn = np.column_stack([plane @ along[k], plane @ across[k], normal])
-    return turn, float(area[k] * np.ptp(points @ normal))
+    return along[k], float(area[k])

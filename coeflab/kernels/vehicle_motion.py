@@ -62,23 +62,4 @@ def restoring(attitude: Array, weight: float, buoyancy: float, centre: Array, ce
     """(n, 6) force and moment of weight and buoyancy about the reference point (Fossen 2011, equation 4.6, as a force)."""
     down = rotations(attitude)[:, 2, :]
     lever = weight * np.asarray(centre) - buoyancy * np.asarray(centre_of_buoyancy)
-    return np.hstack([(weight - buoyancy) * down, np.cross(lever, down)])
-
-
-def heading_rate(attitude: Array, nu: Array) -> Array:
-    """(n,) rate of the horizontal direction of the body's x axis; zero where that axis is vertical."""
-    turned = rotations(attitude)
-    spin = np.einsum("nij,nj->ni", turned, nu[:, 3:])
-    ahead = turned[:, :, 0]
-    flat = ahead[:, 0] ** 2 + ahead[:, 1] ** 2
-    turning = spin[:, 2] * flat - ahead[:, 2] * (spin[:, 0] * ahead[:, 0] + spin[:, 1] * ahead[:, 1])
-    return np.divide(turning, flat, out=np.zeros(len(nu)), where=flat > 1e-12)
-
-
-def kinematic_rates(attitude: Array, nu: Array, current: Array) -> tuple[Array, Array]:
-    """Rates of position (n, 3) and attitude (n, 4)."""
-    position = np.einsum("nij,nj->ni", rotations(attitude), nu[:, :3]) + current
-    w, p = attitude[:, :1], attitude[:, 1:]
-    spin = nu[:, 3:]
-    quaternion = 0.5 * np.hstack([-np.sum(p * spin, axis=1, keepdims=True), w * spin + np.cross(p, spin)])
-    return position, quaternion
+    return np.asarray(np.hstack([(weight - buoyancy) * down, np.cross(lever, down)]))

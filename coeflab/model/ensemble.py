@@ -99,10 +99,10 @@ class Ensemble:
         weight = np.array([mass for mass, _, _ in self._bodies()]) * v.hydrostatics.gravity
         centres = np.array([centre for _, centre, _ in self._bodies()])
         lever = weight * centres.T - v.buoyancy * np.array(v.hydrostatics.centre_of_buoyancy)[:, None]
-        at = np.ix_(v.free_columns, v.free_columns)
+        rows, columns = np.ix_(v.free_columns, v.free_columns)
         free = np.linalg.inv(self._free_mass())
         inverse = np.zeros((len(free), 6, 6))
-        inverse[(slice(None), *at)] = free
+        inverse[:, rows, columns] = free
         quadratics = ideal_pairs(v.law.ideal if self.ideal is None else self.ideal) + rigid
         shared = replace(v.law, coefficient=self.coefficients if self.count > 1 else self.coefficients[0])
         alike = len(quadratics) == 1
@@ -132,8 +132,8 @@ class Ensemble:
         """(1 or m, f, f) effective mass of the free motions."""
         rigid = np.array([rigid_body_inertia(*body) for body in self._bodies()])
         whole = rigid + (self.vehicle.added if self.added is None else self.added)
-        at = self.vehicle.free_columns
-        return np.asarray(whole.reshape(-1, 6, 6)[(slice(None), *np.ix_(at, at))])
+        rows, columns = np.ix_(self.vehicle.free_columns, self.vehicle.free_columns)
+        return np.asarray(whole.reshape(-1, 6, 6)[:, rows, columns])
 
 
 def alone(vehicle: Vehicle) -> Ensemble:

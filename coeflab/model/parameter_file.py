@@ -107,7 +107,8 @@ class ParameterFile(Strict):
         ParameterAddedMass | None, told("added mass in unbounded fluid; null where it is not known", since="1.2")
     ] = None
     hydrostatics: Annotated[
-        ParameterHydrostatics | None, told("buoyancy and gravity; null: neutrally buoyant, centres together", since="1.3")
+        ParameterHydrostatics | None,
+        told("buoyancy and gravity; null: neutrally buoyant, centres together", since="1.3"),
     ] = None
     thrusters: Annotated[tuple[ParameterThruster, ...], told("thrusters, none twice", since="1.3")] = ()
     surfaces: Annotated[tuple[ParameterSurface, ...], told("limits of control surfaces, none twice", since="1.3")] = ()
@@ -130,9 +131,10 @@ class ParameterFile(Strict):
         unknown = sorted(set(self.covariance.symbols) - set(symbols))
         if unknown:
             raise ValueError(f"the covariance names {', '.join(unknown)}, which are no coefficients")
-        for names in ([t.name for t in self.thrusters], [c.control for c in self.surfaces]):
-            if len(set(names)) < len(names):
-                raise ValueError(f"{max(names, key=names.count)} stands more than once")
+        named = [t.name for t in self.thrusters] + [c.control for c in self.surfaces]
+        again = sorted({n for n in named if named.count(n) > 1})
+        if again:
+            raise ValueError(f"{', '.join(again)} stands more than once")
         tables = [(m.response, m.names) for m in self.models]
         for response, names in tables:
             if tables.count((response, names)) > 1:
@@ -230,7 +232,10 @@ def read_parameter_file(path: Path) -> ParameterFile:
         found, expected = _in_words(first["type"], first["msg"], first["input"])
         if is_later(version, SCHEMA_VERSION):
             found += f" in a file of schema_version {version}"
-            expected, more = f"schema_version {FIRST_VERSION} to {SCHEMA_VERSION}, which this release of coeflab reads", ""
+            expected, more = (
+                f"schema_version {FIRST_VERSION} to {SCHEMA_VERSION}, which this release of coeflab reads",
+                "",
+            )
         raise InputError(found, expected + more, file=path, column=place, advice=advice(version)) from None
     except CoeflabError as why:
         raise InputError(str(why), "a valid parameter file", file=path) from None
@@ -243,7 +248,9 @@ def _validated(content: dict[str, Any], version: str) -> ParameterFile:
     except ValidationError as why:
         if not is_later(version, SCHEMA_VERSION):
             raise
-        unknown = [e["loc"] for e in why.errors() if e["type"] == "extra_forbidden" and e["input"] in (None, [], {}, "")]
+        unknown = [
+            e["loc"] for e in why.errors() if e["type"] == "extra_forbidden" and e["input"] in (None, [], {}, "")
+        ]
         if not unknown:
             raise
     return ParameterFile.model_validate_json(json.dumps(without(content, unknown)))

@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 from pathlib import Path
+from xml.etree.ElementTree import Element
 
 import numpy as np
 
 from coeflab.core.errors import InputError
-from coeflab.core.identifiers import one_line
-from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.xml import read_xml
+from coeflab.core.xml import numbers, once, read_xml
 from coeflab.kernels.kirchhoff import ideal_quadratics
 from coeflab.model.check import Check, Severity
-from coeflab.model.gz_link import FORCES, VELOCITIES, GzLink, read_gz_link
+from coeflab.model.gz_link import DENSITIES, FORCES, VELOCITIES, GzLink, read_gz_link
+from coeflab.model.link_model import LinkModel, link_file
+from coeflab.model.munk_moment import Written, munk_twice
 from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.second_order import FLU, SecondOrder
-from coeflab.model.stated_file import Array, Stated, matrix_doubts, stated_file
-from coeflab.model.stated_form import kept_matrix, stated_coefficients, stated_mass
+from coeflab.model.shape_volume import collision_volume
+from coeflab.model.stated_file import Array
+from coeflab.model.units_told import displaced, gravity, imperial, no_mass, water
 
 summary = "gz-sim SDF: Hydrodynamics plugin and <fluid_added_mass>, link frame FLU to FRD"
 citations = ("fossen2011", "gz_sim")
+signs = "gz-sim takes damping and <xDotU> ... negative, <fluid_added_mass> positive."
 
 SQUARES = tuple(FORCES[i] + VELOCITIES[i] * 2 for i in range(6))
+FRESH = 1000.0
 
 
 def read(
@@ -43,34 +46,33 @@ def read(
     InputError
         No SDF with one Hydrodynamics plugin, or no density.
     """
-    link = read_gz_link(read_xml(path), path)
-    rho = link.density if link.density is not None else density
+    root = read_xml(path)
+    link = read_gz_link(root, path)
+    for plugin in root.iter("plugin"):
+        once(plugin if plugin.find("link_name") is not None else None, path)
+    stated = [numbers(e.text, (1,), tag, path)[0] for tag in DENSITIES for e in root.iter(tag)]
+    rho = stated[0] if stated else density
     if rho is None:
         raise InputError(
             "no density", "the density of the water", file=path,
             advice="The plugin needs none, primes do: give it (--density 1025), or write <uniform_fluid_density>.",
         )  # fmt: skip
-    notes = [
-        "axes turned from the link frame (x forward, y port, z up) to FRD; reference point: the link's origin",
-        "|u| v is read as U v: both agree on straight courses",
-    ]
-    notes += [] if length else ["lengths made dimensionless by 1 m: the file states none"]
-    scaling, at = Scaling(length or 1.0, "given length" if length else "1 m"), Conditions(rho, speed or 1.0)
-    matrix, form = _added_mass(link), _form(link)
-    notes += matrix_doubts(matrix)
-    name = one_line(link.model or path.stem)[:200]
-    stated = Stated(
-        name=name,
-        body=name,
-        scaling=scaling,
-        conditions=at,
-        coefficients=stated_coefficients(form, _coriolis(link), matrix, scaling, at),
-        datum=f"origin of the link {one_line(link.link)}"[:200],
-        matrix=kept_matrix(matrix),
-        mass=stated_mass(link.mass, link.centre * FLU[:3] + 0.0, _inertia(link), notes),
-        notes=tuple(notes),
+    model = LinkModel(
+        model=link.model,
+        link=link.link,
+        density=rho,
+        form=_form(link),
+        added=_coriolis(link),
+        matrix=_added_mass(link),
+        mass=link.mass,
+        centre=link.centre * FLU[:3] + 0.0,
+        inertia=None if link.inertia is None else link.inertia * np.outer(FLU[:3], FLU[:3]) + 0.0,
+        notes=(
+            "axes turned from the link frame (x forward, y port, z up) to FRD; reference point: the link's origin",
+            "|u| v is read as U v: both agree on straight courses",
+        ),
     )
-    return stated_file(stated, [InputFile(path.name, sha256_of(path))], citations)
+    return link_file(model, path, citations, length, speed)
 
 
 def examine(path: Path) -> tuple[Check, ...]:
@@ -80,28 +82,61 @@ def examine(path: Path) -> tuple[Check, ...]:
     ------
     InputError
     """
-    link = read_gz_link(read_xml(path), path)
+    root = read_xml(path)
+    link = read_gz_link(root, path)
     own = link.plugin_mass if not link.disable_added_mass else np.zeros((6, 6))
-    out = []
+    out = [*_units(root, link, path)]
     if np.any(link.fluid_mass) and np.any(own):
-        out.append(_found(Severity.FAIL, "<fluid_added_mass> and <xDotU> ...", "one of the two",
+        out.append(_found(Severity.FAIL, "<fluid_added_mass>", "<fluid_added_mass> and <xDotU> ...", "one of the two",
                           "Added mass counts twice. Remove the plugin's."))  # fmt: skip
     if np.any(own) and not link.disable_coriolis:
-        out.append(_found(Severity.WARN, "<xDotU> ... without <disable_coriolis>", "no Coriolis of the plugin",
+        out.append(_found(Severity.WARN, "<disable_coriolis>", "<xDotU> ... without it", "no Coriolis of the plugin",
                           "The plugin adds +C_A(nu) nu, the reverse of the ideal fluid's. Disable it."))  # fmt: skip
+    out += munk_twice("gazebo", _turning(link), _coriolis(link), ideal_quadratics(_added_mass(link)))
     squares = [t for i, t in enumerate(SQUARES) if link.signed[i, i, i]]
     if squares:
         bars = ", ".join(f"<{t[:2]}abs{t[2]}>" for t in squares)
-        out.append(_found(Severity.WARN, ", ".join(f"<{t}>" for t in squares), "damping that changes sign with the motion",
+        out.append(_found(Severity.WARN, ", ".join(f"<{t}>" for t in squares), "squares", "damping that changes sign with the motion",
                           f"A square pushes in one of the two directions since gz-sim 7; {bars} is meant."))  # fmt: skip
     if link.mass is not None and (heaviest := float(-own.diagonal()[:3].min())) >= link.mass:
-        out.append(_found(Severity.WARN, f"added mass {heaviest:g} kg, link {link.mass:g} kg", "added mass below the link's",
+        out.append(_found(Severity.WARN, "<mass>", f"added mass {heaviest:g} kg, link {link.mass:g} kg", "added mass below the link's",
                           "The plugin integrates it explicitly, which is unstable. Use <fluid_added_mass>."))  # fmt: skip
     return tuple(out)
 
 
-def _found(severity: Severity, statistic: str, rule: str, comment: str) -> Check:
-    return Check("gazebo", "SDF", severity, statistic, rule, comment)
+def _found(severity: Severity, key: str, statistic: str, rule: str, comment: str) -> Check:
+    return Check("gazebo", key, severity, statistic, rule, comment)
+
+
+def _units(root: Element, link: GzLink, path: Path) -> list[Check]:
+    out = [*no_mass("gazebo", link.mass, "<mass>")]
+    if link.density is not None:
+        tag = next(t for t in DENSITIES if root.find(f".//{t}") is not None)
+        out.append(water("gazebo", link.density, f"density <{tag}>"))
+    for element in root.iter("gravity"):
+        if len((element.text or "").split()) == 3:
+            value = float(np.linalg.norm(numbers(element.text, (3,), "gravity", path)))
+            out += gravity("gazebo", value, "<gravity>")
+    hull = next((e for e in root.iter("link") if e.get("name") == link.link.rpartition("::")[2]), None)
+    volume, density = collision_volume(hull, path), link.density or FRESH
+    # A collision is often a rough box: only the ratios of units are told by it.
+    if link.mass and link.mass > 0.0 and imperial(density * volume / link.mass):
+        out += displaced("gazebo", link.mass, volume, density, "<mass> and <collision>")
+    return out
+
+
+def _turning(link: GzLink) -> list[Written]:
+    """What the plugin is given of N over v and of M over w; both keep their sign from FLU to FRD."""
+    out = []
+    for component, i, j in (("N", 5, 1), ("M", 4, 2)):
+        f, v = FORCES[i], VELOCITIES[j]
+        out += [
+            Written(component, f"<{f}{v}absU>", float(link.absolute[i, j, 0]), True),
+            Written(component, f"<{f}U{v}>", float(link.signed[i, 0, j]), True),
+            Written(component, f"<{f}{v}U>", float(link.signed[i, j, 0]), True),
+            Written(component, f"<{f}{v}>", float(link.linear[i, j]), False),
+        ]
+    return out
 
 
 def _added_mass(link: GzLink) -> Array:
@@ -109,13 +144,9 @@ def _added_mass(link: GzLink) -> Array:
     return np.asarray((link.fluid_mass + own) * np.outer(FLU, FLU))
 
 
-def _inertia(link: GzLink) -> Array | None:
-    return None if link.inertia is None else link.inertia * np.outer(FLU[:3], FLU[:3]) + 0.0
-
-
 def _form(link: GzLink) -> SecondOrder:
     once = np.triu(link.signed) + np.triu(np.swapaxes(link.signed, 1, 2), 1)
-    return SecondOrder(link.linear, once, link.absolute).turned(FLU)
+    return SecondOrder(link.linear, once, link.absolute, link.resistance).turned(FLU)
 
 
 def _coriolis(link: GzLink) -> Array:

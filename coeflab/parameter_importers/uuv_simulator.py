@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
+from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from coeflab.core.identifiers import one_line
-from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.xml import read_xml
-from coeflab.kernels.kirchhoff import momentum_quadratics
+from coeflab.core.xacro import SPACE, Xacro
+from coeflab.core.xml import numbers, once, read_xml
+from coeflab.kernels.kirchhoff import ideal_quadratics, momentum_quadratics
 from coeflab.model.check import Check, Severity
 from coeflab.model.fossen_link import PLUGIN_DENSITY, FossenLink, read_fossen_link
+from coeflab.model.link_model import LinkModel, link_file
+from coeflab.model.munk_moment import Written, munk_twice
 from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.second_order import SURGE, SecondOrder
-from coeflab.model.stated_file import Stated, matrix_doubts, stated_file
-from coeflab.model.stated_form import kept_matrix, stated_coefficients, stated_mass
+from coeflab.model.units_told import displaced, gravity, no_mass, water
 
 summary = "uuv_simulator and DAVE: URDF or xacro with hydrodynamic_model fossen"
 citations = ("fossen2011", "uuv_simulator")
+signs = "uuv_simulator takes <added_mass> positive, every damping matrix negative."
 
-BUOYANCY = (0.8, 1.25)
+GRAVITIES = ("g", "gravity")
 
 
 def read(
@@ -45,6 +46,8 @@ def read(
     """
     root = read_xml(path)
     link = read_fossen_link(root, path)
+    for model in root.iter("hydrodynamic_model"):
+        once(model, path)
     notes = [
         "the plugin takes these numbers in x forward, y starboard, z down; reference point: the link's origin",
         "u v of linear_damping_forward_speed is read as U v: both agree on straight courses",
@@ -53,32 +56,25 @@ def read(
     if rho is None:
         rho = PLUGIN_DENSITY
         notes.append(f"density {rho:g} kg/m^3: the file states none, this is the plugin's own (BuoyantObject.cc)")
-    scaling = Scaling(
-        *((length, "given length") if length else (link.length, "length of the box") if link.length else (1.0, "1 m"))
-    )
-    at = Conditions(rho, speed or 1.0)
-    if scaling.length_name == "1 m":
-        notes.append("lengths made dimensionless by 1 m: the file states none")
     if np.any(link.centre):
         notes.append(
             "the plugin's force acts at the centre of gravity: moments, and added mass, are moved to the link's origin"
         )
-    matrix = link.arm @ link.added_mass
-    notes += matrix_doubts(matrix)
-    added = np.einsum("il,ljk->ijk", link.arm, momentum_quadratics(link.added_mass))
-    name = one_line(root.get("name") or path.stem)[:200]
-    stated = Stated(
-        name=name,
-        body=name,
-        scaling=scaling,
-        conditions=at,
-        coefficients=stated_coefficients(_form(link), added, matrix, scaling, at),
-        datum=f"origin of the link {one_line(link.link)}"[:200],
-        matrix=kept_matrix(matrix),
-        mass=stated_mass(link.mass, link.centre, link.inertia, notes),
+    stated = LinkModel(
+        model=root.get("name", ""),
+        link=link.link,
+        density=rho,
+        form=_form(link),
+        added=np.einsum("il,ljk->ijk", link.arm, momentum_quadratics(link.added_mass)),
+        matrix=link.arm @ link.added_mass,
+        mass=link.mass,
+        centre=link.centre,
+        inertia=link.inertia,
+        length=link.length,
+        length_name="length of the box",
         notes=tuple(notes),
     )
-    return stated_file(stated, [InputFile(path.name, sha256_of(path))], citations)
+    return link_file(stated, path, citations, length, speed)
 
 
 def examine(path: Path) -> tuple[Check, ...]:
@@ -88,27 +84,63 @@ def examine(path: Path) -> tuple[Check, ...]:
     ------
     InputError
     """
-    link = read_fossen_link(read_xml(path), path)
-    out = []
+    root = read_xml(path)
+    link = read_fossen_link(root, path)
+    out = [*_units(root, link, path)]
     ignored = link.quadratic - np.diag(np.diag(link.quadratic))
     if np.any(ignored):
-        out.append(_found(Severity.WARN, f"{np.count_nonzero(ignored)} off-diagonal entries in <quadratic_damping>",
+        out.append(_found("<quadratic_damping>", f"{np.count_nonzero(ignored)} off-diagonal entries",
                           "a diagonal matrix", "The plugin ignores them (HydrodynamicModel.cc, line 437)."))  # fmt: skip
     if np.any(link.centre):
-        out.append(_found(Severity.WARN, f"centre of gravity {np.linalg.norm(link.centre):g} m from the link's origin",
+        out.append(_found("<inertial> <origin>", f"centre of gravity {np.linalg.norm(link.centre):g} m from the link's origin",
                           "the origin in the centre of gravity",
                           "The plugin takes velocities at one and applies forces at the other."))  # fmt: skip
-    if link.mass and link.volume:
-        ratio = (link.density or PLUGIN_DENSITY) * link.volume / link.mass
-        good = BUOYANCY[0] <= ratio <= BUOYANCY[1]
-        out.append(_found(Severity.PASS if good else Severity.FAIL, f"rho V / m = {ratio:.4g}",
-                          f"{BUOYANCY[0]:g} to {BUOYANCY[1]:g}",
-                          "" if good else "Mass, volume and density are not of one system of units."))  # fmt: skip
-    return tuple(out)
+    added = momentum_quadratics(link.added_mass)
+    out += munk_twice("uuv_simulator", _turning(link), added, ideal_quadratics(link.added_mass))
+    return (*out, *_capsizes(root, link, path))
 
 
-def _found(severity: Severity, statistic: str, rule: str, comment: str) -> Check:
-    return Check("uuv_simulator", "URDF", severity, statistic, rule, comment)
+def _found(key: str, statistic: str, rule: str, comment: str) -> Check:
+    return Check("uuv_simulator", key, Severity.WARN, statistic, rule, comment)
+
+
+def _units(root: Element, link: FossenLink, path: Path) -> list[Check]:
+    out = [*no_mass("uuv_simulator", link.mass, "<mass>")]
+    if link.density is not None:
+        out.append(water("uuv_simulator", link.density, "density <fluid_density>"))
+    if link.mass and link.volume and link.mass > 0.0:
+        out += displaced("uuv_simulator", link.mass, link.volume, link.density or PLUGIN_DENSITY, "<mass> and <volume>")
+    known = Xacro(root, path)
+    for e in root.iter(f"{SPACE}property"):
+        if (name := e.get("name", "")) in GRAVITIES:
+            value = numbers(known.text(e.get("value", "")), (1,), name, path)[0]
+            out += gravity("uuv_simulator", value, f'<xacro:property name="{name}">')
+    return out
+
+
+def _turning(link: FossenLink) -> list[Written]:
+    """What the plugin is given of N over v and of M over w, in the order of its matrices."""
+    out = []
+    for component, i, j in (("N", 5, 1), ("M", 4, 2)):
+        for tag, matrix, with_speed in (
+            ("linear_damping_forward_speed", link.forward, True), ("linear_damping", link.linear, False),
+        ):  # fmt: skip
+            out.append(Written(component, f"<{tag}> row {i + 1} column {j + 1}", float(matrix[i, j]), with_speed))
+    return out
+
+
+def _capsizes(root: Element, link: FossenLink, path: Path) -> tuple[Check, ...]:
+    """A centre of buoyancy below that of gravity, which in the link's own axes, z up, is a sign from z down."""
+    text = next(
+        (e.findtext("center_of_buoyancy") for e in root.iter("link") if e.find("hydrodynamic_model") is not None), None
+    )
+    if text is None:
+        return ()
+    height = numbers(Xacro(root, path).text(text), (3,), "center_of_buoyancy", path)[2] + float(link.centre[2])
+    if height >= 0.0:
+        return ()
+    return (Check("uuv_simulator", "<center_of_buoyancy>", Severity.WARN, f"{-height:.4g} m below the centre of gravity",
+                  "above it", "The vehicle turns over. The link's z is up: was it copied from axes with z down (NED)?"),)  # fmt: skip
 
 
 def _form(link: FossenLink) -> SecondOrder:

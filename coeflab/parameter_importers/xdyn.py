@@ -13,14 +13,16 @@ from coeflab.core.errors import InputError
 from coeflab.core.identifiers import one_line
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
-from coeflab.core.yaml import read_yaml
+from coeflab.core.yaml import number, read_yaml
 from coeflab.kernels.composition import definiteness, moved
 from coeflab.kernels.kirchhoff import ideal_quadratics
 from coeflab.kernels.rigid_body import about_another, inertia_doubt
 from coeflab.kernels.terms import parse_suffix
+from coeflab.model.check import Check
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.stated_file import Law, Stated, StatedMass, matrix_doubts, stated_file
+from coeflab.model.units_told import gravity
 from coeflab.model.velocity_products import Product
 from coeflab.model.written_law import sname
 from coeflab.model.xdyn_body import XdynBody, xdyn_body
@@ -28,6 +30,7 @@ from coeflab.model.xdyn_products import MultipliedOut, multiplied_out
 
 summary = "xdyn YAML: one body with added mass, damping matrices and manoeuvring expressions"
 citations = ("sname1950", "fossen2011", "xdyn")
+signs = "xdyn takes the added mass and both damping matrices positive."
 
 LENGTHS = ("L", "Lpp", "LBP", "LOA", "Lwl")
 SPEED, CLOSE = 1.0, 1e-9
@@ -47,12 +50,27 @@ def read(path: Path) -> ParameterFile:
         No YAML, tags, aliases, several bodies, an expression that is no sum of products of velocities.
     """
     body = xdyn_body(read_yaml(path), path)
+    if not body.density > 0.0:
+        raise InputError(f"density rho {body.density:g}", "above zero", file=path)
     try:
         law = multiplied_out(body)
         stated = _stated(body, law, path)
     except ArithmeticProblem as why:
         raise InputError(str(why), "sums of products of velocities, as xdyn reads them", file=path) from None
     return stated_file(stated, [InputFile(path.name, sha256_of(path))], citations)
+
+
+def examine(path: Path) -> tuple[Check, ...]:
+    """What this format lets go wrong and a parameter file cannot show.
+
+    Raises
+    ------
+    InputError
+    """
+    constants = read_yaml(path).get("environmental constants")
+    stated = constants.get("g") if isinstance(constants, dict) else None
+    value = number(stated.get("value")) if isinstance(stated, dict) else None
+    return () if value is None else gravity("xdyn", value, "environmental constants: g")
 
 
 def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
@@ -84,9 +102,9 @@ def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
             unit = scaling.factor(symbol, at) if rest else scaling.factor(symbol, Conditions(at.density, 1.0))
             coefficients[symbol] = (value / unit, "rest" if rest else "motion")
     if not kept:
-        for i, j in np.argwhere(matrix != 0.0):
+        for i, j in np.argwhere((matrix != 0.0) | (matrix.T != 0.0)):
             symbol = f"{COMPONENTS[i]}{MOTIONS[j]}dot"
-            coefficients[symbol] = (-float(matrix[i, j]) / scaling.factor(symbol, at), "motion")
+            coefficients[symbol] = ((0.0 - float(matrix[i, j])) / scaling.factor(symbol, at), "motion")
     x, y, z = map(float, law.point if body.mesh is None else body.mesh + law.point)
     mass, doubt = _mass(body, law.point)
     name = one_line(body.name)[:200] or path.stem[:200]

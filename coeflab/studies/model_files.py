@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from coeflab.core.errors import InputError
@@ -14,9 +14,11 @@ from coeflab.model.check import Check, Severity
 from coeflab.model.parameter_file import LARGEST as LARGEST_JSON
 from coeflab.model.parameter_file import ParameterFile, read_parameter_file
 from coeflab.model.plausibility import plausibility
+from coeflab.model.plausible_damping import WRONG
 from coeflab.parameter_importers import PARAMETER_IMPORTERS
 
 OWN = "coeflab"
+DENSITY = "density"
 STAND_IN = 1000.0
 
 
@@ -51,18 +53,22 @@ def recognised(path: Path) -> str:
         None that is known.
     """
     text = read_text(path, max(LARGEST, LARGEST_JSON))
+    if "\0" in text:
+        raise InputError("a zero byte", "UTF-8 text", file=path, advice="Save the file as UTF-8.")
     start = text.lstrip()[:1]
     if start == "{":
         return OWN
     if start == "<":
         if "hydrodynamic_model" in text:
             return "uuv_simulator"
-        if re.search(r"<plugin[^>]*hydrodynamics", text, re.IGNORECASE) or "<sdf" in text:
+        if re.search(r"<plugin[^<>]*hydrodynamics", text, re.IGNORECASE) or "<sdf" in text:
             return "gazebo"
         raise InputError("XML without <hydrodynamic_model> or a Hydrodynamics plugin", _known(), file=path)
-    if re.search(r"^\s*(dynamics|external forces|rotations convention)\s*:", text, re.MULTILINE):
+    if re.search(r"^[ \t-]*(dynamics|external forces|rotations convention)[ \t]*:", text, re.MULTILINE):
         return "xdyn"
-    if re.search(r"^[^%#\n]*\b[XYZKMN]\w*\s*=\s*[-+.\d(\w]", text, re.MULTILINE):
+    if re.search(r"^\[+[A-Za-z_][\w.\"'-]*\]+[ \t]*(#.*)?$", text, re.MULTILINE):
+        raise InputError("a TOML file", _known(), file=path)
+    if re.search(r"^[^%#\n]*\b[XYZKMN]\w*[ \t]*=[ \t]*[-+.\d(\w]", text, re.MULTILINE):
         return "mss"
     raise InputError("a file that no importer knows", _known(), file=path)
 
@@ -97,12 +103,19 @@ def read_model_file(path: Path, density: float | None = None) -> ModelFile:
             raise
         stands_in = True
         parameters = importer.read(path, density=STAND_IN)  # type: ignore[call-arg]
-        findings.append(Check(kind, "density", Severity.NOTE, f"{STAND_IN:g} kg/m^3 stands in", "a density in the file",
+        findings.append(Check(kind, DENSITY, Severity.NOTE, f"{STAND_IN:g} kg/m^3 stands in", "a density in the file",
                               "Only primes depend on it; give --density."))  # fmt: skip
     examine = getattr(importer, "examine", None)
     findings += examine(path) if examine is not None else ()
-    found = [c for c in plausibility(parameters) if not (c.subject == "density" and stands_in)]
-    return ModelFile(kind, parameters, (*findings, *found))
+    told = stands_in or any(c.subject.startswith(DENSITY) for c in findings)
+    found = [c for c in plausibility(parameters) if not (told and c.subject == DENSITY)]
+    return ModelFile(kind, parameters, (*findings, *(_in_terms_of(c, importer) for c in found)))
+
+
+def _in_terms_of(check: Check, importer: object) -> Check:
+    """A finding about a sign, with the signs that the format itself takes."""
+    signs = getattr(importer, "signs", "")
+    return replace(check, comment=f"{check.comment} {signs}") if signs and check.comment.endswith(WRONG) else check
 
 
 def _known() -> str:

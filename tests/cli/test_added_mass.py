@@ -22,6 +22,9 @@ def test_suboff_shows_the_gap(coeflab: Run) -> None:
         assert words in done.stdout
     assert "primed by LBP 4.26086 m" in done.stdout
     assert "primitives: not used" in done.stdout
+    assert "ellipsoid      /m  * panel      /m" in done.stdout
+    assert "* recommended: panel, by the rule" in done.stdout
+    assert done.stdout.count("semidefinite") == 1
 
 
 def test_json_holds_matrices(coeflab: Run) -> None:

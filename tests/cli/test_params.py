@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from coeflab.model.parameter_versions import SCHEMA_VERSION
 from tests.cli.conftest import Run
 
 DATA = Path(__file__).parents[1] / "parameter_importers" / "data"
@@ -57,6 +58,19 @@ def test_a_parameter_file_is_checked_too(coeflab: Run) -> None:
     assert done.returncode == 0, done.stderr
     assert "schema 1.0" in done.stdout
     assert "Findings" in done.stdout
+
+
+def test_a_later_minor_version_is_read_with_a_word(coeflab: Run, tmp_path: Path) -> None:
+    content = {**json.loads(OWN.read_bytes()), "schema_version": "1.9", "tethers": None}
+    (tmp_path / "p.json").write_text(json.dumps(content))
+    done = coeflab("params", "check", "p.json")
+    assert done.returncode == 0, done.stderr
+    assert f"schema 1.9 is later than {SCHEMA_VERSION}, which this release writes" in done.stdout
+    (tmp_path / "p.json").write_text(json.dumps({**content, "tethers": [1]}))
+    done = coeflab("params", "check", "p.json")
+    assert done.returncode == 2
+    assert '"tethers": found an unknown key in a file of schema_version 1.9' in done.stderr
+    assert "Update coeflab" in done.stderr
 
 
 def test_a_density_that_the_file_lacks(coeflab: Run, tmp_path: Path) -> None:

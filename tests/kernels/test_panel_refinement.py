@@ -87,3 +87,17 @@ def test_a_motion_that_only_facets_resist_does_not_set_the_order() -> None:
     found = refined([sphere * (1.0 - 0.2 * h**2) + (np.eye(6) - sphere) * h**4 for h in SIZES], COUNTS)
     assert found.observed == pytest.approx(2.0)
     assert found.settled == pytest.approx(sphere, abs=1e-12)
+
+
+@pytest.mark.parametrize("order", [0.8, 4.0 / 3.0, 2.0])
+@pytest.mark.parametrize("counts", [(6000, 1500, 375), (6000, 1500, 500), (6000, 2000, 400)])
+def test_the_order_is_seen_through_unequal_steps(order: float, counts: tuple[int, int, int]) -> None:
+    exact = np.diag([2.0, 3.0, 4.0, 1.0, 5.0, 6.0])
+    found = refined([exact * (1.0 + 0.1 * (375.0 / n) ** (order / 2.0)) for n in counts], counts)
+    assert found.observed == pytest.approx(order, rel=1e-6)
+
+
+def test_differences_that_grow_with_refinement_have_no_order() -> None:
+    exact = np.eye(6)
+    assert refined([exact, 1.1 * exact, 1.11 * exact], (6000, 1500, 375)).observed == 0.0
+    assert refined([exact, exact * (1.0 + 1e-9), 1.5 * exact], (6000, 1500, 375)).observed == 12.0

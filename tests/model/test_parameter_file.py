@@ -12,11 +12,11 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.model.parameter_file import SCHEMA_FILE, ParameterFile, read_parameter_file, schema
-from coeflab.model.parameter_versions import VERSIONS, is_later
+from coeflab.model.parameter_versions import SCHEMA_VERSION, VERSIONS, is_later
 from coeflab.model.study import Study
 
 SAMPLE = Path(__file__).parents[1] / "data" / "parameters_1_0.json"
-NEWEST = SAMPLE.with_name("parameters_1_2.json")
+NEWEST = SAMPLE.with_name("parameters_1_3.json")
 FILES = ("suboff_fully_appended", "suboff_bare_hull", "suboff_bare_hull_cfd")
 
 
@@ -47,7 +47,7 @@ def test_bytes_round_trip(suboff: Study, tmp_path: Path, name: str) -> None:
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_a_sample_of_every_version_loads_and_is_written_back_as_it_is(version: str) -> None:
-    """Each was written by a study when its version was the newest; that of 1.2 is of a synthetic vehicle."""
+    """Each was written by a study when its version was the newest; those of 1.2 and 1.3 are of a synthetic vehicle."""
     sample = SAMPLE.with_name(f"parameters_{version.replace('.', '_')}.json")
     file = read_parameter_file(sample)
     assert file.schema_version == version
@@ -80,16 +80,65 @@ def test_version_1_2_means_what_it_meant() -> None:
     assert file.models[0].holds == ("random", "angle beta", "speed")
 
 
+def test_version_1_3_means_what_it_meant() -> None:
+    """Two thrusters with a dead zone, of opposite hands; a rudder that needs four seconds to its limit."""
+    file = read_parameter_file(NEWEST)
+    left, right = file.thrusters
+    assert [left.curve.at(c) for c in (-100.0, -10.0, 10.0, 100.0)] == pytest.approx([-14.2244, 0.0, 0.0, 14.2244])
+    assert left.curve.at(150.0) == left.curve.at(100.0)
+    assert (left.handedness, right.handedness, right.position[1]) == (1, -1, 0.1)
+    assert file.surfaces[0].rate is not None
+    assert file.surfaces[0].limit / file.surfaces[0].rate == pytest.approx(4.0)
+    assert file.hydrostatics is not None
+    assert file.hydrostatics.gravity == 9.81
+
+
+THRUSTER: list[tuple[str, Callable[[dict[str, Any]], object]]] = [
+    ("left stands more than once", lambda d: d["thrusters"][1].update(name="left")),
+    ("direction is 2 long, not 1", lambda d: d["thrusters"][0].update(direction=[2.0, 0.0, 0.0])),
+    (
+        "thrust falls at a command of",
+        lambda d: d["thrusters"][0]["curve"]["segments"][1].update(coefficients=[9.0, -0.1]),
+    ),
+    ("lie over each other", lambda d: d["thrusters"][0]["curve"]["segments"][1].update(low=-20.0)),
+    ("a segment from 100 to 100", lambda d: d["thrusters"][0]["curve"]["segments"][1].update(low=100.0)),
+    ("without room or axis", lambda d: d["thrusters"][0].update(tilt_axis=None)),
+    ("without room or axis", lambda d: d["thrusters"][0].update(tilt_low=1.0)),
+    ("greater than 0", lambda d: d["surfaces"][0].update(limit=0.0)),
+    ("greater than 0", lambda d: d["hydrostatics"].update(volume=-1.0)),
+]
+
+
+@pytest.mark.parametrize(("says", "broken"), THRUSTER, ids=range(len(THRUSTER)))
+def test_a_vehicle_that_cannot_be(tmp_path: Path, says: str, broken: Callable[[dict[str, Any]], object]) -> None:
+    content = json.loads(NEWEST.read_bytes())
+    broken(content)
+    (tmp_path / "p.json").write_text(json.dumps(content))
+    assert says in refused(tmp_path / "p.json")
+
+
+def bare(content: dict[str, Any]) -> None:
+    """Without thrusters, surfaces and hydrostatics."""
+    content.update(hydrostatics=None, thrusters=[], surfaces=[])
+
+
 def unbooked(content: dict[str, Any]) -> None:
-    """Without centre of gravity and potential parts."""
+    """Without centre of gravity, potential parts and what makes it a vehicle."""
     content["mass"] = None
+    bare(content)
     for coefficient in content["coefficients"]:
         coefficient["potential"] = None
 
 
 LATER: list[tuple[str, Callable[[dict[str, Any]], object]]] = [
-    ("mass.centre", lambda d: None),
-    ("coefficients.potential", lambda d: d.update(mass=None)),
+    ("mass.centre", bare),
+    (
+        "hydrostatics",
+        lambda d: d.update(
+            mass=None, coefficients=[], covariance={"symbols": [], "matrix": []}, models=[], added_mass=None
+        ),
+    ),
+    ("coefficients.potential", lambda d: (bare(d), d.update(mass=None))),
     ("models", unbooked),
     ("added_mass", lambda d: (unbooked(d), d.update(models=[]))),
 ]
@@ -165,7 +214,10 @@ BAD: list[tuple[Edit, list[str]]] = [
     (lambda d: d["coefficients"][0].update(colour=1), ["coefficients.0.colour", "an unknown key"]),
     (lambda d: d.pop("scaling"), ['"scaling": found nothing']),
     (lambda d: d.pop("schema_version"), ["schema_version"]),
-    (lambda d: d.update(schema_version="2.0"), ['schema_version "2.0"', "expected 1.x"]),
+    (
+        lambda d: d.update(schema_version="2.0"),
+        ['schema_version "2.0"', f"expected 1.0 to {SCHEMA_VERSION}", "release that wrote it"],
+    ),
     (lambda d: d.update(schema_version=1), ['schema_version "1"']),
     (lambda d: d["scaling"].update(length=0), ["scaling.length", "greater than 0"]),
     (lambda d: d["conditions"].update(density=-1), ["conditions.density", "greater than 0"]),
@@ -217,19 +269,56 @@ def in_place_of_a_value(token: str) -> bytes:
         (b"[" * 100_000, ["a parameter file in JSON"]),
         (b"[]", ['"file"', "an object"]),
         (b"\xff\xfe{}", ["the byte 0xff", "UTF-8"]),
+        (SAMPLE.read_bytes().replace(b'"name":', b'"name": "a", "name":', 1), ['found "name" twice in one object']),
         (in_place_of_a_value("NaN"), ["NaN is no JSON number"]),
         (in_place_of_a_value("-Infinity"), ["-Infinity is no JSON number"]),
         (in_place_of_a_value("1e999"), ["coefficients.0.value", "finite number"]),
         (in_place_of_a_value("1" * 5000), ["p.json"]),
         (in_place_of_a_value('"\\ud800"'), ["p.json"]),
     ],
-    ids=range(12),
+    ids=range(13),
 )
 def test_files_that_are_no_json(tmp_path: Path, content: bytes, said: list[str]) -> None:
     (tmp_path / "p.json").write_bytes(content)
     message = refused(tmp_path / "p.json")
     for text in said:
         assert text in message
+
+
+def later(**more: Any) -> str:
+    return json.dumps({**json.loads(SAMPLE.read_bytes()), "schema_version": "1.9", **more})
+
+
+def test_a_later_minor_version_is_read_where_nothing_is_lost(tmp_path: Path) -> None:
+    """Keys that nobody here knows are passed over where they are null or empty."""
+    path = tmp_path / "p.json"
+    content = json.loads(later(tethers=None, sails=[]))
+    content["conditions"]["salinity"] = None
+    path.write_text(json.dumps(content))
+    file = read_parameter_file(path)
+    assert file.schema_version == "1.9"
+    assert [c.symbol for c in file.coefficients] == [c["symbol"] for c in content["coefficients"]]
+    assert "tethers" not in file.to_json().decode()
+
+
+def test_a_later_minor_version_that_says_more_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "p.json"
+    for content, place in ((later(tethers=[{"length": 3.0}]), '"tethers"'), (later(name=3), '"name"')):
+        path.write_text(content)
+        message = refused(path)
+        assert place in message
+        assert "schema_version 1.9" in message
+        assert f"1.0 to {SCHEMA_VERSION}" in message
+        assert f"Update coeflab, or have the file written as version {SCHEMA_VERSION}" in message
+    path.write_text(later(tethers=None).replace('"1.9"', '"1.0"'))
+    assert "an unknown key" in refused(path)
+
+
+@pytest.mark.parametrize("version", ["1." + "9" * 5000, "1.x", "1", "2.0", None])
+def test_versions_that_are_none(tmp_path: Path, version: object) -> None:
+    path = tmp_path / "p.json"
+    path.write_text(later(schema_version=version))
+    assert "schema_version" in refused(path)
 
 
 def test_places_without_a_file(tmp_path: Path) -> None:

@@ -7,7 +7,8 @@ import pytest
 
 from coeflab.model.check import Severity
 from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.plausibility import plausibility, stated_matrix
+from coeflab.model.plausibility import plausibility
+from coeflab.model.plausible_added_mass import stated_matrix
 from coeflab.model.study import Study
 from tests.exporters import of_second_order as second
 from tests.model.test_force_law import HULL, parameters
@@ -29,7 +30,7 @@ def test_a_density_that_is_none_of_water(density: float) -> None:
     file = second.bluerov2_heavy()
     wrong = file.model_copy(update={"conditions": file.conditions.model_copy(update={"density": density})})
     assert "density" in found(wrong)
-    assert ("convert to SI" in found(wrong)["density"]) == (density in (1.94, 64.0))
+    assert ("Convert to SI" in found(wrong)["density"]) == (density in (1.94, 64.0))
 
 
 def test_slugs_and_feet_beside_a_density_in_si() -> None:

@@ -10,13 +10,16 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure as Drawing
 
 from coeflab.kernels.attitude import rotation
 from coeflab.kernels.solids import box, surface
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate
+from coeflab.presentation.body_axes import rulers, ticks
 from coeflab.presentation.body_figure import FRONT, OBLIQUE, SIDE, TOP, _spread, body_figure
 from coeflab.presentation.body_scene import body_scene
+from coeflab.presentation.body_view import Sheet
 from coeflab.presentation.svg import COLOURS
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -125,3 +128,45 @@ def test_an_independent_reader_sees_the_body() -> None:
     assert (place["mast"] @ [*mast, 1.0])[:3] == pytest.approx([0.0, 0.25, 0.3], abs=1e-6)
     fin = scene.geometry["fin <&>"].vertices.mean(axis=0)
     assert (place["fin <&>"] @ [*fin, 1.0])[:3] == pytest.approx([-0.3, 0.0, -0.8], abs=1e-6)
+    paints = {name: g.visual.material for name, g in scene.geometry.items()}
+    assert paints["mesh"].alphaMode == "BLEND"
+    assert paints["mesh"].baseColorFactor[3] == pytest.approx(0.3 * 255, abs=1)
+    assert all(paints[p.name].baseColorFactor[3] == 255 for p in SHAPE.parts)
+    assert len({tuple(m.baseColorFactor) for m in paints.values()}) == 5
+
+
+def test_the_scene_says_unit_and_axes() -> None:
+    root = parsed(body_scene("b", SHAPE, mesh()))[0]["nodes"][-1]
+    assert root["extras"]["units"] == "m"
+    assert root["extras"]["axes"].startswith("vertices FRD: x forward, y starboard, z down")
+
+
+def test_a_part_called_mesh_keeps_its_name() -> None:
+    shape = Parts((Part("mesh", Cylinder(0.1, 2.0), np.zeros(3), np.eye(3)),))
+    assert [n["name"] for n in parsed(body_scene("b", shape, mesh()))[0]["nodes"]] == ["mesh", "the mesh", "b"]
+
+
+def test_ticks() -> None:
+    assert ticks(-0.61, 0.6, 0.1) == pytest.approx(
+        [-0.6, -0.5, -0.4, -0.3, -0.2, -0.1, 0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
+    )
+    assert ticks(-4.3, 0.2, 0.7) == [-4, -3, -2, -1, 0]
+    assert ticks(0.03, 0.29, 0.11) == [0.2]
+    assert ticks(1200.0, 5200.0, 1500.0) == [2000, 4000]
+
+
+def test_axes_carry_metres_and_grow_as_the_body_says() -> None:
+    """Side view: z grows downward, x to the right; front view: y grows to the left."""
+    texts = re.findall(r"<text[^>]*>([^<]*)</text>", body_figure("b", SHAPE, None, "o").svg)
+    assert [texts.count(f"{axis} [m]") for axis in "xyz"] == [2, 2, 2]
+    drawn = Drawing()
+    axes = drawn.add_axes((0.0, 0.0, 1.0, 1.0))
+    for view in (SIDE, FRONT):
+        axes.clear()
+        rulers(Sheet(axes, view, 100.0, np.zeros(2), 2.0), np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]]))
+        placed = [(t.get_position(), t.get_text(), t.get_ha()) for t in axes.texts]
+        across = {float(text): x for (x, _), text, ha in placed if ha == "center"}
+        up = {float(text): y for (_, y), text, ha in placed if ha == "right" and "[" not in text}
+        assert (across[1.0] > across[0.0]) == (view is SIDE)
+        assert abs(across[1.0] - across[0.0]) == pytest.approx(100.0)
+        assert up[1.0] < up[0.0] < up[-1.0]

@@ -11,17 +11,22 @@ from coeflab.model.manoeuvre import Manoeuvre, Phase, Until
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.parameter_vehicle import ParameterHydrostatics, ParameterSurface
 from coeflab.model.vehicle import Vehicle, vehicle
-from tests.exporters.massed import CENTRE, MASS, torpedo, with_mass
+from tests.exporters.massed import ADDED, CENTRE, MASS, VALUES, with_mass
 from tests.model.test_force_law import parameters
 
 SPEED, RUDDER, RATE = 1.5, 0.3, 0.5
 
 
-def swimmer() -> Vehicle:
-    """The torpedo with a rudder that turns at 0.5 rad/s and its centre of buoyancy above that of gravity."""
+def swimmer(smooth: bool = False) -> Vehicle:
+    """The torpedo with a rudder that turns at 0.5 rad/s and its centre of buoyancy above that of gravity.
+
+    Smooth: without v|v|, whose third derivative jumps, so that an order of four can be seen.
+    """
     surface = ParameterSurface(control="dr", limit=0.6, rate=RATE)
     afloat = ParameterHydrostatics(volume=MASS / 1000.0, centre_of_buoyancy=(CENTRE[0], CENTRE[1], CENTRE[2] - 0.05))
-    return vehicle(torpedo().model_copy(update={"surfaces": (surface,), "hydrostatics": afloat}))
+    values = {s: c for s, c in VALUES.items() if not (smooth and "|" in s)}
+    file = with_mass(parameters(values, AddedMass(ADDED, np.zeros(3), "nose", "body of tow", "panel")))
+    return vehicle(file.model_copy(update={"surfaces": (surface,), "hydrostatics": afloat}))
 
 
 def massive(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -47,12 +48,16 @@ def turning_problem(huuv: Huuv, turns: Turns, errors: Sequence[float], free: Seq
     """
     at = [NAMES.index(name) for name in free]
 
-    def operating(parameters: Array) -> tuple[Array, tuple[float, float, float], Array]:
+    @lru_cache(maxsize=4)  # the derivatives are wanted where the outputs were just computed
+    def settled_at(parameters: tuple[float, ...]) -> tuple[Array, tuple[float, float, float], Array]:
         whole = start.copy()
         whole[at] = parameters
         propulsion = (float(whole[AT_SLOPE]), float(whole[AT_SLOPE + 1]), float(whole[AT_SLOPE + 2]))
         wrench = thrust(turns.left, turns.right, *propulsion, huuv.dead_zone)
         return whole[:AT_SLOPE], propulsion, steady_turns(whole[:AT_SLOPE], wrench).velocity
+
+    def operating(parameters: Array) -> tuple[Array, tuple[float, float, float], Array]:
+        return settled_at(tuple(parameters.tolist()))
 
     def model(sets: Array) -> Array:
         return np.array([turn_figures(operating(one)[2])[0].ravel() for one in sets])

@@ -1,0 +1,157 @@
+"""``coeflab trim``: steady motions of a parameter file's vehicle."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from coeflab.cli import show
+
+if TYPE_CHECKING:
+    from coeflab.studies.trim import Trim
+
+AXES = {"speed": "u", "sway": "v", "heave": "w"}
+EXAMPLE = "coeflab trim vehicle.parameters.json --speed 1.5 --yaw-rate 3"
+
+
+def command(
+    file: Path = typer.Argument(..., help="A parameter file."),
+    speed: float | None = typer.Option(None, help="u, m/s."),
+    sway: float | None = typer.Option(None, help="v, m/s."),
+    heave: float | None = typer.Option(None, help="w, m/s."),
+    yaw_rate: float | None = typer.Option(None, help="Rate of heading, deg/s."),
+    roll: float | None = typer.Option(None, help="deg."),
+    pitch: float | None = typer.Option(None, help="deg."),
+    command: list[str] = typer.Option(
+        [],
+        "--command",
+        metavar="NAME=VALUE",
+        help="A thruster in its unit, NAME.tilt, dr, ds or db in deg, thrust in N.",
+    ),
+    near: list[str] = typer.Option(
+        [], "--near", metavar="NAME=VALUE", help="Among several solutions the one nearest to this; angles in deg."
+    ),
+    free: str = typer.Option(
+        "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
+    ),
+    plane: str = typer.Option(
+        "", help="horizontal or vertical: where the file does not know enough of all six motions."
+    ),
+    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
+    computed_added_mass: bool = typer.Option(
+        False, "--computed-added-mass", help="Leave measured acceleration derivatives aside."
+    ),
+    starts: int = typer.Option(8, min=0, max=1000, help="Cold starts that look for other solutions."),
+    seed: int = typer.Option(0, min=0, help="Of the cold starts."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Find the commands of a steady motion, or the steady motion of commands.
+
+    Roll, pitch and rate of heading are constant. Motions that are not named are found. Commands that are not named are
+    found too, or are zero where no motion is named. Says whether the solution is the only one, whether small motions
+    about it die out, and where there is none, which equation stays violated (exit code 1).
+    """
+    from coeflab.model.parameter_file import read_parameter_file
+    from coeflab.model.vehicle import vehicle
+    from coeflab.studies.trim import trim
+
+    given = {"speed": speed, "sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch}
+    motion = {AXES.get(k, k): _si(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v is not None}
+    craft = vehicle(
+        read_parameter_file(file), tuple(free.replace(",", " ").split()), plane, tables, not computed_added_mass
+    )
+    found = trim(craft, motion, _named(command, "--command"), _named(near, "--near"), starts, seed)
+    if json:
+        show.json_object(as_json(found))
+    else:
+        show.table(found.point.table())
+        if found.point.outcome.solved:
+            show.table(found.figure_table())
+            show.table(found.other_table())
+    if not found.point.outcome.solved:
+        raise typer.Exit(1)
+
+
+def _named(texts: list[str], option: str) -> dict[str, float]:
+    """``NAME=VALUE`` in SI.
+
+    Raises
+    ------
+    InputError
+        No name, no finite number, or a name twice.
+    """
+    from math import isfinite
+
+    from coeflab.core.errors import InputError, shown
+
+    out: dict[str, float] = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = float("nan")
+        if not name or not isfinite(number):
+            raise InputError(shown(text), "NAME=NUMBER, such as left=60", column=option)
+        if name in out:
+            raise InputError(f"{shown(name)} twice", "every name once", column=option)
+        out[name] = _si(name, number, option)
+    return out
+
+
+def _si(name: str, value: float, option: str) -> float:
+    """Angles and their rates from degrees.
+
+    Raises
+    ------
+    InputError
+        Not a finite number.
+    """
+    from math import isfinite, radians
+
+    from coeflab.core.errors import InputError, shown
+    from coeflab.core.symbols import CONTROLS
+
+    if not isfinite(value):
+        raise InputError(shown(value), "a finite number", column=option)
+    angle = name in (*CONTROLS, "yaw_rate", "roll", "pitch") or name.endswith(".tilt")
+    return radians(value) if angle else value
+
+
+def as_json(found: Trim) -> dict[str, Any]:
+    """The trim as one JSON object, SI and rad."""
+    point, f = found.point, found.point.found
+    return {
+        "vehicle": found.motion.vehicle.name,
+        "outcome": point.outcome.value,
+        "unknowns": [
+            {
+                "name": u.name, "value": value, "unit": u.unit, "given": u.low == u.high,
+                "low": _finite(u.low), "high": _finite(u.high), "held": bool(held),
+            }
+            for u, value, held in zip(point.unknowns, point.values.values(), f.held, strict=True)
+        ],
+        "figures": {name: {"value": value, "unit": unit} for name, (value, unit) in found.figures.items()},
+        "equations": [
+            {"name": e.name, "residual": point.residuals[e.name], "unit": e.unit, "violated": e in point.violated}
+            for e in point.equations
+        ],
+        "rank": f.rank,
+        "family_dimension": point.dimension,
+        "family": f.family.T.tolist(),
+        "rule": point.rule,
+        "starts": f.starts,
+        "starts_that_solved": f.reached,
+        "others": [{"values": values, "small_motions": state} for values, state in found.others],
+        "eigenvalues": [[v.real, v.imag] for v in point.modes],
+        "small_motions": point.growth,
+        "statements": list(point.words()),
+    }  # fmt: skip
+
+
+def _finite(value: float) -> float | None:
+    from math import isfinite
+
+    return value if isfinite(value) else None

@@ -1,0 +1,75 @@
+"""``coeflab trim`` as a real process."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Run
+from tests.studies.test_trim import MASS, PLANE, PUSH, TURNING, thruster
+from tests.studies.trimmed import parameter_file
+
+FREE = ("--free", "u,v,r")
+
+
+@pytest.fixture
+def twin(tmp_path: Path) -> Path:
+    pair = [thruster("left", -0.3), thruster("right", 0.3)]
+    file = tmp_path / "twin.json"
+    file.write_text(parameter_file(PLANE, MASS, TURNING, thrusters=pair).model_dump_json())
+    return file
+
+
+def test_commands_of_a_speed_as_a_table(coeflab: Run, twin: Path) -> None:
+    done = coeflab("trim", twin, "--speed", "1.5", "--yaw-rate", "0", *FREE)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "left      56.2500  %      -100.0 .. 100.0 %" in done.stdout
+    assert "One solution: 3 unknowns, 3 equations of rank 3" in done.stdout
+    assert "Small motions about it are" in done.stdout
+
+
+def test_a_turn_of_given_commands_as_json_twice_the_same(coeflab: Run, twin: Path) -> None:
+    words = ("trim", twin, "--command", "left=60", "--command", "right=0", *FREE, "--json")
+    done = coeflab(*words)
+    assert (done.returncode, done.stderr) == (0, "")
+    found = json.loads(done.stdout)
+    values = {u["name"]: u["value"] for u in found["unknowns"]}
+    assert values["left"] == 60.0
+    assert values["yaw_rate"] > 0.0
+    assert found["outcome"] == "unique"
+    assert found["figures"]["radius"]["value"] > 0.0
+    assert [e["violated"] for e in found["equations"]] == [False] * 3
+    assert len(found["eigenvalues"]) == 3
+    assert coeflab(*words).stdout == done.stdout
+
+
+def test_an_infeasible_speed_names_the_equation_and_exits_1(coeflab: Run, twin: Path) -> None:
+    done = coeflab("trim", twin, "--speed", "4", "--yaw-rate", "0", *FREE)
+    assert (done.returncode, done.stderr) == (1, "")
+    assert f"surge force X is off by {2.0 * PUSH * 100.0 - 160.0:.1f} N" in done.stdout
+    assert "left is held at its bound of 100.000 %." in done.stdout
+    assert "Motion\n" not in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ((), "neither a motion nor a command"),
+        (("--command", "left"), "NAME=NUMBER"),
+        (("--command", "left=x"), "NAME=NUMBER"),
+        (("--command", "left=1", "--command", "left=2"), "twice"),
+        (("--command", "middle=1"), "one of left, right"),
+        (("--speed", "nan"), "--speed"),
+        (("--speed", "1", "--near", "lft=3"), "lft"),
+        (("--speed", "1", "--plane", "slanted"), "plane"),
+    ],
+)
+def test_wrong_input_is_one_message_and_exit_2(coeflab: Run, twin: Path, words: tuple[str, ...], said: str) -> None:
+    done = coeflab("trim", twin, *words)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.count("error: ") == 1
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr

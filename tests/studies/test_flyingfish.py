@@ -1,0 +1,98 @@
+"""The acceptance figures of the TJ-FlyingFish."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from coeflab.core.citations import WORKS
+from coeflab.kernels.tilting_rotors import calibrated
+from coeflab.model.acceptance import Acceptance, ComparedTable
+from coeflab.model.flyingfish import read_flyingfish
+from coeflab.model.operating_point import Outcome
+from coeflab.studies.validations.flyingfish import acceptance
+from coeflab.studies.validations.flyingfish_trim import trim
+
+
+@pytest.fixture(scope="module")
+def made() -> Acceptance:
+    return acceptance()
+
+
+def table(made: Acceptance, key: str) -> ComparedTable:
+    return next(t for t in made.tables if t.key == key)
+
+
+def furthest(made: Acceptance, key: str, unit: str) -> float:
+    return max(abs(r.difference or 0.0) for r in table(made, key).rows if r.unit == unit)
+
+
+@pytest.mark.slow
+def test_every_table_holds_and_says_what_is_calibrated(made: Acceptance) -> None:
+    assert made.holds
+    assert {t.key: len(t.rows) for t in made.tables} == {
+        "constants": 5, "residuals": 60, "predicted": 12, "nearest": 80, "families": 6, "cold": 18, "corrected": 8,
+    }  # fmt: skip
+    assert all(r.found is not None for t in made.tables for r in t.rows)
+    assert {r.basis for r in table(made, "nearest").rows} == {"in-sample"}
+    assert any("calibrated" in s for s in made.statements)
+    assert len(made.errata) == 7
+    assert set(made.citations) <= set(WORKS)
+
+
+@pytest.mark.slow
+def test_residuals_at_the_printed_rows(made: Acceptance) -> None:
+    assert 1e-4 < furthest(made, "residuals", "N") < 5e-4
+    assert 1e-5 < furthest(made, "residuals", "N m") < 1.5e-4
+
+
+@pytest.mark.slow
+def test_constants_that_the_table_implies(made: Acceptance) -> None:
+    found = {r.quantity: r.found for r in table(made, "constants").rows}
+    assert found["net_weight"] == pytest.approx(-1.6661, abs=5e-5)
+    assert found["mass"] == pytest.approx(2.2297, abs=5e-5)
+    assert found["buoyancy_moment"] == pytest.approx(-0.3949, abs=5e-5)
+    assert found["arm_length"] == pytest.approx(0.22649, abs=5e-6)
+    assert found["rotor_height"] == pytest.approx(-0.01520, abs=5e-6)
+
+
+@pytest.mark.slow
+def test_four_rows_predict_the_other_six(made: Acceptance) -> None:
+    assert furthest(made, "predicted", "N") == pytest.approx(3.5e-4, abs=5e-6)
+    assert furthest(made, "predicted", "N m") == pytest.approx(6.1e-4, abs=5e-6)
+
+
+@pytest.mark.slow
+def test_trims_nearest_to_the_rows_and_from_cold_starts(made: Acceptance) -> None:
+    assert furthest(made, "nearest", "deg") < 0.01
+    assert furthest(made, "nearest", "rpm") < 0.1
+    assert furthest(made, "cold", "deg") < 0.005
+    assert furthest(made, "cold", "rpm") < 0.071
+    assert all("One solution" in s for s in table(made, "cold").statements[:3])
+
+
+@pytest.mark.slow
+def test_the_corrected_yaw_equation(made: Acceptance) -> None:
+    found = [r.found for r in table(made, "corrected").rows]
+    assert found[:4] == pytest.approx([79.869, -75.109, 0.051, 0.146], abs=1.5e-3)
+    assert found[4:] == pytest.approx([2075.18, 2082.07, 624.00, 250.51], abs=0.01)
+
+
+def test_saturated_rotors_are_named_with_the_surge_equation() -> None:
+    fish = read_flyingfish()
+    constants = calibrated(fish.rotors, fish.motion, fish.angles, fish.speeds)
+    got = trim(fish, constants, 0, starts=4, fastest=1500.0)
+    assert got.outcome is Outcome.INFEASIBLE
+    assert got.violated[0].name == "surge force X, equation 51"
+    assert {u.name for u, _ in got.saturated} == {"omega1", "omega2"}
+    both = 2.0 * (2.5604e-7 * 1500.0**2 + 6.0355e-4 * 1500.0)
+    assert got.residuals["surge force X, equation 51"] == pytest.approx(both - 4.60545, abs=5e-3)
+
+
+def test_least_effort_needs_no_more_than_the_printed_trim() -> None:
+    fish = read_flyingfish()
+    constants = calibrated(fish.rotors, fish.motion, fish.angles, fish.speeds)
+    got = trim(fish, constants, 9, starts=3)
+    assert got.outcome is Outcome.FAMILY
+    assert got.dimension == 2
+    assert np.sum(got.found.point[4:] ** 2) < np.sum(fish.speeds[9] ** 2)
