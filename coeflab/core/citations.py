@@ -34,7 +34,7 @@ WORKS: dict[str, str] = {
     "ittc_uncertainty": "ITTC, Uncertainty Analysis in CFD, Verification and Validation, 7.5-03-01-01, and "
     "Uncertainty Analysis for Manoeuvring Predictions based on Captive Manoeuvring Tests, 7.5-02-06-04.",
     "tj_flyingfish": "Modeling and operating point analysis for aquatic translational motion of a cross-medium vehicle "
-    "(TJ-FlyingFish), equations 13-18, 25-30, 49 and 50.",
+    "(TJ-FlyingFish), equations 13-18, 25-56 and Table 1.",
     "thauv": "Analysis of a New Twin Hybrid Autonomous Underwater Vehicle (THAUV), equations 5, 9-30 and Table 3.",
     "leonard_graver2001": "N. E. Leonard, J. G. Graver, Model-based feedback control of autonomous underwater gliders, IEEE J. "
     "Oceanic Engineering 26(4), 2001.",

@@ -137,13 +137,16 @@ class _Phase:
                 if solver.status == "failed":
                     return _At(at.time, at.state, ended=STEP_TOO_SMALL)
                 now, state = float(solver.t), _upright(solver.y)
-                inside = solver.dense_output()
                 after = self.level(state)
                 met = level < 0.0 <= after
-                if met:
-                    now = float(brentq(self._level_inside, at.time, now, (inside,), xtol=1e-12, rtol=1e-14))
-                    state = _upright(inside(now))
-                self._record(out, at.time, now, inside)
+                rows = _rows(out, at.time, now)
+                if met or rows:
+                    inside = solver.dense_output()
+                    if met:
+                        now = float(brentq(self._level_inside, at.time, now, (inside,), xtol=1e-12, rtol=1e-14))
+                        state = _upright(inside(now))
+                    for row in rows if not met else _rows(out, at.time, now):
+                        out.records[0, row] = _upright(inside(min(out.times[row], now)))
                 fast = float(np.linalg.norm(state[7:10])) > self.fastest
                 at, level = _At(now, state, met, TOO_FAST if fast else 0), after
                 if met or fast:
@@ -152,11 +155,12 @@ class _Phase:
             return _At(at.time, at.state, ended=NOT_FINITE)
         return at
 
-    def _record(self, out: Marching, after: float, until: float, inside: Callable[[float], Array]) -> None:
-        near = NEAR * out.times[-1] / max(len(out.times) - 1, 1)
-        first, last = np.searchsorted(out.times, (after + near, until + near), side="right")
-        for row in range(int(first), int(last)):
-            out.records[0, row] = _upright(inside(min(out.times[row], until)))
+
+def _rows(out: Marching, after: float, until: float) -> range:
+    """Records that lie between two times."""
+    near = NEAR * out.times[-1] / max(len(out.times) - 1, 1)
+    first, last = np.searchsorted(out.times, (after + near, until + near), side="right")
+    return range(int(first), int(last))
 
 
 def _upright(state: Array) -> Array:

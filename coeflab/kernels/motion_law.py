@@ -47,6 +47,9 @@ class MotionLaw:
         Powers of each variable and of its absolute value.
     ideal : (6, 6, 6) or (m, 6, 6, 6) array
         Quadratics that are added: force i = sum of ideal[i, j, k] nu_j nu_k.
+    powers, gathered, primed, along, angled
+        Made of the others, once: distinct powers of V; (f, t) rows of the pool whose product is each term; variables that are
+        primed; (9, t) which component each term adds to; whether any needs the incidence.
     """
 
     source: Ints
@@ -62,13 +65,19 @@ class MotionLaw:
     ideal: Array
     powers: Ints = field(init=False, repr=False)
     gathered: Ints = field(init=False, repr=False)
+    primed: Ints = field(init=False, repr=False)
+    along: Array = field(init=False, repr=False)
+    angled: bool = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "powers", np.unique(self.speed_power))
         object.__setattr__(self, "gathered", self._gathered())
+        object.__setattr__(self, "primed", np.flatnonzero(self.prime))
+        object.__setattr__(self, "along", (self.component == np.arange(9)[:, None]).astype(np.float64))
+        object.__setattr__(self, "angled", bool(np.any(self.component >= 6) or np.any(self.source >= ALPHA)))
 
     def _gathered(self) -> Ints:
-        """(f, t) the rows of the pool whose product is each term: 1, powers of V, variables, their absolute values."""
+        """(f, t) rows of the pool, which holds 1, powers of V, variables and their absolute values."""
         at_variable = 1 + len(self.powers)
         at_absolute = at_variable + len(self.source)
         rows = []
@@ -80,11 +89,6 @@ class MotionLaw:
         longest = max((len(r) for r in rows), default=0)
         filled = [r + [0] * (max(longest, 1) - len(r)) for r in rows]
         return np.array(filled, dtype=np.int64).reshape(len(rows), max(longest, 1)).T.copy()
-
-    @property
-    def angled(self) -> bool:
-        """Whether a term needs the incidence."""
-        return bool(np.any(self.component >= 6) or np.any(self.source >= ALPHA))
 
     def force(self, nu: Array, controls: Array) -> Array:
         """X Y Z K M N, shape (n, 6).
@@ -116,9 +120,9 @@ class MotionLaw:
             products *= self.coefficient.T
         else:
             products *= self.coefficient[:, None]
-        along = (self.component == np.arange(9)[:, None]).astype(np.float64) @ products
+        along = self.along @ products
         out = along[:6]
-        if np.any(self.component >= 6):
+        if self.angled:
             out[:3] += np.array(body_forces(base[ALPHA], base[BETA], along[6], along[7], along[8]))
         return np.asarray(out)
 
@@ -142,9 +146,8 @@ class MotionLaw:
     def _values(self, base: Array) -> Array:
         """(v, n) variables as they are, not yet held."""
         values = base[self.source]
-        primed = self.prime != 0.0
-        if np.any(primed):
-            values[primed] *= self.prime[primed, None] / np.maximum(base[SPEED], SLOWEST)
+        if self.primed.size:
+            values[self.primed] *= self.prime[self.primed, None] / np.maximum(base[SPEED], SLOWEST)
         return values
 
     def held(self, nu: Array, controls: Array) -> NDArray[np.bool_]:

@@ -50,7 +50,7 @@ class SteadyMotion:
 
         Notes
         -----
-        With constant roll and pitch p, q, r follow from the rate of heading (Fossen 2011, equation 2.28).
+        With constant roll and pitch p, q, r follow from the rate of heading (Fossen 2011, section 2.2.1).
         """
         u, v, w, turn, roll, pitch = x[: len(MOTION)]
         spin = turn * np.array([-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -26,11 +28,12 @@ def test_a_decaying_motion_falls_below_the_step_and_grows_above() -> None:
 
 @pytest.mark.parametrize("kernel", ["numpy", "compiled"])
 def test_a_stiff_vehicle_refuses_a_long_step_with_the_longest_that_serves(kernel: str) -> None:
-    """Roll with strong damping and little inertia; the named step serves, and half as much again does not."""
+    """Roll with strong damping and little inertia; a little below the named step the roll dies out."""
     v = massive(np.diag([3.0, 50.0, 50.0, 0.1, 10.0, 10.0]), np.zeros(3), {"Kp": -0.1, "X0": -1e-3}, free=("u", "p"))
     asked = coasting(2.0, [1.5, 0, 0, 0.1, 0, 0])
     rate = 0.1 * 0.5 * 1000.0 * 2.0**4 * 1.5 / (v.inertia[0, 0] + 0.1)
-    with pytest.raises(InputError, match=rf"at most {2.785 / rate:.2g}\d* s: the fastest small motion, {rate:.3g} 1/s"):
+    named = f"at most {2.785 / rate:.3g} s: the fastest small motion, {rate:.3g} 1/s"
+    with pytest.raises(InputError, match=re.escape(named)):
         march(v, asked, 0.01, kernel=kernel)
     found = march(v, asked, 0.95 * 2.785 / rate, kernel=kernel).trajectory()
     assert abs(found.velocity[-1, 3]) < 1e-3

@@ -86,7 +86,7 @@ def test_held_constants_that_the_turns_do_not_tell_apart() -> None:
     assert side.startswith("side force C_S (beta), side force C_S (beta^3) and mass m: only as ratios")
     for words in ("yaw moment C_m (beta)", "added mass m_y"):
         assert words in munk
-    for words in ("yaw moment C_m (beta)", "yaw damping M_mr (r)", "thruster arm y_ct"):
+    for words in ("yaw moment C_m (beta^3)", "yaw damping M_mr (r)", "thruster arm y_ct"):
         assert words in arm
 
 

@@ -45,10 +45,12 @@ def test_a_straight_run_takes_its_resistance_in_equal_parts() -> None:
     assert got.figures["beta"][0] == pytest.approx(0.0, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_equal_commands_give_the_speed_at_which_resistance_is_thrust() -> None:
     got = trim(twin(), {}, {"left": 50.0, "right": 50.0})
     assert got.point.values["u"] == pytest.approx(np.sqrt(2.0 * PUSH * 50.0 / 10.0), rel=1e-8)
     assert got.point.values["yaw_rate"] == pytest.approx(0.0, abs=1e-8)
+    assert got.point.outcome is Outcome.SINGULAR  # damping by v|v| and r|r| alone has no slope at rest
 
 
 def test_opposite_commands_turn_the_vehicle_on_the_spot() -> None:

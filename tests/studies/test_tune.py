@@ -21,7 +21,13 @@ from coeflab.model.vehicle import vehicle
 from coeflab.studies.tune import tune, tuning_problem, write
 
 HUUV = shipped("cfd_data") / "huuv"
-PLANTED = {"thruster left ahead c0": -2.0, "thruster right ahead c0": -2.0, "C_D 1": 0.09, "C_S beta": -0.3, "C_n beta": 0.05}
+PLANTED = {
+    "thruster left ahead c0": -2.0,
+    "thruster right ahead c0": -2.0,
+    "C_D 1": 0.09,
+    "C_S beta": -0.3,
+    "C_n beta": 0.05,
+}
 COMMANDS = [(0, 60), (20, 60), (30, 80), (40, 100), (0, 100), (20, 90), (60, 60), (60, 20)]
 FREE = """
 [[free]]
