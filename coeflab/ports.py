@@ -22,6 +22,7 @@ from coeflab.model.scaling import Scaling
 from coeflab.model.study import Study
 from coeflab.model.trajectory import Trajectory
 from coeflab.model.vehicle import Vehicle
+from coeflab.presentation.document import Document
 
 
 @runtime_checkable
@@ -120,6 +121,6 @@ class Checker(Plugin, Protocol):
 
 @runtime_checkable
 class Renderer(Plugin, Protocol):
-    """Renders a study as a report."""
+    """Renders a report in a format."""
 
-    def render(self, study: Study) -> Mapping[str, bytes]: ...
+    def render(self, document: Document) -> Mapping[str, bytes]: ...

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from coeflab.kernels.least_squares import Array
-from coeflab.kernels.output_error import Estimate, Problem, solved, weighted
+from coeflab.kernels.output_error import Estimate, solved
+from coeflab.kernels.output_problem import Problem, weighted
 
 WILKS_95 = 3.841458820694124
 FARTHEST = 64.0

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.kernels.output_error import Estimate, Problem
+from coeflab.kernels.output_error import Estimate
+from coeflab.kernels.output_problem import Problem
 from coeflab.model.frozen import locked
 from coeflab.model.table import number
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import shlex
 
 from coeflab.core.symbols import primed
@@ -41,7 +42,15 @@ def document(study: Study) -> Document:
         _provenance(study),
     )
     names = ", ".join(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
-    return Document(study.plan.title or study.plan.name, f"Coefficients of {names}", sections)
+    return Document(
+        study.plan.title or study.plan.name, f"Coefficients of {names}", sections, study.plan.name, _digest(study),
+        tables.works(study),
+    )  # fmt: skip
+
+
+def _digest(study: Study) -> str:
+    whole = "".join(f"{f.name} {f.sha256}\n" for f in study.inputs)
+    return hashlib.sha256(whole.encode()).hexdigest()[:16] if whole else ""
 
 
 def _listed(parts: list[str]) -> str:
@@ -204,6 +213,4 @@ def _provenance(study: Study) -> Section:
     else:
         text.append("To reproduce it, run this in the folder of the plan:")
         code = (f"coeflab run {shlex.quote(study.plan.file.name)}",)
-    return Section(
-        "provenance", "Provenance", tuple(text), filled(tables.provenance(study), tables.works(study)), code=code
-    )
+    return Section("provenance", "Provenance", tuple(text), filled(tables.provenance(study)), code=code)

@@ -59,8 +59,23 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A whole report."""
+    """A whole report.
+
+    Attributes
+    ----------
+    title, subtitle : str
+    sections : tuple of Section
+    name : str
+        Of the study, for the head of a page.
+    digest : str
+        Sixteen hexadecimal digits of the sha256 over all inputs; empty where there are none.
+    works : tuple of (str, str)
+        Key and text of every work that it rests on.
+    """
 
     title: str
     subtitle: str
     sections: tuple[Section, ...]
+    name: str = ""
+    digest: str = ""
+    works: tuple[tuple[str, str], ...] = ()

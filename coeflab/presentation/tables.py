@@ -263,12 +263,11 @@ def provenance(study: Study) -> Table:
     return Table("Inputs", ("file", "sha256"), rows, (), frozenset({0, 1}))
 
 
-def works(study: Study) -> Table:
-    """The works that were used."""
+def works(study: Study) -> tuple[tuple[str, str], ...]:
+    """Key and text of every work that was used, in the order of its first use."""
     keys = [t.source.citation for t in study.tables] + [k for f in study.fits for k in f.citations]
     keys += [r.citation for r in study.references] + ([study.body.source.citation] if study.body else [])
-    rows = tuple((str(i), work(k)) for i, k in enumerate(dict.fromkeys(keys), start=1))
-    return Table("Works used", ("", "reference"), rows, (), frozenset({0, 1}))
+    return tuple((k, work(k)) for k in dict.fromkeys(keys))
 
 
 def inspected(table: ForceTable) -> Table:

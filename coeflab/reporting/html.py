@@ -7,24 +7,23 @@ from importlib.resources import files
 
 from jinja2 import BaseLoader, Environment, StrictUndefined
 
-from coeflab.model.study import Study
-from coeflab.presentation.content import document
+from coeflab.presentation.document import Document
 
 summary = "one HTML file with tables and figures, for browser and printer"
 citations: tuple[str, ...] = ()
 
 
-def render(study: Study) -> Mapping[str, bytes]:
-    """The report of a study.
+def render(document: Document) -> Mapping[str, bytes]:
+    """The report as a file.
 
     Parameters
     ----------
-    study : Study
+    document : Document
 
     Returns
     -------
     mapping of file name to bytes
-        ``report.html``; equal studies give equal bytes.
+        ``report.html``; equal documents give equal bytes.
     """
     folder = files("coeflab.reporting") / "_html"
     environment = Environment(
@@ -32,4 +31,4 @@ def render(study: Study) -> Mapping[str, bytes]:
     )
     template = environment.from_string((folder / "report.html.j2").read_text(encoding="utf-8"))
     style = (folder / "style.css").read_text(encoding="utf-8")
-    return {"report.html": template.render(document=document(study), style=style).encode()}
+    return {"report.html": template.render(document=document, style=style).encode()}

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.files import write_atomically
-from coeflab.kernels.output_error import Estimate, Problem, by_likelihood, estimate, problem
+from coeflab.kernels.output_error import Estimate, by_likelihood, estimate
+from coeflab.kernels.output_problem import Problem, problem
 from coeflab.kernels.settling import differences
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.parameter_places import moved

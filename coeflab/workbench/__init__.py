@@ -23,6 +23,7 @@ from coeflab.model.reference import compare, compare_set, read_references
 from coeflab.model.scaling import Scaling
 from coeflab.model.several_campaigns import one_length
 from coeflab.model.study import Plan, PlannedParameterFile, Study
+from coeflab.presentation.content import document
 from coeflab.reporting import REPORTERS
 from coeflab.workbench.exports import exports_of, refuse_unknown
 from coeflab.workbench.hulls import hulls_of
@@ -193,8 +194,9 @@ def _inputs(plan: Plan, tables: list[ForceTable], bodies: list[Body]) -> tuple[I
 def rendered(study: Study) -> dict[str, bytes]:
     """Every file of a study: parameter files, exports and the report, by name. Nothing is written."""
     files: dict[str, bytes] = {}
+    report = document(study)
     for name in REPORTERS.names():
-        files.update(REPORTERS.load(name).render(study))
+        files.update(REPORTERS.load(name).render(report))
     for parameters in study.parameter_files.values():
         files[f"{parameters.name}.parameters.json"] = parameters.to_json()
         files.update(EXPORTERS.load("csv").render(parameters))

@@ -10,6 +10,7 @@ import pytest
 from coeflab.core.files import shipped
 from coeflab.model.plan import read_plan
 from coeflab.model.study import Plan, PlannedTable
+from coeflab.presentation.content import document
 from coeflab.reporting import REPORTERS
 from coeflab.workbench import run
 from tests.presentation.studies import FULL, HOSTILE, small_study
@@ -92,7 +93,7 @@ def _study(kind: str):
 def address(request, tmp_path_factory):
     path = tmp_path_factory.mktemp("report") / "report.html"
     study = _study(request.param)
-    path.write_bytes(REPORTERS.load("html").render(study)["report.html"])
+    path.write_bytes(REPORTERS.load("html").render(document(study))["report.html"])
     return path.as_uri()
 
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from coeflab.kernels.least_squares import Array
-from coeflab.kernels.output_error import Problem, by_likelihood, estimate, examine, problem
+from coeflab.kernels.output_error import by_likelihood, estimate, examine
+from coeflab.kernels.output_problem import Problem, problem
 
 T = np.linspace(0.0, 2.0, 15)
 

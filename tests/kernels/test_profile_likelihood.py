@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.kernels.output_error import Problem, estimate, problem
+from coeflab.kernels.output_error import estimate
+from coeflab.kernels.output_problem import Problem, problem
 from coeflab.kernels.profile_likelihood import WILKS_95, profile, profile_interval
 
 T = np.linspace(0.0, 2.0, 15)

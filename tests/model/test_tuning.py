@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.kernels.output_error import estimate, problem
+from coeflab.kernels.output_error import estimate
+from coeflab.kernels.output_problem import problem
 from coeflab.model.tuning import (
     BOUND,
     OK,

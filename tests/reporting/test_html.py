@@ -9,6 +9,7 @@ import pytest
 from coeflab.core.files import shipped
 from coeflab.model.plan import read_plan
 from coeflab.ports import Renderer
+from coeflab.presentation.content import document
 from coeflab.reporting import REPORTERS
 from coeflab.workbench import run
 from tests.presentation.studies import FEW, FULL, HALF, HOSTILE, small_study
@@ -44,7 +45,7 @@ class Page(HTMLParser):
 
 
 def text_of(study) -> str:
-    return REPORTERS.load("html").render(study)["report.html"].decode()
+    return REPORTERS.load("html").render(document(study))["report.html"].decode()
 
 
 def test_it_is_a_plugin():

@@ -14,7 +14,7 @@ from coeflab.model.steady_motion import steady_motions, wrenches
 from coeflab.model.tuning import Tuning, largest_correlations, moved_in_words
 from coeflab.model.vehicle import vehicle
 from coeflab.presentation.tuning_figure import Groups, agreement_figure, curves_figure
-from coeflab.studies.validations.huuv_fit import BASE, TOLD, hidden, tuned
+from coeflab.studies.validations.huuv_fit import BASE, ERRORS, TOLD, hidden, tuned
 
 ACCEPTED, LASTS, SEED = 1e-3, 120.0, 20251105
 LIMITS = {"u": ("m/s", 0.007), "beta": ("deg", 0.40), "radius": ("m", 0.027)}
@@ -198,8 +198,15 @@ def _statements(huuv: Huuv, halves: dict[str, Tuning]) -> tuple[str, ...]:
     return (
         "m_x, m_y, m_yr, the thruster arm and the moments of inertia are chosen: the paper prints none of them.",
         f"Incidence reaches {reach:.3g} deg; the paper's tables end at 25 deg. Astern the hull is its own mirror image.",
+        f"Standard errors of u, beta and radius are chosen, about what the fits leave: {_weights()}. No turn was left out.",
         f"Correlations on the MATLAB half: {pairs}.",
         "The paper scaled C_S, C_m and M_mr by 2 by hand; here they are least squares with intervals where there are any.",
+    )
+
+
+def _weights() -> str:
+    return "; ".join(
+        f"{source} {u:g} m/s, {np.degrees(beta):.2g} deg, {radius:g} m" for source, (u, beta, radius) in ERRORS.items()
     )
 
 

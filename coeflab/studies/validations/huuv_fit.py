@@ -8,7 +8,8 @@ from functools import lru_cache
 import numpy as np
 
 from coeflab.kernels.least_squares import Array
-from coeflab.kernels.output_error import Estimate, Problem, estimate, examine, problem
+from coeflab.kernels.output_error import Estimate, estimate, examine
+from coeflab.kernels.output_problem import Problem, problem
 from coeflab.kernels.steady_turn import COEFFICIENTS, sensitivities, steady_turns, turn_figures
 from coeflab.model.huuv import Huuv, Turns, thrust, thrust_rates
 from coeflab.model.tuning import TunedQuantity, Tuning, statements, together_in_words, tuned_parameters
