@@ -198,7 +198,7 @@ def acceptance(found: Acceptance) -> dict[str, Any]:
                 "rows": [
                     {
                         "case": r.case, "quantity": r.quantity, "unit": r.unit, "published": r.published, "found": r.found,
-                        "difference": r.difference, "relative": r.relative, "tolerance": r.tolerance, "basis": r.basis,
+                        "difference": r.difference, "relative": r.relative, "tolerance": r.tolerance, "basis": r.basis, "at_most": r.at_most,
                         "passed": r.holds,
                     }
                     for r in t.rows

@@ -30,6 +30,8 @@ class Compared:
         Largest difference that counts as agreement: of ``unit``, or a ratio where ``relative``.
     basis : {"printed", "derived", "in-sample"}
     relative : bool
+    at_most : bool
+        Whether ``published`` is a limit that ``found`` must not exceed.
     """
 
     case: str
@@ -40,6 +42,7 @@ class Compared:
     tolerance: float
     basis: Basis = "printed"
     relative: bool = False
+    at_most: bool = False
 
     @property
     def difference(self) -> float | None:
@@ -51,8 +54,10 @@ class Compared:
 
     @property
     def holds(self) -> bool:
-        """Whether the difference is no larger than the tolerance."""
-        return self.difference is not None and abs(self.difference) <= self.tolerance
+        """Whether the difference is no larger than the tolerance, for a limit to the upper side only."""
+        if self.difference is None:
+            return False
+        return (self.difference if self.at_most else abs(self.difference)) <= self.tolerance
 
 
 @dataclass(frozen=True, slots=True)

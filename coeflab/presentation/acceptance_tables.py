@@ -28,7 +28,7 @@ def _row(r: Compared) -> tuple[str, ...]:
     return (
         r.case,
         r.quantity,
-        f"{r.published:.6g}",
+        f"{'at most ' if r.at_most else ''}{r.published:.6g}",
         ABSENT if r.found is None else f"{r.found:.6g}",
         "" if r.unit == "1" else r.unit,
         difference,

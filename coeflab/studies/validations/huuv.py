@@ -133,16 +133,14 @@ def _origin(huuv: Huuv) -> ComparedTable:
     )  # fmt: skip
 
 
-def _at_most(case: str, name: str, unit: str, largest: float, found: float) -> Compared:
-    """A limit from above: what counts is the part beyond it."""
-    return Compared(case, f"{name} beyond {largest:g}", unit, 0.0, max(0.0, found - largest), 0.0, "derived")
-
-
 def _tuned(fit: Tuning) -> ComparedTable:
     rows = [
         Compared("MATLAB", "thrust intercept", "N", INTERCEPT, -fit.parameter("intercept").after, EITHER_WAY, "derived")
     ]
-    rows += [_at_most("MATLAB", f"rms of {n}", unit, most, fit.quantity(n).rms()) for n, (unit, most) in LIMITS.items()]
+    rows += [
+        Compared("MATLAB", f"rms of {n}", unit, most, fit.quantity(n).rms(), 0.0, "derived", at_most=True)
+        for n, (unit, most) in LIMITS.items()
+    ]
     said = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
     return ComparedTable(
         "tuned_matlab", "Tuned to the paper's simulation, 28 turns", tuple(rows), "Fig. 17 b, d, f",

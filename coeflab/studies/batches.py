@@ -1,0 +1,207 @@
+"""Members of an uncertainty run in batches: how one batch is computed, in whatever process, and how it is kept."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError
+from coeflab.core.files import write_atomically
+from coeflab.core.symbols import CONTROLS
+from coeflab.manoeuvres import MANOEUVRES
+from coeflab.model.draws import Uncertain, uncertain
+from coeflab.model.drawn_vehicle import drawn
+from coeflab.model.ensemble import Ensemble
+from coeflab.model.manoeuvre import Figure, Manoeuvre
+from coeflab.model.marching import march
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.vehicle import Vehicle
+from coeflab.studies.simulate import moved
+
+Array = NDArray[np.float64]
+NO_PLAN = "no start"
+# The compiled kernel takes all cores itself and does not stand two callers in one process, as a Dask worker may have.
+ONE_AT_A_TIME = Lock()
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """What every process needs to know, picklable and hashable.
+
+    Attributes
+    ----------
+    parameters : str
+        The parameter file, JSON.
+    manoeuvre : str
+    options : tuple of (str, value)
+        Of the manoeuvre.
+    free, hold : tuple of str
+    tables, measured : bool
+    current : (float, float, float)
+    step, record : float
+    kernel : str
+    """
+
+    parameters: str
+    manoeuvre: str
+    options: tuple[tuple[str, int | float | str], ...]
+    free: tuple[str, ...]
+    hold: tuple[str, ...]
+    tables: bool
+    measured: bool
+    current: tuple[float, float, float]
+    step: float = 0.0
+    record: float = 0.0
+    kernel: str = "numpy"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Batch:
+    """Figures of some members.
+
+    Attributes
+    ----------
+    values : (m, f) array
+        Not a number where a member does not have the figure.
+    statuses : tuple of tuple of str
+        Of every member and figure.
+    ended : tuple of str
+        How every member's motion ended.
+    """
+
+    values: Array
+    statuses: tuple[tuple[str, ...], ...]
+    ended: tuple[str, ...]
+
+
+@lru_cache(maxsize=2)
+def prepared(setup: Setup) -> tuple[ParameterFile, Vehicle, Uncertain]:
+    """File, vehicle and what is uncertain of it."""
+    parameters = ParameterFile.model_validate_json(setup.parameters)
+    how = {"tables": setup.tables, "measured": setup.measured}
+    body = moved(parameters, setup.manoeuvre, setup.free, setup.hold, **how)
+    return parameters, body, uncertain(parameters, [t.symbol for t in body.terms])
+
+
+def figures_of(setup: Setup, deviations: Array) -> list[tuple[tuple[Figure, ...], str]]:
+    """Figures of every member and how its motion ended; no figures for one that cannot even start.
+
+    Parameters
+    ----------
+    setup : Setup
+    deviations : (m, k) array
+        Of `Uncertain.symbols`.
+    """
+    parameters, body, varied = prepared(setup)
+    plugin, options = MANOEUVRES.load(setup.manoeuvre), dict(setup.options)
+    whole = drawn(body, parameters, varied.symbols, deviations, setup.measured)
+    members = [whole.member(i) for i in range(whole.count)]
+    plans = [_plan(plugin, m, options) for m in members]
+    out: list[tuple[tuple[Figure, ...], str]] = [((), NO_PLAN)] * whole.count
+    alike: dict[Any, list[int]] = {}
+    for i, p in enumerate(plans):
+        if p is not None:
+            alike.setdefault(_steered(p), []).append(i)
+    for chosen in alike.values():
+        part = Ensemble(body, whole.coefficients[chosen], None if whole.added is None else whole.added[chosen])
+        orders = [p for i in chosen if (p := plans[i]) is not None]
+        with ONE_AT_A_TIME:
+            found = march(part, orders, setup.step, setup.record, setup.kernel, np.array(setup.current))
+        for k, i in enumerate(chosen):
+            figures = plugin.figures(found.trajectory(k), members[i], options)
+            out[i] = figures, found.ended[k].value
+    return out
+
+
+def _plan(plugin: Any, member: Vehicle, options: dict[str, Any]) -> Manoeuvre | None:
+    try:
+        plan: Manoeuvre = plugin.plan(member, options)
+    except InputError:
+        return None  # the file's own values have a plan, so it is the draw: no resistance, a rudder without effect
+    return plan
+
+
+def _steered(plan: Manoeuvre) -> tuple[Any, ...]:
+    """What members have to share to be marched together."""
+    return tuple(
+        (tuple((c, p.orders[c]) for c in CONTROLS if c in p.orders), p.longest, p.until) for p in plan.phases
+    )
+
+
+def run_batch(setup: Setup, names: Sequence[str], deviations: Array) -> Batch:
+    """Values and statuses of the named figures."""
+    rows, statuses, ended = [], [], []
+    for figures, how in figures_of(setup, deviations):
+        known = {f.name: f for f in figures}
+        values = [known[n].value if n in known else None for n in names]
+        rows.append([math.nan if v is None else v for v in values])
+        statuses.append(tuple(known[n].status if n in known else how for n in names))
+        ended.append(how)
+    return Batch(np.array(rows, dtype=np.float64), tuple(statuses), tuple(ended))
+
+
+@dataclass(frozen=True, slots=True)
+class Store:
+    """Finished batches in a folder of their own run, one file each, with a checksum.
+
+    Attributes
+    ----------
+    folder : Path
+    key : str
+        Hash of everything that the numbers hang on.
+    """
+
+    folder: Path
+    key: str
+
+    def path(self, index: int) -> Path:
+        """File of a batch."""
+        return self.folder / self.key[:16] / f"batch_{index:05d}.json"
+
+    def save(self, index: int, batch: Batch) -> None:
+        """Keep a batch; the file is there whole or not at all.
+
+        Raises
+        ------
+        OutputError
+            The folder cannot be written.
+        """
+        values = [[None if math.isnan(v) else v for v in row] for row in batch.values.tolist()]
+        content = {"key": self.key, "batch": index, "values": values, "statuses": batch.statuses, "ended": batch.ended}
+        text = json.dumps(content, allow_nan=False)
+        write_atomically(self.path(index), f"{_digest(text)}\n{text}\n".encode())
+
+    def load(self, index: int, members: int, figures: int) -> tuple[Batch | None, str]:
+        """A batch that was kept, or none and, where there is a file, what is wrong with it."""
+        path = self.path(index)
+        if not path.is_file():
+            return None, ""
+        try:
+            digest, text, rest = path.read_text(encoding="utf-8").split("\n")
+            if rest or digest != _digest(text):
+                return None, "it is damaged"
+            content = json.loads(text)
+            if content["key"] != self.key or content["batch"] != index:
+                return None, "it belongs to another run"
+            values = [[math.nan if v is None else v for v in row] for row in content["values"]]
+            found = np.array(values, dtype=np.float64)
+            statuses, ended = tuple(tuple(row) for row in content["statuses"]), tuple(content["ended"])
+        except (OSError, ValueError, KeyError, TypeError):
+            return None, "it is damaged"
+        if found.shape != (members, figures) or len(statuses) != members or len(ended) != members:
+            return None, "it belongs to another run"
+        return Batch(found, statuses, ended), ""
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,122 @@
+"""Work spread over this process, local processes, or a Dask cluster; results come as they are finished."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from multiprocessing import get_context, parent_process
+from threading import Thread
+from typing import Any, TypeVar
+
+from coeflab.core.errors import CoeflabError, InputError, shown
+
+Result = TypeVar("Result")
+PATIENCE = 20.0
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def carried_out(
+    work: Callable[..., Result], tasks: Mapping[int, tuple[Any, ...]], workers: int, scheduler: str = ""
+) -> Iterator[tuple[int, Result]]:
+    """(index, result) of every task, in the order in which they are finished.
+
+    Parameters
+    ----------
+    work : callable
+        Of a module, so that other processes find it.
+    tasks : mapping of index to its arguments
+    workers : int
+        Local processes; one: this one.
+    scheduler : str
+        Address of a Dask scheduler, whose workers have coeflab installed; then ``workers`` says nothing.
+
+    Raises
+    ------
+    InputError
+        No distributed, or no scheduler answers.
+    CoeflabError
+        A process was killed.
+    """
+    if scheduler:
+        yield from _on_dask(work, tasks, scheduler)
+    elif min(workers, len(tasks)) <= 1:
+        for index, arguments in tasks.items():
+            yield index, work(*arguments)
+    else:
+        yield from _on_processes(work, tasks, min(workers, len(tasks)))
+
+
+def _on_processes(
+    work: Callable[..., Result], tasks: Mapping[int, tuple[Any, ...]], workers: int
+) -> Iterator[tuple[int, Result]]:
+    with _one_thread(), ProcessPoolExecutor(workers, get_context("spawn"), initializer=_ends_with_its_parent) as pool:
+        waiting: dict[Future[Result], int] = {pool.submit(work, *a): index for index, a in tasks.items()}
+        try:
+            for done in as_completed(waiting):
+                yield waiting[done], done.result()
+        except BrokenProcessPool:
+            raise CoeflabError(
+                "A worker process was killed, perhaps for want of memory. Finished batches are kept where there is a store: "
+                "start again, with fewer --workers."
+            ) from None
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    """New processes compute on one core each: the processes are the parallel part."""
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+
+
+def _ends_with_its_parent() -> None:
+    """A worker whose parent was killed would wait for work for ever."""
+    parent = parent_process()
+
+    def watch() -> None:
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
+
+
+def _on_dask(
+    work: Callable[..., Result], tasks: Mapping[int, tuple[Any, ...]], scheduler: str
+) -> Iterator[tuple[int, Result]]:
+    try:
+        from distributed import Client
+        from distributed import as_completed as finished
+    except ImportError:
+        raise InputError(
+            "--scheduler without distributed", "the extra", column="--scheduler", advice='pip install "coeflab[dask]"'
+        ) from None
+    try:
+        client = Client(scheduler, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError, TypeError) as why:
+        raise InputError(
+            f"no Dask scheduler at {shown(scheduler)} ({type(why).__name__})", "the address of one that runs, such as "
+            "tcp://host:8786", column="--scheduler",
+        ) from None  # fmt: skip
+    with client:
+        waiting = {client.submit(work, *a, pure=False): index for index, a in tasks.items()}
+        for done in finished(list(waiting)):
+            yield waiting[done], done.result()
+            done.release()
