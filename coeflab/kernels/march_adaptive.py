@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import warnings
+from bisect import bisect_right
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,6 +24,7 @@ from coeflab.kernels.orders import (
     reach_time,
     watched_value,
 )
+from coeflab.kernels.single_rates import rates_of_one
 
 
 def march_adaptive(
@@ -123,44 +126,52 @@ class _Phase:
 
         wrench = self.orders.wrench.reshape(-1, self.orders.count, 6)[0, self.number][:, None]
 
-        def rates(time: float, state: Array) -> Array:
-            found = self.dynamics.rates(state[:, None], self.angles(time), wrench)[:, 0]
-            if not np.isfinite(found).all():
+        one, pushed = rates_of_one(self.dynamics), wrench[:, 0].tolist()
+        standing = self.angles(at.time)[:, 0].tolist()
+        moving = standing != self.angles(until)[:, 0].tolist()
+
+        def rates(time: float, state: Array) -> list[float]:
+            angles = self.angles(time)[:, 0].tolist() if moving else standing
+            found = one(state.tolist(), angles, pushed)
+            # LSODA never comes back from rates that are no numbers.
+            if not math.isfinite(sum(found)):
                 raise _NotFiniteError
             return found
 
+        watched, due = self.orders.watched[self.number] >= 0, _due(out)
+        row = bisect_right(due, at.time)
+        level, limit = self.level(at.state), self.fastest**2
         try:
             solver = getattr(integrate, method)(rates, at.time, at.state, until, rtol=tolerance, atol=tolerance)
-            level = self.level(at.state)
             while solver.status == "running":
                 solver.step()
                 if solver.status == "failed":
                     return _At(at.time, at.state, ended=STEP_TOO_SMALL)
-                now, state = float(solver.t), _upright(solver.y)
-                after = self.level(state)
+                now, state = float(solver.t), solver.y
+                after = self.level(state) if watched else 1.0
                 met = level < 0.0 <= after
-                rows = _rows(out, at.time, now)
-                if met or rows:
+                if met or due[row] <= now:
                     inside = solver.dense_output()
                     if met:
                         now = float(brentq(self._level_inside, at.time, now, (inside,), xtol=1e-12, rtol=1e-14))
-                        state = _upright(inside(now))
-                    for row in rows if not met else _rows(out, at.time, now):
+                        state = inside(now)
+                    while due[row] <= now:
                         out.records[0, row] = _upright(inside(min(out.times[row], now)))
-                fast = float(np.linalg.norm(state[7:10])) > self.fastest
+                        row += 1
+                u, v, w = state[7:10].tolist()
+                fast = u * u + v * v + w * w > limit
                 at, level = _At(now, state, met, TOO_FAST if fast else 0), after
                 if met or fast:
-                    return at
-        except _NotFiniteError:
-            return _At(at.time, at.state, ended=NOT_FINITE)
-        return at
+                    break
+        except (_NotFiniteError, OverflowError):
+            return _At(at.time, _upright(at.state), ended=NOT_FINITE)
+        return replace(at, state=_upright(at.state))
 
 
-def _rows(out: Marching, after: float, until: float) -> range:
-    """Records that lie between two times."""
+def _due(out: Marching) -> list[float]:
+    """Times from which on a step holds a record, a rounding early, and an end that never comes."""
     near = NEAR * out.times[-1] / max(len(out.times) - 1, 1)
-    first, last = np.searchsorted(out.times, (after + near, until + near), side="right")
-    return range(int(first), int(last))
+    return [*(out.times - near).tolist(), math.inf]
 
 
 def _upright(state: Array) -> Array:

@@ -117,10 +117,13 @@ def _rates(
 
 @inlined
 def _ramp(begin: Array, target: Array, rate: Array, since: float, out: Array) -> None:
+    since = max(since, 0.0)  # a rounding below zero would divide by the zero time of a surface that moves at once
     for k in range(3):
-        reach = abs(target[k] - begin[k]) / rate[k]
-        part = since / reach if reach > since else 1.0
-        out[k] = begin[k] + (target[k] - begin[k]) * part if part < 1.0 else target[k]
+        out[k] = target[k]
+        if target[k] != begin[k]:
+            reach = abs(target[k] - begin[k]) / rate[k]
+            if reach > since:
+                out[k] = begin[k] + (target[k] - begin[k]) * (since / reach)
 
 
 @jitted

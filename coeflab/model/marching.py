@@ -160,6 +160,12 @@ def march(
     )
 
 
+def chosen_step(ensemble: Ensemble, manoeuvre: Manoeuvre, current: Array = STILL) -> float:
+    """The step that `march` chooses for an ensemble, s: one for all parts of an ensemble that is marched in parts."""
+    orders, start = _arrays(ensemble, (manoeuvre,))
+    return _step(ensemble, ensemble.dynamics(np.asarray(current, dtype=np.float64)), orders, start, 0.0)
+
+
 def march_by_tolerance(
     vehicle: Vehicle, manoeuvre: Manoeuvre, record: float = 0.0, tolerance: float = 1e-9, current: Array = STILL
 ) -> Marched:

@@ -7,15 +7,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from coeflab.exporters import fmi
-from coeflab.kernels.rigid_body import motion
+from coeflab.kernels.rigid_body import motion, rigid_body_inertia
+from coeflab.kernels.transforms import rigid_body_force
 from coeflab.model.force_law import force_law
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.study import Study
 from tests.exporters import files as made
 from tests.exporters.files import control_force
 from tests.exporters.massed import CENTRE, INERTIA, MASS, torpedo
+from tests.exporters.of_a_vehicle import floating, quaternion, restoring
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed (dependency group test)")
 SECONDS, STEP = 20.0, 0.1  # s
@@ -79,3 +82,21 @@ def test_suboff_starts_when_its_roll_inertia_is_given(tmp_path: Path, suboff: St
     with pytest.raises(fmpy.fmi1.FMICallException):
         simulated(path, 0.5)
     assert simulated(path, 0.5, mass__Ixx=20.0)["velocity.u"][-1] < 3.3439
+
+
+def test_weight_and_buoyancy_are_those_of_our_own_integration(tmp_path: Path) -> None:
+    """Heavy, with the centres apart, from an attitude that is not level: it sinks and swings."""
+    file, seconds = floating(), 5.0
+    law, inertia = force_law(file), rigid_body_inertia(MASS, CENTRE, INERTIA) + np.array(file.added_mass.matrix)
+    found = simulated(unit(tmp_path, file), seconds, start__roll=0.3, start__pitch=-0.2, step=0.0025)
+
+    def rates(_: float, state: np.ndarray) -> np.ndarray:
+        q, nu = state[:4] / np.linalg.norm(state[:4]), state[4:]
+        force = law.force(nu[None])[0] + restoring(file, q) - rigid_body_force(MASS, CENTRE, INERTIA, nu[None])[0]
+        spin = [-q[1:] @ nu[3:], *(q[0] * nu[3:] + np.cross(q[1:], nu[3:]))]
+        return np.concatenate([0.5 * np.array(spin), np.linalg.solve(inertia, force)])
+
+    start = [*quaternion(0.3, -0.2), file.conditions.speed, 0.0, 0.0, 0.0, 0.0, 0.0]
+    ours = solve_ivp(rates, (0.0, seconds), start, t_eval=found["time"], rtol=1e-10, atol=1e-12, max_step=0.1)
+    np.testing.assert_allclose(columns(found, "velocity", "uvwpqr"), ours.y[4:].T, atol=1e-6)
+    assert np.ptp(found["attitude.roll"]) > 0.1

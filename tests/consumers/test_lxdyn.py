@@ -16,6 +16,7 @@ from coeflab.model.parameter_file import ParameterFile
 from tests.consumers.lxdyn_environment import PYTHON
 from tests.exporters.files import at_rest, control_force, full
 from tests.exporters.massed import ADDED, CENTRE, INERTIA, MASS, OWN, torpedo, with_mass
+from tests.exporters.of_a_vehicle import floating, quaternion, restoring
 
 RUN = Path(__file__).with_name("run_lxdyn.py")
 SECONDS, STEP = 60.0, 0.02  # s
@@ -95,6 +96,26 @@ def test_xdyn_computes_the_force_of_the_file(tmp_path: Path, file: ParameterFile
     v, w = at_centre[:3], at_centre[3:]
     rigid = np.concatenate([MASS * np.cross(w, v), np.cross(w, OWN @ w)])
     np.testing.assert_allclose(rows[0, 1:], hydrodynamic - rigid, rtol=2e-6, atol=1e-5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("roll", "pitch"), [(0.0, 0.0), (0.3, -0.2), (-1.1, 0.7)])
+def test_weight_and_buoyancy_in_xdyn_are_those_of_the_file(tmp_path: Path, roll: float, pitch: float) -> None:
+    """About the centre of gravity, from what its two models give at the first step."""
+    head, _, _ = rendered(floating()).partition("    data: ")
+    before, mark, after = head.partition("initial position")
+    after = after.replace("phi: {value: 0,", f"phi: {{value: {roll},", 1)
+    after = after.replace("theta: {value: 0,", f"theta: {{value: {pitch},", 1)
+    sums = [
+        f"{axis}({m},body_of_tow,body_of_tow)"
+        for m in ("gravity", "buoyancy")
+        for axis in ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+    ]
+    text = f"{before}{mark}{after}    data: [t, {', '.join(repr(s) for s in sums)}]\n"
+    rows, said = in_xdyn(tmp_path, text, 0.02)
+    assert said == ""
+    expected = force_transfer(CENTRE) @ restoring(floating(), quaternion(roll, pitch))
+    np.testing.assert_allclose(rows[0, 1:7] + rows[0, 7:], expected, rtol=2e-6, atol=2e-3)
 
 
 def negated(text: str) -> str:

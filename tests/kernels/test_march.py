@@ -37,7 +37,12 @@ def test_order_four_through_a_switching_manoeuvre(kernel: str) -> None:
     gaps = []
     for step in (0.04, 0.02, 0.01):
         found = march(v, zigzag(v), step, kernel=kernel).marching
-        gaps.append([np.abs(found.end_state - reference.end_state).max(), np.abs(found.switch_time - reference.switch_time).max()])
+        gaps.append(
+            [
+                np.abs(found.end_state - reference.end_state).max(),
+                np.abs(found.switch_time - reference.switch_time).max(),
+            ]
+        )
     falls = np.array(gaps[:-1]) / np.array(gaps[1:])
     assert np.all(falls > 12.0)
     assert np.all(falls < 22.0)
@@ -57,7 +62,9 @@ def test_events_are_those_of_the_adaptive_integrator(kernel: str) -> None:
 
 def test_compiled_is_plain_to_rounding() -> None:
     ensemble = scattered(7)
-    both = [march(ensemble, zigzag(ensemble.vehicle), 0.02, 0.1, k, np.array([0.2, 0.1, 0.0])).marching for k in KERNELS]
+    both = [
+        march(ensemble, zigzag(ensemble.vehicle), 0.02, 0.1, k, np.array([0.2, 0.1, 0.0])).marching for k in KERNELS
+    ]
     for name in ("records", "switch_time", "switch_state", "end_time", "end_state"):
         a, b = (getattr(m, name) for m in both)
         np.testing.assert_array_equal(np.isnan(a), np.isnan(b))
@@ -91,7 +98,11 @@ def test_every_quantity_ends_a_phase_alike(quantity: str) -> None:
 def test_members_do_not_know_each_other(kernel: str) -> None:
     ensemble, order = scattered(5), np.array([3, 0, 4, 1, 2])
     turned = Ensemble(
-        ensemble.vehicle, ensemble.coefficients[order], ensemble.added[order], ensemble.ideal[order], ensemble.mass[order]
+        ensemble.vehicle,
+        ensemble.coefficients[order],
+        ensemble.added[order],
+        ensemble.ideal[order],
+        ensemble.mass[order],
     )
     first, second = (march(e, zigzag(e.vehicle), 0.02, 0.2, kernel).marching for e in (ensemble, turned))
     np.testing.assert_allclose(second.end_state, first.end_state[order], rtol=1e-11, atol=1e-12)
@@ -138,24 +149,26 @@ def test_the_rudder_moves_at_its_rate() -> None:
 
 
 def test_a_ramp_without_a_rate_stands_at_once() -> None:
-    angles = ramp(np.zeros((3, 1)), np.array([[0.2], [-0.4], [0.0]]), np.array([np.inf, 0.1, 0.1]), np.array([0.0, 1.0, 9.0]))
+    angles = ramp(
+        np.zeros((3, 1)), np.array([[0.2], [-0.4], [0.0]]), np.array([np.inf, 0.1, 0.1]), np.array([0.0, 1.0, 9.0])
+    )
     np.testing.assert_allclose(angles, [[0.2, 0.2, 0.2], [0.0, -0.1, -0.4], [0.0, 0.0, 0.0]])
 
 
-class Sudden:
+def sudden(state: list[float], _: object, __: object) -> list[float]:
     """The depth z grows as z^2 and is infinite at one second."""
-
-    def rates(self, state: np.ndarray, controls: np.ndarray, wrench: np.ndarray) -> np.ndarray:
-        out = np.zeros_like(state)
-        out[2] = state[2] ** 2
-        return out
+    out = [0.0] * len(state)
+    out[2] = state[2] ** 2
+    return out
 
 
 @pytest.mark.parametrize(("method", "how"), [("DOP853", STEP_TOO_SMALL), ("LSODA", None)])
-def test_an_integrator_that_fails_says_so(method: str, how: int | None) -> None:
+def test_an_integrator_that_fails_says_so(method: str, how: int | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("coeflab.kernels.march_adaptive.rates_of_one", lambda _: sudden)
+    dynamics = alone(swimmer()).dynamics(np.zeros(3))
     orders: Orders = orders_of(swimmer(), coasting(2.0, [0] * 6))
     start = np.eye(14)[2] + np.eye(14)[3]
-    found = march_adaptive(Sudden(), orders, start, 0.1, tolerance=1e-8, method=method)  # type: ignore[arg-type]
+    found = march_adaptive(dynamics, orders, start, 0.1, tolerance=1e-8, method=method)
     assert found.ended[0] == how if how else found.ended[0] in (STEP_TOO_SMALL, NOT_FINITE)
     assert found.end_time[0] == pytest.approx(1.0, abs=1e-3)
     assert np.isfinite(found.end_state).all()
@@ -163,7 +176,10 @@ def test_an_integrator_that_fails_says_so(method: str, how: int | None) -> None:
 
 def test_a_phase_that_begins_beyond_its_value_waits_for_the_crossing() -> None:
     v = swimmer()
-    phases = (Phase("slow down", {}, 30.0, Until("speed", False, 1.45)), Phase("wait", {}, 1.0, Until("speed", False, 2.0)))
+    phases = (
+        Phase("slow down", {}, 30.0, Until("speed", False, 1.45)),
+        Phase("wait", {}, 1.0, Until("speed", False, 2.0)),
+    )
     motion = march(v, Manoeuvre("coast", phases, np.array([SPEED, 0, 0, 0, 0, 0])), 0.02).trajectory()
     assert motion.reached[0] is not None
     assert motion.reached[1] is None

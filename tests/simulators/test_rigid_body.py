@@ -97,7 +97,9 @@ def test_period_of_a_small_roll(options: dict[str, object]) -> None:
     """2 pi sqrt((Ix + A44) / (W h)) for a roll of 0.2 deg, h the height of buoyancy over gravity."""
     height = 0.06
     afloat = ParameterHydrostatics(volume=MASS / 1000.0, centre_of_buoyancy=(0.0, 0.0, 0.0), gravity=9.81)
-    v = massive(np.diag([6.0, 50.0, 50.0, 1.5, 9.0, 9.0]), np.array([0.0, 0.0, height]), free=("p",), hydrostatics=afloat)
+    v = massive(
+        np.diag([6.0, 50.0, 50.0, 1.5, 9.0, 9.0]), np.array([0.0, 0.0, height]), free=("p",), hydrostatics=afloat
+    )
     roll = Until("roll", True, 0.0)
     phases = (Phase("a", {}, 30.0, roll), Phase("b", {}, 30.0, Until("roll", False, 0.0)), Phase("c", {}, 30.0, roll))
     tilt = np.radians(-0.2)
@@ -138,7 +140,8 @@ def test_flags_follow_the_ranges_of_the_file() -> None:
 
 def test_it_can_stop_where_the_coefficients_end() -> None:
     covered = tuple(
-        CoveredRange(variable=n, low=-h, high=h, unit=u, campaign="a") for n, h, u in (("asin(v/U)", 0.05, "rad"), ("r'", 9.0, "1"))
+        CoveredRange(variable=n, low=-h, high=h, unit=u, campaign="a")
+        for n, h, u in (("asin(v/U)", 0.05, "rad"), ("r'", 9.0, "1"))
     )
     v = massive(values={"X0": -1e-3, "Nr": -0.01, "Ndr": -5e-3}, free=("u", "v", "r"), covered=covered)
     plan = Manoeuvre("t", (Phase("turn", {}, 60.0),), np.array([1.0, 0, 0, 0, 0, 0.3]))
