@@ -91,10 +91,12 @@ class SimulatorExporter(Exporter, Protocol):
     """An exporter whose target has a force law of its own, which proves what the export is worth.
 
     ``adds_coriolis`` says whether the target itself adds -C_A(nu) nu from the added mass that it is given. ``not_held`` are terms
-    of the law that it has no place for, ``missing`` what it needs and the file does not have.
+    of the law that it has no place for, ``missing`` what it needs and the file does not have. ``holds`` names the keys of the
+    file beside its force law, of hydrostatics, thrusters and surfaces, that the target is given.
     """
 
     adds_coriolis: bool
+    holds: frozenset[str]
 
     def force(self, files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]: ...
 

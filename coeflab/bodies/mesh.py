@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -18,13 +19,12 @@ from coeflab.model.body_file import open_body_file
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.mesh_file import load
 from coeflab.model.mesh_gates import examined
+from coeflab.model.mesh_particulars import UNITS, computed, likely_unit, require_plausible
 from coeflab.model.mesh_repair import repaired
 
 summary = "a closed mesh (STL, OBJ, PLY, GLB) with declared unit and axes, refused unless sound"
 citations = ("eberly2002",)
 
-SHORTEST, LONGEST = 0.05, 500.0
-UNITS = ("mm", "m", "cm", "ft", "in")
 NEAR, FAR = 0.005, 0.05
 STATED = (
     ("length", 0, ("length", "length_overall", "loa")),
@@ -41,15 +41,6 @@ def _unit(section: Section) -> float:
         raise section.fail("unit", why.found, why.expected, 'Name the unit of the file: "m", "mm", "ft" ...') from None
 
 
-def _likely(numbers: float, length: float | None) -> str:
-    """The unit in which the file's numbers give the stated length, or a plausible one."""
-    for name in UNITS:
-        found = numbers * factor(name, "length")
-        if _near(found, length) if length else 2.0 * SHORTEST <= found <= 0.4 * LONGEST:
-            return f'Is the unit "{name}"? The body would be {found:.4g} m long.'
-    return "Is the unit right?"
-
-
 def _require_size(mesh: TriangleMesh, unit: float, lengths: dict[str, float], section: Section) -> tuple[str, ...]:
     """Hold the mesh against the stated sizes; what lies 0.5 to 5 % off is returned in words.
 
@@ -58,17 +49,15 @@ def _require_size(mesh: TriangleMesh, unit: float, lengths: dict[str, float], se
     InputError
         More than 5 % off, or without stated sizes shorter than 0.05 m or longer than 500 m.
     """
-    largest, said = float(mesh.extents.max()), []
+    said = []
     stated = {name: (axis, lengths[key]) for name, axis, keys in STATED for key in keys if key in lengths}
-    if not stated and not SHORTEST <= largest <= LONGEST:
-        raise section.fail(
-            "unit", f"a body {largest:.6g} m in size", f"{SHORTEST:g} to {LONGEST:g} m", _likely(largest / unit, None)
-        )
+    if not stated:
+        require_plausible(mesh, unit, partial(section.fail, "unit"))
     for name, (axis, value) in stated.items():
         found = float(mesh.extents[axis])
         if not _near(found, value):
             axes = "Are the axes right?" if np.any(np.abs(mesh.extents / value - 1.0) <= FAR) else ""
-            advice = axes or _likely(found / unit, value)
+            advice = axes or likely_unit(found / unit, value)
             raise section.fail(
                 "path", f"a {name} of {found:.6g} m", f"{value:.6g} m as in [particulars], within 5 %", advice
             )
@@ -132,24 +121,11 @@ def read(path: Path) -> Body:
     sound = repaired(*raw, file) if repair else examined(*raw, file)
     shape = TriangleMesh(_placed(sound.vertices, unit, section), sound.faces)
     section.finish()
-    body = opened.body(shape, _computed(shape, sound.statements))
+    body = opened.body(shape, computed(shape, sound.statements))
     said = _require_size(shape, unit, dict(body.lengths), section)
     said += _require_volume(shape, unit, body.configurations[1:], section)
     return dataclasses.replace(
         body,
-        configurations=(_computed(shape, sound.statements + said), *body.configurations[1:]),
+        configurations=(computed(shape, sound.statements + said), *body.configurations[1:]),
         files=(*body.files, InputFile(f"{body.name}/{file.name}", sha256_of(file))),
-    )
-
-
-def _computed(shape: TriangleMesh, statements: tuple[str, ...]) -> Configuration:
-    return Configuration(
-        name="by_mesh",
-        title="; ".join((f"integrals over {len(shape.faces)} faces", *statements)),
-        volume=shape.volume,
-        wetted_surface=shape.integrals.area,
-        centre_of_buoyancy=shape.centre_of_volume,
-        mass=None,
-        projected_areas=shape.integrals.projected,
-        second_moments=shape.integrals.second_moments,
     )

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from coeflab.core.errors import InputError
+import numpy as np
+
+from coeflab.core.errors import InputError, shown
 from coeflab.core.toml import Section
 from coeflab.kernels.attitude import rotation
 from coeflab.model.body import Body, Configuration
@@ -52,6 +54,13 @@ def _part(section: Section) -> Part:
     name, form = section.text("name"), _form(section)
     centre = section.point("centre")
     turn = section.triple("rotation", "angle") if section.has("rotation") else (0.0, 0.0, 0.0)
+    if max(abs(a) for a in turn) > 2.0 * np.pi:
+        raise section.fail(
+            "rotation",
+            f"{shown(section.raw('rotation'))}, more than a whole turn",
+            "[roll, pitch, yaw] of at most 360 deg each",
+            'A bare number is in rad: write degrees as "90 deg".',
+        )
     section.finish()
     return Part(name, form, centre, rotation(*turn))
 

@@ -14,15 +14,18 @@ from coeflab.cli import (
     fit,
     formats,
     glide,
+    identify,
     inspect,
     new,
     params,
+    report,
     run,
     simplify,
     simulate,
     table,
     trim,
     tune,
+    uncertainty,
     validate,
 )
 
@@ -39,6 +42,7 @@ app = typer.Typer(
 for module in (
     validate,
     run,
+    report,
     fit,
     inspect,
     new,
@@ -51,6 +55,8 @@ for module in (
     simulate,
     trim,
     tune,
+    identify,
+    uncertainty,
     glide,
 ):
     app.command(

@@ -30,6 +30,7 @@ def command(
     """
     from coeflab.cli.fit import further
     from coeflab.core.citations import work
+    from coeflab.model import noun_tables
     from coeflab.presentation import added_mass_tables as tables
     from coeflab.studies.simplify_source import mesh_body
     from coeflab.workbench.hulls import added_masses
@@ -42,7 +43,7 @@ def command(
     show.table(tables.particulars(found.body))
     show.table(tables.displaced(found.body, density))
     for result in found.results:
-        show.table(tables.matrix(result))
+        show.table(noun_tables.matrix(result))
     show.table(tables.derivatives(found))
     show.table(tables.symmetry(found))
     show.table(tables.primes(found))

@@ -42,6 +42,7 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
 
 def summarise(study: Study) -> None:
     """Comparison, coefficients, fitted models and grave findings."""
+    from coeflab.model import noun_tables
     from coeflab.presentation import joint_tables, model_tables, tables
 
     show.text(study.plan.title)
@@ -55,7 +56,7 @@ def summarise(study: Study) -> None:
         show.table(tables.coefficients(study))
     models = tuple(m for f in study.fits for m in f.models)
     for model in models:
-        show.table(model_tables.terms(model))
+        show.table(noun_tables.terms(model))
     show.table(model_tables.quality(models))
     show.table(joint_tables.campaigns(study.fits))
     findings(study)

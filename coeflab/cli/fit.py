@@ -161,12 +161,13 @@ def _diagnose(study: Study) -> None:
 def _print(study: Study, symbols: list[str]) -> None:
     from coeflab.cli.carry_out import findings
     from coeflab.core.errors import InputError, shown
+    from coeflab.model import noun_tables
     from coeflab.presentation import budget_tables, joint_tables, model_tables, tables
 
     show.table(tables.coefficients(study))
     models = tuple(m for f in study.fits for m in f.models)
     for model in models:
-        show.table(model_tables.terms(model))
+        show.table(noun_tables.terms(model))
         show.table(budget_tables.shared(model))
     show.table(model_tables.quality(models))
     show.table(joint_tables.campaigns(study.fits))

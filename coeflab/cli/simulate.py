@@ -55,9 +55,9 @@ def command(
     if to not in TABLES:
         raise InputError(shown(to), f"one of {', '.join(TABLES)}", column="--to")
     parameters = read_parameter_file(file)
-    how: dict[str, Any] = {"integrator": integrator, "step": step, **_current(current)}
+    how: dict[str, Any] = {"integrator": integrator, "step": step, **current_of(current)}
     made = simulate(
-        parameters, manoeuvre, further(ctx.args), how, _listed(free), _listed(hold),
+        parameters, manoeuvre, further(ctx.args), how, listed(free), listed(hold),
         tables=tables, measured=not computed_added_mass,
     )  # fmt: skip
     written = [] if out is None else _write(made, out, to)
@@ -71,11 +71,19 @@ def command(
         raise typer.Exit(1)
 
 
-def _listed(text: str) -> tuple[str, ...]:
+def listed(text: str) -> tuple[str, ...]:
+    """Words apart at commas and blanks."""
     return tuple(text.replace(",", " ").split())
 
 
-def _current(text: str) -> dict[str, float]:
+def current_of(text: str) -> dict[str, float]:
+    """``north,east,down`` as options of the simulator.
+
+    Raises
+    ------
+    InputError
+        Not three numbers.
+    """
     from coeflab.core.errors import InputError, shown
 
     if not text:

@@ -63,6 +63,11 @@ WORKS: dict[str, str] = {
     "kaptanoglu2022": "A. A. Kaptanoglu et al., PySINDy: A comprehensive Python package for robust sparse system "
     "identification, J. Open Source Software 7(69), 2022.",
     "fasel2022": "U. Fasel, J. N. Kutz, B. W. Brunton, S. L. Brunton, Ensemble-SINDy, Proc. Royal Society A 478, 2022.",
+    "messenger2021": "D. A. Messenger, D. M. Bortz, Weak SINDy: Galerkin-based data-driven model selection, Multiscale Modeling "
+    "and Simulation 19(3), 2021.",
+    "gurevich2019": "D. R. Gurevich, P. A. K. Reinbold, R. O. Grigoriev, Robust and optimal sparse regression for nonlinear PDE "
+    "models, Chaos 29, 2019.",
+    "soderstrom1983": "T. Soderstrom, P. Stoica, Instrumental Variable Methods for System Identification, Springer, 1983.",
     "chen2008": "J. Chen, Z. Chen, Extended Bayesian information criteria for model selection with large model spaces, "
     "Biometrika 95(3), 2008.",
     "lamb1932": "H. Lamb, Hydrodynamics, 6th edition, Cambridge, 1932, sections 114, 115 and 121 a.",

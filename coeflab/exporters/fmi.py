@@ -37,6 +37,7 @@ from coeflab.model.written_law import (
 summary = "FMI 2.0: an FMU for co-simulation, six degrees of freedom under the file's own law"
 citations = ("sname1950", "fossen2011", "fmi2", "pythonfmu")
 adds_coriolis = False
+holds = frozenset({"hydrostatics"})
 not_held = not_written
 
 STEP = 0.01
@@ -73,9 +74,25 @@ def _mass(parameters: ParameterFile) -> list[Variable]:
     return out + [_variable(f"mass.I{n}", "parameter", matrix[at], about) for n, at in _PRODUCTS.items()]
 
 
+def _hydrostatics(parameters: ParameterFile) -> list[Variable]:
+    """Nothing where the file has none: weight and buoyancy are then equal and act at one point."""
+    h = parameters.hydrostatics
+    if h is None:
+        return []
+    centre = zip("xyz", h.centre_of_buoyancy, strict=True)
+    return [
+        _variable("hydrostatics.volume", "parameter", h.volume, "displaced, m^3"),
+        *(
+            _variable(f"hydrostatics.{a}_b", "parameter", x, "centre of buoyancy from the reference point, m")
+            for a, x in centre
+        ),
+        _variable("hydrostatics.g", "parameter", h.gravity, "m/s^2"),
+    ]
+
+
 def _variables(parameters: ParameterFile, terms: tuple[WrittenTerm, ...], dots: Mapping[str, float]) -> list[Variable]:
     out = [_variable("density", "parameter", parameters.conditions.density, "kg/m^3")]
-    out += _mass(parameters)
+    out += [*_mass(parameters), *_hydrostatics(parameters)]
     start = {"u": parameters.conditions.speed}
     for n in ("north", "east", "down", "roll", "pitch", "yaw", *MOTIONS):
         out.append(_variable(f"start.{n}", "parameter", start.get(n, 0.0), "m, rad, m/s, rad/s"))
@@ -244,6 +261,8 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     return (
         *written_changes(parameters, "the unit", "the parameters ideal.*", "the parameters acceleration.*"),
         "positions are north, east, down",
-        "weight and buoyancy are equal and act at one point, and the water is at rest: the file states no buoyancy; a righting "
-        "moment goes to the inputs external.*",
+        "the water is at rest",
+        "weight and buoyancy are equal and act at one point: the file states no buoyancy; a righting moment goes to the inputs external.*"
+        if parameters.hydrostatics is None
+        else "weight and buoyancy by the parameters mass.* and hydrostatics.*; the outputs hydrodynamic.* do not hold them",
     )

@@ -21,6 +21,7 @@ from coeflab.model.second_order import FLU
 summary = "gz-sim: SDF 1.10 with <fluid_added_mass>, viscous parts in the Hydrodynamics plugin"
 citations = ("fossen2011", "gz_sim")
 adds_coriolis = True
+holds: frozenset[str] = frozenset()
 force, not_held, missing = sdf_force, not_in_sdf, missing_in_sdf
 
 VERSION = "1.10"

@@ -21,6 +21,7 @@ from coeflab.model.second_order import FLU
 summary = "gz-sim: SDF 1.9, added mass and total damping in the Hydrodynamics plugin, its Coriolis disabled"
 citations = ("fossen2011", "gz_sim")
 adds_coriolis = False
+holds: frozenset[str] = frozenset()
 force, not_held, missing = sdf_force, not_in_sdf, missing_in_sdf
 
 VERSION = "1.9"

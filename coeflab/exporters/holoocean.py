@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.identifiers import identifier
 from coeflab.kernels.fossen_torpedo import CROSS_FLOW, WATER, Torpedo, lifting_area
-from coeflab.model.exported_law import central_inertia, centre_of_gravity
+from coeflab.model.exported_law import central_inertia, centre_of_gravity, states_buoyancy
 from coeflab.model.force_law import ForceLaw, LawTerm, force_law
 from coeflab.model.loss import unheld
 from coeflab.model.parameter_file import ParameterFile
@@ -27,6 +27,7 @@ summary = (
 )
 citations = ("fossen2011", "holoocean")
 adds_coriolis = False
+holds: frozenset[str] = frozenset()
 
 NEVER = 1e9
 _DEFAULTS = {"area_fraction": 0.7, "zeta_roll": 0.3, "zeta_pitch": 0.8, "r44": 0.3, "e": 0.7}
@@ -138,7 +139,8 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         f"Cd {t.Cd:.4g} from X0; lift and drag are computed with 1026 kg/m^3 whatever rho is, for which Cd and area_fraction make up",
         f"cross-flow drag is that of a cylinder, C_D {CROSS_FLOW:.4g} on {t.length:.4g} x {t.diam:.4g} m, in sway and yaw: not a matter of the file",
         f"T_yaw {t.T_yaw:.4g} s: damping in yaw does not grow with the speed, it stands for Nr at {speed:g} m/s",
-        "r_bb lies in r_bg, so that nothing rights the vehicle or damps roll and pitch: the file states no buoyancy; write the vehicle's",
+        "r_bb lies in r_bg, so that nothing rights the vehicle or damps roll and pitch: "
+        f"{states_buoyancy(parameters, 'the file states no buoyancy')}; write the vehicle's",
         "axes and reference point are the file's",
     ]
     if "area_fraction" in found:

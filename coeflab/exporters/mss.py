@@ -32,6 +32,7 @@ from coeflab.model.written_law import (
 summary = "MSS: a MATLAB or Octave function of force and added mass, with a struct of SNAME coefficients"
 citations = ("sname1950", "fossen2011", "mss")
 adds_coriolis = False
+holds = frozenset({"hydrostatics"})
 not_held, missing = not_written, missing_water
 
 OWN = frozenset({"nu", "delta", "tau", "h", "MA", "U", *MOTIONS, *COMPONENTS, *CONTROLS})
@@ -99,6 +100,13 @@ def _facts(parameters: ParameterFile) -> list[str]:
         facts += [(f"{axis}G", x, "centre of gravity (m)") for axis, x in zip("xyz", p.mass.centre or (), strict=False)]
         rows = enumerate(p.mass.inertia_matrix or (), 1)
         facts += [(f"I{i}{j}", x, "of the inertia matrix (kg m^2)") for i, row in rows for j, x in enumerate(row, 1)]
+    if p.hydrostatics is not None:
+        facts += [
+            ("volume", p.hydrostatics.volume, "displaced (m^3)"),
+            ("g", p.hydrostatics.gravity, "gravity (m/s^2)"),
+        ]
+        centre = zip("xyz", p.hydrostatics.centre_of_buoyancy, strict=True)
+        facts += [(f"{axis}B", x, "centre of buoyancy (m)") for axis, x in centre]
     if p.added_mass is not None:
         facts += [("MA_body", p.added_mass.body, ""), ("MA_method", p.added_mass.method, "")]
     return [
@@ -164,7 +172,9 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the law is written, in words."""
+    buoyant = "h.volume, h.g and h.xB h.yB h.zB are the numbers of the g above, as for MSS gvect"
     return (
         *written_changes(parameters, "the function", "h.ideal", "MA"),
+        f"tau holds no weight and no buoyancy{'' if parameters.hydrostatics is None else f': {buoyant}'}",
         "r2 in the function is 1/2 rho L^2, r3 is 1/2 rho L^3 and so on; U is never below 1e-9 m/s",
     )

@@ -18,7 +18,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.identifiers import identifier, one_line
 from coeflab.core.xml import numbers, parse_xml, serialised
 from coeflab.kernels.mujoco_fluid import FluidEllipsoid, ellipsoid_of_masses
-from coeflab.model.exported_law import central_inertia, centre_of_gravity, number
+from coeflab.model.exported_law import central_inertia, centre_of_gravity, number, states_buoyancy
 from coeflab.model.force_law import ForceLaw, force_law
 from coeflab.model.inertia import added_mass_of
 from coeflab.model.loss import unheld
@@ -29,6 +29,7 @@ from coeflab.model.straight_motion import held_when_straight
 summary = "MuJoCo: an MJCF body with a fluid ellipsoid; Munk moment and drag, no added inertia"
 citations = ("lamb1932", "mujoco")
 adds_coriolis = True
+holds: frozenset[str] = frozenset()
 
 Array = NDArray[np.float64]
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
@@ -188,7 +189,8 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         f"angular drag {e.angular:.4g}: quadratic in r, it stands for Nr at r L/U = {geom.rate:.3g} and the file's speed",
         "derivatives are met at straight motion; in drift and turning its lift and drag bend away, by the differences in this report",
         "axes: FRD to the body frame x forward, y port, z up",
-        "weight is balanced by gravcomp and nothing rights the body: the file states no buoyancy",
+        "weight is balanced by gravcomp and nothing rights the body: "
+        + states_buoyancy(parameters, "the file states no buoyancy"),
     ]
     if geom.wanted != geom.forward:
         said.append(

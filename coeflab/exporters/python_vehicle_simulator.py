@@ -32,9 +32,11 @@ from coeflab.model.written_law import (
 summary = "Python Vehicle Simulator: a vehicle class with dynamics(), its law in SNAME coefficients"
 citations = ("sname1950", "fossen2011", "python_vehicle_simulator")
 adds_coriolis = False
+holds = frozenset({"hydrostatics"})
 
 not_held = not_written
 
+GRAVITY = 9.81
 _PLACES = {"prime": "self.", "rest": "self.rest_", "potential": "self.ideal_"}
 _HEADINGS = {
     "prime": "Primed by rho and L: totals, potential part included",
@@ -46,7 +48,7 @@ import math
 
 import numpy as np
 
-GRAVITY = 9.81  # m/s^2
+GRAVITY = {gravity!r}  # m/s^2
 
 
 class {name}:
@@ -59,14 +61,15 @@ class {name}:
 
     m, Ix, Iy, Iz: mass (kg) and moments of inertia (kg m^2) about the reference point; None is unknown, and dynamics()
     asks for it. products: entries xy, xz and yz of the inertia matrix, with their sign. r_bg, r_bb: centres of gravity and buoyancy from the reference point (m), x forward, y starboard,
-    z down. Weight and buoyancy are equal; without r_bb it lies in the centre of gravity, and nothing rights the vehicle.
+    z down; without r_bb it lies in the centre of gravity, and nothing rights the vehicle. volume: displaced (m^3); None makes
+    weight and buoyancy equal.
 
     u_control = [ rudder (rad), stern plane (rad), bow plane (rad), thrust (N) ], followed without lag.
     """
 
     def __init__(self, controlSystem="stepInput", r_z=0, r_psi=0, V_current=0, beta_current=0,
                  m={m!r}, Ix={moments[0]!r}, Iy={moments[1]!r}, Iz={moments[2]!r}, products={products!r},
-                 r_bg={centre!r}, r_bb=None):
+                 r_bg={centre!r}, r_bb={buoyancy!r}, volume={volume!r}):
         self.controlMode = "stepInput"
         self.controlDescription = "Step inputs for thrust and control angles"
         self.ref_z, self.ref_psi = r_z, r_psi
@@ -74,6 +77,7 @@ class {name}:
         self.m, self.Ix, self.Iy, self.Iz, self.products = m, Ix, Iy, Iz, products
         self.r_bg = np.array(r_bg, float)
         self.r_bb = self.r_bg if r_bb is None else np.array(r_bb, float)
+        self.volume = volume
         self.controls = ["Rudder (deg)", "Stern plane (deg)", "Bow plane (deg)", "Thrust (N)"]
         self.dimU = len(self.controls)
         self.u_actual = np.zeros(self.dimU)
@@ -102,7 +106,10 @@ _TAIL = '''
         down = np.array([-math.sin(eta[4]), math.cos(eta[4]) * math.sin(eta[3]), math.cos(eta[4]) * math.cos(eta[3])])
         tau = self.hydrodynamics(nu_r, u_actual[:3])
         tau[0] += u_actual[3]
-        tau[3:] += self.m * GRAVITY * np.cross(self.r_bg - self.r_bb, down)
+        weight = self.m * GRAVITY
+        buoyancy = weight if self.volume is None else self.rho * GRAVITY * self.volume
+        tau[:3] += (weight - buoyancy) * down
+        tau[3:] += np.cross(weight * self.r_bg - buoyancy * self.r_bb, down)
         nu_dot = Dnu_c + np.linalg.solve(MRB + self.MA, tau - CRB_nu)
         return nu + sampleTime * nu_dot, np.array(u_control, float)
 
@@ -119,7 +126,7 @@ def _place(group: str, name: str) -> str:
 def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     """One class file; class and file bear the parameter file's name as an identifier."""
     name = identifier(parameters.name, python())
-    terms = written_terms(parameters)
+    terms, h = written_terms(parameters), parameters.hydrostatics
     accelerations, source = written_accelerations(parameters)
     p, mass = parameters, parameters.mass
     point = ", ".join(f"{x:g}" for x in p.reference_point.point)
@@ -134,6 +141,9 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
             moments=_moments(parameters),
             products=_products(parameters),
             centre=tuple(float(x) for x in centre_of_gravity(parameters)),
+            gravity=GRAVITY if h is None else h.gravity,
+            buoyancy=None if h is None else h.centre_of_buoyancy,
+            volume=None if h is None else h.volume,
         ),
         f"        self.name = {one_line(p.name)!r}",
         f"        self.rho = {p.conditions.density!r}  # kg/m^3",
@@ -256,5 +266,7 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the law is written, in words."""
     return (
         *written_changes(parameters, "the class (as remus100.py, which zeroes its Munk terms)", "ideal_*", "MA"),
-        "weight and buoyancy are equal and act at one point until r_bb is given: the file states no buoyancy",
+        "weight and buoyancy are equal and act at one point until r_bb is given: the file states no buoyancy"
+        if parameters.hydrostatics is None
+        else "weight and buoyancy, r_bb and volume, act in dynamics(), not in hydrodynamics(); GRAVITY is the file's",
     )

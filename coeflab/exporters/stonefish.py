@@ -30,6 +30,7 @@ from coeflab.model.straight_motion import held_when_straight
 summary = "Stonefish: a scenario with drags along the axes of an ellipsoid mesh; no derivatives, no Munk moment"
 citations = ("stonefish", "lamb1932")
 adds_coriolis = True
+holds: frozenset[str] = frozenset()
 
 Array = NDArray[np.float64]
 HELD = 1e-6

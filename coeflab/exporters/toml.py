@@ -10,7 +10,7 @@ from coeflab.core.toml_text import toml_text
 from coeflab.model.look_up import LookUp, look_up
 from coeflab.model.parameter_file import ParameterFile
 
-summary = "tables.toml: every coefficient, the added mass, and each fitted model on a grid within its data"
+summary = "tables.toml: every coefficient, added mass, hydrostatics, thrusters, and each fitted model on a grid within its data"
 citations = ("sname1950",)
 
 _LAYOUT = 1
@@ -34,6 +34,9 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         "added_mass": {k: p["added_mass"][k] for k in ("body", "method", "density", "matrix")}
         if "added_mass" in p
         else None,
+        "hydrostatics": p.get("hydrostatics"),
+        "thruster": p["thrusters"] or None,
+        "surface": p["surfaces"] or None,
         "covered": p["covered"],
         "coefficient": [{k: v for k, v in c.items() if k in _OF_COEFFICIENT} for c in p["coefficients"]],
         "table": [_table(look_up(m)) for m in parameters.models],

@@ -37,6 +37,7 @@ from coeflab.model.second_order import FLU, ROUNDING, SURGE, products_once, slot
 summary = "uuv_simulator and DAVE: URDF with hydrodynamic_model fossen, viscous parts beside its added mass"
 citations = ("fossen2011", "uuv_simulator")
 adds_coriolis = True
+holds = frozenset({"hydrostatics"})
 
 Array = NDArray[np.float64]
 LINK = "base_link"
@@ -96,8 +97,12 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     SubElement(plugin, "fluid_density").text = number(p.conditions.density)
     SubElement(plugin, "flow_velocity_topic").text = "hydrodynamics/current_velocity"
     under = SubElement(plugin, "link", name=LINK)
-    SubElement(under, "neutrally_buoyant").text = "1"
-    SubElement(under, "center_of_buoyancy").text = "0 0 0"
+    h = p.hydrostatics
+    SubElement(under, "neutrally_buoyant").text = "1" if h is None else "0"
+    if h is not None:
+        SubElement(under, "volume").text = number(h.volume)
+    above = np.zeros(3) if h is None else FLU[:3] * (np.array(h.centre_of_buoyancy) - at)
+    SubElement(under, "center_of_buoyancy").text = "0 0 0" if h is None else " ".join(map(number, above))
     model = SubElement(under, "hydrodynamic_model")
     SubElement(model, "type").text = "fossen"
     for tag, matrix in _matrices(exported_law(p), at).items():
@@ -106,7 +111,9 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"{one_line(p.name)}, body: {one_line(p.body)}",
         "The plugin turns Gazebo's x forward, y port, z up to x forward, y starboard, z down itself: the matrices are in the latter,",
         "about the centre of gravity, which is the origin of base_link. Damping is negative, added mass positive.",
-        "Neutrally buoyant with both centres in one point: the parameter file states neither weight nor buoyancy.",
+        "Neutrally buoyant with both centres in one point: the parameter file states neither weight nor buoyancy."
+        if h is None
+        else "Volume and centre of buoyancy, the latter x forward, y port, z up from the centre of gravity, are the file's.",
     )
     return {f"{identifier(p.name)}.urdf": serialised(robot, comment)}
 
@@ -149,5 +156,11 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
             f"moved to the centre of gravity, ({at[0]:.6g}, {at[1]:.6g}, {at[2]:.6g}) m from the reference point, where the "
             "plugin's force acts; quadratic damping keeps its numbers"
         )
-    out.append("neutrally buoyant, centre of buoyancy in the centre of gravity: the parameter file states neither")
+    h = parameters.hydrostatics
+    out.append(
+        "neutrally buoyant, centre of buoyancy in the centre of gravity: the parameter file states neither"
+        if h is None
+        else f"buoyancy by <volume> {h.volume:g} m^3 and <center_of_buoyancy>, x forward, y port, z up from the centre of gravity; "
+        f"gravity is the world's, the file's is {h.gravity:g} m/s^2"
+    )
     return (*out, *common_changes(parameters, law, whole=False))

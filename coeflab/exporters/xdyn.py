@@ -29,11 +29,12 @@ from coeflab.model.written_law import (
     written_controls,
     written_terms,
 )
-from coeflab.model.xdyn_body import ADDED, DAMPING, HERE, RIGID, xdyn_body
+from coeflab.model.xdyn_body import ADDED, BUOYANCY, DAMPING, HERE, RIGID, xdyn_body
 
 summary = "xdyn: a YAML simulation file with inertia, added mass, damping and manoeuvring expressions"
 citations = ("sname1950", "fossen2011", "xdyn")
 adds_coriolis = False
+holds = frozenset({"hydrostatics"})
 not_held = not_written
 
 FORCES = "hydrodynamic_forces"
@@ -44,7 +45,7 @@ Array = NDArray[np.float64]
 
 def _names(parameters: ParameterFile) -> tuple[str, str]:
     """Body and file, as identifiers."""
-    return identifier(parameters.body, {"NED", FORCES}), identifier(parameters.name)
+    return identifier(parameters.body, {"NED", FORCES, BUOYANCY}), identifier(parameters.name)
 
 
 def _centre(parameters: ParameterFile) -> Array | None:
@@ -94,14 +95,15 @@ def _rows(matrix: Array) -> list[str]:
 
 
 def render(parameters: ParameterFile) -> Mapping[str, bytes]:
-    """One YAML file that runs alone: straight ahead at the file's speed, without weight, buoyancy and propulsion.
+    """One YAML file that runs alone: straight ahead at the file's speed, without propulsion; with weight and buoyancy where
+    the file states hydrostatics.
 
     Raises
     ------
     InputError
         The sum of rigid-body inertia and added mass is not positive definite, which no simulation survives.
     """
-    body, name = _names(parameters)
+    (body, name), h = _names(parameters), parameters.hydrostatics
     centre, rigid = _centre(parameters), _rigid(parameters)
     origin = "reference point" if centre is None else "centre of gravity"
     offset = np.zeros(3) if centre is None else 0.0 - centre
@@ -122,10 +124,10 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# {one_line(parameters.name)}, body: {one_line(parameters.body)}",
         f"# Body frame: x forward, y starboard, z down, origin at the {origin};",
         f"# the mesh frame is FRD from: {one_line(parameters.reference_point.datum)}",
-        "# Totals: xdyn adds no C_A(nu) nu. Weight, buoyancy and propulsion are not in here.",
+        f"# Totals: xdyn adds no C_A(nu) nu. {'Weight, buoyancy and propulsion are' if h is None else 'Propulsion is'} not in here.",
         "rotations convention: [psi, theta', phi'']",
         "environmental constants:",
-        f"    g: {{value: {GRAVITY!r}, unit: m/s^2}}",
+        f"    g: {{value: {GRAVITY if h is None else h.gravity!r}, unit: m/s^2}}",
         f"    rho: {{value: {parameters.conditions.density!r}, unit: kg/m^3}}",
         f"    nu: {{value: {parameters.conditions.viscosity or VISCOSITY!r}, unit: m^2/s}}",
         "environment models: []",
@@ -137,6 +139,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
                 [f"frame: {body}", *_axes((speed, 0.0, 0.0), "m/s", "uvw"), *_axes((0.0, 0.0, 0.0), "rad/s", "pqr")]),
         *_block(4, "dynamics:", dynamics),
         "    external forces:",
+        *_restoring(parameters, body, offset),
         *_damping(terms, not offset.any()),
         *_manoeuvring(parameters, body, offset, terms),
         *_commands(terms),
@@ -146,6 +149,26 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"    data: [t, {states}]",
     ]  # fmt: skip
     return {f"{name}.yml": ("\n".join(lines) + "\n").encode()}
+
+
+def _restoring(parameters: ParameterFile, body: str, offset: Array) -> list[str]:
+    """Weight, and buoyancy in the centre of buoyancy, which xdyn's own model "basic buoyancy" puts into that of gravity."""
+    h = parameters.hydrostatics
+    if h is None:
+        return []
+    at = (offset + np.array(h.centre_of_buoyancy)).tolist()
+    lines = [
+        f"name: {BUOYANCY}",
+        *_block(0, "reference frame:", [f"frame: {body}", *_axes(at, "m"), *_angles()]),
+        "commands: []",
+        f"volume: {h.volume!r}",
+        "B: rho*g*volume",
+        "X: B*sin(theta(t))",
+        "Y: 0-B*cos(theta(t))*sin(phi(t))",
+        "Z: 0-B*cos(theta(t))*cos(phi(t))",
+        *(f"{moment}: 0" for moment in "KMN"),
+    ]
+    return ["      - model: gravity", "      - model: maneuvering", *("        " + line for line in lines)]
 
 
 def _damping(terms: Sequence[WrittenTerm], at_origin: bool) -> list[str]:
@@ -227,6 +250,11 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         ),
         "velocities over the ground stand for those through the water; currents are for linear and quadratic damping only",
     ]
+    if parameters.hydrostatics is not None:
+        said.append(
+            f"weight as xdyn's model gravity, buoyancy as a second manoeuvring model, {BUOYANCY}, in the centre of buoyancy: both are "
+            "no part of the differences in this report"
+        )
     if centre is None:
         said.append("the body frame has its origin at the reference point; the centre of gravity is not known")
     elif centre.any():

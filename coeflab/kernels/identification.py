@@ -1,8 +1,14 @@
-"""Terms and coefficients of a force balance from rows that belong to stretches of time.
+"""Terms and coefficients of a force balance whose columns are noisy as well as its response.
 
-Rows of one stretch share their noise, so folds and resamples are made of whole stretches. Sparse regression: Brunton, Proctor
-& Kutz (2016); resamples and inclusion frequency: Fasel et al. (2022); what is known only together: Belsley, Kuh & Welsch,
-Regression Diagnostics (1980), chapter 3.
+Least squares on noisy columns is biased towards zero, and by far more where columns are nearly dependent. So every average
+is taken twice, over the even and over the odd rows of a series: their noises are independent, and the one half serves the
+other as instrument (Reiersol 1950; Soderstrom & Stoica, Instrumental Variable Methods, 1983)::
+
+    G = (A1' A2 + A2' A1) / 2        m = (A1' b2 + A2' b1) / 2        theta = G^-1 m
+
+The diagonal of G has no noise in it but that of chance, and the antisymmetric part of A1' A2 nothing else. Rows of one
+stretch of time share their noise, so folds and resamples are made of whole stretches. Sparse regression and inclusion
+frequency: Brunton, Proctor & Kutz (2016), Fasel et al. (2022).
 """
 
 from __future__ import annotations
@@ -13,55 +19,107 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.kernels.cross_validation import one_standard_error
 from coeflab.kernels.least_squares import Array
-from coeflab.kernels.sparse_selection import THRESHOLDS, ZERO, Optimizer
+from coeflab.kernels.sparse_selection import THRESHOLDS, ZERO, Optimizer, twins
 
-KEPT = 0.5
+SELDOM = 0.1
+SURE = 3.0
+RESOLVED = 1e-3
+CLEARLY = 2.0
 FOLDS = 5
 FEWEST_STRETCHES = 8
-INDEX = 30.0
-SHARE = 0.5
 LEVELS = (2.5, 97.5)
+ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Balance:
-    """One component of the force balance: ``response = design @ coefficients`` but for noise.
+class Products:
+    """Sums over every stretch, which all that follows is made of.
 
     Attributes
     ----------
-    design : (n, p) array
-    response : (n,) array
-        N or N m.
-    stretch : (n,) int array
-        Which stretch of time a row belongs to.
+    gram : (s, p, p) array
+        Columns with columns, symmetric, free of the bias of noise.
+    noise : (s, p, p) array
+        Antisymmetric part, which noise alone makes; zero where one half is both.
+    moment : (s, p) array
+        Columns with the response.
+    total : (s,) array
+        Response with itself.
     """
 
-    design: Array
-    response: Array
-    stretch: NDArray[np.int64]
+    gram: Array
+    noise: Array
+    moment: Array
+    total: Array
 
-    def of(self, columns: Sequence[int]) -> Balance:
+    def of(self, columns: Sequence[int]) -> Products:
         """With some of the columns alone."""
-        return Balance(self.design[:, list(columns)], self.response, self.stretch)
+        at = np.asarray(columns, dtype=np.int64)
+        pairs = (slice(None), at[:, None], at[None, :])
+        return Products(self.gram[pairs], self.noise[pairs], self.moment[:, at], self.total)
 
-    def resampled(self, rng: np.random.Generator) -> Balance:
-        """As many stretches, drawn with replacement."""
-        names = np.unique(self.stretch)
-        rows = [np.flatnonzero(self.stretch == s) for s in rng.choice(names, len(names))]
-        taken = np.concatenate(rows)
-        return Balance(self.design[taken], self.response[taken], np.repeat(np.arange(len(rows)), [len(r) for r in rows]))
+    def taken(self, stretches: NDArray[np.int64]) -> Products:
+        """Some stretches, each as often as it is named."""
+        return Products(self.gram[stretches], self.noise[stretches], self.moment[stretches], self.total[stretches])
+
+    def solved(self, columns: Sequence[int]) -> Array:
+        """Coefficients of some columns."""
+        if not len(columns):
+            return np.zeros(0)
+        some = self.of(columns)
+        gram = some.gram.sum(axis=0)
+        size = np.sqrt(np.abs(np.diag(gram)))
+        size = np.where(size > 0.0, size, 1.0)
+        scaled = np.linalg.lstsq(gram / np.outer(size, size), some.moment.sum(axis=0) / size, rcond=ROUNDING)[0]
+        return np.asarray(scaled / size)
+
+    def misfit(self, columns: Sequence[int], coefficients: Array) -> Array:
+        """(s,) sums of squares that are left, free of the bias of noise; below zero by chance."""
+        some = self.of(columns)
+        return np.asarray((some.gram @ coefficients) @ coefficients - 2.0 * some.moment @ coefficients + self.total)
+
+
+def products(first: Array, second: Array, stretch: NDArray[np.int64]) -> Products:
+    """Sums over stretches.
+
+    Parameters
+    ----------
+    first, second : (n, p + 1) arrays
+        Columns and, last, the response, averaged over the one and the other half of the rows; the same array twice for
+        ordinary least squares.
+    stretch : (n,) int array
+        From 0, none missing.
+    """
+    p, count = first.shape[1] - 1, int(stretch.max(initial=-1)) + 1
+    whole = np.zeros((count, p + 1, p + 1))
+    np.add.at(whole, stretch, first[:, :, None] * second[:, None, :])
+    even, odd = (whole + whole.swapaxes(1, 2)) / 2.0, (whole - whole.swapaxes(1, 2)) / 2.0
+    return Products(even[:, :p, :p], odd[:, :p, :p], even[:, :p, p], even[:, p, p])
+
+
+def reliability(first: Array, second: Array) -> Array:
+    """(p,) share of the power of columns that both halves see, from 1 without noise to 0 for noise alone."""
+    both = np.sum(first * second, axis=0)
+    power = (np.sum(first**2, axis=0) + np.sum(second**2, axis=0)) / 2.0
+    return np.asarray(np.where(power > 0.0, both / np.where(power > 0.0, power, 1.0), 0.0))
+
+
+def multiples(gram: Array) -> dict[int, int]:
+    """Columns that are multiples of an earlier one, with that one, by the gram (p, p) of columns that are not zero."""
+    size = np.sqrt(np.diag(gram))
+    level, turned = np.linalg.eigh(gram / np.outer(size, size))
+    return twins(np.sqrt(np.maximum(level, 0.0))[:, None] * turned.T)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
-    """What the rows say of every column.
+    """What the products say of every column.
 
     Attributes
     ----------
     coefficients : (p,) array
-        Least squares of the kept columns; NaN for the others.
+        Of the kept columns; NaN for the others.
     frequency : (p,) array
         Share of the resamples in which the sparse fit keeps a column.
     low, high : (p,) arrays
@@ -69,8 +127,8 @@ class Found:
     kept : tuple of int
     threshold : float
         Of the scaled problem, by cross-validation over stretches.
-    rms : float
-        Of the residuals over that of the response.
+    left : float
+        Root mean square of what is left over that of the response, free of noise; 0 where chance makes it negative.
     """
 
     coefficients: Array
@@ -79,90 +137,110 @@ class Found:
     high: Array
     kept: tuple[int, ...]
     threshold: float
-    rms: float
+    left: float
 
 
-def scaled(b: Balance) -> tuple[Array, Array]:
-    """Columns and response of root mean square 1."""
-    size, height = np.sqrt(np.mean(b.design**2, axis=0)), float(np.sqrt(np.mean(b.response**2)))
-    return b.design / np.where(size > 0.0, size, 1.0), b.response / (height or 1.0)
+def square_root(p: Products) -> tuple[Array, Array]:
+    """A matrix (k, k) and a response (k,) with the gram and moment of scaled columns, for optimizers that want rows.
+
+    Directions that are below the noise are lifted to it, so that no coefficient runs away along them.
+    """
+    gram, noise, moment = p.gram.sum(axis=0), p.noise.sum(axis=0), p.moment.sum(axis=0)
+    size = np.sqrt(np.maximum(np.diag(gram), np.finfo(float).tiny))
+    height = np.sqrt(max(float(p.total.sum()), np.finfo(float).tiny))
+    level, turned = np.linalg.eigh(gram / np.outer(size, size))
+    floor = float(np.linalg.norm(noise / np.outer(size, size), ord=2))
+    level = np.sqrt(np.maximum(level, max(floor, ROUNDING * level[-1])))
+    return level[:, None] * turned.T, turned.T @ (moment / size / height) / level
 
 
-def solved(b: Balance) -> Array:
-    """(p,) least-squares coefficients."""
-    size = np.sqrt(np.mean(b.design**2, axis=0))
-    size = np.where(size > 0.0, size, 1.0)
-    return np.asarray(np.linalg.lstsq(b.design / size, b.response, rcond=None)[0] / size)
+def identify(p: Products, optimizer: Optimizer, *, seed: int, resamples: int) -> Found:
+    """Choose columns and fit those.
 
-
-def identify(b: Balance, optimizer: Optimizer, *, seed: int, resamples: int, kept: float = KEPT) -> Found:
-    """Choose columns by how often a sparse fit keeps them, and fit those.
+    A sparse fit of every resample says how often it needs a column. Of the columns that it ever needs, the one is left out
+    that lies nearest to zero in units of its scatter, until all lie three of them away from it. A column without which the
+    others leave less than a thousandth of the force, which straight pieces between rows do not resolve, goes first.
 
     Parameters
     ----------
-    b : Balance
+    p : Products
         Columns that are excited, none a multiple of another.
     optimizer : callable
         (matrix, y, threshold) -> coefficients (p,), all scaled.
     seed : int
         Of the resamples.
     resamples : int
-    kept : float
-        Least inclusion frequency of a column that is kept.
     """
-    p = b.design.shape[1]
-    at = _threshold(b, optimizer)
+    columns, stretches = p.gram.shape[1], len(p.total)
+    threshold = _threshold(p, optimizer)
     rng = np.random.default_rng(seed)
-    draws = [b.resampled(rng) for _ in range(resamples)]
-    counts = np.zeros(p)
+    draws = [p.taken(rng.integers(0, stretches, stretches)) for _ in range(resamples)]
+    counts = np.zeros(columns)
     for d in draws:
-        counts[_support(d, optimizer, at)] += 1.0
-    frequency = counts / max(resamples, 1)
-    chosen = [int(j) for j in np.flatnonzero(frequency >= kept)] if resamples else _support(b, optimizer, at)
-    coefficients, low, high = np.full((3, p), np.nan)
-    left = b.response
-    if chosen:
-        coefficients[chosen] = solved(b.of(chosen))
-        left = b.response - b.design[:, chosen] @ coefficients[chosen]
-        if resamples and len(np.unique(b.stretch)) >= FEWEST_STRETCHES:
-            again = np.array([solved(d.of(chosen)) for d in draws])
-            low[chosen], high[chosen] = np.percentile(again, LEVELS, axis=0)
-    whole = float(np.sqrt(np.mean(b.response**2)))
-    rms = float(np.sqrt(np.mean(left**2))) / (whole or 1.0)
-    return Found(coefficients, frequency, low, high, tuple(chosen), at, rms)
+        counts[_support(d, optimizer, threshold)] += 1.0
+    frequency = counts / resamples
+    chosen = [int(j) for j in np.flatnonzero(frequency >= SELDOM)]
+    again = np.array([d.solved(chosen) for d in draws])
+    while chosen:
+        sure = np.abs(p.solved(chosen)) / np.maximum(np.std(again, axis=0), np.finfo(float).tiny)
+        without = _without(p, chosen)
+        spare = without < RESOLVED**2
+        if np.min(sure) >= SURE and not np.any(spare):
+            break
+        chosen.pop(int(np.argmin(np.where(spare, without, 1.0)) if np.any(spare) else np.argmin(sure)))
+        again = np.array([d.solved(chosen) for d in draws])
+    coefficients, low, high = np.full((3, columns), np.nan)
+    values = p.solved(chosen)
+    coefficients[chosen] = values
+    if stretches >= FEWEST_STRETCHES and chosen:
+        low[chosen], high[chosen] = np.percentile(again, LEVELS, axis=0)
+    whole = float(p.total.sum())
+    left = np.sqrt(max(float(p.misfit(chosen, values).sum()), 0.0) / whole) if whole > 0.0 else 0.0
+    return Found(coefficients, frequency, low, high, tuple(chosen), threshold, float(left))
 
 
-def _support(b: Balance, optimizer: Optimizer, threshold: float) -> list[int]:
-    found = optimizer(*scaled(b), threshold)
+def _without(p: Products, columns: Sequence[int]) -> Array:
+    """For every column, at most what is left without it: share of the power of the response, with three standard errors."""
+    out = []
+    for j in columns:
+        rest = [k for k in columns if k != j]
+        left = p.misfit(rest, p.solved(rest))
+        out.append(float(left.sum()) + SURE * float(np.std(left)) * np.sqrt(len(left)))
+    return np.array(out) / max(float(p.total.sum()), np.finfo(float).tiny)
+
+
+def _support(p: Products, optimizer: Optimizer, threshold: float) -> list[int]:
+    found = optimizer(*square_root(p), threshold)
     return [int(j) for j in np.flatnonzero(np.abs(found) > ZERO)]
 
 
-def _threshold(b: Balance, optimizer: Optimizer) -> float:
-    """The sparsest threshold whose error on left-out stretches is within one standard error of the best."""
-    names = np.unique(b.stretch)
-    fold = np.searchsorted(names, b.stretch) % min(FOLDS, len(names))
-    errors = np.empty((len(THRESHOLDS), int(fold.max()) + 1))
-    for k in range(errors.shape[1]):
-        train = Balance(b.design[fold != k], b.response[fold != k], b.stretch[fold != k])
+def _threshold(p: Products, optimizer: Optimizer) -> float:
+    """The threshold with the least error on left-out stretches."""
+    fold = np.arange(len(p.total)) % min(FOLDS, len(p.total))
+    errors = np.zeros(len(THRESHOLDS))
+    for k in range(int(fold.max()) + 1):
+        train, test = p.taken(np.flatnonzero(fold != k)), p.taken(np.flatnonzero(fold == k))
         for m, threshold in enumerate(THRESHOLDS):
             chosen = _support(train, optimizer, float(threshold))
-            found = b.design[fold == k][:, chosen] @ solved(train.of(chosen)) if chosen else 0.0
-            errors[m, k] = np.mean((b.response[fold == k] - found) ** 2)
-    return float(THRESHOLDS[one_standard_error(errors)])
+            errors[m] += test.misfit(chosen, train.solved(chosen)).sum()
+    return float(THRESHOLDS[len(errors) - 1 - int(np.argmin(errors[::-1]))])
 
 
-def known_together(design: Array) -> tuple[float, tuple[tuple[int, ...], ...]]:
-    """Condition index of columns of length 1, and the sets of columns that it blurs.
+def exchangeable(p: Products, kept: Sequence[int]) -> dict[int, tuple[int, ...]]:
+    """For every kept column those left out that do as well in its place.
 
-    A set is what has more than half of its variance in one direction with an index above 30 (Belsley, Kuh & Welsch 1980).
+    One does where the misfit grows by less than two standard errors over the stretches.
     """
-    length = np.linalg.norm(design, axis=0)
-    _, singular, turned = np.linalg.svd(design / np.where(length > 0.0, length, 1.0), full_matrices=False)
-    tiny = np.finfo(float).eps * float(singular.max(initial=0.0))
-    singular = np.maximum(singular, tiny or 1.0)
-    share = (turned / singular[:, None]) ** 2
-    share /= share.sum(axis=0)
-    index = singular[0] / singular if len(singular) else np.zeros(0)
-    blurred = [share[index > INDEX].sum(axis=0) > SHARE] if np.any(index > INDEX) else []
-    sets = [tuple(int(j) for j in np.flatnonzero(one)) for one in blurred]
-    return float(index.max(initial=1.0)), tuple(s for s in sets if len(s) > 1)
+    out: dict[int, tuple[int, ...]] = {}
+    best = p.misfit(kept, p.solved(kept))
+    fewest = np.finfo(float).eps * float(np.abs(p.total).sum())
+    for j in kept:
+        others = []
+        for k in sorted(set(range(p.gram.shape[1])) - set(kept)):
+            swapped = [k if i == j else i for i in kept]
+            worse = p.misfit(swapped, p.solved(swapped)) - best
+            error = float(np.std(worse)) * np.sqrt(len(worse))
+            if worse.sum() <= max(CLEARLY * error, 100.0 * fewest):
+                others.append(k)
+        out[j] = tuple(others)
+    return out

@@ -130,7 +130,7 @@ def watched_value(which: int, state: Array) -> Array:
 
 def ramp(begin: Array, target: Array, rate: Array, since: Array) -> Array:
     """(3, n) angles a time after the order was given; angles (3, 1 or n), rate (3,), time (n,)."""
-    reach, since = np.broadcast_arrays(reach_time(begin, target, rate), since)
+    reach, since = np.broadcast_arrays(reach_time(begin, target, rate), np.maximum(since, 0.0))
     part = np.divide(since, reach, out=np.ones(reach.shape), where=reach > since)
     return np.asarray(np.where(part < 1.0, begin + (target - begin) * part, target))
 

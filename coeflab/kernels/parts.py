@@ -1,11 +1,12 @@
 """Added mass of simple parts about their own centres: cylinders and plates.
 
-Source: the HUUV paper (Talarczyk et al. 2025), equations 28-31, with these corrections: the plate moves c^2 b and not
+Source: the HUUV paper (Talarczyk et al. 2025), equations 28-32, with these corrections: the plate moves c^2 b and not
 c^2 b^3 (equation 30); the cylinder turns with rho pi r^2 L^3 / 12 about its centre, so that one standing on its end has
 L^3 / 3 and a mast [(r_h + L)^3 - r_h^3] / 3, which come out of the transform to a common point; a plate's arm takes the k
 of its motion along the normal, not k', beside its own turning term (equation 31); the off-diagonal terms m / 20 of equation
 33 are dropped for those that the transform gives. Equation 30 leaves out what a mast moves along its own axis; here it is
-the tenth of its displaced mass that equation 28 gives every cylinder, below 1 % of the vehicle's heave.
+the tenth of its displaced mass that equation 28 gives every cylinder, below 1 % of the vehicle's heave. Equation 32 is the
+hull's alone; here a mast away from the yaw axis adds its lateral mass times its arm squared, by the same transform.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ def plate_added_mass(chord: float, span: float, density: float) -> Array:
 
 
 def cylinder_added_mass(radius: float, length: float, density: float) -> Array:
-    """(6, 6) added mass of a cylinder about its centre, axis along x: HUUV equations 28-31 as corrected.
+    """(6, 6) added mass of a cylinder about its centre, axis along x: HUUV equations 28-32 as corrected.
 
     Axial 0.1 rho pi r^2 L (the paper's allowance), lateral rho pi r^2 L and turning rho pi r^2 L^3 / 12 (sections,
     ends not corrected), nothing about the axis.

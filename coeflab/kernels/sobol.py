@@ -152,3 +152,8 @@ def known_share(inputs: Array, result: Array) -> Array:
         left = max(whole - float(np.sum((basis.T @ y) ** 2)), 0.0) / whole
         out[k] = max(1.0 - left * (len(y) - 1) / (len(y) - 1 - DEGREE), 0.0)
     return out
+
+
+def share_noise(rows: int) -> float:
+    """What `known_share` of so many rows stays below where there is no dependence, by three standard deviations."""
+    return float(3.0 * np.sqrt(2.0 * DEGREE) / rows)

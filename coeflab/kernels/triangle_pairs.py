@@ -11,14 +11,15 @@ from coeflab.kernels.surface_mesh import Faces
 Pairs = tuple[NDArray[np.int64], NDArray[np.int64]]
 FILLED = 12
 MOST_PAIRS = 8_000_000
-TOUCH = 1e-5
+TOUCH, SHARED = 1e-5, 1e-3
 
 
 def crossing_faces(vertices: Array, faces: Faces) -> int | None:
     """How many pairs of faces cross, or None where more than eight million pairs would have to be looked at.
 
-    Two faces cross when a side of one passes through the inside of the other. Faces that only touch, and faces that
-    lie in one plane, do not count.
+    Two faces cross when a side of one passes through the inside of the other, or when their planes meet in a line on
+    which both have a length in common: sides that meet sides, as in bodies with planes of symmetry. Faces that only
+    touch, and faces that lie in one plane, do not count.
     """
     triangles = vertices[faces]
     candidates = _neighbours(triangles.min(axis=1), triangles.max(axis=1))
@@ -34,6 +35,7 @@ def crossing_faces(vertices: Array, faces: Faces) -> int | None:
     for through, by in ((one, two), (two, one)):
         for k in range(3):
             cut |= _pierced(triangles[through], triangles[by, k], triangles[by, (k + 1) % 3])
+    cut[~cut] = _share_a_length(triangles[one[~cut]], triangles[two[~cut]])
     return int(cut.sum())
 
 
@@ -92,3 +94,36 @@ def _pierced(triangle: Array, start: Array, end: Array) -> NDArray[np.bool_]:
     inside = [volume(start, end, p, q) for p, q in ((a, b), (b, c), (c, a))]
     same = np.all([v > least for v in inside], axis=0) | np.all([v < -least for v in inside], axis=0)
     return np.asarray(through & same)
+
+
+def _share_a_length(one: Array, two: Array) -> NDArray[np.bool_]:
+    """Whether both triangles cover a common length of the line in which their planes meet.
+
+    Moller, A fast triangle-triangle intersection test, J. Graphics Tools 2, 1997. Corners closer to the other's plane
+    than touching do not count as beyond it.
+    """
+    both = np.concatenate([one, two], axis=1)
+    scale = np.max(np.ptp(both, axis=1), axis=1, initial=0.0)
+    first, second = (np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]) for t in (one, two))
+    line = np.cross(first, second)
+    length = np.linalg.norm(line, axis=1)
+    line = line / np.where(length > 0.0, length, 1.0)[:, None]
+    low, high, beyond = [], [], length > 0.0
+    for triangle, other, normal in ((one, two, second), (two, one, first)):
+        height = np.einsum("ij,ikj->ik", normal, triangle - other[:, :1])
+        least = TOUCH * scale**3
+        beyond &= (height.min(axis=1) < -least) & (height.max(axis=1) > least)
+        along = np.einsum("ij,ikj->ik", line, triangle - both[:, :1])
+        ends = [_where_zero(height, along, k, (k + 1) % 3) for k in range(3)]
+        low.append(np.nanmin(ends, axis=0, initial=np.inf))
+        high.append(np.nanmax(ends, axis=0, initial=-np.inf))
+    common = np.minimum(*high) - np.maximum(*low)
+    return np.asarray(beyond & (common > SHARED * scale))
+
+
+def _where_zero(height: Array, along: Array, i: int, j: int) -> Array:
+    """Where on the line the side from corner i to j passes through the plane; NaN where it does not."""
+    apart = height[:, i] - height[:, j]
+    passes = (height[:, i] * height[:, j] <= 0.0) & (apart != 0.0)
+    share = height[:, i] / np.where(passes, apart, 1.0)
+    return np.where(passes, along[:, i] + share * (along[:, j] - along[:, i]), np.nan)

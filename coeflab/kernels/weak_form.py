@@ -6,7 +6,7 @@ the derivative from the measurement to the known function::
     <f> = int w f dt / int w dt        <df/dt> = - int w' f dt / int w dt
 
 Measurements are taken as straight between their times, and the integrals of that are exact for any steps: the rate of a
-constant is zero to rounding. Test functions and their use with sparse regression: Gurevich, Reinbold & Grigoriev (2019),
+constant is zero to rounding. Rows that are few for that are joined by splines first. Test functions and their use with sparse regression: Gurevich, Reinbold & Grigoriev (2019),
 Messenger & Bortz (2021), and pysindy's ``WeakPDELibrary``, which wants even steps and draws its windows at random.
 """
 
@@ -22,6 +22,8 @@ from coeflab.kernels.least_squares import Array
 
 POWER = 4
 FEWEST = 8
+FINE = 300.0
+ROUNDING = 1e-9
 _TEST = Polynomial([1.0, 0.0, -1.0]) ** POWER
 _ONCE = _TEST.integ(lbnd=-1.0)
 _TWICE = _ONCE.integ(lbnd=-1.0)
@@ -64,11 +66,6 @@ class Windows:
             kept[row], moved[row] = of_values @ values[rows], of_rates @ rates[rows]
         return kept, moved
 
-    def noise(self) -> tuple[Array, Array]:
-        """(m,) standard deviations of both averages for a white noise of 1 in every row."""
-        pairs = [self._weights(centre)[1:] for centre in self.centres]
-        return np.array([np.linalg.norm(a) for a, _ in pairs]), np.array([np.linalg.norm(b) for _, b in pairs])
-
     def _weights(self, centre: float) -> tuple[slice, Array, Array]:
         """Rows of a window, and what each counts for in the average of a value and of a rate."""
         first = max(int(np.searchsorted(self.time, centre - self.half, side="right")) - 1, 0)
@@ -87,8 +84,27 @@ class Windows:
         return slice(first, last), of_values / _WHOLE, of_rates / (_WHOLE * self.half)
 
 
+def refined(time: Array, columns: Array, half: float) -> tuple[Array, Array]:
+    """The rows with others between them, on cubic splines, so that a window has `FINE` rows: straight pieces cut corners.
+
+    Parameters
+    ----------
+    time : (n,) array
+    columns : (n, k) array
+    half : float
+        Half of a window, s.
+    """
+    from scipy.interpolate import CubicSpline
+
+    parts = int(np.ceil(FINE * float(np.median(np.diff(time))) / (2.0 * half)))
+    if parts < 2:
+        return time, columns
+    between = np.concatenate([(time[:-1, None] + np.diff(time)[:, None] * np.arange(parts) / parts).ravel(), time[-1:]])
+    return between, np.asarray(CubicSpline(time, columns, axis=0)(between))
+
+
 def windows(time: Array, half: float, apart: float) -> Windows:
-    """Windows at even distances over a series; those over a gap in it are left out.
+    """Windows at even distances over a series; those with too few rows or over a gap are left out.
 
     Parameters
     ----------
@@ -97,27 +113,18 @@ def windows(time: Array, half: float, apart: float) -> Windows:
         Half of a window, s.
     apart : float
         Distance of the centres, s.
-
-    Notes
-    -----
-    A window counts with `FEWEST` rows and without a step longer than a quarter of it.
     """
     count = int(np.floor((time[-1] - time[0] - 2.0 * half) / apart * (1.0 + 1e-12))) + 1
     centres = time[0] + half + apart * np.arange(max(count, 0))
+    return Windows(time, centres[filled(time, centres, half)], half)
+
+
+def filled(time: Array, centres: Array, half: float) -> NDArray[np.bool_]:
+    """(m,) whether a window has `FEWEST` rows at least, reaches over no end, and no step longer than a quarter of it."""
     low = np.searchsorted(time, centres - half, side="left")
     high = np.searchsorted(time, centres + half, side="right")
-    gaps = np.flatnonzero(np.diff(time) > 0.5 * half)
-    broken = np.zeros(len(centres), dtype=bool)
-    for gap in gaps:
-        broken |= (time[gap] < centres + half) & (time[gap + 1] > centres - half)
-    good: NDArray[np.bool_] = (high - low >= FEWEST) & ~broken
-    return Windows(time, centres[good], half)
-
-
-def white_noise(values: Array) -> Array:
-    """(k,) standard deviations of white noise on columns (n, k): from second differences, which a smooth motion has not.
-
-    The median absolute one is taken, so that the kinks of a control do not count. Evenly spaced rows are assumed.
-    """
-    bends = values[2:] - 2.0 * values[1:-1] + values[:-2]
-    return np.asarray(np.median(np.abs(bends), axis=0) / (0.6744897501960817 * np.sqrt(6.0)))
+    inside = (centres - half >= time[0] - ROUNDING * half) & (centres + half <= time[-1] + ROUNDING * half)
+    good: NDArray[np.bool_] = (high - low >= FEWEST) & inside
+    for gap in np.flatnonzero(np.diff(time) > 0.5 * half):
+        good &= (time[gap] >= centres + half) | (time[gap + 1] <= centres - half)
+    return good

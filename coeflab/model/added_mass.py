@@ -11,6 +11,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.kernels.composition import Definiteness, definiteness, moved
 from coeflab.kernels.transforms import velocity_transfer
+from coeflab.model import noun_tables
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Scaling
 
@@ -50,6 +51,10 @@ class AddedMass:
             object.__setattr__(self, "error", locked(self.error))
         if self.matrix.shape != (6, 6):
             raise InputError(f"a matrix of shape {self.matrix.shape}", "6 x 6")
+
+    def _repr_html_(self) -> str:
+        """The matrix, for notebooks."""
+        return noun_tables.matrix(self)._repr_html_()
 
     @property
     def definiteness(self) -> Definiteness:

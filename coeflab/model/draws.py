@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import derivative
-from coeflab.kernels.groups import connected
 from coeflab.model.frozen import locked
 from coeflab.model.parameter_file import ParameterFile
 
 Array = NDArray[np.float64]
 CELLS = Sequence[Sequence[float | None]]
-CORRELATED = 0.01
+CORRELATED = 0.1
 NEGATIVE = -1e-8
 UNSTATED = "not varied: no uncertainty is stated"
 
@@ -57,9 +57,18 @@ class Uncertain:
         return np.sqrt(np.diag(self.covariance))
 
     def groups(self) -> tuple[tuple[int, ...], ...]:
-        """Blocks of the covariance: symbols that are correlated by more than 0.01, directly or through others."""
-        joined = np.abs(self._correlation()) > CORRELATED
-        return tuple(tuple(sorted(g)) for g in connected(joined))
+        """Blocks of the covariance: symbols that are correlated by more than 0.1, directly or through others."""
+        from scipy.sparse.csgraph import connected_components
+
+        _, label = connected_components(np.abs(self._correlation()) > CORRELATED, directed=False)
+        return tuple(tuple(int(i) for i in np.flatnonzero(label == k)) for k in dict.fromkeys(label))
+
+    def left_out(self) -> float:
+        """Largest correlation between groups, which `designed` leaves out."""
+        apart = np.abs(self._correlation())
+        for g in self.groups():
+            apart[np.ix_(g, g)] = 0.0
+        return float(np.max(apart))
 
     def members(self, count: int, seed: int) -> Array:
         """(count, k) deviations from the values; the first rows are the same for every count.
@@ -109,40 +118,67 @@ def uncertain(parameters: ParameterFile, used: Iterable[str]) -> Uncertain:
     InputError
         The covariance is not positive semidefinite, or nothing at all is uncertain.
     """
-    names = set(used)
-    symbols, values, blocks, sources, held = [], [], [], [], []
-    entries = [c for c in parameters.coefficients if c.value is not None]
-    at = {s: i for i, s in enumerate(parameters.covariance.symbols)}
-    order = [at.get(c.symbol) for c in entries]
-    parts = [(parameters.covariance.matrix, order, [c.symbol for c in entries], [c.value for c in entries],
-              [c.u95 for c in entries], [c.campaign or c.citation or c.origin for c in entries], "covariance")]  # fmt: skip
-    for m in parameters.models:
-        known = [(i, t) for i, t in enumerate(m.terms) if t.value is not None and f"{m.response} {t.symbol}" in names]
-        parts.append(
-            (m.covariance, [i for i, _ in known], [f"{m.response} {t.symbol}" for _, t in known],
-             [t.value for _, t in known], [t.half_width_95 for _, t in known], [m.campaign] * len(known), f"models.{m.response}")
-        )  # fmt: skip
-    for matrix, rows, labels, numbers, halves, origins, column in parts:
-        cells = _cells(matrix, rows, halves)
-        stated = [i for i in range(len(labels)) if cells[i, i] > 0.0]
-        if np.any(np.delete(cells, stated, axis=0)):
-            stated = list(range(len(labels)))
-        held += [labels[i] for i in range(len(labels)) if i not in stated]
-        _semidefinite(cells[np.ix_(stated, stated)], [labels[i] for i in stated], column)
-        symbols += [labels[i] for i in stated]
-        values += [float(numbers[i] or 0.0) for i in stated]
-        sources += [origins[i] for i in stated]
-        blocks.append(cells[np.ix_(stated, stated)])
-    if not symbols:
+    parts = [p for p in (_of_coefficients(parameters), *_of_tables(parameters, set(used))) if p.symbols]
+    drawn = [_stated(p) for p in parts]
+    if not any(len(chosen) for chosen, _ in drawn):
         raise InputError(
-            "a parameter file without any stated uncertainty", "U95 or a covariance of some coefficient", column="covariance"
+            "a parameter file without any stated uncertainty",
+            "U95 or a covariance of some coefficient",
+            column="covariance",
         )
-    whole = np.zeros((len(symbols),) * 2)
-    first = 0
-    for b in blocks:
-        whole[first : first + len(b), first : first + len(b)] = b
-        first += len(b)
-    return Uncertain(tuple(symbols), np.array(values), whole, tuple(sources), tuple(held), _said(parameters, held))
+    held = [
+        p.symbols[i]
+        for p, (chosen, _) in zip(parts, drawn, strict=True)
+        for i in range(len(p.symbols))
+        if i not in chosen
+    ]
+    at = [(p, i) for p, (chosen, _) in zip(parts, drawn, strict=True) for i in chosen]
+    return Uncertain(
+        symbols=tuple(p.symbols[i] for p, i in at), values=np.array([p.values[i] for p, i in at]),
+        covariance=block_diag(*(cells for chosen, cells in drawn if chosen)), sources=tuple(p.sources[i] for p, i in at),
+        held=tuple(held), statements=_said(parameters, held),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """Coefficients with one covariance: those of the file, or the terms of a table; ``rows`` are places in the matrix."""
+
+    column: str
+    matrix: CELLS
+    rows: tuple[int | None, ...]
+    symbols: tuple[str, ...]
+    values: tuple[float, ...]
+    halves: tuple[float | None, ...]
+    sources: tuple[str, ...]
+
+
+def _of_coefficients(parameters: ParameterFile) -> _Part:
+    at = {s: i for i, s in enumerate(parameters.covariance.symbols)}
+    known = [c for c in parameters.coefficients if c.value is not None]
+    return _Part(
+        "covariance", parameters.covariance.matrix, tuple(at.get(c.symbol) for c in known), tuple(c.symbol for c in known),
+        tuple(float(c.value or 0.0) for c in known), tuple(c.u95 for c in known),
+        tuple(c.campaign or c.citation or c.origin for c in known),
+    )  # fmt: skip
+
+
+def _of_tables(parameters: ParameterFile, used: set[str]) -> Iterator[_Part]:
+    for m in parameters.models:
+        known = [(i, t) for i, t in enumerate(m.terms) if t.value is not None and f"{m.response} {t.symbol}" in used]
+        yield _Part(
+            f"models.{m.response}", m.covariance, tuple(i for i, _ in known),
+            tuple(f"{m.response} {t.symbol}" for _, t in known), tuple(float(t.value or 0.0) for _, t in known),
+            tuple(t.half_width_95 for _, t in known), (m.campaign,) * len(known),
+        )  # fmt: skip
+
+
+def _stated(part: _Part) -> tuple[list[int], Array]:
+    """Places of what has an uncertainty, and its covariance."""
+    cells = _cells(part.matrix, part.rows, part.halves)
+    _semidefinite(cells, part.symbols, part.column)
+    chosen = [i for i in range(len(part.symbols)) if cells[i, i] > 0.0]
+    return chosen, cells[np.ix_(chosen, chosen)]
 
 
 def _cells(matrix: CELLS, rows: Sequence[int | None], halves: Sequence[float | None]) -> Array:
@@ -157,8 +193,6 @@ def _cells(matrix: CELLS, rows: Sequence[int | None], halves: Sequence[float | N
 
 
 def _semidefinite(cells: Array, labels: Sequence[str], column: str) -> None:
-    if not len(cells):
-        return
     scale = np.sqrt(np.diag(cells))
     scale = np.where(scale > 0.0, scale, 1.0)
     low, vectors = np.linalg.eigh(cells / np.outer(scale, scale))

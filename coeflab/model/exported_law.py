@@ -102,6 +102,11 @@ def central_inertia(parameters: ParameterFile) -> Array | None:
     return central * np.eye(3)
 
 
+def states_buoyancy(parameters: ParameterFile, otherwise: str) -> str:
+    """Why an export has no weight and buoyancy, or not the file's: the file states none, or the target does not take them."""
+    return "the file's hydrostatics are not in it" if parameters.hydrostatics is not None else otherwise
+
+
 def common_changes(parameters: ParameterFile, law: ExportedLaw, *, whole: bool) -> tuple[str, ...]:
     """What any such export changes, in words; `whole` says whether the target takes v^2 and w^2 of the resistance."""
     out = [f"numbers are SI: primes times 1/2 rho L^k at {parameters.conditions.density:g} kg/m^3", *law.statements[1:]]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.kernels.slopes import Estimate, Recommendation
+from coeflab.model import noun_tables
 from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.frozen import locked
@@ -161,6 +162,10 @@ class FitResult:
     def campaigns(self) -> tuple[str, ...]:
         """The campaigns that it comes from."""
         return tuple(self.campaign.split(", "))
+
+    def _repr_html_(self) -> str:
+        """Coefficients and terms, for notebooks."""
+        return "".join(t._repr_html_() for t in noun_tables.fit_tables(self))
 
     def sweep(self, symbol: str) -> Sweep:
         """The sweep of a coefficient."""

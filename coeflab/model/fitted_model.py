@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from coeflab.kernels.domain import half_spaces, inside
 from coeflab.kernels.linear_model import LinearFit
 from coeflab.kernels.terms import Term, design
+from coeflab.model import noun_tables
 from coeflab.model.frozen import locked, locked_columns
 from coeflab.model.set_aside import SetAside
 
@@ -161,6 +162,10 @@ class FittedModel:
         spread = 2.0 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", rows, joint, rows), 0.0))
         sure = np.isfinite(values) & ~np.any(rows[:, bare] != 0.0, axis=1)
         return values, np.where(sure, spread, np.nan), self.domain.contains(columns)
+
+    def _repr_html_(self) -> str:
+        """Its terms, for notebooks."""
+        return noun_tables.terms(self)._repr_html_()
 
     def named(self, symbol: str) -> tuple[float, float]:
         """Value and 95 % half-width of one coefficient."""

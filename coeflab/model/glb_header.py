@@ -29,8 +29,11 @@ def glb_faces(path: Path) -> int:
     with path.open("rb") as stream:
         head = stream.read(20)
         words = [int.from_bytes(head[k : k + 4], "little") for k in range(0, 20, 4)]
-        if len(head) < 20 or head[:4] != b"glTF" or words[1] != 2 or head[16:20] != b"JSON":
-            raise InputError(shown(head[:4].decode("latin-1")), "a GLB of version 2", file=path)
+        if len(head) < 20 or head[:4] != b"glTF":
+            raise InputError(shown(head[:4].decode("latin-1")), 'a GLB, which begins with "glTF"', file=path)
+        if words[1] != 2 or head[16:20] != b"JSON":
+            found = f"version {words[1]}" if words[1] != 2 else "no description behind the header"
+            raise InputError(found, "a GLB of version 2 that begins with its description", file=path)
         if words[2] != size or words[3] > min(size - 20, LARGEST_JSON):
             raise InputError(
                 f"{size} bytes behind a header that counts {words[2]}, {words[3]} of them description",

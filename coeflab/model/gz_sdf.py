@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.identifiers import identifier, one_line
 from coeflab.core.xml import parse_xml, serialised
-from coeflab.model.exported_law import central_inertia, centre_of_gravity, exported_law, number
+from coeflab.model.exported_law import central_inertia, centre_of_gravity, exported_law, number, states_buoyancy
 from coeflab.model.gz_link import FLUID_TAGS, FORCES, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
 from coeflab.model.loss import unheld
 from coeflab.model.lost import missing_mass, missing_water
@@ -21,7 +21,8 @@ Array = NDArray[np.float64]
 LINK = "base_link"
 INERTIA = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 AXES = "axes: FRD to the link frame x forward, y port, z up; Y Z M N v w q r change sign, factors between bars do not"
-WEIGHTLESS = "no weight and no buoyancy (<gravity> false): the parameter file states neither"
+WEIGHTLESS = "no weight and no buoyancy"
+NEITHER = "the parameter file states neither"
 
 
 def sdf(parameters: ParameterFile, version: str, plugin: list[tuple[str, str]], fluid: Array | None) -> bytes:
@@ -51,7 +52,7 @@ def sdf(parameters: ParameterFile, version: str, plugin: list[tuple[str, str]], 
         (
             f"{one_line(p.name)}, body: {one_line(p.body)}",
             f"Link frame: x forward, y port, z up, origin at the reference point; density {number(p.conditions.density)} kg/m^3",
-            "No weight and no buoyancy: the parameter file states neither. Collisions and visuals are yours to add.",
+            f"N{WEIGHTLESS[1:]}: {states_buoyancy(p, NEITHER)}. Collisions and visuals are yours to add.",
         ),
     )
 
@@ -95,7 +96,8 @@ def placed(parameters: ParameterFile) -> tuple[str, ...]:
     """Where the link's origin and its centre of gravity are, in words."""
     at = FLU[:3] * centre_of_gravity(parameters) + 0.0
     moved = (f"centre of gravity at {at[0]:.6g} {at[1]:.6g} {at[2]:.6g} m, in <inertial><pose>",) if np.any(at) else ()
-    return (AXES, "the link's origin is the reference point", *moved, WEIGHTLESS)
+    weightless = f"{WEIGHTLESS} (<gravity> false): {states_buoyancy(parameters, NEITHER)}"
+    return (AXES, "the link's origin is the reference point", *moved, weightless)
 
 
 def sdf_force(files: Mapping[str, bytes], nu: Array) -> Array:

@@ -111,6 +111,7 @@ def _table(
         "n_points": 0, "rms": 0.0, "press_rms": None, "table": "turns.csv", "campaign": "HUUV Fig. 17",
         "statements": ("Tuned to steady turns; no forces were measured, so that it has no points and no residuals of its own.",),
         "holds": (),
+        "contains_potential": False,
     }  # fmt: skip
 
 

@@ -9,10 +9,11 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative
-from coeflab.model.force_law import ForceLaw, LawTerm
+from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.model.force_law import ForceLaw, LawTerm, force_law
 from coeflab.model.frozen import locked
 from coeflab.model.lost import Lost
+from coeflab.model.motion_terms import as_arrays, motion_terms, open_products
 from coeflab.model.parameter_file import ParameterFile
 
 Array = NDArray[np.float64]
@@ -115,7 +116,18 @@ def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
 
 
 def _moved_by_terms(parameters: ParameterFile) -> set[str]:
-    return {f for c in parameters.coefficients if c.value for f in derivative(c.symbol).factors if f in MOTIONS}
+    of_terms = {f for c in parameters.coefficients if c.value for f in derivative(c.symbol).factors}
+    return (of_terms | {v.name for m in parameters.models for v in m.variables}) & set(MOTIONS)
+
+
+def force_of_tables(parameters: ParameterFile, nu: Array) -> Array | None:
+    """(n, 6) what the fitted tables change in the force of the derivatives and of the ideal fluid; None where there is none."""
+    stated = {c.symbol for c in parameters.coefficients}
+    tabled = [t for t in motion_terms(parameters, tables=False)[0] if t.symbol not in stated]
+    if not tabled:
+        return None
+    beside = open_products(parameters, tables=False) - force_law(parameters).ideal
+    return as_arrays(tabled, beside).force(nu, np.zeros((len(nu), len(CONTROLS))))
 
 
 def loss_of(
@@ -136,7 +148,10 @@ def loss_of(
         The target's files and (n, 6) velocities -> (n, 6) forces, FRD, about the file's reference point, steady motion.
     """
     nu, words = covered_grid(parameters)
+    tables = force_of_tables(parameters, nu)
     ours, theirs = law.force(nu), force(files, nu)
+    if tables is not None:
+        ours, words = ours + tables, f"{words}; the file's force with its fitted tables"
     apart = np.abs(theirs - ours)
     return Loss(
         target,

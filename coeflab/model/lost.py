@@ -46,13 +46,16 @@ class Lost:
         return f"{self.kind}: {self.what}"
 
 
-def lost_by_all(parameters: ParameterFile) -> tuple[Lost, ...]:
-    """What every simulator loses: fitted tables, accelerations beside an added mass, and an added mass of another body."""
-    tables = tuple(Lost(Kind.NOT_HELD, _table(m)) for m in parameters.models if not _by_coefficients(m, parameters))
+def lost_by_all(parameters: ParameterFile, holds: frozenset[str]) -> tuple[Lost, ...]:
+    """What every simulator loses: fitted tables, parts of the vehicle that are not among those it ``holds``, accelerations
+    beside an added mass, and an added mass of another body.
+    """
+    tables = tuple(_table(m) for m in parameters.models if not _by_coefficients(m, parameters))
+    unheld = tuple(Lost(Kind.NOT_HELD, said) for said in (*tables, *_vehicle(parameters, holds)))
     hull = parameters.added_mass
     if hull is None:
-        return tables
-    out = [*tables, *(Lost(Kind.REPLACED, said) for said in _accelerations(parameters, hull))]
+        return unheld
+    out = [*unheld, *(Lost(Kind.REPLACED, said) for said in _accelerations(parameters, hull))]
     if hull.body != parameters.body:
         out.append(
             Lost(
@@ -62,6 +65,25 @@ def lost_by_all(parameters: ParameterFile) -> tuple[Lost, ...]:
             )
         )
     return tuple(out)
+
+
+def _vehicle(parameters: ParameterFile, holds: frozenset[str]) -> list[str]:
+    """Hydrostatics, thrusters and limits of control surfaces that a target is not given."""
+    out = []
+    h = parameters.hydrostatics
+    if h is not None and "hydrostatics" not in holds:
+        x, y, z = (f"{v:g}" for v in h.centre_of_buoyancy)
+        out.append(
+            f"hydrostatics: {h.volume:g} m^3 at ({x}, {y}, {z}) m; the righting moment, and the difference of weight and buoyancy, "
+            "are left to the simulator"
+        )
+    if parameters.thrusters and "thrusters" not in holds:
+        out.append(f"thrusters {', '.join(t.name for t in parameters.thrusters)}: their forces are yours to add")
+    if parameters.surfaces and "surfaces" not in holds:
+        out.append(
+            f"limits and rates of {', '.join(s.control for s in parameters.surfaces)}: angles are taken as given"
+        )
+    return out
 
 
 def _by_coefficients(model: ParameterModel, parameters: ParameterFile) -> bool:

@@ -28,8 +28,9 @@ Array = NDArray[np.float64]
 Faces = NDArray[np.int64]
 MOST_TESTED, MOST_SHELLS = 50_000, 1000
 NOTHING, JOINED, OVERLAP, SHEET = 1e-9, 1e-6, 1e-6, 1e-6
-ON_REQUEST = "Mend it where it was made, or set repair = true under [mesh]."
-NEARLY = "Its vertices nearly meet: set repair = true under [mesh] to join them."
+ASK = "set repair = true under [mesh], or --repair with a bare mesh file"
+ON_REQUEST = f"Mend it where it was made, or {ASK}."
+NEARLY = f"Its vertices nearly meet: {ASK}, to join them."
 PLATE = "Describe it as a plate in a body.toml of reader primitives: the formulas of plates need no thickness."
 BY_HAND = "Mend it where it was made; repair does not close holes or untangle surfaces."
 
@@ -125,7 +126,7 @@ def _outward(volume: Array, area: Array, fail: Callable[..., InputError]) -> Non
             f"{inward.sum()} of {len(volume)} shells that look inward: a cavity, the inner side of a wall, or a part turned "
             "inside out",
             "the outer surface alone",
-            "Water enclosed in the hull moves with it: leave inner walls out, or set repair = true under [mesh].",
+            f"Water enclosed in the hull moves with it: leave inner walls out, or {ASK}.",
         )
 
 
@@ -152,7 +153,7 @@ def _apart(vertices: Array, faces: Faces, shell: Labels, count: int, fail: Calla
         raise fail(
             f"{count} shells of which {overlapping} pairs overlap, so that their common volume counts twice",
             "one surface around all",
-            "Union them first, or set repair = true under [mesh].",
+            f"Union them first, or {ASK}.",
         )
 
 

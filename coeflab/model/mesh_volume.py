@@ -28,11 +28,14 @@ class VolumeGap:
         Of all panels, extrapolated as the square of their size: what no refinement of these panels takes away.
     body : str
         Whose volume that is, in words.
+    meshes : int
+        How many there were; one alone has no error estimate.
     """
 
     finest: float
     left: float
     body: str
+    meshes: int
 
     @property
     def matters(self) -> bool:
@@ -51,7 +54,10 @@ class VolumeGap:
     @property
     def said(self) -> str:
         """The same in words."""
-        out = f"volume of the finest panels {self.finest:+.2%} from {self.body}, {self.left:+.2%} once extrapolated"
+        out = f"volume of the finest panels {self.finest:+.2%} from {self.body}"
+        if self.meshes == 1:
+            return out
+        out += f", {self.left:+.2%} once extrapolated"
         return f"{out}: carried in the error estimate" if self.matters else out
 
 
@@ -71,7 +77,7 @@ def volume_gap(body: Body, mesh: TriangleMesh, meshes: Sequence[Array]) -> Volum
     if len(meshes) > 1:
         limit += (volumes[0] - volumes[1]) / (len(meshes[0]) / len(meshes[1]) - 1.0)
     whole, name = _whole(body, mesh)
-    return VolumeGap(volumes[0] / whole - 1.0, limit / whole - 1.0, name)
+    return VolumeGap(volumes[0] / whole - 1.0, limit / whole - 1.0, name, len(meshes))
 
 
 def _whole(body: Body, mesh: TriangleMesh) -> tuple[float, str]:

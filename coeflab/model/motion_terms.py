@@ -7,13 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coeflab.core.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, derivative
+from coeflab.core.errors import InputError
+from coeflab.core.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
+from coeflab.kernels.least_squares import Array
 from coeflab.kernels.motion_law import BASE, WIND, MotionLaw
 from coeflab.kernels.terms import parse_suffix
 from coeflab.model.force_law import force_law
+from coeflab.model.parameter_coefficient import ParameterCoefficient
 from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.parameter_model import ParameterModel
+from coeflab.model.parameter_model import ANGLE_OF, ParameterModel
 from coeflab.model.regression import MOMENT_COEFFICIENTS
+from coeflab.model.scaling import Conditions, Scaling
 
 FREE = (-np.inf, np.inf)
 AHEAD = ("u", 10.0, -1.0, 1.0, False)
@@ -58,18 +62,71 @@ def motion_terms(parameters: ParameterFile, tables: bool) -> tuple[tuple[MotionT
         Whether fitted tables come first.
     """
     derivatives = _derivatives(parameters)
-    fitted, statements = _fitted(parameters)
-    spoken = {t.component for t in derivatives if any(v[0] not in CONTROLS for v, _, _ in t.factors)}
-    by_table = {c for t in fitted for c in _body(t.component)}
+    used = _used(parameters, derivatives, tables)
+    fitted, statements = _fitted(used, parameters)
     if tables:
-        derivatives = tuple(t for t in derivatives if t.component not in by_table)
-    else:
-        fitted = tuple(t for t in fitted if not _body(t.component) & spoken)
-    return derivatives + fitted, statements if fitted else ()
+        by_table = {c for m in used for c in _components(m)}
+        derivatives = tuple(t for t in derivatives if t.component not in by_table or not _of_motion(t))
+    return derivatives + fitted, statements
 
 
-def _body(component: str) -> set[str]:
-    return {"X", "Y", "Z"} if component in WIND else {component}
+def open_products(parameters: ParameterFile, tables: bool) -> Array:
+    """(6, 6, 6) quadratics of the ideal fluid that neither a measured derivative nor a table of measured forces speaks of.
+
+    A table over alpha or beta speaks of all products of u with w or v in its component, one over a rate of those with it,
+    unless it says that the potential part is not in its values.
+    """
+    ideal = force_law(parameters).ideal.copy()
+    for m in _used(parameters, _derivatives(parameters), tables):
+        if not m.contains_potential:
+            continue
+        moved = sorted({MOTIONS.index(v) for name in m.names for v in _moves(name)} | {0})
+        for c in _components(m):
+            i = COMPONENTS.index(c)
+            ideal[np.ix_([i], moved, moved)] = 0.0
+    return ideal
+
+
+def _moves(variable: str) -> tuple[str, ...]:
+    name = ANGLE_OF.get(variable, variable)
+    return (name,) if name in MOTIONS else ()
+
+
+def _used(parameters: ParameterFile, derivatives: tuple[MotionTerm, ...], tables: bool) -> tuple[ParameterModel, ...]:
+    """Tables that speak: all that are forces, or those of components without a derivative.
+
+    Raises
+    ------
+    InputError
+        Two of one component that both have a force at no angle and no rate.
+    """
+    spoken = set() if tables else {t.component for t in derivatives if _of_motion(t)}
+    used = [m for m in parameters.models if _components(m) and not _components(m) & spoken]
+    for c in COMPONENTS:
+        based = [m for m in used if c in _components(m) and any(t.value and not t.factors for t in m.terms)]
+        if len({"wind" if _place_of(m) in WIND else m.names for m in based}) > 1:
+            names = " and ".join(f"{m.response} over {', '.join(m.names)}" for m in based)
+            raise InputError(
+                f"{names}, each with a force at rest of its own", f"one table of {c} with a constant", column="models",
+                advice="Fit one table over all of its variables, or give derivatives.",
+            )  # fmt: skip
+    return tuple(used)
+
+
+def _of_motion(term: MotionTerm) -> bool:
+    return not term.factors or any(v[0] not in CONTROLS for v, _, _ in term.factors)
+
+
+def _place_of(model: ParameterModel) -> str:
+    """X Y Z K M N, or D S L; empty where the response is no force."""
+    name = model.response.removesuffix("'")
+    found = MOMENT_COEFFICIENTS.get(name) or (name[2:] if name.startswith("C_") and name[2:] in WIND else name)
+    return found if found in (*COMPONENTS, *WIND) else ""
+
+
+def _components(model: ParameterModel) -> set[str]:
+    place = _place_of(model)
+    return {"X", "Y", "Z"} if place in WIND else {place} if place else set()
 
 
 def _derivatives(parameters: ParameterFile) -> tuple[MotionTerm, ...]:
@@ -81,7 +138,7 @@ def _derivatives(parameters: ParameterFile) -> tuple[MotionTerm, ...]:
         factors = tuple((_free(v), n, a) for v, n, a in t.term.factors)
         if not factors and t.component == "X" and t.speed_power == 2:
             factors = ((AHEAD, 1, False),)
-        per_prime = t.coefficient / value if value else 0.0
+        per_prime = t.coefficient / value if value else _scale(primes[t.symbol], parameters)
         out.append(MotionTerm(t.symbol + "'", t.component, t.coefficient, per_prime, t.speed_power, factors))
     for c in parameters.coefficients:
         d = derivative(c.symbol)
@@ -95,19 +152,30 @@ def _derivatives(parameters: ParameterFile) -> tuple[MotionTerm, ...]:
     return tuple(out)
 
 
+def _scale(c: ParameterCoefficient, parameters: ParameterFile) -> float:
+    """SI coefficient of one unit of a coefficient that is zero."""
+    at = parameters.conditions
+    if c.law == "rest":
+        primes = Scaling(parameters.scaling.length, parameters.scaling.length_name)
+        return primes.factor(c.symbol, Conditions(at.density, at.speed))
+    return 0.5 * at.density * parameters.scaling.length ** derivative(c.symbol).powers[1]
+
+
 def _free(name: str) -> Variable:
     return (name, 0.0, *FREE, False)
 
 
-def _fitted(parameters: ParameterFile) -> tuple[tuple[MotionTerm, ...], tuple[str, ...]]:
+def _fitted(
+    used: tuple[ParameterModel, ...], parameters: ParameterFile
+) -> tuple[tuple[MotionTerm, ...], tuple[str, ...]]:
     out: list[MotionTerm] = []
-    statements = []
-    for m in parameters.models:
-        place = _place(m, parameters)
-        if place is None:
-            statements.append(f"the table of {m.response} is no force that a motion needs and was left out")
-            continue
-        component, scale, power = place
+    statements = [
+        f"the table of {m.response} is no force that a motion needs and was left out"
+        for m in parameters.models
+        if not _components(m)
+    ]
+    for m in used:
+        component, scale, power = _place(m, parameters)
         variables = _variables(m, parameters.scaling.length)
         for t in m.terms:
             if t.value is None:
@@ -119,13 +187,10 @@ def _fitted(parameters: ParameterFile) -> tuple[tuple[MotionTerm, ...], tuple[st
     return tuple(out), tuple(statements)
 
 
-def _place(model: ParameterModel, parameters: ParameterFile) -> tuple[str, float, int] | None:
+def _place(model: ParameterModel, parameters: ParameterFile) -> tuple[str, float, int]:
     """Component, SI force of one unit of the response, power of the speed."""
     pressure, length = 0.5 * parameters.conditions.density, parameters.scaling.length
-    name = model.response.removesuffix("'")
-    component = MOMENT_COEFFICIENTS.get(name) or (name[2:] if name.startswith("C_") and name[2:] in WIND else name)
-    if component not in (*COMPONENTS, *WIND):
-        return None
+    component = _place_of(model)
     arm = length if component in "KMN" else 1.0
     if model.unit != "1":
         return component, 1.0, 0

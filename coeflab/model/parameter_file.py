@@ -14,6 +14,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.toml import read_text
+from coeflab.model import noun_tables
 from coeflab.model.parameter_added_mass import ParameterAddedMass
 from coeflab.model.parameter_coefficient import ParameterCoefficient, ParameterCovariance
 from coeflab.model.parameter_mass import ParameterMass
@@ -162,6 +163,10 @@ class ParameterFile(Strict):
         """The coefficient of a symbol, with or without prime."""
         wanted = symbol.removesuffix("'") + "'"
         return next((c for c in self.coefficients if c.symbol == wanted), None)
+
+    def _repr_html_(self) -> str:
+        """The coefficients, for notebooks."""
+        return noun_tables.parameters(self)._repr_html_()
 
     def to_json(self) -> bytes:
         """The file's bytes: sorted as declared, two blanks of indent, a closing newline, never NaN.

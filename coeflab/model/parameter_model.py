@@ -95,6 +95,13 @@ class ParameterModel(Strict):
             "what half widths and covariance hold: the scatter, the grid, declared inputs; never the form", since="1.2"
         ),
     ] = ("random",)
+    contains_potential: Annotated[
+        bool,
+        told(
+            "true: the values are whole forces, as measured; false: -C_A(nu) nu of `added_mass` comes on top",
+            since="1.3",
+        ),
+    ] = True
 
     @model_validator(mode="after")
     def _consistent(self) -> ParameterModel:

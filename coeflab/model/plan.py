@@ -12,7 +12,14 @@ from coeflab.core.files import located
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.toml import Section, read_toml
 from coeflab.model.scaling import read_conditions, read_scaling
-from coeflab.model.study import Plan, PlannedExport, PlannedJoint, PlannedParameterFile, PlannedTable
+from coeflab.model.study import (
+    Plan,
+    PlannedExport,
+    PlannedJoint,
+    PlannedManoeuvre,
+    PlannedParameterFile,
+    PlannedTable,
+)
 
 JOINT = "manoeuvring_model"
 _NAME = re.compile(r"^[\w][\w .+-]{0,79}$")
@@ -77,6 +84,15 @@ def _joint(root: Section) -> tuple[PlannedJoint, ...]:
     return tuple(out)
 
 
+def _manoeuvres(root: Section, path: Path) -> tuple[PlannedManoeuvre, ...]:
+    out = []
+    for s in root.sections("manoeuvre"):
+        options = s.section("options", required=False)
+        out.append(PlannedManoeuvre(s.text("parameter_file"), s.text("name"), dict(options.content), path, s.name))
+        s.finish()
+    return tuple(out)
+
+
 def read_plan(path: Path) -> Plan:
     """Read a plan.
 
@@ -130,6 +146,7 @@ def read_plan(path: Path) -> Plan:
         references=tuple(references),
         parameter_files=tuple(files),
         exports=tuple(exports),
+        manoeuvres=_manoeuvres(root, path),
         wanted=tuple(w.removesuffix("'") for w in wanted),
         include_uncertain=study.flag("include_uncertain", False),
         file=InputFile(path.name, sha256_of(path)),

@@ -26,6 +26,7 @@ from coeflab.model.triangulation import Triangulation
 if TYPE_CHECKING:
     from coeflab.model.export import Export
     from coeflab.model.parameter_file import ParameterFile
+    from coeflab.model.simulation import Simulation
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +99,31 @@ class PlannedExport:
         return f"{self.place}.{name}"
 
 
+@dataclass(frozen=True, slots=True)
+class PlannedManoeuvre:
+    """One ``[[manoeuvre]]``: a parameter file of the study, the manoeuvre's name and its options.
+
+    Attributes
+    ----------
+    parameter_file, name : str
+    options : mapping
+    file : Path or None
+        The plan's, for messages.
+    place : str
+        The table in it.
+    """
+
+    parameter_file: str
+    name: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+    file: Path | None = None
+    place: str = "manoeuvre"
+
+    def key(self, name: str) -> str:
+        """Dotted name of a key."""
+        return f"{self.place}.{name}"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
     """What to do, with paths resolved.
@@ -119,6 +145,7 @@ class Plan:
     references : tuple of Path
     parameter_files : tuple of PlannedParameterFile
     exports : tuple of PlannedExport
+    manoeuvres : tuple of PlannedManoeuvre
     wanted : tuple of str
         Coefficients that must appear, with a status if no table gives them.
     include_uncertain : bool
@@ -143,6 +170,7 @@ class Plan:
     joint: tuple[PlannedJoint, ...] = ()
     hull: Path | None = None
     method: str = "all"
+    manoeuvres: tuple[PlannedManoeuvre, ...] = ()
 
     def __post_init__(self) -> None:
         if self.reference_point is not None:
@@ -169,6 +197,7 @@ class Study:
     checks: tuple[Check, ...] = ()
     hulls: Mapping[str, Triangulation] = field(default_factory=dict)
     exports: tuple[Export, ...] = ()
+    manoeuvres: tuple[Simulation, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parameter_files", MappingProxyType(dict(self.parameter_files)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from html import escape
 from math import isnan
 
 
@@ -25,6 +26,18 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     notes: tuple[str, ...] = ()
     left: frozenset[int] = frozenset({0})
+
+    def _repr_html_(self) -> str:
+        """The table for notebooks; every text escaped."""
+        sides = ["left" if i in self.left else "right" for i in range(len(self.headers))]
+        heads, *rows = (
+            "".join(f'<{tag} style="text-align: {side}">{escape(cell)}</{tag}>' for side, cell in zip(sides, row))
+            for tag, row in (("th", self.headers), *(("td", r) for r in self.rows))
+        )
+        body = "".join(f"<tr>{row}</tr>" for row in rows)
+        notes = "".join(f'<p style="font-size: 85%">{escape(note)}</p>' for note in self.notes)
+        caption = f'<caption style="text-align: left; font-weight: bold">{escape(self.title)}</caption>'
+        return f"<table>{caption}<thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table>{notes}"
 
 
 ABSENT = "-"

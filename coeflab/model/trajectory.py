@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.kernels.vehicle_motion import euler_angles
+from coeflab.model import noun_tables
 from coeflab.model.frozen import locked, locked_columns
 
 Array = NDArray[np.float64]
@@ -87,6 +88,10 @@ class Trajectory:
     def speed(self) -> Array:
         """(n,) through the water, m/s."""
         return np.asarray(np.linalg.norm(self.velocity[:, :3], axis=1))
+
+    def _repr_html_(self) -> str:
+        """Beginning, end and range, for notebooks."""
+        return noun_tables.motion(self)._repr_html_()
 
     def until(self, time: float) -> Trajectory:
         """The rows up to a time."""

@@ -88,7 +88,8 @@ class Triangulation:
         """(6, 6) range over the methods that say something on an entry, over the recommended one's size there.
 
         The size is the entry itself on the diagonal, the root of both its diagonal entries off it; NaN where fewer than
-        two methods have it. A zero on the diagonal is silence, not a value.
+        two methods have it or the recommended one has not. A zero on the diagonal, or what rounding makes of it, is silence
+        and not a value.
         """
         stack = np.array([r.matrix for r in self.results])
         diagonal = np.einsum("nii->ni", stack)
@@ -96,6 +97,7 @@ class Triangulation:
         heard = diagonal > SILENT * largest
         speaks = heard[:, :, None] & heard[:, None, :]
         own = np.diag(self.recommended.matrix)
+        own = np.where(own > SILENT * np.repeat(own.reshape(2, 3).max(axis=1), 3), own, 0.0)
         size = np.sqrt(np.outer(own, own))
         high = np.max(np.where(speaks, stack, -np.inf), axis=0)
         low = np.min(np.where(speaks, stack, np.inf), axis=0)

@@ -14,10 +14,9 @@ from coeflab.kernels.motion_law import MotionLaw
 from coeflab.kernels.rigid_body import rigid_body_inertia
 from coeflab.kernels.transforms import rigid_body_force
 from coeflab.kernels.vehicle_motion import restoring, turned_about
-from coeflab.model.force_law import force_law
 from coeflab.model.frozen import locked
 from coeflab.model.inertia import added_mass_of
-from coeflab.model.motion_terms import MotionTerm, as_arrays, motion_terms
+from coeflab.model.motion_terms import MotionTerm, as_arrays, motion_terms, open_products
 from coeflab.model.parameter_file import CoveredRange, ParameterFile
 from coeflab.model.parameter_vehicle import ParameterHydrostatics, ParameterSurface, ParameterThruster
 
@@ -225,7 +224,7 @@ def vehicle(
             said.append("no hydrostatics in the file: neutrally buoyant, centre of buoyancy at that of gravity")
     made = Vehicle(
         name=parameters.name, mass=mass.mass, centre=centre, inertia=inertia, added=added, terms=terms,
-        law=as_arrays(terms, force_law(parameters).ideal), hydrostatics=hydrostatics, thrusters=parameters.thrusters,
+        law=as_arrays(terms, open_products(parameters, tables)), hydrostatics=hydrostatics, thrusters=parameters.thrusters,
         surfaces=parameters.surfaces, free=moves, speed=parameters.conditions.speed, length=parameters.scaling.length,
         density=parameters.conditions.density, covered=parameters.covered, statements=tuple(said),
     )  # fmt: skip

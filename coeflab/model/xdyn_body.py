@@ -31,6 +31,7 @@ RIGID = "rigid body inertia matrix at the center of gravity and projected in the
 ADDED = "added mass matrix at the center of gravity and projected in the body frame"
 DAMPING = "damping matrix at the center of gravity projected in the body frame"
 HERE = "hydrodynamic forces calculation point in body frame"
+BUOYANCY = "buoyancy"
 LARGEST = 1e15
 POWERS = {"linear damping": 1, "quadratic damping": 2}
 UNITS = {"m": 1.0, "m/s": 1.0, "rad/s": 1.0, "rad": 1.0, "kg/m^3": 1.0, "m/s^2": 1.0, "ft": 0.3048, "knot": 1852.0 / 3600.0,
@@ -69,7 +70,7 @@ class XdynBody:
     damping : tuple of (power, (6, 6) array)
         Power 1 or 2, matrices positive.
     left_out : tuple of str
-        Names of the other force models.
+        Names of the other force models, the manoeuvring model ``buoyancy`` among them.
     """
 
     name: str
@@ -182,6 +183,7 @@ def xdyn_body(content: Mapping[str, Any], file: Path | str) -> XdynBody:
     models = [*models, *(body.get("controlled forces") or [])] if isinstance(models, list) else []
     if not all(isinstance(m, dict) and isinstance(m.get("model"), str) for m in models):
         raise reading.fail("a force without a model", "model: name", "external forces")
+    shaped = [m for m in models if m["model"] == "maneuvering" and m.get("name") != BUOYANCY]
     named = str(body.get("name"))
     place = body.get("position of body frame relative to mesh")
     return XdynBody(
@@ -194,9 +196,12 @@ def xdyn_body(content: Mapping[str, Any], file: Path | str) -> XdynBody:
         reading.point(body, "position of body frame relative to mesh"),
         rigid=reading.matrix(dynamics, RIGID) if RIGID in dynamics else None,
         added=reading.matrix(dynamics, ADDED),
-        manoeuvring=tuple(_manoeuvring(reading, m, named) for m in models if m["model"] == "maneuvering"),
+        manoeuvring=tuple(_manoeuvring(reading, m, named) for m in shaped),
         damping=tuple((POWERS[m["model"]], reading.matrix(m, DAMPING)) for m in models if m["model"] in POWERS),
-        left_out=tuple(m["model"] for m in models if m["model"] not in {"maneuvering", *POWERS}),
+        left_out=tuple(
+            BUOYANCY if m["model"] == "maneuvering" else m["model"] for m in models
+            if m not in shaped and m["model"] not in POWERS
+        ),
     )  # fmt: skip
 
 

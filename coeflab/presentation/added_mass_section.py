@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from coeflab.model import noun_tables
+from coeflab.model.body import Body
 from coeflab.model.shape import Parts
 from coeflab.model.study import Study
 from coeflab.model.triangulation import RULE, Triangulation
@@ -11,6 +15,8 @@ from coeflab.presentation.body_figure import body_figure
 from coeflab.presentation.campaign_sections import filled
 from coeflab.presentation.document import Figure, Section
 from coeflab.presentation.hull_figure import hull_figure
+from coeflab.presentation.hull_marks import hull_marks
+from coeflab.presentation.hull_scene import hull_scene
 
 
 def added_mass_sections(study: Study) -> tuple[Section, ...]:
@@ -18,8 +24,10 @@ def added_mass_sections(study: Study) -> tuple[Section, ...]:
     if not study.hulls:
         return ()
     first: dict[str, Triangulation] = {}
-    for found in study.hulls.values():
+    users: dict[str, list[str]] = {}
+    for name, found in study.hulls.items():
         first.setdefault(found.body.name, found)
+        users.setdefault(found.body.name, []).append(name)
     text = (
         "Added mass in unbounded fluid by every method that applies, about the body's reference point. Potential theory is "
         "not tuned to a measurement: where one stands beside it, the gap is shown.",
@@ -27,7 +35,9 @@ def added_mass_sections(study: Study) -> tuple[Section, ...]:
         "A force measured in steady motion holds an ideal fluid's part, an entry of -C_A(nu) nu such as the Munk moment in "
         "Nv' and Mw'. It is booked apart, so that a simulator that adds C_A(nu) itself is given the viscous part alone.",
     )
-    bodies = tuple(_body(found, f"hull-{i}") for i, found in enumerate(first.values()))
+    bodies = tuple(
+        _body(study, found, tuple(users[name]), f"hull-{i}") for i, (name, found) in enumerate(first.items())
+    )
     files = tuple(
         Section(
             f"potential-{i}",
@@ -39,7 +49,7 @@ def added_mass_sections(study: Study) -> tuple[Section, ...]:
     return (Section("added-mass", "Added mass", text, subsections=(*bodies, *files)),)
 
 
-def _body(found: Triangulation, anchor: str) -> Section:
+def _body(study: Study, found: Triangulation, files: tuple[str, ...], anchor: str) -> Section:
     return Section(
         anchor,
         found.body.title or found.body.name,
@@ -47,15 +57,18 @@ def _body(found: Triangulation, anchor: str) -> Section:
             tables.particulars(found.body),
             tables.derivatives(found),
             tables.primes(found),
-            tables.matrix(found.recommended),
+            noun_tables.matrix(found.recommended),
             tables.symmetry(found),
         ),
-        figures=_figures(found, anchor),
+        figures=(_figure(study, found.body, files, anchor),),
     )
 
 
-def _figures(found: Triangulation, anchor: str) -> tuple[Figure, ...]:
-    shape = found.body.require_shape()
+def _figure(study: Study, body: Body, files: tuple[str, ...], anchor: str) -> Figure:
+    """The drawing with the body in space."""
+    shape = body.require_shape()
     if isinstance(shape, Parts):
-        return (body_figure(found.body.name, shape, None, f"{anchor}-parts"),)
-    return (hull_figure(found.body, f"{anchor}-outline"),)
+        drawn = body_figure(body.name, shape, None, f"{anchor}-parts")
+    else:
+        drawn = hull_figure(body, f"{anchor}-outline")
+    return replace(drawn, scene=hull_scene(body.name, shape, *hull_marks(study, body, files)))

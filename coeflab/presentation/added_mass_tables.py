@@ -12,17 +12,20 @@ from coeflab.model.table import ABSENT, Table, coefficient, number
 from coeflab.model.triangulation import RULE, Triangulation
 
 SHOWN = ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot", "Yrdot", "Zqdot")
-TRANSLATIONS, MARK = "uvw", "*"
+TRANSLATIONS, MARK, WIDEST = "uvw", "*", 10.0
 
 
 def particulars(body: Body) -> Table:
     """Volume, centre and wetted surface: of the shape, and as printed elsewhere."""
     rows = []
     for c in body.configurations:
-        centre = ABSENT if c.centre_of_buoyancy is None else f"{c.centre_of_buoyancy[0]:.4f}"
-        rows.append((c.name, number(c.volume, 6), centre, number(c.wetted_surface, 5), c.title))
-    headers = ("particulars", "volume m^3", "xB m", "wetted surface m^2", "what")
-    return Table(f"{body.name}: {body.title}", headers, tuple(rows), (), frozenset({0, 4}))
+        # Rounding of a centre in a plane of symmetry is no minus zero.
+        at = None if c.centre_of_buoyancy is None else np.round(c.centre_of_buoyancy, 4) + 0.0
+        centre = [ABSENT] * 3 if at is None else [f"{x:.4f}" for x in at]
+        rows.append((c.name, number(c.volume, 6), *centre, number(c.wetted_surface, 5), c.title))
+    headers = ("particulars", "volume m^3", "xB m", "yB m", "zB m", "wetted surface m^2", "what")
+    notes = (f"B: centre of buoyancy, FRD, from: {body.datum}",)
+    return Table(f"{body.name}: {body.title}", headers, tuple(rows), notes, frozenset({0, 6}))
 
 
 def displaced(body: Body, density: float) -> Table:
@@ -48,15 +51,6 @@ def displaced(body: Body, density: float) -> Table:
     return Table(f"{body.name}: projected areas and inertia of the displaced water", headers, tuple(rows), notes)
 
 
-def matrix(result: AddedMass) -> Table:
-    """One 6 x 6 matrix."""
-    cut = _rounding(result)
-    rows = [(a, *(number(v if abs(v) > cut else 0.0) for v in row)) for a, row in zip(COMPONENTS, result.matrix)]
-    at = ", ".join(f"{x:g}" for x in result.reference_point)
-    title = f"{result.method}: M_A, kg, kg m, kg m^2, FRD about ({at}) m from: {result.datum}"
-    return Table(title, ("", "u", "v", "w", "p", "q", "r"), tuple(rows))
-
-
 def derivatives(found: Triangulation) -> Table:
     """Acceleration derivatives in SI, over the displaced mass, and their spread over the methods."""
     mass = found.density * found.body.require_shape().volume
@@ -66,8 +60,9 @@ def derivatives(found: Triangulation) -> Table:
         values = [_settled(r, symbol) for r in found.results]
         ratios = [number(-v / mass, 3) if mass and symbol[1] in TRANSLATIONS else ABSENT for v in values]
         i, j = COMPONENTS.index(symbol[0]), "uvwpqr".index(symbol[1])
-        apart = ABSENT if np.isnan(spread[i, j]) else f"{100.0 * spread[i, j]:.1f} %"
-        rows.append((symbol, *(c for pair in zip([number(v) for v in values], ratios) for c in pair), apart))
+        rows.append(
+            (symbol, *(c for pair in zip([number(v) for v in values], ratios) for c in pair), _apart(spread[i, j]))
+        )
     headers = ("SI", *(cell for r in found.results for cell in (_marked(r, found), "/m")), "spread")
     notes = [
         f"/m: added mass over the displaced mass, {mass:.5g} kg at {found.density:g} kg/m^3; spread: range over the methods "
@@ -78,6 +73,13 @@ def derivatives(found: Triangulation) -> Table:
     notes += [f"{r.method}: {'; '.join(r.statements)}" for r in found.results if r.statements]
     notes += [f"{name}: not used: {why}" for name, why in found.refused.items()]
     return Table("Acceleration derivatives", headers, tuple(rows), tuple(notes))
+
+
+def _apart(spread: float) -> str:
+    """A spread in per cent; over tenfold it says only that the methods have nothing in common there."""
+    if np.isnan(spread):
+        return ABSENT
+    return f"{100.0 * spread:.1f} %" if spread <= WIDEST else f"> {100.0 * WIDEST:.0f} %"
 
 
 def _marked(result: AddedMass, found: Triangulation) -> str:

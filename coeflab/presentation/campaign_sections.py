@@ -21,6 +21,9 @@ from coeflab.presentation.model_figure import distinct, model_figures, over_what
 from coeflab.presentation.variables import moving, response_name
 
 
+LONGEST = 80
+
+
 def filled(*several: Table) -> tuple[Table, ...]:
     """The tables that have rows."""
     return tuple(t for t in several if t.rows)
@@ -28,7 +31,7 @@ def filled(*several: Table) -> tuple[Table, ...]:
 
 def anchor(text: str, taken: set[str]) -> str:
     """An identifier for a link, unique among those taken."""
-    base = re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "part"
+    base = re.sub(r"[^a-z0-9]+", "-", text.lower())[:LONGEST].strip("-") or "part"
     name, n = base, 2
     while name in taken:
         name, n = f"{base}-{n}", n + 1
@@ -36,10 +39,19 @@ def anchor(text: str, taken: set[str]) -> str:
     return name
 
 
-def campaign_section(study: Study, fit: FitResult, taken: set[str]) -> Section:
-    """A campaign by one fit: its data, its coefficients, its sweeps."""
+def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) -> Section:
+    """A campaign by one fit: its data, its coefficients, its sweeps.
+
+    Parameters
+    ----------
+    study : Study
+    fit : FitResult
+    place : str
+        Its anchor.
+    taken : set of str
+        Anchors that its parts must not have.
+    """
     mine = [t for t in study.tables if t.campaign in fit.campaigns]
-    place = anchor(f"campaign {fit.campaign}", taken)
     title = mine[0].title if len(fit.campaigns) == 1 and mine else f"Jointly: {fit.campaign}"
     if sum(f.campaign == fit.campaign for f in study.fits) > 1:
         title = f"{title} ({fit.fit})"

@@ -4,32 +4,51 @@ from __future__ import annotations
 
 import hashlib
 import shlex
+from functools import partial
 
+from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import primed
+from coeflab.core.version import VERSION
+from coeflab.model import noun_tables
 from coeflab.model.check import Severity
 from coeflab.model.coefficient import Status
+from coeflab.model.fit_result import FitResult
 from coeflab.model.reference import Comparison, Relation
 from coeflab.model.study import Study
 from coeflab.presentation import model_tables, tables
 from coeflab.presentation.added_mass_section import added_mass_sections
 from coeflab.presentation.budget_section import budget_sections
-from coeflab.presentation.campaign_sections import campaign_section, filled
+from coeflab.presentation.campaign_sections import anchor, campaign_section, filled
 from coeflab.presentation.conventions_section import conventions_section
 from coeflab.presentation.document import Document, Section
 from coeflab.presentation.export_section import export_sections
+from coeflab.presentation.in_parallel import begun
+from coeflab.presentation.manoeuvre_section import manoeuvre_sections
+from coeflab.presentation.quality_section import quality_sections
+from coeflab.presentation.stability_section import stability_sections
+
+FEW = 8
 
 
 def document(study: Study) -> Document:
     """The whole report of a study."""
-    taken: set[str] = set()
-    campaigns = tuple(campaign_section(study, fit, taken) for fit in study.fits)
+    places: set[str] = set()
+    own = [anchor(f"campaign {fit.campaign}", places) for fit in study.fits]
+    alone = [partial(_alone, study, fit, place, places) for fit, place in zip(study.fits, own, strict=True)]
+    with begun(alone if sum(len(f.sweeps) for f in study.fits) > FEW else ()) as drawn:
+        about = [
+            *budget_sections(study),
+            *added_mass_sections(study),
+            *stability_sections(study),
+            *manoeuvre_sections(study),
+        ]
+        campaigns = tuple(drawn() or [job() for job in alone])
     sections = (
-        _verdict(study),
+        verdict(study),
         *_comparison(study),
         _coefficients(study),
         *_models(study),
-        *budget_sections(study),
-        *added_mass_sections(study),
+        *about,
         *export_sections(study),
         Section(
             "campaigns",
@@ -37,19 +56,26 @@ def document(study: Study) -> Document:
             ("Every coefficient and every fitted model with its points, its curves and what was tried.",),
             subsections=campaigns,
         ),
+        *quality_sections(study),
         _checks(study),
         conventions_section(study),
         _provenance(study),
+        _reproduction(study),
     )
     names = ", ".join(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
     return Document(
-        study.plan.title or study.plan.name, f"Coefficients of {names}", sections, study.plan.name, _digest(study),
+        study.plan.title or study.plan.name, f"Coefficients of {names}", sections, study.plan.name, digest_of(study.inputs),
         tables.works(study),
     )  # fmt: skip
 
 
-def _digest(study: Study) -> str:
-    whole = "".join(f"{f.name} {f.sha256}\n" for f in study.inputs)
+def _alone(study: Study, fit: FitResult, place: str, places: set[str]) -> Section:
+    return campaign_section(study, fit, place, set(places))
+
+
+def digest_of(inputs: tuple[InputFile, ...]) -> str:
+    """Sixteen hexadecimal digits over all inputs; empty where there are none."""
+    whole = "".join(f"{f.name} {f.sha256}\n" for f in inputs)
     return hashlib.sha256(whole.encode()).hexdigest()[:16] if whole else ""
 
 
@@ -92,7 +118,7 @@ def _re_analysis(study: Study) -> list[str]:
     return out
 
 
-def _verdict(study: Study) -> Section:
+def verdict(study: Study) -> Section:
     text = [*_re_analysis(study), _harvest(study)]
     others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
     if others:
@@ -176,7 +202,7 @@ def _models(study: Study) -> tuple[Section, ...]:
         "number; a reader outside the domain follows the stated rule. Pictures, influential points and correlations stand "
         "under Campaigns.",
     )
-    each = tuple(model_tables.terms(m) for m in models)
+    each = tuple(noun_tables.terms(m) for m in models)
     return (Section("models", "Fitted models", text, filled(model_tables.quality(models), *each)),)
 
 
@@ -207,10 +233,20 @@ def _provenance(study: Study) -> Section:
         f"{f.fit}: {', '.join(f'{k} {v}' for k, v in sorted(f.settings.items()))}." for f in study.fits if f.settings
     )
     text += settings
-    code: tuple[str, ...] = ()
+    return Section("provenance", "Provenance", tuple(text), filled(tables.provenance(study)))
+
+
+def _reproduction(study: Study) -> Section:
+    """The exact command, and how to know that it gave the same."""
     if study.plan.file is None:
-        text.append("The plan was made by a program, not read from a file.")
-    else:
-        text.append("To reproduce it, run this in the folder of the plan:")
-        code = (f"coeflab run {shlex.quote(study.plan.file.name)}",)
-    return Section("provenance", "Provenance", tuple(text), filled(tables.provenance(study)), code=code)
+        return Section(
+            "reproduce", "How to reproduce", ("The plan was made by a program, not read from a file, so no command gives it.",)
+        )
+    text = (
+        f"With coeflab {VERSION} installed, run this in the folder of {study.plan.file.name}. The folder has to hold what "
+        "the plan names; the sha256 of every file stands under Provenance.",
+        f"All inputs together have the digest {digest_of(study.inputs)}, which the head of this report shows as well. A report with "
+        "another digest has other inputs.",
+    )
+    code = (f"coeflab run {shlex.quote(study.plan.file.name)}",)
+    return Section("reproduce", "How to reproduce", text, code=code)

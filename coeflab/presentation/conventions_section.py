@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from coeflab.model.study import Study
+from coeflab.presentation.axes_figure import axes_figures
 from coeflab.presentation.document import Section
 
 
@@ -22,7 +23,7 @@ def conventions_section(study: Study) -> Section:
         "Forces at zero angle need not vanish on a real model. Every curve has a value at rest of its own, and where "
         "the points lie on both sides of zero it has a term of the other parity as well.",
     ]
-    return Section("conventions", "Conventions", tuple(t for t in text if t))
+    return Section("conventions", "Conventions", tuple(t for t in text if t), figures=axes_figures("axes"))
 
 
 def _reference_points(study: Study) -> str:

@@ -14,6 +14,7 @@ from coeflab.model.fitted_model import FittedModel
 from coeflab.presentation.document import Figure
 from coeflab.presentation.model_words import BEYOND, band_in_words, scatter_in_words
 from coeflab.presentation.panel import BOTTOM, GAP, TOP, Array, Range, drawing, legend, limits, panel
+from coeflab.presentation.plotted import curve, numbers, points, tagged
 from coeflab.presentation.points import beside, used
 from coeflab.presentation.svg import COLOURS, settings, svg_text
 from coeflab.presentation.variables import (
@@ -65,16 +66,29 @@ def curve_figure(model: FittedModel, anchor: str) -> Figure:
             name_up=f"{name}{power}  [{response_unit(model)}]",
         )  # fmt: skip
         at = shown_values(variable, fine)
-        handles = used(main, shown_values(variable, x), model.y * factor)
-        handles += beside(main, model, variable, factor)
+        handles = tagged(used(main, shown_values(variable, x), model.y * factor), "points")
+        handles += tagged(beside(main, model, variable, factor), "aside")
         handles += _curve(main, at, y * factor, half * factor, inside)
         legend(figure, handles)
-        lower = _residuals(figure, model, variable, across)
+        lower, below = _residuals(figure, model, variable, across)
         _band(lower, model, at, half)
         for axes in (main, lower):
             _shade(axes, across, shown_values(variable, np.array([x.min(), x.max()])))
+        along = axis_name(variable, model)
+        seen_at = shown_values(variable, x)
+        panels = (
+            numbers(
+                main,
+                (points("points", "points", seen_at, model.y, model.labels), curve("fit", "fit", at, y)),
+                along, f"{name}  [{response_unit(model)}]", factor,
+            ),
+            numbers(
+                lower, (points("points", "points", seen_at, model.fit.residuals, model.labels),), along,
+                f"residual  [{response_unit(model)}]", below,
+            ),
+        )  # fmt: skip
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, _caption(model, variable), description)
+    return Figure(anchor, svg, title, _caption(model, variable), description, panels)
 
 
 def _columns(model: FittedModel, variable: str, fine: Array) -> Mapping[str, Array]:
@@ -83,13 +97,15 @@ def _columns(model: FittedModel, variable: str, fine: Array) -> Mapping[str, Arr
 
 
 def _curve(axes: Axes, at: Array, y: Array, half: Array, inside: Array) -> list[Any]:
-    axes.plot(at, np.where(inside, np.nan, y), zorder=2.4, **DASHED)
-    axes.plot(at[inside], y[inside], zorder=2.6, **LINE)
-    handles: list[Any] = [Line2D([], [], label="fit", **LINE)]
+    tagged(axes.plot(at, np.where(inside, np.nan, y), zorder=2.4, **DASHED), "beyond")
+    handles: list[Any] = tagged(axes.plot(at[inside], y[inside], zorder=2.6, label="fit", **LINE), "fit")
     if np.any(np.isfinite(half)):
-        axes.fill_between(at, y - half, y + half, color=COLOURS["band"], alpha=0.4, linewidth=0, zorder=1)
-        handles.append(Patch(facecolor=COLOURS["band"], alpha=0.4, edgecolor="none", label="95 % band of the mean"))
-    return [*handles, Line2D([], [], label="beyond the data", **DASHED)]
+        tagged(
+            axes.fill_between(at, y - half, y + half, color=COLOURS["band"], alpha=0.4, linewidth=0, zorder=1), "band"
+        )
+        band = Patch(facecolor=COLOURS["band"], alpha=0.4, edgecolor="none", label="95 % band of the mean")
+        handles.append(tagged(band, "band"))
+    return [*handles, tagged(Line2D([], [], label="beyond the data", **DASHED), "beyond")]
 
 
 def _shade(axes: Axes, across: Range, ends: Array) -> None:
@@ -106,7 +122,7 @@ def _band(axes: Axes, model: FittedModel, at: Array, half: Array) -> None:
     axes.fill_between(at, -up, up, color=COLOURS["band"], alpha=0.4, linewidth=0, zorder=1)
 
 
-def _residuals(figure: Any, model: FittedModel, variable: str, across: Range) -> Axes:
+def _residuals(figure: Any, model: FittedModel, variable: str, across: Range) -> tuple[Axes, float]:
     residuals = model.fit.residuals
     largest = float(np.max(np.abs(residuals), initial=0.0))
     factor, power = scale_of(residuals)
@@ -116,8 +132,8 @@ def _residuals(figure: Any, model: FittedModel, variable: str, across: Range) ->
         name_across=axis_name(variable, model), most_up=3,
     )  # fmt: skip
     axes.axhline(0.0, color=COLOURS["muted"], linewidth=0.6)
-    used(axes, shown_values(variable, model.x[variable]), residuals * factor)
-    return axes
+    tagged(used(axes, shown_values(variable, model.x[variable]), residuals * factor), "points")
+    return axes, factor
 
 
 def _caption(model: FittedModel, variable: str) -> str:

@@ -4,7 +4,134 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.model.frozen import locked
 from coeflab.model.table import Table
+
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """Points or a curve of a drawing, as numbers.
+
+    Attributes
+    ----------
+    key : str
+        What it belongs to: the drawing marks all artists of one key, so that a page can show and hide them together.
+    name : str
+        As the legend says it.
+    x, y : tuple of float
+        In the units of the panel.
+    notes : tuple of str
+        One a point, such as the row of the table or a half-width; empty for a curve.
+    groups : tuple of str
+        One a point: the window of an estimate, by which a page can show and hide points as well.
+    is_curve : bool
+    """
+
+    key: str
+    name: str
+    x: tuple[float, ...]
+    y: tuple[float, ...]
+    notes: tuple[str, ...] = ()
+    groups: tuple[str, ...] = ()
+    is_curve: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """One pair of axes of a drawing, and what stands in it.
+
+    Attributes
+    ----------
+    frame : (left, top, width, height)
+        In the units of the drawing's ``viewBox``, from its upper left corner.
+    across, up : (float, float)
+        Values at the left and right, lower and upper edge of the frame, in the units below.
+    name_across, unit_across, name_up, unit_up : str
+    series : tuple of Series
+    grouped_by : str
+        What the groups of its points are, such as ``window``.
+    """
+
+    frame: tuple[float, float, float, float]
+    across: Range
+    up: Range
+    name_across: str
+    unit_across: str
+    name_up: str
+    unit_up: str
+    series: tuple[Series, ...]
+    grouped_by: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layer:
+    """Triangles, lines or points of a scene.
+
+    Attributes
+    ----------
+    name : str
+        As the legend says it; layers of one name are one entry.
+    colour : str
+        A name of `coeflab.presentation.svg.COLOURS`.
+    places : (n, 3) array
+        x, y, z in the units of the scene.
+    index : (m, 3), (m, 2) or (m,) int array
+        Corners of triangles, ends of lines, or points.
+    opacity : float
+    label : str
+        Written beside points.
+    notes : tuple of str
+        One a point.
+    """
+
+    name: str
+    colour: str
+    places: NDArray[np.float64]
+    index: NDArray[np.int64]
+    opacity: float = 1.0
+    label: str = ""
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "places", locked(self.places))
+        object.__setattr__(self, "index", locked(self.index, int))
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One axis of a scene: name, unit, ends, and the values marked on it with their texts."""
+
+    name: str
+    unit: str
+    ends: Range
+    marks: tuple[float, ...] = ()
+    texts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """Something to be turned in space; the figure that holds it is what stands where that cannot be.
+
+    Attributes
+    ----------
+    title, caption, description : str
+    layers : tuple of Layer
+    axes : (Axis, Axis, Axis)
+    is_body : bool
+        A body: FRD in m at one scale on all axes, z drawn down. Otherwise a graph in a box, z up.
+    """
+
+    title: str
+    caption: str
+    description: str
+    layers: tuple[Layer, ...]
+    axes: tuple[Axis, Axis, Axis]
+    is_body: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +150,10 @@ class Figure:
     caption : str
     description : str
         What the drawing shows, for readers who cannot see it.
+    panels : tuple of Panel
+        The numbers behind the drawing, for renderers that can tell them.
+    scene : Scene or None
+        The same matter in space, for renderers that can turn it.
     """
 
     anchor: str
@@ -30,6 +161,8 @@ class Figure:
     title: str
     caption: str
     description: str
+    panels: tuple[Panel, ...] = ()
+    scene: Scene | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,9 +14,10 @@ from coeflab.kernels.slopes import MEMBER, Estimate
 from coeflab.model.fit_result import Sweep
 from coeflab.model.reference import Comparison
 from coeflab.model.table import coefficient
-from coeflab.presentation.document import Figure
+from coeflab.presentation.document import Figure, Series
 from coeflab.presentation.panel import BOTTOM, GAP, TOP, drawing, heading, legend, panel
-from coeflab.presentation.series import Style, family_name, is_in_degrees, on_axis, styles
+from coeflab.presentation.plotted import numbers, points, tagged
+from coeflab.presentation.series import Style, family_key, family_name, is_in_degrees, on_axis, styles
 from coeflab.presentation.svg import COLOURS, power_of_ten, settings, svg_text
 
 SIDESTEP, HEADING = 0.011, 12.0
@@ -39,6 +40,7 @@ def estimator_figure(sweep: Sweep, published: tuple[Comparison, ...], anchor: st
     across = "largest angle used  [deg]" if is_in_degrees(sweep) else f"largest |{sweep.variable}'| used  [-]"
     title, description = f"{name}, {sweep.campaign}: estimators against window", _description(sweep, published)
     height = (TOP - BOTTOM - GAP - HEADING) / 2.0
+    panels = []
     with settings():
         figure = drawing()
         for bottom, estimates, text, below in (
@@ -52,9 +54,32 @@ def estimator_figure(sweep: Sweep, published: tuple[Comparison, ...], anchor: st
             heading(figure, bottom + height, text)
             _recommended(axes, sweep, published, factor)
             _estimates(axes, sweep, estimates, factor, reach * SIDESTEP)
+            found = _series(sweep, estimates, frame, reach * SIDESTEP)
+            panels.append(numbers(axes, found, across, f"{name}, {text}", factor, "window"))
         legend(figure, _handles(sweep, published))
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, _caption(sweep, published, frame), description)
+    return Figure(anchor, svg, title, _caption(sweep, published, frame), description, tuple(panels))
+
+
+def _series(sweep: Sweep, estimates: tuple[Estimate, ...], frame: tuple[float, float], sidestep: float) -> list[Series]:
+    """The estimates inside the frame, a series a form, in groups of one window."""
+    out = []
+    unit = " deg" if is_in_degrees(sweep) else ""
+    for i, family in enumerate(styles(sweep)):
+        mine = [e for e in estimates if e.family.name == family and frame[0] <= e.value <= frame[1]]
+        if mine:
+            windows = on_axis(sweep, np.array([e.window for e in mine]))
+            notes = [
+                f"± {coefficient(_half(e))}, window {x:.3g}{unit}, {len(e.rows)} points{', member' * (e.role == MEMBER)}"
+                for e, x in zip(mine, windows, strict=True)
+            ]
+            x, y = windows + (i - 1.5) * sidestep, np.array([e.value for e in mine])
+            out.append(
+                points(
+                    family_key(sweep, mine[0]), family_name(sweep, mine[0]), x, y, notes, [f"{w:.3g}" for w in windows]
+                )
+            )
+    return out
 
 
 def _frame(sweep: Sweep, published: tuple[Comparison, ...]) -> tuple[float, float]:
@@ -102,16 +127,16 @@ def _estimates(axes: Axes, sweep: Sweep, estimates: tuple[Estimate, ...], factor
         bottom, top = np.clip(y - half, low, high), np.clip(y + half, low, high)
         for chosen, thick in ((seen & ~kept, 0.7), (seen & kept, 1.6)):
             if np.any(chosen):
-                axes.vlines(x[chosen], bottom[chosen], top[chosen], color=style.colour, linewidth=thick)
-        if np.any(inside & ~kept):
-            _markers(axes, x[inside & ~kept], y[inside & ~kept], style, style.marker, filled=False)
-        if np.any(inside & kept):
-            _markers(axes, x[inside & kept], y[inside & kept], style, style.marker, filled=True)
+                bars = axes.vlines(x[chosen], bottom[chosen], top[chosen], color=style.colour, linewidth=thick)
+                tagged(bars, family_key(sweep, mine[0]))
+        for chosen, filled in ((inside & ~kept, False), (inside & kept, True)):
+            if np.any(chosen):
+                tagged(_markers(axes, x[chosen], y[chosen], style, filled=filled), family_key(sweep, mine[0]))
 
 
-def _markers(axes: Axes, x: Any, y: Any, style: Style, marker: str, *, filled: bool) -> None:
-    axes.plot(
-        x, y, linestyle="none", marker=marker, markersize=6.0 if filled else 3.2, markeredgecolor=style.colour,
+def _markers(axes: Axes, x: Any, y: Any, style: Style, *, filled: bool) -> list[Line2D]:
+    return axes.plot(
+        x, y, linestyle="none", marker=style.marker, markersize=6.0 if filled else 3.2, markeredgecolor=style.colour,
         markerfacecolor=style.colour if filled else "none", markeredgewidth=0.9, zorder=4 if filled else 3,
     )  # fmt: skip
 
@@ -129,6 +154,7 @@ def _handles(sweep: Sweep, published: tuple[Comparison, ...]) -> list[Any]:
                 markeredgecolor=style.colour, label=names[family] + (", member" if is_kept else ""),
             )
         )  # fmt: skip
+        tagged(handles[-1], f"form{list(styles(sweep)).index(family)}")
     if sweep.recommendation.value is not None:
         handles.append(
             Patch(

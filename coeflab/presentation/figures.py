@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from matplotlib.lines import Line2D
 
 from coeflab.core.symbols import primed
-from coeflab.model.fit_result import Sweep
+from coeflab.model.fit_result import LeftOut, Sweep
 from coeflab.model.table import coefficient
-from coeflab.presentation.document import Figure
+from coeflab.presentation.document import Figure, Series
 from coeflab.presentation.panel import BOTTOM, GAP, TOP, Array, Range, drawing, legend, limits, panel
-from coeflab.presentation.series import axis_name, family_name, on_axis, styles
+from coeflab.presentation.plotted import curve, numbers, points, tagged
+from coeflab.presentation.series import axis_name, family_key, family_name, on_axis, styles
 from coeflab.presentation.svg import COLOURS, power_of_ten, settings, svg_text
 
 RESIDUALS = 70.0
@@ -53,26 +53,58 @@ def sweep_figure(sweep: Sweep, anchor: str) -> Figure:
             up=limits(ys * factor, 0.08) or (-1.0, 1.0), name_up=f"{sweep.component}'{power}",
         )  # fmt: skip
         legend(figure, _points(main, sweep, left_out, factor) + _curves(main, sweep, factor))
-        _residuals(figure, sweep, across)
+        lower, below = _residuals(figure, sweep, across)
+        panels = (
+            numbers(main, _series(sweep, left_out), axis_name(sweep), f"{sweep.component}'", factor),
+            numbers(lower, _left(sweep), axis_name(sweep), "residual", below),
+        )
         svg = svg_text(figure, anchor, title, _description(sweep))
-    return Figure(anchor, svg, title, _caption(sweep), _description(sweep))
+    return Figure(anchor, svg, title, _caption(sweep), _description(sweep), panels)
+
+
+def _series(sweep: Sweep, left_out: list[LeftOut]) -> list[Series]:
+    """Points, those left out, and the curves of the members."""
+    half = [""] * len(sweep.x) if sweep.se is None else [f", ± {2.0 * s:.3g}" for s in sweep.se]
+    notes = [f"{label}{h}" for label, h in zip(sweep.labels, half, strict=True)]
+    out = [points("points", "points", on_axis(sweep, sweep.x), np.asarray(sweep.y), notes)]
+    at = on_axis(sweep, np.array([p.x for p in left_out]))
+    out.append(
+        points("left", "left out", at, np.array([p.y for p in left_out]), [f"{p.label}: {p.reason}" for p in left_out])
+    )
+    for e in sweep.recommendation.members:
+        x = np.linspace(sweep.x[e.rows].min(), sweep.x[e.rows].max(), FINE)
+        out.append(curve(family_key(sweep, e), family_name(sweep, e), on_axis(sweep, x), e.curve(x)))
+    return out
+
+
+def _left(sweep: Sweep) -> list[Series]:
+    """What the members leave unexplained."""
+    return [
+        points(
+            family_key(sweep, e), family_name(sweep, e), on_axis(sweep, sweep.x[e.rows]),
+            sweep.y[e.rows] - e.curve(sweep.x[e.rows]), [sweep.labels[i] for i in e.rows],
+        )
+        for e in sweep.recommendation.members
+    ]  # fmt: skip
 
 
 def _points(axes: Axes, sweep: Sweep, left_out: list[Any], factor: float) -> list[Any]:
     x, y = on_axis(sweep, sweep.x), sweep.y * factor
     if sweep.se is not None:
         reach = 2.0 * sweep.se * factor
-        axes.vlines(x, y - reach, y + reach, color=COLOURS["ink"], linewidth=0.8, zorder=3)
+        tagged(axes.vlines(x, y - reach, y + reach, color=COLOURS["ink"], linewidth=0.8, zorder=3), "points")
     handles: list[Any] = axes.plot(
         x, y, linestyle="none", marker="o", markersize=3.6, markerfacecolor="none", markeredgecolor=COLOURS["ink"],
         markeredgewidth=0.9, zorder=4, label="points" if sweep.se is None else "points, ± 2 standard errors",
     )  # fmt: skip
+    tagged(handles, "points")
     if left_out:
         at = on_axis(sweep, np.array([p.x for p in left_out]))
-        handles += axes.plot(
+        crosses = axes.plot(
             at, [p.y * factor for p in left_out], linestyle="none", marker="x", markersize=5.0, color=COLOURS["ink"],
             markeredgewidth=1.1, zorder=4, label=f"left out ({len(left_out)})",
         )  # fmt: skip
+        handles += tagged(crosses, "left")
     return handles
 
 
@@ -83,29 +115,32 @@ def _curves(axes: Axes, sweep: Sweep, factor: float) -> list[Any]:
         used = sweep.x[e.rows]
         x = np.linspace(used.min(), used.max(), FINE)
         style = drawn[e.family.name]
-        handles += axes.plot(
+        drawn_curve = axes.plot(
             on_axis(sweep, x), e.curve(x) * factor, color=style.colour, linestyle=style.line, linewidth=1.4,
             label=family_name(sweep, e), zorder=2.5,
         )  # fmt: skip
+        handles += tagged(drawn_curve, family_key(sweep, e))
     if sweep.recommendation.value is not None:
         reach = max(e.window for e in sweep.recommendation.members)
         x = np.linspace(-reach if np.any(sweep.x < 0) else 0.0, reach if np.any(sweep.x > 0) else 0.0, FINE)
         y, half = recommended_curve(sweep, x)
         kind = {"x": "slope at rest", "x2": "curvature at rest"}.get(sweep.target, "value at rest")
-        line = Line2D([], [], color=COLOURS["ink"], linewidth=0.9)
-        axes.plot(on_axis(sweep, x), y * factor, color=COLOURS["ink"], linewidth=0.9, zorder=2)
-        if sweep.recommendation.u95 is None:
-            return [*handles, Line2D([], [], color=COLOURS["ink"], linewidth=0.9, label=kind)]
-        axes.fill_between(
-            on_axis(sweep, x), (y - half) * factor, (y + half) * factor, color=COLOURS["band"], alpha=0.35, linewidth=0,
-            zorder=1,
-        )  # fmt: skip
-        line.set_label(f"{kind}, band U95")
-        handles.append(line)
+        handles += tagged(
+            axes.plot(on_axis(sweep, x), y * factor, color=COLOURS["ink"], linewidth=0.9, zorder=2), "rest"
+        )
+        handles[-1].set_label(kind)
+        if sweep.recommendation.u95 is not None:
+            band = axes.fill_between(
+                on_axis(sweep, x), (y - half) * factor, (y + half) * factor, color=COLOURS["band"], alpha=0.35,
+                linewidth=0, zorder=1,
+            )  # fmt: skip
+            tagged(band, "rest")
+            handles[-1].set_label(f"{kind}, band U95")
     return handles
 
 
-def _residuals(figure: Drawing, sweep: Sweep, across: Range) -> None:
+def _residuals(figure: Drawing, sweep: Sweep, across: Range) -> tuple[Axes, float]:
+    """The lower panel, and the factor of its upright axis."""
     drawn = styles(sweep)
     found = [(e, sweep.y[e.rows] - e.curve(sweep.x[e.rows])) for e in sweep.recommendation.members]
     largest = max((float(np.max(np.abs(y))) for _, y in found), default=0.0)
@@ -118,10 +153,12 @@ def _residuals(figure: Drawing, sweep: Sweep, across: Range) -> None:
     axes.axhline(0.0, color=COLOURS["muted"], linewidth=0.6)
     for e, y in found:
         style = drawn[e.family.name]
-        axes.plot(
+        markers = axes.plot(
             on_axis(sweep, sweep.x[e.rows]), y * factor, linestyle="none", marker=style.marker, markersize=3.0,
             markerfacecolor="none", markeredgecolor=style.colour, markeredgewidth=0.8,
         )  # fmt: skip
+        tagged(markers, family_key(sweep, e))
+    return axes, factor
 
 
 def _caption(sweep: Sweep) -> str:

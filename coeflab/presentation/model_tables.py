@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from itertools import combinations
 
@@ -12,27 +11,6 @@ from coeflab.core.symbols import FLOW_ANGLES
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.table import ABSENT, Table, number, percent, probability
 from coeflab.presentation.variables import domain_in_words
-
-
-def terms(model: FittedModel) -> Table:
-    """Every coefficient with its interval; what the data leave open is said below, not printed as a number."""
-    rows = []
-    for symbol, term, value, half in zip(
-        model.symbols, model.terms, model.fit.coefficients, model.half_width, strict=True
-    ):
-        known = math.isfinite(value)
-        rows.append(
-            (
-                symbol,
-                str(term),
-                number(float(value), 5) if known else "not determined",
-                number(float(half), 3) if known else ABSENT,
-                percent(float(half), float(value)) if known else ABSENT,
-            )
-        )
-    notes = model.statements
-    title = f"{model.response} [{model.unit if model.unit != '1' else '-'}], {model.form}: {model.campaign}"
-    return Table(title, ("", "term", "value", "95 %", "95 %"), tuple(rows), notes, frozenset({0, 1}))
 
 
 def quality(models: tuple[FittedModel, ...]) -> Table:

@@ -14,6 +14,7 @@ from coeflab.core.symbols import CONTROLS
 from coeflab.model.trajectory import Trajectory
 from coeflab.presentation.document import Figure
 from coeflab.presentation.panel import BOTTOM, LEFT, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
+from coeflab.presentation.plotted import curve, numbers, tagged
 from coeflab.presentation.series import STYLES
 from coeflab.presentation.svg import COLOURS, settings, svg_text
 
@@ -125,11 +126,12 @@ def _history(time: Array, series: Mapping[str, Array], anchor: str, name_up: str
         for i, (name, values) in enumerate(series.items()):
             style = STYLES[i % len(STYLES)]
             look: dict[str, Any] = {"color": style.colour, "linestyle": style.line, "linewidth": 1.3}
-            axes.plot(time, values, zorder=2.5, **look)
-            handles.append(Line2D([], [], label=name, **look))
+            handles += tagged(axes.plot(time, values, zorder=2.5, label=name, **look), f"s{i}")
         legend(figure, handles, top)
+        found = [curve(f"s{i}", name, time, values) for i, (name, values) in enumerate(series.items())]
+        shown = numbers(axes, found, "time  [s]", name_up)
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, f"{title}.", description)
+    return Figure(anchor, svg, title, f"{title}.", description, (shown,))
 
 
 def motion_figures(trajectory: Trajectory, anchor: str, length: float) -> tuple[Figure, ...]:

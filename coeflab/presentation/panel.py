@@ -14,6 +14,7 @@ from matplotlib.markers import TICKDOWN, TICKLEFT
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from coeflab.presentation.plotted import mark_legend
 from coeflab.presentation.svg import COLOURS, POINTS
 
 Array = NDArray[np.float64]
@@ -120,8 +121,11 @@ def heading(figure: Figure, above: float, text: str) -> None:
 
 
 def legend(figure: Figure, handles: list[Any], above: float = TOP) -> None:
-    """One legend in two columns above the panels, whose upper edge is ``above`` points from the lower edge."""
-    figure.legend(
+    """One legend in two columns above the panels, whose upper edge is ``above`` points from the lower edge.
+
+    Entries of handles that `coeflab.presentation.plotted.tagged` marked are marked in the drawing.
+    """
+    drawn = figure.legend(
         handles=handles,
         loc="lower left",
         bbox_to_anchor=((LEFT - 16.0) / WIDTH, (above + 8.0) / height_of(figure)),
@@ -133,3 +137,4 @@ def legend(figure: Figure, handles: list[Any], above: float = TOP) -> None:
         columnspacing=1.0,
         labelspacing=0.38,
     )
+    mark_legend(drawn, handles)

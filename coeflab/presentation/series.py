@@ -48,6 +48,11 @@ def styles(sweep: Sweep) -> dict[str, Style]:
     return {name: STYLES[i % len(STYLES)] for i, name in enumerate(families)}
 
 
+def family_key(sweep: Sweep, estimate: Estimate) -> str:
+    """What marks the family in drawings."""
+    return f"form{list(styles(sweep)).index(estimate.family.name)}"
+
+
 def family_name(sweep: Sweep, estimate: Estimate) -> str:
     """The family as printed, with the sweep's variable."""
     return estimate.family.name.format(x=f"{sweep.variable}'")

@@ -10,10 +10,12 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 
 from coeflab.model.fitted_model import FittedModel
-from coeflab.presentation.document import Figure
+from coeflab.presentation.document import Figure, Series
 from coeflab.presentation.model_words import BEYOND
 from coeflab.presentation.panel import BOTTOM, Array, drawing, legend, limits, panel, tick_texts, ticks
+from coeflab.presentation.plotted import numbers, points
 from coeflab.presentation.points import hollow, used
+from coeflab.presentation.surface_scene import surface_scene
 from coeflab.presentation.svg import COLOURS, settings, svg_text
 from coeflab.presentation.variables import (
     axis_name,
@@ -70,8 +72,21 @@ def surface_figure(model: FittedModel, anchor: str) -> Figure:
             [], [], color=COLOURS["ink"], linewidth=0.8, label=f"equal {name}{power}  [{response_unit(model)}]"
         )
         legend(figure, [*handles, Line2D([], [], label="hull of the data", **edge), line], BOTTOM + FIELD)
+        shown = numbers(
+            axes, (_points(model, x, y, name),), axis_name(across_name, model), axis_name(up_name, model)
+        )  # fmt: skip
         svg = svg_text(figure, anchor, title, _description(model, levels))
-    return Figure(anchor, svg, title, _caption(model), _description(model, levels))
+    return Figure(anchor, svg, title, _caption(model), _description(model, levels), (shown,), surface_scene(model))
+
+
+def _points(model: FittedModel, x: Array, y: Array, name: str) -> Series:
+    """The data with the response as it was measured and as the surface has it."""
+    unit = f" {model.unit}" if model.unit != "1" else ""
+    notes = [
+        f"{name} {v:.4g}{unit}, fitted {v - r:.4g}{unit}; {label}"
+        for v, r, label in zip(model.y, model.fit.residuals, model.labels, strict=True)
+    ]
+    return points("points", "points", x, y, notes)
 
 
 def _axes(model: FittedModel) -> tuple[str, str]:

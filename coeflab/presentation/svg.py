@@ -41,6 +41,7 @@ _SETTINGS: dict[Any, object] = {
 }
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _DECIMALS = re.compile(r"-?\d+\.\d{3,}")
+_MARKED = re.compile(r' id="data-([a-z]+)=([^"]*)"')
 _REFERENCES = re.compile(r'(?:xlink:href="#|url\(#)([^")]+)')
 
 
@@ -83,11 +84,13 @@ def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
         Texts for screen readers.
     """
     buffer = io.BytesIO()
+    figure.patch.set_visible(False)
     figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     text = buffer.getvalue().decode()
     text = text[text.index("<svg") :]
     text = re.sub(r"<!--.*?-->\s*|<metadata>.*?</metadata>\s*|<style.*?</style>\s*", "", text, flags=re.DOTALL)
     text = text.replace("<defs>\n </defs>\n", "").replace("<defs/>\n", "")
+    text = _MARKED.sub(r' data-\1="\2"', text)
     short = {name: f"{prefix}-{i}" for i, name in enumerate(dict.fromkeys(_REFERENCES.findall(text)))}
     text = re.sub(r' id="([^"]*)"', lambda m: f' id="{short[m[1]]}"' if m[1] in short else "", text)
     text = re.sub(r'xlink:href="#([^"]+)', lambda m: f'href="#{short[m[1]]}', text)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from coeflab.core.citations import work
-from coeflab.core.symbols import ANGULAR, derivative, primed
+from coeflab.core.symbols import primed
 from coeflab.kernels.slopes import MEMBER, Estimate
-from coeflab.model.coefficient import Coefficient
+from coeflab.model import noun_tables
 from coeflab.model.fit_result import Sweep
 from coeflab.model.force_table import ForceTable
 from coeflab.model.reference import Relation
@@ -15,23 +15,6 @@ from coeflab.model.study import Study
 from coeflab.model.table import ABSENT, Table, coefficient, number, percent, probability
 
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
-SCATTER_ONLY = ("Without a form part: U95 is the scatter of the points about that one form alone.",)
-DEFINED = (
-    "U95: 95 % half-width, from the scatter of the points (random), the spread between the member estimators (form) and "
-    "what enters from outside, declared inputs and grid (input).",
-)
-
-
-def window_text(c: Coefficient) -> str:
-    """Range of the motion variable that the widest member uses."""
-    if c.window is None:
-        return ABSENT
-    low, high = c.window
-    rate = any(f in ANGULAR for f in derivative(c.symbol).factors)
-    unit = "" if rate else " deg"
-    if not rate:
-        low, high = math.degrees(low), math.degrees(high)
-    return f"{number(low, 3)} .. {number(high, 3)}{unit}"
 
 
 def coefficients(study: Study, campaign: str | None = None) -> Table:
@@ -43,30 +26,7 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
     campaign : str, optional
         Only the coefficients of one campaign.
     """
-    rows = [
-        (
-            primed(c.symbol),
-            coefficient(c.value) if c.value is not None else c.status.replace("_", " "),
-            coefficient(c.u95),
-            percent(c.u95, c.value),
-            percent(c.parts.random, c.value),
-            percent(c.parts.model_form, c.value),
-            percent(c.parts.input, c.value),
-            window_text(c),
-            str(c.n_points) if c.n_points else ABSENT,
-            c.campaign or ABSENT,
-            c.estimator or ABSENT,
-        )
-        for c in study.coefficients
-        if campaign is None or c.campaign == campaign
-    ]
-    headers = ("", "value", "U95", "U95", "random", "form", "input", "window", "n", "campaign", "estimator")
-    statuses = sorted({c.status for c in study.coefficients if campaign is None or c.campaign == campaign})
-    fitted = [c for c in study.coefficients if c.u95 is not None and c.origin == "fit"]
-    scatter_only = any(c.parts.model_form is None for c in fitted if campaign is None or c.campaign == campaign)
-    notes = DEFINED + (SCATTER_ONLY if scatter_only else ())
-    notes += tuple(f"{s.replace('_', ' ')}: {s.advice}" for s in statuses if s.advice)
-    return Table("Coefficients, primed", headers, tuple(rows), notes, frozenset({0, 7, 9, 10}))
+    return noun_tables.coefficients([c for c in study.coefficients if campaign is None or c.campaign == campaign])
 
 
 def verdicts(study: Study) -> Table:

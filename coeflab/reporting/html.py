@@ -1,15 +1,22 @@
-"""One HTML file that needs nothing else: no network, no scripts, light and dark, screen and print."""
+"""One HTML file that needs nothing else: no network, light and dark, screen and print.
+
+Its own script tells values, hides and shows series and turns bodies and surfaces; without it the page is complete.
+"""
 
 from __future__ import annotations
 
+import base64
+import hashlib
 from collections.abc import Mapping
 from importlib.resources import files
 
 from jinja2 import BaseLoader, Environment, StrictUndefined
 
 from coeflab.presentation.document import Document
+from coeflab.presentation.embedded import panels_json, scene_json
 
 summary = "one HTML file with tables and figures, for browser and printer"
+SCRIPTS = ("figures.js", "scenes.js")
 citations: tuple[str, ...] = ()
 
 
@@ -29,6 +36,9 @@ def render(document: Document) -> Mapping[str, bytes]:
     environment = Environment(
         loader=BaseLoader(), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
+    environment.globals |= {"panels_json": panels_json, "scene_json": scene_json}
     template = environment.from_string((folder / "report.html.j2").read_text(encoding="utf-8"))
     style = (folder / "style.css").read_text(encoding="utf-8")
-    return {"report.html": template.render(document=document, style=style).encode()}
+    script = "\n" + "\n".join((folder / name).read_text(encoding="utf-8") for name in SCRIPTS)
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return {"report.html": template.render(document=document, style=style, script=script, digest=digest).encode()}

@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_atomically
 from coeflab.core.symbols import CONTROLS
+from coeflab.core.version import VERSION
 from coeflab.manoeuvres import MANOEUVRES
-from coeflab.model.draws import Uncertain, uncertain
 from coeflab.model.drawn_vehicle import drawn
+from coeflab.model.draws import Uncertain, uncertain
 from coeflab.model.ensemble import Ensemble
 from coeflab.model.manoeuvre import Figure, Manoeuvre
 from coeflab.model.marching import march
@@ -40,6 +41,8 @@ class Setup:
 
     Attributes
     ----------
+    release : str
+        Of coeflab: every process must have the same.
     parameters : str
         The parameter file, JSON.
     manoeuvre : str
@@ -52,6 +55,7 @@ class Setup:
     kernel : str
     """
 
+    release: str
     parameters: str
     manoeuvre: str
     options: tuple[tuple[str, int | float | str], ...]
@@ -133,13 +137,19 @@ def _plan(plugin: Any, member: Vehicle, options: dict[str, Any]) -> Manoeuvre | 
 
 def _steered(plan: Manoeuvre) -> tuple[Any, ...]:
     """What members have to share to be marched together."""
-    return tuple(
-        (tuple((c, p.orders[c]) for c in CONTROLS if c in p.orders), p.longest, p.until) for p in plan.phases
-    )
+    return tuple((tuple((c, p.orders[c]) for c in CONTROLS if c in p.orders), p.longest, p.until) for p in plan.phases)
 
 
 def run_batch(setup: Setup, names: Sequence[str], deviations: Array) -> Batch:
-    """Values and statuses of the named figures."""
+    """Values and statuses of the named figures.
+
+    Raises
+    ------
+    InputError
+        This process has another release of coeflab than the one that asks.
+    """
+    if setup.release != VERSION:
+        raise InputError(f"coeflab {VERSION} in a worker", f"{setup.release} as in the process that asks")
     rows, statuses, ended = [], [], []
     for figures, how in figures_of(setup, deviations):
         known = {f.name: f for f in figures}

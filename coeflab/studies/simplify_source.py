@@ -12,10 +12,11 @@ from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.files import located
 from coeflab.core.provenance import InputFile, Source, sha256_of
 from coeflab.core.units import factor
-from coeflab.model.body import Body, Configuration
+from coeflab.model.body import Body
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.mesh_file import load
 from coeflab.model.mesh_gates import examined
+from coeflab.model.mesh_particulars import computed, require_plausible
 from coeflab.model.mesh_repair import repaired
 from coeflab.workbench import read_body
 
@@ -37,7 +38,7 @@ def mesh_body(name: str, unit: str = "", axes: str = "", repair: bool = False) -
     Raises
     ------
     InputError
-        Nothing there, not sound, or without unit and axes; unit and axes of a body.toml, which declares its own.
+        Nothing there, not sound, of no vehicle's size, or without unit and axes; unit and axes of a body.toml, which declares its own.
     """
     path = located(name, "geometry")
     path = path / BODY if path.is_dir() else path
@@ -74,15 +75,18 @@ def _bare(path: Path, unit: float, turn: np.ndarray[Any, Any], repair: bool) -> 
     raw = load(path)
     sound = repaired(*raw, path) if repair else examined(*raw, path)
     shape = TriangleMesh(unit * sound.vertices @ turn.T, sound.faces)
-    integrals = shape.integrals
-    title = "; ".join((f"integrals over {len(shape.faces)} faces", *sound.statements))
+
+    def fail(found: str, expected: str, advice: str) -> InputError:
+        return InputError(found, expected, file=path, column="--unit", advice=advice)
+
+    require_plausible(shape, unit, fail)
     return Body(
         name=path.stem,
         title=path.name,
         datum=f"origin of {path.name}",
         reference_point=np.zeros(3),
         lengths={},
-        configurations=(Configuration("by_mesh", title, shape.volume, integrals.area, integrals.centre, None),),
+        configurations=(computed(shape, sound.statements),),
         source=Source(path.name),
         files=(InputFile(path.name, sha256_of(path)),),
         shape=shape,

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 from coeflab.core.errors import CoeflabError, InputError, shown
 
 Result = TypeVar("Result")
-PATIENCE = 20.0
+PATIENCE = 10.0
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
@@ -102,21 +102,36 @@ def _on_dask(
     work: Callable[..., Result], tasks: Mapping[int, tuple[Any, ...]], scheduler: str
 ) -> Iterator[tuple[int, Result]]:
     try:
-        from distributed import Client
-        from distributed import as_completed as finished
+        import distributed
     except ImportError:
         raise InputError(
             "--scheduler without distributed", "the extra", column="--scheduler", advice='pip install "coeflab[dask]"'
         ) from None
+    connect: Any = distributed.Client
+    finished: Any = distributed.as_completed
     try:
-        client = Client(scheduler, timeout=PATIENCE, set_as_default=False)
+        client = connect(scheduler, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError) as why:
         raise InputError(
             f"no Dask scheduler at {shown(scheduler)} ({type(why).__name__})", "the address of one that runs, such as "
             "tcp://host:8786", column="--scheduler",
         ) from None  # fmt: skip
     with client:
-        waiting = {client.submit(work, *a, pure=False): index for index, a in tasks.items()}
-        for done in finished(list(waiting)):
-            yield waiting[done], done.result()
-            done.release()
+        try:
+            client.wait_for_workers(1, timeout=PATIENCE)
+            waiting = {client.submit(work, *a, pure=False): index for index, a in tasks.items()}
+            for done in finished(list(waiting), loop=client.loop):
+                yield waiting[done], done.result()
+                done.release()
+        except TimeoutError:
+            raise InputError(
+                "a Dask scheduler without workers", f"one at least within {PATIENCE:g} s", column="--scheduler"
+            ) from None
+        except ModuleNotFoundError as why:
+            raise CoeflabError(
+                f"A Dask worker has no module {why.name}: install this release of coeflab there."
+            ) from None
+        except distributed.KilledWorker as why:
+            raise CoeflabError(
+                f"Dask workers were killed ({why}). Finished batches are kept where there is a store: start again."
+            ) from None

@@ -27,6 +27,7 @@ from coeflab.presentation.content import document
 from coeflab.reporting import REPORTERS
 from coeflab.workbench.exports import exports_of, refuse_unknown
 from coeflab.workbench.hulls import hulls_of
+from coeflab.workbench.manoeuvres import manoeuvres_of
 from coeflab.workbench.reading import read_body, read_tables, settled, together
 
 __all__ = ["read_body", "read_tables", "rendered", "run"]
@@ -102,6 +103,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         inputs=inputs,
         budgets=tuple(budgets),
         exports=exports_of(plan.exports, files.values(), progress),
+        manoeuvres=manoeuvres_of(plan.manoeuvres, files, progress),
     )
     findings = [c for name in CHECKS.names() for c in CHECKS.load(name).check(study)]
     progress(f"{len(findings)} checks")
@@ -191,11 +193,11 @@ def _inputs(plan: Plan, tables: list[ForceTable], bodies: list[Body]) -> tuple[I
     return tuple(dict.fromkeys(files))
 
 
-def rendered(study: Study) -> dict[str, bytes]:
+def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, bytes]:
     """Every file of a study: parameter files, exports and the report, by name. Nothing is written."""
     files: dict[str, bytes] = {}
     report = document(study)
-    for name in REPORTERS.names():
+    for name in formats:
         files.update(REPORTERS.load(name).render(report))
     for parameters in study.parameter_files.values():
         files[f"{parameters.name}.parameters.json"] = parameters.to_json()

@@ -35,7 +35,7 @@ def export(parameters: ParameterFile, target: str) -> Export:
     _refuse_places(files, parameters, target)
     if not isinstance(plugin, SimulatorExporter):
         return Export(parameters.name, target, files, None)
-    lost = (*(Lost(Kind.MISSING, said) for said in plugin.missing(parameters)), *lost_by_all(parameters))
+    lost = (*(Lost(Kind.MISSING, said) for said in plugin.missing(parameters)), *lost_by_all(parameters, plugin.holds))
     changes = (*plugin.changes(parameters), *converted(parameters), *_renamed(files, parameters))
     found = loss_of(
         target, force_law(parameters), parameters, files, plugin.force, plugin.not_held(parameters), lost, changes

@@ -70,7 +70,16 @@ def test_a_slender_spheroid_is_lambs_within_a_thousandth(kernel: str) -> None:
 def test_the_error_estimate_holds_the_error(axes: tuple[float, float, float], panels: int) -> None:
     found = solved(Ellipsoid(*axes), panels=panels, kernel="numpy")
     assert held(found, ellipsoid_added_mass(np.array(axes), RHO))
-    assert np.all(np.diag(found.error)[:3] < 0.08 * np.diag(found.matrix)[:3])
+    widest = 0.15 if "from two meshes" in found.statements[2] else 0.08
+    assert np.all(np.diag(found.error)[:3] < widest * np.diag(found.matrix)[:3])
+
+
+@pytest.mark.parametrize("axes", [(1.0, 3.0, 0.5), (5.0, 1.0, 0.3)])
+def test_two_coarse_meshes_do_not_understate_their_error(axes: tuple[float, float, float]) -> None:
+    """Half of what is asked for here left an entry of turning outside its estimate."""
+    found = solved(Ellipsoid(*axes), panels=1500, kernel="numpy")
+    assert "from two meshes, order not observed" in " ".join(found.statements)
+    assert held(found, ellipsoid_added_mass(np.array(axes), RHO))
 
 
 def test_a_body_with_edges_says_that_it_converges_slowly() -> None:

@@ -2,23 +2,8 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-
 import pytest
 
-from coeflab.core.files import shipped
-from coeflab.model.plan import read_plan
-from coeflab.model.study import Plan, PlannedTable
-from coeflab.presentation.content import document
-from coeflab.reporting import REPORTERS
-from coeflab.workbench import run
-from tests.presentation.studies import FULL, HOSTILE, small_study
-
-FLAGS = [
-    "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-sync",
-    "--disable-component-update", "--no-first-run", "--disable-dev-shm-usage",
-]  # fmt: skip
 WIDTHS = [1440, 390]
 CLIPPED = """() => {
   const out = [];
@@ -57,70 +42,17 @@ OVERLAPPING = """() => {
 }"""
 
 
-def _missing(why: str) -> None:
-    if os.environ.get("COEFLAB_FORBID_SKIPS"):
-        pytest.fail(why)
-    pytest.skip(why)
-
-
-@pytest.fixture(scope="module")
-def browser():
-    path = shutil.which("chromium")
-    if path is None:
-        _missing("chromium is not installed")
-    try:
-        from playwright.sync_api import sync_playwright
-    except ImportError:
-        _missing("playwright is not installed")
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=path, args=FLAGS)
-        yield opened
-        opened.close()
-
-
-def _study(kind: str):
-    if kind == "suboff":
-        return run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
-    if kind == "models":
-        planned = [("huuv_synthetic", "surface"), ("thauv_case_01_synthetic", "glide_polar"),
-                   ("suboff_cfd_barehull", "manoeuvring_model")]  # fmt: skip
-        tables = tuple(PlannedTable(shipped("cfd_data") / c, (f,), {}) for c, f in planned)
-        return run(Plan(name="models", title="Fitted models", tables=tables))
-    return small_study(FULL, named=HOSTILE if kind == "hostile" else "tow", published=True)
-
-
-@pytest.fixture(scope="module", params=["plain", "hostile", "models", pytest.param("suboff", marks=pytest.mark.slow)])
-def address(request, tmp_path_factory):
-    path = tmp_path_factory.mktemp("report") / "report.html"
-    study = _study(request.param)
-    path.write_bytes(REPORTERS.load("html").render(document(study))["report.html"])
-    return path.as_uri()
-
-
-@pytest.fixture
-def opened(browser, address):
-    pages = []
-
-    def open_page(width: int, scheme: str = "light"):
-        page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)
-        page.heard, page.fetched = [], []
-        page.on("console", lambda message: page.heard.append(message.text))
-        page.on("pageerror", lambda error: page.heard.append(str(error)))
-        page.on("request", lambda request: page.fetched.append(request.url))
-        page.goto(address)
-        pages.append(page)
-        return page
-
-    yield open_page
-    for page in pages:
-        page.close()
-
-
 @pytest.mark.parametrize("width", WIDTHS)
 def test_the_page_is_silent_and_loads_nothing_else(opened, address, width):
     page = opened(width)
     assert page.heard == []
     assert [url for url in page.fetched if not url.startswith("data:")] == [address]
+
+
+def test_the_script_is_all_that_runs(opened):
+    page = opened(1440)
+    assert page.evaluate("[...document.querySelectorAll('script')].map(s => s.type).filter(t => t !== 'application/json')") == ["module"]
+    assert page.locator("[onload], [onclick], [onerror], iframe, object, embed").count() == 0
 
 
 @pytest.mark.parametrize("width", WIDTHS)
@@ -162,6 +94,17 @@ def test_the_keyboard_reaches_the_skip_link_first(opened):
     assert page.evaluate("document.activeElement.getBoundingClientRect().top") >= 0
     page.keyboard.press("Enter")
     assert page.evaluate("document.activeElement.id") == "main"
+
+
+# A4 less the margins of the page rule, at 96 pixels an inch.
+def test_print_cuts_off_nothing(opened):
+    page = opened(673)
+    page.emulate_media(media="print")
+    assert page.evaluate("[...document.querySelectorAll('figure')].every(f => f.getBoundingClientRect().right <= 674)")
+    assert page.evaluate("Math.max(...[...document.querySelectorAll('figure svg')].map(f => f.clientHeight))") < 980
+    assert page.evaluate(CLIPPED) == []
+    assert page.locator("canvas:visible, .probe:visible").count() == 0
+    assert page.pdf(prefer_css_page_size=True).startswith(b"%PDF")
 
 
 def test_print_shows_all_tables(opened):

@@ -70,6 +70,50 @@ def test_a_mesh_file_with_its_unit_and_axes(coeflab: Run, tmp_path: Path) -> Non
     assert "--unit" in done.stderr
 
 
+def test_a_mesh_file_shows_its_particulars(coeflab: Run, tmp_path: Path) -> None:
+    """Centre in all directions, projected areas and inertia of the displaced water: as of a body.toml."""
+    bar = trimesh.creation.box(extents=(2000.0, 200.0, 100.0))
+    bar.apply_translation([100.0, 20.0, 30.0])
+    bar.export(tmp_path / "bar.stl")
+    done = coeflab("added-mass", tmp_path / "bar.stl", "--unit", "mm", "--axes", "FLU", "--method", "strip")
+    assert done.returncode == 0
+    row = next(line for line in done.stdout.splitlines() if "by_mesh" in line and "integrals" in line)
+    assert row.split()[1:6] == ["0.0400000", "0.1000", "-0.0200", "-0.0300", "1.2400"]
+    row = next(line for line in done.stdout.splitlines() if line.split()[:1] == ["by_mesh"] and "integrals" not in line)
+    assert [float(x) for x in row.split()[1:5]] == pytest.approx(
+        [0.02, 0.2, 0.4, 40.0 * (0.04 + 0.01) / 12.0], rel=1e-3
+    )
+
+
+@pytest.mark.parametrize("command", ["added-mass", "simplify"])
+def test_a_mesh_file_of_4356_m(coeflab: Run, tmp_path: Path, command: str) -> None:
+    trimesh.creation.box(extents=(4356.0, 508.0, 508.0)).export(tmp_path / "suboff.stl")
+    done = coeflab(command, tmp_path / "suboff.stl", "--unit", "m", "--axes", "FLU")
+    assert (done.returncode, done.stdout) == (2, "")
+    for words in (
+        '"--unit"',
+        "a body 4356 m in size",
+        "0.05 to 500 m",
+        'Is the unit "mm"? The body would be 4.356 m long.',
+    ):
+        assert words in done.stderr
+
+
+def test_what_rounding_leaves_has_no_spread(coeflab: Run, tmp_path: Path) -> None:
+    """The panel method finds that a ring does not turn the water about its axis; others do not matter beside that."""
+    trimesh.creation.torus(0.5, 0.1).export(tmp_path / "ring.stl")
+    done = coeflab("added-mass", tmp_path / "ring.stl", "--unit", "m", "--axes", "FLU")
+    lines = [line for line in done.stdout.splitlines() if line.split()[:1] in (["Nrdot"], ["Yrdot"])]
+    assert [line.split()[-1] for line in lines] == ["-", "-"]
+
+
+def test_a_spread_beyond_tenfold_has_no_digits(coeflab: Run, tmp_path: Path) -> None:
+    """About the axis of a duct the panels find the corners of its facets, sections the water within."""
+    trimesh.creation.annulus(0.4, 0.5, 0.3).export(tmp_path / "duct.stl")
+    done = coeflab("added-mass", tmp_path / "duct.stl", "--unit", "m", "--axes", "FLU")
+    assert next(line for line in done.stdout.splitlines() if "Nrdot" in line).endswith("> 1000 %")
+
+
 def test_options_go_to_the_one_method(coeflab: Run) -> None:
     coarse = coeflab("added-mass", "spheroid_example", "--method", "panel", "--panels", "1200", "--kernel", "numpy")
     assert coarse.returncode == 0

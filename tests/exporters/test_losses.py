@@ -10,9 +10,12 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.exporters import EXPORTERS
 from coeflab.model.force_law import force_law
+from coeflab.model.huuv import read_huuv
+from coeflab.model.huuv_parameters import parameter_file as huuv_file
 from coeflab.model.loss import covered_grid
 from coeflab.model.lost import Kind, missing_mass, missing_water
 from coeflab.model.parameter_file import ParameterFile, read_parameter_file
+from coeflab.model.vehicle import vehicle
 from coeflab.ports import SimulatorExporter
 from coeflab.presentation.loss_tables import in_short
 from coeflab.workbench.exports import export
@@ -124,6 +127,25 @@ def test_fitted_tables_over_two_angles_are_not_held_by_simulators() -> None:
     assert "the targets csv and toml hold the table" in said[0]
     assert any("hydrodynamic polar" in c and "one angle" in c for c in export(file, "xdyn").loss.changes)
     assert export(file, "toml").lossless
+
+
+@each_target
+def test_a_file_of_tables_alone_is_no_proof_of_an_export_without_them(target: str) -> None:
+    """The HUUV's drag and side force are tables: a target that is given none of them is not near the file."""
+    file = huuv_file(read_huuv())
+    if target == "mujoco":
+        with pytest.raises(InputError, match="no added mass along x, y and z"):
+            export(file, target)
+        return
+    loss = export(file, target).loss
+    ours = vehicle(file, free=("u", "v", "r")).law
+    nu, _ = covered_grid(file)
+    assert np.ptp(nu[:, 5]) > 0.0
+    np.testing.assert_allclose(loss.largest, np.abs(ours.force(nu, np.zeros((len(nu), 3)))).max(axis=0), rtol=1e-12)
+    assert loss.largest[0] > 1.0
+    assert loss.relative[0] > 0.9
+    assert loss.relative[1] > 0.5
+    assert "the file's force with its fitted tables" in loss.grid
 
 
 @pytest.mark.parametrize(("target", "name"), [("mss", "sin"), ("mss", "class"), ("python_vehicle_simulator", "print")])

@@ -16,12 +16,14 @@ import pytest
 from coeflab.core.identifiers import one_line
 from coeflab.exporters import python_vehicle_simulator as pvs
 from coeflab.kernels.kirchhoff import ideal_force
+from coeflab.kernels.rigid_body import rigid_body_inertia
 from coeflab.kernels.transforms import skew
 from coeflab.model.force_law import force_law
 from coeflab.workbench.exports import export
 from tests.exporters import files as made
 from tests.exporters.massed import CENTRE, MASS, torpedo, with_mass
 from tests.exporters.massed import INERTIA as INERTIA_MATRIX
+from tests.exporters.of_a_vehicle import floating, quaternion, restoring
 
 GOLDEN = Path(__file__).parent / "golden" / "python_vehicle_simulator.py.txt"
 ALONE = """
@@ -171,3 +173,19 @@ def test_hostile_names_stay_names(name: str) -> None:
 def test_hostile_names_run(tmp_path: Path) -> None:
     for name in made.HOSTILE:
         assert alone(tmp_path, made.named(name))["name"] == one_line(name)
+
+
+def test_weight_and_buoyancy_are_those_of_the_file() -> None:
+    """dynamics() at two attitudes: its accelerations differ by those of the restoring forces."""
+    namespace: dict = {}
+    exec(next(iter(pvs.render(floating()).values())), namespace)
+    vehicle, still = namespace["file"](), np.zeros(6)
+    total = rigid_body_inertia(MASS, CENTRE, INERTIA_MATRIX) + vehicle.MA
+
+    def force(roll: float, pitch: float) -> np.ndarray:
+        eta = np.array([0.0, 0.0, 0.0, roll, pitch, 0.0])
+        return total @ vehicle.dynamics(eta, still, np.zeros(4), np.zeros(4), 1.0)[0]
+
+    for roll, pitch in ((0.0, 0.0), (0.4, -0.3), (-1.2, 0.8)):
+        expected = restoring(floating(), quaternion(roll, pitch))
+        np.testing.assert_allclose(force(roll, pitch), expected, rtol=1e-9, atol=1e-9)

@@ -59,7 +59,9 @@ def test_members_have_rows_of_their_own() -> None:
     rows = law().coefficient * np.linspace(0.5, 2.0, len(nu))[:, None]
     together = law(coefficient=rows).force(nu, controls)
     for k in range(len(nu)):
-        np.testing.assert_allclose(together[k], replace(law(), coefficient=rows[k]).force(nu[k : k + 1], controls[k : k + 1])[0])
+        np.testing.assert_allclose(
+            together[k], replace(law(), coefficient=rows[k]).force(nu[k : k + 1], controls[k : k + 1])[0]
+        )
 
 
 def test_at_rest_there_is_no_force_and_no_fault() -> None:

@@ -54,6 +54,32 @@ def test_a_long_needle_through_a_plate() -> None:
     assert crossing_faces(np.asarray(whole.vertices), np.asarray(whole.faces)) > 0
 
 
+def spiked(depth: float) -> tuple[np.ndarray, np.ndarray]:
+    """A ball whose topmost vertex is pulled down along the axis, so that sides meet sides and never the inside."""
+    vertices, faces = ball()
+    vertices[np.argmax(vertices[:, 2])] = [0.0, 0.0, -depth]
+    return vertices, faces
+
+
+def test_sides_that_meet_only_sides() -> None:
+    """Of a surface with planes of symmetry no side need pass through the inside of a face."""
+    assert crossing_faces(*spiked(0.9)) == 0
+    assert crossing_faces(*spiked(1.5)) >= 3
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_united_bodies_do_not_cross(seed: int) -> None:
+    """Also in single precision, and with faces and sides that lie on one another."""
+    at = np.random.default_rng(seed)
+    made = [trimesh.creation.box(at.uniform(0.1, 1.0, 3)), trimesh.creation.icosphere(2, at.uniform(0.2, 0.6))]
+    made += [trimesh.creation.cylinder(radius=0.2, height=at.uniform(0.3, 2.0), sections=31)]
+    for part in made:
+        part.apply_translation(np.round(at.uniform(-0.6, 0.6, 3), seed % 3))
+    whole = trimesh.boolean.union(made, engine="manifold")
+    for vertices in (whole.vertices, whole.vertices.astype(np.float32).astype(float)):
+        assert crossing_faces(np.asarray(vertices), np.asarray(whole.faces)) == 0
+
+
 def test_too_many_pairs_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(triangle_pairs, "MOST_PAIRS", 100)
     assert crossing_faces(*ball()) is None

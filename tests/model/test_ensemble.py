@@ -29,7 +29,9 @@ def test_a_member_is_the_vehicle_with_its_numbers() -> None:
 
 def test_the_arrays_of_a_member_are_those_of_its_vehicle() -> None:
     v = swimmer()
-    many = Ensemble(v, np.stack([v.law.coefficient] * 2), added=np.stack([v.added, 1.2 * v.added]), mass=np.array([60.0, 65.0]))
+    many = Ensemble(
+        v, np.stack([v.law.coefficient] * 2), added=np.stack([v.added, 1.2 * v.added]), mass=np.array([60.0, 65.0])
+    )
     whole, own = many.dynamics(np.zeros(3)), alone(many.member(1)).dynamics(np.zeros(3))
     np.testing.assert_allclose(whole.inverse[1], own.inverse)
     np.testing.assert_allclose(whole.quadratics[1], own.quadratics)

@@ -127,7 +127,11 @@ def test_glb_that_cannot_be(tmp_path: Path, description: object, words: str) -> 
 
 def test_glb_of_another_kind(tmp_path: Path) -> None:
     data = content("glb")
-    refused(written(tmp_path, "a.glb", data[:4] + struct.pack("<I", 1) + data[8:]), "a GLB of version 2")
+    refused(
+        written(tmp_path, "a.glb", data[:4] + struct.pack("<I", 1) + data[8:]), "found version 1", "a GLB of version 2"
+    )
+    refused(written(tmp_path, "e.glb", b"PK" + data[2:]), 'begins with "glTF"')
+    refused(written(tmp_path, "d.glb", data[:16] + b"BIN" + data[19:]), "no description behind the header")
     refused(written(tmp_path, "b.glb", data + b"more"), "a whole GLB")
     refused(written(tmp_path, "c.gltf", b"{}"), "Save it as GLB")
 

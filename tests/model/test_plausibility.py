@@ -6,12 +6,17 @@ import numpy as np
 import pytest
 
 from coeflab.model.check import Severity
+from coeflab.model.huuv import read_huuv
+from coeflab.model.huuv_parameters import parameter_file as huuv_file
 from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.parameter_model import ParameterModel
 from coeflab.model.plausibility import plausibility
 from coeflab.model.plausible_added_mass import stated_matrix
 from coeflab.model.study import Study
 from tests.exporters import of_second_order as second
-from tests.model.test_force_law import HULL, parameters
+from tests.exporters.massed import ADDED
+from tests.exporters.of_a_vehicle import floating
+from tests.model.test_force_law import HULL, LENGTH, parameters
 
 DERIVATIVES = {"Yv": -0.03, "Yvdot": -0.016, "Nrdot": -9e-4, "Xudot": -4e-4}
 
@@ -82,3 +87,49 @@ def test_what_is_no_damping_has_any_sign() -> None:
 
 def test_a_square_in_the_place_of_damping() -> None:
     assert "Yvv'" in found(parameters({"Yvv": -0.1, "Nr": -1e-3}, HULL), Severity.WARN)
+
+
+def afloat(**changed: object) -> ParameterFile:
+    file = floating()
+    return file.model_copy(update={"hydrostatics": file.hydrostatics.model_copy(update=changed)})
+
+
+def test_a_volume_that_does_not_belong_to_the_mass() -> None:
+    """60 kg displace about 0.06 m^3, which is 2.1 cubic feet."""
+    assert found(floating()) == {}
+    assert "the volume in cubic feet" in found(afloat(volume=0.06 / 0.3048**3))["mass and hydrostatics.volume"]
+    assert "do not belong together" in found(afloat(volume=0.6))["mass and hydrostatics.volume"]
+    assert "Gravity in ft/s^2" in found(afloat(gravity=32.174))["hydrostatics.gravity"]
+
+
+def test_a_centre_of_buoyancy_below_that_of_gravity_turns_over() -> None:
+    """The centre of gravity is at z = 0.03 m, down."""
+    key = "hydrostatics.centre_of_buoyancy"
+    assert key not in found(afloat(centre_of_buoyancy=(0.0, 0.0, 0.029)), Severity.WARN)
+    assert "z is down" in found(afloat(centre_of_buoyancy=(0.0, 0.0, 0.05)), Severity.WARN)[key]
+
+
+def tabled(slope: float, contains: bool = False) -> ParameterFile:
+    """The torpedo whose yaw moment is a table over v', of that slope, in place of its derivatives."""
+    file = floating()
+    table = ParameterModel.model_validate({
+        "response": "N'", "unit": "1", "form": "line", "variables": [{"name": "v", "unit": "1"}],
+        "terms": [{"symbol": "Nv", "factors": [{"variable": "v", "power": 1}], "value": slope, "half_width_95": None}],
+        "covariance": [[None]], "n_points": 9, "rms": 0.0, "press_rms": None, "table": "t.csv", "campaign": "c",
+        "contains_potential": contains,
+        "domain": {"low": [-0.3], "high": [0.3], "half_spaces": [[1.0, -0.3], [-1.0, -0.3]], "extrapolation": "clamp"},
+    })  # fmt: skip
+    others = tuple(c for c in file.coefficients if not c.symbol.startswith("N"))
+    return file.model_copy(update={"coefficients": others, "models": (table,)})
+
+
+def test_a_table_that_is_said_to_lack_the_munk_moment_but_has_it() -> None:
+    """Munk moment (Yvdot - Xudot) u v = (3 - 55) u v: a table of that slope is taken for a total, one of the reverse is not."""
+    munk = (ADDED[0, 0] - ADDED[1, 1]) / (0.5 * 1000.0 * LENGTH.length**3)
+    said = found(tabled(0.8 * munk))["models of N"]
+    assert said.startswith("Munk moment twice: ")
+    assert "models of N" not in found(tabled(0.8 * munk, contains=True))
+    for slope in (-0.8 * munk, 0.2 * munk, 3.0 * munk):
+        assert "models of N" not in found(tabled(slope))
+    assert "models of N" not in found(floating())
+    assert "models of N" not in found(huuv_file(read_huuv()))

@@ -14,6 +14,7 @@ from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.study import Plan, Study
 
 HOSTILE = "<script>alert('x')</script> & \"y\" $a_b$"
+ENDLESS = "\u05e9\u05dc\u05d5\u05dd \u202eright to left\u202c " + "x" * 5000
 LENGTH = Scaling(2.0, "LOA")
 CONDITIONS = Conditions(1000.0, 1.5)
 

@@ -5,8 +5,8 @@ It needs pythonfmu, which is in the FMU, and Python's standard library. Equation
 
     (M_RB + M_A) nu_dot = tau(nu, delta) + external - C_RB(nu) nu        eta_dot = J(q) nu
 
-tau holds -C_A(nu) nu. Axes x forward, y starboard, z down; positions north, east, down. Weight and buoyancy are equal and
-act at one point. The water is at rest. Runge and Kutta's method of order 4, in steps of at most ``step``.
+tau holds -C_A(nu) nu. Axes x forward, y starboard, z down; positions north, east, down. Weight and buoyancy are those of the
+parameters hydrostatics.* (Fossen 2011, equation 4.6); without them they are equal and act at one point. The water is at rest. Runge and Kutta's method of order 4, in steps of at most ``step``.
 """
 
 from __future__ import annotations
@@ -116,6 +116,18 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu has no types
             out[term["force"]] += value
         return out
 
+    def restoring(self, quaternion: Vector) -> Vector:
+        """X Y Z K M N of weight and buoyancy."""
+        if "hydrostatics.volume" not in self.values:
+            return [0.0] * 6
+        q0, q1, q2, q3 = quaternion
+        down = [2.0 * (q1 * q3 - q0 * q2), 2.0 * (q2 * q3 + q0 * q1), 1.0 - 2.0 * (q1 * q1 + q2 * q2)]
+        g = self.values["hydrostatics.g"]
+        weight, buoyancy = self.values["mass.m"] * g, self.values["density"] * g * self.values["hydrostatics.volume"]
+        gravity, lift = self.group("mass", "x_g", "y_g", "z_g"), self.group("hydrostatics", "x_b", "y_b", "z_b")
+        arm = [weight * a - buoyancy * b for a, b in zip(gravity, lift)]
+        return [*((weight - buoyancy) * d for d in down), *cross(arm, down)]
+
     def rates(self, state: Vector) -> Vector:
         """Time derivative of position, quaternion and velocities."""
         (q0, *q), nu = state[3:7], state[7:]
@@ -129,7 +141,8 @@ class Unit(Fmi2Slave):  # type: ignore[misc]  # pythonfmu has no types
         p, h = momentum[:3], momentum[3:]
         centripetal = [*cross(w, p), *(a + b for a, b in zip(cross(w, h), cross(v, p)))]
         external = self.group("external", *"XYZKMN")
-        force = [a + b - c for a, b, c in zip(self.hydrodynamics(nu), external, centripetal)]
+        given = zip(self.hydrodynamics(nu), self.restoring(state[3:7]), external, centripetal)
+        force = [a + b + c - d for a, b, c, d in given]
         return way + turning + [sum(a * b for a, b in zip(row, force)) for row in self.inverse]
 
     def do_step(self, current_time: float, step_size: float) -> bool:  # noqa: ARG002

@@ -1,0 +1,120 @@
+"""``coeflab identify``: coefficients from time series of motions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from coeflab.cli import show
+
+if TYPE_CHECKING:
+    from coeflab.model.identified import Identified
+
+EXAMPLE = "coeflab identify zigzag.csv turning_circle.csv --params vehicle.parameters.json"
+
+
+def command(
+    series: list[Path] = typer.Argument(
+        ..., help="Time series, CSV with units in the headers: t, u v w p q r, dr ds db ..."
+    ),
+    params: Path = typer.Option(
+        ..., "--params", help="Parameter file: mass, inertia, scaling, and what to compare with."
+    ),
+    terms: str = typer.Option(
+        "", metavar="Yv,Yr,...", help="Candidates; file: those of the file; default first and second order."
+    ),
+    weak: bool = typer.Option(
+        True, "--weak/--derivative", help="Averages over windows, or differences for clean series."
+    ),
+    window: str = typer.Option(
+        "", metavar="TIME", help='Half of a window, such as "2 s"; default three quarters of L/V.'
+    ),
+    asymmetric: bool = typer.Option(False, "--asymmetric", help="Also terms that symmetry port to starboard forbids."),
+    fit_added_mass: bool = typer.Option(False, "--fit-added-mass", help="Acceleration derivatives are candidates too."),
+    optimizer: str = typer.Option("stlsq", help="stlsq or sr3 of pysindy."),
+    resamples: int = typer.Option(200, help="How often stretches of the series are drawn."),
+    seed: int = typer.Option(1, help="Of the draws."),
+    out: Path | None = typer.Option(None, "--out", help="Folder for CSV, JSON and SVG; without it nothing is written."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Identify hydrodynamic coefficients from motions and compare them with a parameter file.
+
+    The rigid body is taken from the file; the terms of the force are chosen by sparse regression in the weak form. Says
+    which terms the series cannot tell. Exit code 1 when nothing was identified.
+    """
+    from coeflab.model.parameter_file import read_parameter_file
+    from coeflab.presentation import identified_tables
+    from coeflab.studies.identify import identify_from
+
+    options: dict[str, object] = {
+        "terms": terms, "form": "weak" if weak else "derivative", "symmetric": "no" if asymmetric else "yes",
+        "added_mass": "fit" if fit_added_mass else "known", "optimizer": optimizer, "resamples": resamples, "seed": seed,
+    }  # fmt: skip
+    if window:
+        options["window"] = window
+    with show.progress(json) as say:
+        say(f"reading {len(series)} time series")
+        found = identify_from(series, read_parameter_file(params), options)
+    written = [] if out is None else _write(found, out)
+    if json:
+        show.json_object({**as_json(found), "files": [str(p) for p in written]})
+    else:
+        show.table(identified_tables.terms(found))
+        show.table(identified_tables.balances(found))
+        for path in written:
+            show.text(f"  {path}")
+    if not found.found:
+        raise typer.Exit(1)
+
+
+def as_json(found: Identified) -> dict[str, Any]:
+    """Every candidate with its values, absent ones null, and the works that the method rests on."""
+    from coeflab.core.citations import work
+    from coeflab.studies.identify import citations
+
+    return {
+        "name": found.name,
+        "series": list(found.series),
+        "method": found.method,
+        "half_window": found.half,
+        "seed": found.seed,
+        "resamples": found.resamples,
+        "terms": [
+            {
+                "symbol": t.symbol, "outcome": t.outcome.value, "why": t.why or None, "value": t.value, "low": t.low,
+                "high": t.high, "inclusion_frequency": t.frequency, "file_value": t.file_value, "file_u95": t.file_u95,
+                "file_source": t.file_source or None, "verdict": t.verdict.value or None,
+            }
+            for t in found.terms
+        ],
+        "balances": [
+            {
+                "component": b.component,  "stretches": b.stretches, "threshold": b.threshold,
+                "unexplained": b.left,
+            }
+            for b in found.balances
+        ],
+        "statements": list(found.statements),
+        "citations": [work(key) for key in citations],
+    }  # fmt: skip
+
+
+def _write(found: Identified, folder: Path) -> list[Path]:
+    """CSV, JSON and SVG; none where one cannot be made."""
+    import json
+
+    from coeflab.core.files import write_atomically
+    from coeflab.presentation.identified_figure import identified_figure
+    from coeflab.presentation.identified_tables import terms_csv
+    from coeflab.presentation.sheet import sheet
+
+    content = {
+        f"{found.name}.identified.csv": terms_csv(found),
+        f"{found.name}.identified.json": (json.dumps(as_json(found), indent=2, allow_nan=False) + "\n").encode(),
+        f"{found.name}.identified.svg": sheet([(identified_figure(found, "identified"),)]),
+    }
+    for name, data in content.items():
+        write_atomically(folder / name, data)
+    return [folder / name for name in content]

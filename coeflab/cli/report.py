@@ -1,0 +1,76 @@
+"""``coeflab report``: a study as HTML and PDF."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import typer
+
+from coeflab.cli import show
+
+EXAMPLE = "coeflab report suboff --to html,pdf"
+
+
+def command(
+    study: str = typer.Argument(..., help="A plan.toml, a folder with one, or a validation such as suboff."),
+    to: str = typer.Option("html,pdf", help="Formats, separated by commas; `coeflab formats reporting` lists them."),
+    out: Path | None = typer.Option(None, help="Folder for the files; default reports/STUDY."),
+    section: list[str] = typer.Option([], help="Only this section, by its anchor or title; may be repeated."),
+    summary: bool = typer.Option(False, "--summary", help="One page: verdict, coefficients, main figure, stability."),
+    open_: bool = typer.Option(False, "--open", help="Show the first file in the browser."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Compute a study and write its report: the same content in every format, whole, in parts or on one page.
+
+    Nothing is written unless everything could be rendered. Equal inputs give equal files, byte for byte.
+    """
+    from coeflab.cli.carry_out import REPORTS
+    from coeflab.core.errors import InputError
+    from coeflab.core.files import write_atomically
+    from coeflab.reporting import REPORTERS
+    from coeflab.studies.documents import only, report_of, written
+
+    formats = [name.strip() for name in to.split(",") if name.strip()]
+    if not formats:
+        raise InputError("no format", f"one or more of {', '.join(REPORTERS.names())}", column="--to")
+    if summary and section:
+        raise InputError("--summary with --section", "one of them: a summary has one page")
+    for name in formats:
+        REPORTERS.load(name)
+    with show.progress(json) as say:
+        made = report_of(study, short=summary, progress=say)
+        document = only(made.document, section)
+        files: dict[str, bytes] = {}
+        for name in formats:
+            say(f"writing {name}")
+            files.update(written(document, [name]))
+    if summary:
+        files = {name.replace("report", "summary", 1): content for name, content in files.items()}
+    folder = out if out is not None else Path(REPORTS) / document.name
+    for name, content in files.items():
+        write_atomically(folder / name, content)
+    paths = [folder / name for name in files]
+    if json:
+        show.json_object(
+            {
+                "study": document.name, "title": document.title, "digest": document.digest, "failed": made.failed,
+                "sections": [{"anchor": s.anchor, "title": s.title} for s in document.sections],
+                "files": [str(p) for p in paths],
+            }
+        )  # fmt: skip
+    else:
+        show.text(document.title)
+        for path in paths:
+            show.text(f"  {path}  {len(files[path.name]) / 1e6:.2f} MB")
+    if open_:
+        _shown(paths[0])
+    if made.failed:
+        raise typer.Exit(1)
+
+
+def _shown(path: Path) -> None:
+    """Open a file in the browser; says so where there is none."""
+    import webbrowser
+
+    if not webbrowser.open(path.resolve().as_uri()):
+        typer.echo(f"No browser could be started; open {path} yourself.", err=True)

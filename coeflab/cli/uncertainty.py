@@ -1,0 +1,146 @@
+"""``coeflab uncertainty``: the uncertainty of a parameter file carried through a manoeuvre."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from coeflab.cli import show
+
+if TYPE_CHECKING:
+    from coeflab.model.carried import Carried
+
+EXAMPLE = "coeflab uncertainty reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag --sobol"
+CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
+
+
+def command(
+    ctx: typer.Context,
+    file: Path = typer.Argument(..., help="A parameter file."),
+    manoeuvre: str = typer.Option("turning_circle", help="Name of the manoeuvre (see coeflab formats)."),
+    members: int = typer.Option(1000, help="Draws of the coefficients, each of which makes the manoeuvre."),
+    seed: int = typer.Option(1, help="Of the draws; the same seed gives the same numbers."),
+    sobol: bool = typer.Option(
+        False, "--sobol", help="Sobol indices of independent groups of coefficients; takes longer."
+    ),
+    workers: int = typer.Option(0, help="Local processes; 0: one a core."),
+    scheduler: str = typer.Option("", metavar="ADDRESS", help="Dask scheduler in place of local processes."),
+    store: Path | None = typer.Option(
+        None, help="Folder for finished batches, so that a run that was stopped goes on; default OUT/batches."
+    ),
+    free: str = typer.Option(
+        "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
+    ),
+    hold: str = typer.Option("", metavar="u", help="Motions that are held after all, such as u for a constant speed."),
+    current: str = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down."),
+    kernel: str = typer.Option("auto", help="auto, compiled (numba) or numpy; the same numbers to 1e-12."),
+    tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
+    computed_added_mass: bool = typer.Option(
+        False, "--computed-added-mass", help="Leave measured acceleration derivatives aside."
+    ),
+    out: Path | None = typer.Option(None, help="Folder for members and figure; nothing is written without it."),
+    help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the manoeuvre, and stop."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Draw the coefficients of a parameter file, run the manoeuvre for each draw, and give intervals of its figures.
+
+    Says which coefficient is worth another test or CFD run. Any further --option VALUE goes to the manoeuvre: --rudder "20 deg".
+    Numbers do not depend on workers, scheduler, or on having been stopped and started again.
+    """
+    from coeflab.cli.fit import further
+    from coeflab.cli.simulate import current_of, listed
+    from coeflab.model.carried import Question
+    from coeflab.model.parameter_file import read_parameter_file
+    from coeflab.studies.uncertainty import uncertainty
+
+    if help_options:
+        from coeflab.cli.formats import explain
+
+        explain(manoeuvre)
+        return
+    water = current_of(current)
+    question = Question(
+        manoeuvre, further(ctx.args), members, seed, sobol, listed(free), listed(hold), tables, not computed_added_mass,
+        (water.get("north", 0.0), water.get("east", 0.0), water.get("down", 0.0)), kernel,
+    )  # fmt: skip
+    folder = store if store is not None else out / "batches" if out is not None else None
+    with show.narrated():
+        made = uncertainty(read_parameter_file(file), question, workers, scheduler, folder)
+    written = [] if out is None else _write(made, out)
+    if json:
+        show.json_object({**as_json(made), "files": [str(p) for p in written]})
+    else:
+        _print(made, written)
+
+
+def _print(made: Carried, written: list[Path]) -> None:
+    from coeflab.presentation import uncertainty_tables
+
+    show.table(uncertainty_tables.spread_table(made))
+    for found in made.importances:
+        show.table(uncertainty_tables.share_table(found))
+    show.table(uncertainty_tables.known_table(made))
+    for line in (*uncertainty_tables.ranking(made), *made.statements):
+        show.text(f"  {line}")
+    for path in written:
+        show.text(f"  {path}")
+
+
+def _write(made: Carried, folder: Path) -> list[Path]:
+    from coeflab.core.files import write_atomically
+    from coeflab.presentation.sheet import sheet
+    from coeflab.presentation.uncertainty_figure import uncertainty_figures
+    from coeflab.presentation.uncertainty_tables import members_csv
+
+    name = made.question.manoeuvre
+    content = {f"{name}_members.csv": members_csv(made)}
+    figures = uncertainty_figures(made)
+    if figures:
+        content[f"{name}_uncertainty.svg"] = sheet(figures)
+    for file, data in content.items():
+        write_atomically(folder / file, data)
+    return [folder / file for file in content]
+
+
+def as_json(made: Carried) -> dict[str, Any]:
+    """Figures in SI with intervals, shares of the variance, ranking and statements; absent values null."""
+    from coeflab.presentation.uncertainty_tables import ranking
+
+    q = made.question
+    return {
+        "vehicle": made.vehicle,
+        "manoeuvre": q.manoeuvre,
+        "members": q.members,
+        "seed": q.seed,
+        "motions": made.runs,
+        "figures": [
+            {
+                "name": s.figure.name, "unit": s.figure.unit, "value": s.figure.value, "status": s.figure.status,
+                "median": s.median, "low": s.low, "high": s.high, "low_error": s.low_error, "high_error": s.high_error,
+                "members_with_it": s.having, "members_beyond_the_data": s.extrapolated, "interval": s.status, "why": s.why or None,
+                "definition": s.figure.definition,
+            }
+            for s in made.spreads
+        ],
+        "shares": {
+            i.figure: {
+                "rows": i.rows,
+                "why": i.why or None,
+                "if_known": dict(i.known),
+                "groups": [
+                    {
+                        "symbols": list(s.symbols), "source": s.source, "first": s.first, "first_bounds": list(s.first_bounds),
+                        "total": s.total, "total_bounds": list(s.total_bounds),
+                    }
+                    for s in i.shares
+                ],
+            }
+            for i in made.importances
+        },
+        "varied": {s: float(d) for s, d in zip(made.varied.symbols, made.varied.deviation, strict=True)},
+        "held": list(made.varied.held),
+        "ranking": list(ranking(made)),
+        "statements": list(made.statements),
+    }  # fmt: skip

@@ -1,0 +1,34 @@
+"""A manoeuvre of a parameter file, as it was asked for and as it came out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+from coeflab.model.manoeuvre import Figure, Manoeuvre
+from coeflab.model.trajectory import Trajectory
+from coeflab.model.vehicle import Vehicle
+
+
+@dataclass(frozen=True, slots=True)
+class Simulation:
+    """What was asked and what came out.
+
+    Attributes
+    ----------
+    vehicle : Vehicle
+    manoeuvre : Manoeuvre
+    trajectory : Trajectory
+    figures : tuple of Figure
+    statements : tuple of str
+        Assumptions of vehicle, manoeuvre and motion.
+    determined : float
+        Time from which on the motion leans on terms that no data give, s; infinite where it never does.
+    """
+
+    vehicle: Vehicle
+    manoeuvre: Manoeuvre
+    trajectory: Trajectory
+    figures: tuple[Figure, ...]
+    statements: tuple[str, ...]
+    determined: float = inf

@@ -1,0 +1,133 @@
+"""A publication reproduced, as a report: verdict, figures, every compared table, errata."""
+
+from __future__ import annotations
+
+import re
+from html import unescape
+
+from coeflab.core.citations import work
+from coeflab.core.provenance import InputFile
+from coeflab.model.acceptance import BASES, Acceptance, ComparedTable
+from coeflab.model.table import Table
+from coeflab.presentation import acceptance_tables
+from coeflab.presentation.content import digest_of
+from coeflab.presentation.document import Document, Figure, Section
+
+
+def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
+    """The report of a publication.
+
+    Parameters
+    ----------
+    found : Acceptance
+    inputs : tuple of InputFile, optional
+        The files that it was computed from.
+    """
+    tables = tuple(
+        Section(f"table-{t.key.replace('_', '-')}", t.title, tables=(shown,))
+        for t, shown in zip(found.tables, acceptance_tables.tables(found), strict=True)
+    )
+    sections = (
+        verdict(found),
+        *_section("figures", "Figures", figures=figures(found)),
+        Section("compared", "Compared with the publication", (DIFFERENCES,), subsections=tables),
+        *_section("statements", "What to know", found.statements),
+        *_errata(found),
+        Section("provenance", "Provenance", _PROVENANCE[: 1 + bool(inputs)], _inputs(inputs), code=(command(found),)),
+    )
+    works = tuple((k, work(k)) for k in found.citations)
+    return Document(found.title, SUBTITLE, sections, found.name, digest_of(inputs), works)
+
+
+SUBTITLE = "A publication reproduced, number by number"
+DIFFERENCES = (
+    "Difference: found less published, as a share of the published number where a per cent sign stands. A number passes when "
+    "the difference is no larger than what is allowed."
+)
+_PROVENANCE = (
+    "To reproduce it, run this command; equal inputs give this report byte for byte.",
+    "The files below are known by the sha256 of their bytes.",
+)
+
+
+def command(found: Acceptance) -> str:
+    """What to type for it."""
+    return f"coeflab report {found.name} --to html,pdf"
+
+
+def verdict(found: Acceptance) -> Section:
+    """How many numbers hold, and which do not."""
+    rows = [r for t in found.tables for r in t.rows]
+    held = sum(r.holds for r in rows)
+    text = [
+        f"All {held} numbers lie within what is allowed."
+        if held == len(rows)
+        else f"{held} of {len(rows)} numbers lie within what is allowed."
+    ]
+    for t in found.tables:
+        failed = [f"{r.quantity} of {r.case}" for r in t.rows if not r.holds]
+        if failed:
+            text.append(f"Outside, {t.title}: {', '.join(failed)}.")
+    kinds = [f"{sum(r.basis == b for r in rows)} {b} ({meaning})" for b, meaning in BASES.items()]
+    text.append(f"What they are held against: {'; '.join(kinds)}. A number met in-sample proves nothing new.")
+    return Section("verdict", "Verdict", tuple(text), (overview(found),))
+
+
+def overview(found: Acceptance) -> Table:
+    """One row a table of the publication."""
+    rows = tuple(
+        (
+            t.title,
+            t.source,
+            f"{sum(r.holds for r in t.rows)} of {len(t.rows)}",
+            _closest(t),
+            "pass" if t.holds else "fail",
+        )
+        for t in found.tables
+    )
+    notes = ("used: the largest difference as a share of what is allowed, where that is not zero",)
+    headers = ("what", "of the publication", "hold", "used", "verdict")
+    return Table("Tables of the publication", headers, rows, notes, frozenset({0, 1, 4}))
+
+
+def _closest(t: ComparedTable) -> str:
+    shares = [
+        (r.difference if r.at_most else abs(r.difference)) / r.tolerance
+        for r in t.rows
+        if r.difference is not None and r.tolerance > 0.0
+    ]
+    return f"{100.0 * max(*shares, 0.0):.0f} %" if shares else "-"
+
+
+def figures(found: Acceptance) -> tuple[Figure, ...]:
+    """Its drawings, with the titles and descriptions that they hold."""
+    out = []
+    for name, caption, content in found.figures:
+        svg = content.decode()
+        anchor = re.sub(r"[^a-z0-9]+", "-", name.removesuffix(".svg").lower()).strip("-")
+        out.append(Figure(anchor, svg, _inside(svg, "title") or name, caption, _inside(svg, "desc")))
+    return tuple(out)
+
+
+def _inside(svg: str, element: str) -> str:
+    found = re.search(rf"<{element}[^>]*>(.*?)</{element}>", svg, flags=re.DOTALL)
+    return unescape(found[1]) if found else ""
+
+
+def _section(
+    anchor: str, title: str, text: tuple[str, ...] = (), figures: tuple[Figure, ...] = ()
+) -> tuple[Section, ...]:
+    return (Section(anchor, title, text, figures=figures),) if text or figures else ()
+
+
+def _errata(found: Acceptance) -> tuple[Section, ...]:
+    if not found.errata:
+        return ()
+    return (Section("errata", "Errata of the publication", tables=(acceptance_tables.errata(found),)),)
+
+
+def _inputs(inputs: tuple[InputFile, ...]) -> tuple[Table, ...]:
+    if not inputs:
+        return ()
+    rows = tuple((f.name, f.sha256) for f in inputs)
+    return (Table("Inputs", ("file", "sha256"), rows, (), frozenset({0, 1})),)

@@ -1,0 +1,63 @@
+"""Independent parts of a report, drawn on other cores while this one goes on."""
+
+from __future__ import annotations
+
+import os
+import threading
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from multiprocessing import current_process, get_all_start_methods, get_context
+from typing import TypeVar
+
+Part = TypeVar("Part")
+MOST = 4
+_JOBS: list[Callable[[], object]] = []
+
+
+@contextmanager
+def begun(jobs: Sequence[Callable[[], Part]]) -> Iterator[Callable[[], list[Part]]]:
+    """Start jobs; the yielded function waits for what they return, in their own order.
+
+    Copies of this process do the work, so that a job may hold anything; what it returns is pickled. Where copying is not
+    to be had or not safe (a second Python thread might hold a lock), the jobs are done here, with the same result.
+
+    Parameters
+    ----------
+    jobs : sequence of callable
+        Pure, and of numpy and matplotlib alone: libraries with threads of their own do not survive the copying.
+    """
+    workers = min(MOST, len(jobs), _cores())
+    if workers < 2 or _JOBS or not _safe():
+        yield lambda: [job() for job in jobs]
+        return
+    _JOBS.extend(jobs)
+    try:
+        with ProcessPoolExecutor(workers, get_context("fork")) as pool:
+            with warnings.catch_warnings():
+                warnings.filterwarnings("ignore", message=".*fork", category=DeprecationWarning)
+                waiting = [pool.submit(_done, i) for i in range(len(jobs))]
+
+            def results() -> list[Part]:
+                try:
+                    return [w.result() for w in waiting]  # type: ignore[misc]
+                except BrokenProcessPool:
+                    return [job() for job in jobs]
+
+            yield results
+    finally:
+        _JOBS.clear()
+
+
+def _done(index: int) -> object:
+    return _JOBS[index]()
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
+
+
+def _safe() -> bool:
+    return "fork" in get_all_start_methods() and not current_process().daemon and threading.active_count() == 1

@@ -1,0 +1,96 @@
+"""Stability of straight motion with controls fixed: indices with U95, roots against speed, critical speed."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import CoeflabError
+from coeflab.model.derived import INDICES, stability
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.root_locus import RootLocus, root_locus
+from coeflab.model.study import Study
+from coeflab.model.table import ABSENT, Table, number
+from coeflab.presentation.document import Figure, Section
+from coeflab.presentation.root_locus_figure import IN_PLANE, root_locus_figure
+
+TEXT = (
+    "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')]: positive is "
+    "directionally stable with controls fixed. G_v is the limit of high speed, without the restoring moment of weight and "
+    "buoyancy.",
+    "The roots are the eigenvalues of small motions about a straight course with the speed held, by the force law and the added "
+    "mass of the parameter file; its derivatives are taken to hold at every speed shown.",
+)
+
+
+def stability_sections(study: Study) -> tuple[Section, ...]:
+    """One section, or none where no parameter file has any derivative that an index needs."""
+    rows: list[tuple[str, ...]] = []
+    roots: list[tuple[str, ...]] = []
+    figures: list[Figure] = []
+    refused: list[str] = []
+    for i, (name, parameters) in enumerate(study.parameter_files.items()):
+        found = _indices(parameters)
+        rows += found
+        for index in (row[1] for row in found if row[2] != ABSENT):
+            try:
+                locus = root_locus(parameters, index)
+            except CoeflabError as why:
+                refused.append(f"{name}, {IN_PLANE[index]}: no roots, as the file has {why}")
+                continue
+            roots.append(_roots(name, locus))
+            figures.append(root_locus_figure(locus, name, f"roots-{i}-{index[-1]}"))
+    if not rows:
+        return ()
+    headers = ("parameter file", "index", "value", "U95", "verdict", "remark")
+    tables = [Table("Stability indices", headers, tuple(rows), (), frozenset({0, 1, 4, 5}))]
+    if roots:
+        heads = ("parameter file", "plane", "roots 1/s", "time to double or halve s", "critical speed m/s")
+        tables.append(Table("Roots at the speed of the file", heads, tuple(roots), (), frozenset({0, 1, 2, 4})))
+    return (Section("stability", "Stability", (*TEXT, *refused), tuple(tables), tuple(figures)),)
+
+
+def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
+    """A row for every plane of which the file has at least one derivative."""
+    given = {d.name: d for d in stability(parameters)}
+    out: list[tuple[str, ...]] = []
+    for index, (*symbols, _) in INDICES.items():
+        found = [parameters.coefficient(str(s)) for s in symbols]
+        lacking = [str(s) for s, c in zip(symbols, found, strict=True) if c is None or c.value is None]
+        if len(lacking) == len(symbols):
+            continue
+        if index not in given:
+            lacking += ["m'"] if parameters.mass is None else []
+            remark = f"missing: {', '.join(lacking)}"
+            out.append((parameters.name, index, ABSENT, ABSENT, "not determined", remark))
+            continue
+        d = given[index]
+        half = None if d.result is None else d.result.linear
+        verdict = "stable" if d.value > 0.0 else "unstable"
+        verdict += "" if half is not None and abs(d.value) > half else ", not beyond its uncertainty"
+        stated = [c.symbol for c in found if c is not None and c.origin == "literature"]
+        remarks = [f"{', '.join(stated)} from literature"] if stated else []
+        remarks += [d.statement] if half is None else []
+        out.append((parameters.name, index, number(d.value), number(half, 2), verdict, "; ".join(remarks)))
+    return out
+
+
+def _roots(name: str, locus: RootLocus) -> tuple[str, ...]:
+    real = float(locus.at_speed[0].real)
+    time = f"{'doubles' if real > 0.0 else 'halves'} in {number(np.log(2.0) / abs(real), 3)}" if real else ABSENT
+    if locus.critical is not None:
+        critical = number(locus.critical)
+    else:
+        critical = "none" if locus.is_restored or locus.index == "G_h" else "not determined, no BG"
+    return name, IN_PLANE[locus.index].removeprefix("the "), _pairs(locus.at_speed), time, critical
+
+
+def _pairs(values: NDArray[np.complex128]) -> str:
+    """Eigenvalues, conjugate ones together."""
+    out = []
+    for v in values:
+        if v.imag > 0.0:
+            out.append(f"{number(v.real, 3)} ± {number(v.imag, 3)} i")
+        elif v.imag == 0.0:
+            out.append(number(v.real, 3))
+    return "; ".join(out)

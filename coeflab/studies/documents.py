@@ -1,0 +1,153 @@
+"""The report of anything that a person can name: a plan, a folder with one, a shipped validation."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.files import shipped
+from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.model.acceptance import Acceptance
+from coeflab.model.plan import read_plan
+from coeflab.model.study import Plan
+from coeflab.presentation import acceptance_document, content, summary
+from coeflab.presentation.document import Document, Section
+from coeflab.reporting import REPORTERS
+from coeflab.studies.validate import PLAN, validation, validations
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """A document and whether what it tells of fails."""
+
+    document: Document
+    failed: bool
+
+
+def report_of(study: str, *, short: bool = False, progress: Progress = lambda _: None) -> Report:
+    """Compute a study and put its report together.
+
+    Parameters
+    ----------
+    study : str
+        A plan.toml, a folder with one, or the name of a shipped validation.
+    short : bool
+        One page instead of everything.
+    progress : callable, optional
+        Told in words what happens.
+
+    Raises
+    ------
+    InputError
+        There is no such study; or its input cannot be used.
+    """
+    from coeflab.workbench import run
+
+    found = _meant(study)
+    if isinstance(found, Plan):
+        done = run(found, progress)
+        progress("drawing the report")
+        return Report(summary.study_summary(done) if short else content.document(done), done.failed)
+    progress(f"computing {found}")
+    made = validation(found)
+    if not isinstance(made, Acceptance):
+        raise TypeError(found)
+    progress("drawing the report")
+    whole = acceptance_document.document(made, _inputs(made.name))
+    return Report(summary.acceptance_summary(made, whole) if short else whole, not made.holds)
+
+
+def only(document: Document, names: Sequence[str]) -> Document:
+    """The document with nothing but the named sections, in its own order.
+
+    Parameters
+    ----------
+    document : Document
+    names : sequence of str
+        Anchors or titles, in any case; of subsections too.
+
+    Raises
+    ------
+    InputError
+        A name belongs to no section.
+    """
+    if not names:
+        return document
+    known = {n for s in _every(document.sections) for n in (s.anchor.casefold(), s.title.casefold())}
+    for name in names:
+        if name.casefold() not in known:
+            near = difflib.get_close_matches(name.casefold(), sorted(known), n=1)
+            raise InputError(
+                f"the section {shown(name)}",
+                f"one of {', '.join(s.anchor for s in document.sections)}, or a subsection",
+                column="--section",
+                advice=f"Did you mean {near[0]}?" if near else "",
+            )
+    return replace(document, sections=_kept(document.sections, {n.casefold() for n in names}))
+
+
+def written(document: Document, formats: Sequence[str]) -> Mapping[str, bytes]:
+    """The files of a document in some formats; nothing is written.
+
+    Raises
+    ------
+    InputError
+        No renderer has that name.
+    """
+    renderers = [REPORTERS.load(name) for name in dict.fromkeys(formats)]
+    files: dict[str, bytes] = {}
+    for renderer in renderers:
+        files.update(renderer.render(document))
+    return files
+
+
+def _meant(study: str) -> Plan | str:
+    """The plan at a path, else the plan of a validation, else the name of a publication."""
+    path = Path(study).expanduser()
+    if path.is_file():
+        return read_plan(path)
+    if (path / PLAN).is_file():
+        return read_plan(path / PLAN)
+    if path.exists() and study not in validations():
+        raise InputError(
+            f"{shown(study, 300)}, a folder without {PLAN}", f"a {PLAN}, a folder with one, or a validation"
+        )
+    if study not in validations():
+        near = difflib.get_close_matches(study, validations(), n=1)
+        raise InputError(
+            f"the study {shown(study, 300)}",
+            f"a {PLAN}, a folder with one, or a shipped validation ({', '.join(validations())})",
+            advice=f"Did you mean {near[0]}?" if near else "",
+        )
+    plan = shipped("cfd_data") / study / PLAN
+    return read_plan(plan) if plan.is_file() else study
+
+
+def _inputs(name: str) -> tuple[InputFile, ...]:
+    """The shipped files of a publication."""
+    folder = shipped("cfd_data") / name
+    return tuple(
+        InputFile(f"{name}/{p.relative_to(folder).as_posix()}", sha256_of(p))
+        for p in sorted(folder.rglob("*"))
+        if p.is_file() and "__pycache__" not in p.parts
+    )
+
+
+def _every(sections: Sequence[Section]) -> list[Section]:
+    return [s for one in sections for s in (one, *_every(one.subsections))]
+
+
+def _kept(sections: Sequence[Section], names: set[str]) -> tuple[Section, ...]:
+    """Named sections whole; of the others those that hold a named one, without their own text."""
+    out = []
+    for s in sections:
+        if names & {s.anchor.casefold(), s.title.casefold()}:
+            out.append(s)
+        elif inner := _kept(s.subsections, names):
+            out.append(Section(s.anchor, s.title, subsections=inner))
+    return tuple(out)

@@ -1,0 +1,201 @@
+"""The uncertainty of a parameter file carried through a manoeuvre: intervals of its figures, and where they come from."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import json
+import logging
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError
+from coeflab.core.machine import stage
+from coeflab.core.version import VERSION
+from coeflab.kernels.sobol import known_share, share_noise, sobol_indices
+from coeflab.manoeuvres import MANOEUVRES
+from coeflab.model.carried import Carried, Question
+from coeflab.model.derived import INDICES
+from coeflab.model.drawn_stability import drawn_stability
+from coeflab.model.drawn_vehicle import drawn, unfelt
+from coeflab.model.draws import Uncertain
+from coeflab.model.manoeuvre import Manoeuvre
+from coeflab.model.marching import chosen_step
+from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.sobol_design import SobolDesign, sobol_design
+from coeflab.model.spread import MOST_LACKING, Importance, Spread, shares, spread
+from coeflab.model.trajectory import Ended
+from coeflab.studies.batches import Batch, Setup, Store, figures_of, prepared, run_batch
+from coeflab.studies.workers import carried_out, cores
+
+Array = NDArray[np.float64]
+BATCH, LEAST_BATCH, MEMORY = 100, 5, 128 << 20
+STATE_BYTES = 14 * 8
+CHUNK = 2000
+SEEN = 0.005
+EACH = (
+    "every member starts in an equilibrium of its own: its thrust is what its straight run at the approach speed takes"
+)
+LOGGER = logging.getLogger("coeflab.uncertainty")
+
+
+def uncertainty(
+    parameters: ParameterFile, question: Question, workers: int = 1, scheduler: str = "", store: Path | None = None
+) -> Carried:
+    """Draw, run, and read intervals off.
+
+    The numbers hang on file, question and release alone, not on workers, scheduler or on what was stored before.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    question : Question
+    workers : int
+        Local processes; 0: one a core.
+    scheduler : str
+        Of Dask, in place of local processes.
+    store : Path, optional
+        Folder that finished batches are kept in, so that a run that was stopped goes on.
+
+    Raises
+    ------
+    InputError
+        Wrong options, a covariance that is not positive semidefinite, a scheduler that does not answer.
+    OutputError
+        The store cannot be written.
+    """
+    if workers < 0:
+        raise InputError(f"{workers} workers", "a number from 0; 0: one a core", column="--workers")
+    setup, plan = _setup(parameters, question)
+    _, body, varied = prepared(setup)
+    members = varied.members(question.members, question.seed)
+    still = unfelt(body, varied.symbols, _ordered(plan), question.measured)
+    felt = frozenset() if any(question.current) else still
+    sampled = sobol_design(varied, question.members, question.seed, felt) if question.sobol else None
+    every = np.vstack([members, *(sampled.to_run if sampled else ())])
+    step = _step(setup, plan, every)
+    setup = replace(setup, step=step, record=min(plan.duration / 100.0, 0.1 * body.length / body.speed))
+    (nominal, how), *_ = figures_of(setup, np.zeros((1, len(varied.symbols))))
+    names = tuple(f.name for f in nominal)
+    whole = _run(setup, plan, question, names, every, workers or cores(), scheduler, store)
+    count = len(members)
+    spreads, importances = [], []
+    for k, figure in enumerate(nominal):
+        spreads.append(spread(figure, whole.values[:count, k], [s[k] for s in whole.statuses[:count]]))
+        found = sampled.spread_out(whole.values[count:, k]) if sampled else ()
+        importances.append(_importance(spreads[-1], whole.values[:count, k], members, varied, felt, sampled, found))
+    for name, (figure, values, why) in drawn_stability(parameters, varied, members).items():
+        spreads.append(spread(figure, values, ["ok"] * count, why))
+        found = tuple(
+            drawn_stability(parameters, varied, rows)[name][1] for rows in (sampled.samples if sampled else ())
+        )
+        others = frozenset(varied.symbols) - {str(s) for s in INDICES[name][:4]}
+        importances.append(_importance(spreads[-1], values, members, varied, others, sampled, found))
+    statements = (*body.statements, *plan.statements, EACH, *varied.statements, *_said(whole.ended[:count], how))
+    if sampled:
+        statements += (sampled.statement,)
+    if felt:
+        statements += (f"without effect on this motion: {', '.join(s for s in varied.symbols if s in felt)}",)
+    return Carried(
+        question, body.name, body.length, varied, members, names, whole.values[:count], tuple(spreads), tuple(importances),
+        len(every), sampled.base if sampled else 0, tuple(dict.fromkeys(statements)),
+    )  # fmt: skip
+
+
+def _setup(parameters: ParameterFile, question: Question) -> tuple[Setup, Manoeuvre]:
+    installed = importlib.util.find_spec("numba") is not None
+    kernel = question.kernel if question.kernel != "auto" else "compiled" if installed else "numpy"
+    setup = Setup(
+        VERSION,
+        parameters.to_json().decode(), question.manoeuvre, tuple(sorted(question.options.items())), tuple(question.free),
+        tuple(question.hold), question.tables, question.measured, question.current, kernel=kernel,
+    )  # fmt: skip
+    plugin = MANOEUVRES.load(question.manoeuvre)
+    return setup, plugin.plan(prepared(setup)[1], dict(question.options))
+
+
+def _ordered(plan: Manoeuvre) -> set[str]:
+    return {name for orders in (plan.orders, *(p.orders for p in plan.phases)) for name in orders}
+
+
+def _step(setup: Setup, plan: Manoeuvre, every: Array) -> float:
+    """One step for all members, whatever batch they are in."""
+    parameters, body, varied = prepared(setup)
+    parts = np.array_split(every, -(-len(every) // CHUNK))
+    current = np.array(setup.current)
+    return min(
+        chosen_step(drawn(body, parameters, varied.symbols, rows, setup.measured), plan, current) for rows in parts
+    )
+
+
+def _run(
+    setup: Setup, plan: Manoeuvre, question: Question, names: tuple[str, ...], every: Array, workers: int, scheduler: str,
+    store: Path | None,
+) -> Batch:  # fmt: skip
+    """Every row, in batches, those that the store has not run again."""
+    size = int(np.clip(MEMORY / (STATE_BYTES * (plan.duration / setup.record + 2.0)), LEAST_BATCH, BATCH))
+    parts = [every[i : i + size] for i in range(0, len(every), size)]
+    kept = None if store is None else Store(store, _key(setup, question, names, size))
+    done: dict[int, Batch] = {}
+    for index, rows in enumerate(parts):
+        found, wrong = (None, "") if kept is None else kept.load(index, len(rows), len(names))
+        if found is not None:
+            done[index] = found
+        elif kept is not None and wrong:
+            LOGGER.info("%s: %s and is run again", kept.path(index), wrong)
+    if kept is not None and done:
+        LOGGER.info("%d of %d batches were found in %s", len(done), len(parts), kept.path(0).parent)
+    tasks = {i: (setup, names, rows) for i, rows in enumerate(parts) if i not in done}
+    stage(f"{len(done)} of {len(parts)} batches of {size} motions")
+    for index, batch in carried_out(run_batch, tasks, workers, scheduler):
+        done[index] = batch
+        if kept is not None:
+            kept.save(index, batch)
+        stage(f"{len(done)} of {len(parts)} batches of {size} motions")
+    ordered = [done[i] for i in range(len(parts))]
+    return Batch(
+        np.vstack([b.values for b in ordered]), tuple(s for b in ordered for s in b.statuses),
+        tuple(e for b in ordered for e in b.ended),
+    )  # fmt: skip
+
+
+def _key(setup: Setup, question: Question, names: tuple[str, ...], size: int) -> str:
+    content = [np.__version__, asdict(setup), names, question.members, question.seed, question.sobol, size]
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _importance(
+    found: Spread, values: Array, members: Array, varied: Uncertain, still: frozenset[str],
+    sampled: SobolDesign | None, results: tuple[Array, ...],
+) -> Importance:  # fmt: skip
+    name = found.figure.name
+    if found.status != "ok":
+        return Importance(name, (), why=found.why)
+    felt = [k for k, s in enumerate(varied.symbols) if s not in still]
+    share = known_share(members[:, felt], values)
+    least = max(SEEN, share_noise(len(members)))
+    pairs = [(varied.symbols[k], float(v)) for k, v in zip(felt, share, strict=True) if v > least]
+    known = tuple(sorted(pairs, key=lambda p: -p[1]))
+    if sampled is None:
+        return Importance(name, known)
+    indices = sobol_indices(results[0], results[1], np.array(results[2:]))
+    lacking = 1.0 - indices.rows / sampled.base
+    if lacking > MOST_LACKING:
+        return Importance(name, known, (), indices.rows, f"{100.0 * lacking:.3g} % of the rows lack the figure")
+    if not np.isfinite(indices.first).all():
+        return Importance(name, known, (), indices.rows, "the figure does not vary")
+    return Importance(name, known, shares(indices, sampled.groups, sampled.sources), indices.rows)
+
+
+def _said(ended: tuple[str, ...], how: str) -> list[str]:
+    stopped = [e for e in ended if e != Ended.COMPLETE.value]
+    out = []
+    if stopped:
+        counts = ", ".join(f"{e} {stopped.count(e)}" for e in sorted(set(stopped)))
+        out.append(f"motions that did not come to their end: {len(stopped)} of {len(ended)} ({counts})")
+    if how != Ended.COMPLETE.value:
+        out.append(f"the motion at the values of the file ended early: {how}")
+    return out

@@ -1,0 +1,188 @@
+"""What can be done in a report: values, switches, views in space, by mouse and keyboard alike; and without scripts."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+ESTIMATORS = "#campaign-tow-yv-estimators"
+DATA = "#campaign-tow-yv-data"
+SPACE = "#campaign-huuv-synthetic-c-d-surface-space"
+SERIOUS = ("serious", "critical")
+LUMINANCE = """names => {
+  const channel = c => { const s = c / 255; return s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4; };
+  const brush = document.createElement('canvas').getContext('2d');
+  const of = name => {
+    brush.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+    const [r, g, b] = [1, 3, 5].map(i => channel(parseInt(brush.fillStyle.slice(i, i + 2), 16)));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const paper = of('--paper');
+  return names.map(n => { const l = of(n); return (Math.max(l, paper) + 0.05) / (Math.min(l, paper) + 0.05); });
+}"""
+
+
+@pytest.fixture
+def plain(visit, written):
+    return visit(written("plain"))
+
+
+@pytest.fixture
+def models(visit, written):
+    return visit(written("models"))
+
+
+def shown(page, key, where=ESTIMATORS):
+    """How many marks of a series are drawn."""
+    return page.evaluate(
+        """([where, key]) => [...document.querySelectorAll(`${where} .plot [data-series="${key}"]`)]
+        .flatMap(a => [...a.querySelectorAll('use, path')]).filter(m => !m.closest('defs') && m.getClientRects().length).length""",
+        [where, key],
+    )
+
+
+def test_a_legend_entry_hides_its_form_by_mouse_and_shows_it_by_keyboard(plain):
+    button = plain.locator(f"{ESTIMATORS} .switches button").first
+    assert button.inner_text() == "line"
+    before = shown(plain, "form0")
+    assert before > 4
+    button.click()
+    assert button.get_attribute("aria-pressed") == "false"
+    assert shown(plain, "form0") == 0
+    assert shown(plain, "form1") > 0
+    button.focus()
+    plain.keyboard.press("Space")
+    assert button.get_attribute("aria-pressed") == "true"
+    assert shown(plain, "form0") == before
+
+
+def test_a_window_hides_its_estimates_in_both_panels(plain):
+    buttons = plain.locator(f"{ESTIMATORS} .groups button")
+    names = buttons.all_inner_texts()
+    assert names == sorted(names, key=float)
+    assert len(names) > 3
+    whole = shown(plain, "form1")
+    for name in names:
+        plain.locator(f"{ESTIMATORS} .groups button", has_text=re.compile(f"^{re.escape(name)}$")).click()
+    assert [shown(plain, f"form{i}") for i in range(4)] == [0, 0, 0, 0]
+    buttons.last.focus()
+    plain.keyboard.press("Enter")
+    assert 0 < shown(plain, "form1") < whole
+
+
+def test_the_keyboard_tells_value_unit_and_row(plain):
+    probe = plain.locator(f"{DATA} [role=slider]")
+    probe.focus()
+    plain.keyboard.press("ArrowRight")
+    plain.keyboard.press("Home")
+    text = probe.get_attribute("aria-valuetext")
+    assert text.startswith("points, sideslip asin v' = −12 deg, Y' = 0.00")
+    assert text.endswith("tow 0")
+    plain.keyboard.press("End")
+    assert "= 12 deg" in probe.get_attribute("aria-valuetext")
+    assert plain.locator(f"{DATA} .said").is_visible()
+    plain.keyboard.press("Escape")
+    assert not plain.locator(f"{DATA} .said").is_visible()
+
+
+def test_the_pointer_tells_the_point_under_it(plain):
+    place = plain.evaluate(
+        f"""() => {{ const m = document.querySelector('{DATA} [data-series="points"] use'); m.scrollIntoView();
+        const b = m.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; }}"""
+    )
+    plain.mouse.move(*place)
+    said = plain.locator(f"{DATA} .said")
+    assert said.is_visible()
+    assert "−12 deg" in said.inner_text()
+    assert "tow 0" in said.inner_text()
+
+
+def test_a_hidden_series_is_not_told(plain):
+    plain.locator(f"{DATA} .switches button").first.click()
+    probe = plain.locator(f"{DATA} [role=slider]")
+    probe.focus()
+    plain.keyboard.press("Home")
+    assert not probe.get_attribute("aria-valuetext").startswith("points")
+
+
+def picture(page):
+    return page.evaluate(f"document.querySelector('{SPACE} canvas').toDataURL()")
+
+
+def test_a_surface_turns_by_keyboard_button_and_mouse_and_comes_back(models):
+    canvas = models.locator(f"{SPACE} canvas")
+    canvas.scroll_into_view_if_needed()
+    home = picture(models)
+    seen = {home}
+    canvas.focus()
+    for key in ("ArrowLeft", "ArrowUp", "+"):
+        models.keyboard.press(key)
+        seen.add(picture(models))
+    models.locator(f"{SPACE} button[aria-label='Closer']").click()
+    models.locator(f"{SPACE} button[aria-label='Turn right']").click()
+    seen.add(picture(models))
+    box = canvas.bounding_box()
+    models.mouse.move(box["x"] + 100, box["y"] + 100)
+    models.mouse.down()
+    models.mouse.move(box["x"] + 180, box["y"] + 120)
+    models.mouse.up()
+    seen.add(picture(models))
+    assert len(seen) == 6
+    models.locator(f"{SPACE} button", has_text="Reset").click()
+    assert picture(models) == home
+
+
+def test_layers_of_a_view_are_switches(models):
+    home = picture(models)
+    button = models.locator(f"{SPACE} .switches button", has_text="points")
+    button.click()
+    assert button.get_attribute("aria-pressed") == "false"
+    assert picture(models) != home
+
+
+def test_a_view_follows_the_colours_of_the_reader(models):
+    light = picture(models)
+    models.emulate_media(color_scheme="dark")
+    models.wait_for_function(f"before => document.querySelector('{SPACE} canvas').toDataURL() !== before", arg=light)
+
+
+@pytest.mark.parametrize("kind", ["plain", "models"])
+def test_without_scripts_everything_is_readable(visit, written, kind):
+    page = visit(written(kind), java_script_enabled=False)
+    assert page.locator("button, [role=slider]").count() == 0
+    assert page.locator("canvas:visible").count() == 0
+    drawn = page.locator("figure:visible svg")
+    assert drawn.count() == page.locator("figure:not(.space)").count()
+    if kind == "plain":
+        assert page.locator(f"{ESTIMATORS} [data-legend] text").first.is_visible()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_drawings_keep_their_contrast(visit, written, scheme):
+    page = visit(written("plain"), scheme=scheme)
+    for ratio in page.evaluate(LUMINANCE, ["--ink", "--muted", "--link", "--fig-ink", "--fig-muted"]):
+        assert ratio >= 4.5
+    for ratio in page.evaluate(LUMINANCE, [f"--fig-{c}" for c in "abcd"]):
+        assert ratio >= 3.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("kind", ["hostile", "models"])
+def test_axe_finds_no_serious_violation(visit, written, kind, scheme):
+    from axe_playwright_python.sync_playwright import Axe
+
+    page = visit(written(kind), scheme=scheme)
+    page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = true; })")
+    found = Axe().run(page).response["violations"]
+    assert [(v["id"], v["nodes"][0]["html"][:200]) for v in found if v["impact"] in SERIOUS] == []
+
+
+def test_every_picture_has_a_text(visit, written):
+    page = visit(written("models"))
+    for svg in page.locator("figure .plot > svg").all():
+        assert svg.get_attribute("role") == "img"
+        assert svg.evaluate("s => s.getAttribute('aria-labelledby').split(' ').every(i => document.getElementById(i).textContent)")
+    for canvas in page.locator("canvas").all():
+        assert len(canvas.get_attribute("aria-label")) > 40
