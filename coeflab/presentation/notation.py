@@ -59,7 +59,7 @@ Run = str | Symbol | Raised
 
 _VARIABLE = r"(?:d[rsb]|[uvwpqr](?:dot)?)"
 _FACTORS = rf"(?:\|{_VARIABLE}\||{_VARIABLE})"
-_EDGE = r"(?<![\w.$\\'-])(?<!\w\w/)"
+_EDGE = r"(?<![\w.?&$\\'-])(?<!\w\w/)"
 _END = r"(?![\w$\\'])(?!\.\w)"
 _TOKENS = re.compile(
     "|".join(
@@ -94,8 +94,10 @@ def runs(text: str) -> tuple[Run, ...]:
     Returns
     -------
     tuple
-        Never two plain pieces in a row.
+        Never two plain pieces in a row. A text with ``$`` or a backslash is somebody's markup: one plain piece.
     """
+    if "$" in text or "\\" in text:
+        return (text,)
     out: list[Run] = []
     at = 0
     for found in _TOKENS.finditer(text):

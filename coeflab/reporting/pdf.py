@@ -21,7 +21,7 @@ summary = "one PDF to print and to keep: typeset tables, mathematics and vector 
 citations: tuple[str, ...] = ()
 
 CLOCK = datetime(2000, 1, 1, tzinfo=UTC)
-LONGEST_TITLE, LONGEST_HEAD, LONGEST_COLUMN = 300, 64, 160
+LONGEST_TITLE, LONGEST_HEAD, LONGEST_COLUMN, LONGEST_CAPTION = 300, 64, 160, 800
 WHOLE, WORDY = 20, re.compile(r"[a-df-z,]")
 LONG, DEEP = 18, 3
 
@@ -89,7 +89,7 @@ def _parts(section: Section, level: int) -> Iterator[dict[str, Any]]:
         "anchor": section.anchor,
         "title": _text(shortened(section.title, LONGEST_TITLE)),
         "paragraphs": [_text(p) for p in section.paragraphs],
-        "code": [glyphs(line) for line in section.code],
+        "code": [glyphs(breakable(line)) for line in section.code],
         "figures": [_figure(f) for f in section.figures],
         "tables": [_table(t, level) for t in section.tables],
     }
@@ -105,7 +105,7 @@ def _figure(figure: Figure) -> dict[str, Any]:
         "wide": wide,
         "tall": tall,
         "title": _text(shortened(figure.title, LONGEST_TITLE)),
-        "caption": _text(figure.caption),
+        "caption": _text(shortened(figure.caption, LONGEST_CAPTION)),
         "description": glyphs(f"{shortened(figure.title, LONGEST_TITLE)}. {figure.description}"),
     }
 
