@@ -52,8 +52,9 @@ def command(
 
     if help_options:
         from coeflab.cli.formats import explain
+        from coeflab.fits import FITS
 
-        explain(fit)
+        explain(FITS, fit)
         return
     names, options = given([*table, *ctx.args], constraint)
     if not names:

@@ -40,11 +40,9 @@ def command(
             show.table(options_of(room, plugin))
 
 
-def explain(fit: str) -> None:
-    """Print the options of a fit."""
-    from coeflab.fits import FITS
-
-    show.table(options_of(FITS, fit))
+def explain(room: Registry[Any], plugin: str) -> None:
+    """Print the options of a plugin."""
+    show.table(options_of(room, plugin))
 
 
 def options_of(room: Registry[Any], plugin: str) -> Table:

@@ -28,7 +28,7 @@ def command(
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_atomically
     from coeflab.reporting import REPORTERS
-    from coeflab.studies.documents import only, report_of, written
+    from coeflab.studies.documents import only, report_of, studied, written
 
     formats = [name.strip() for name in to.split(",") if name.strip()]
     if not formats:
@@ -38,9 +38,12 @@ def command(
     for name in formats:
         REPORTERS.load(name)
     with show.progress(json) as say:
-        made = report_of(study, short=summary, progress=say)
-        document = only(made.document, section)
-        files: dict[str, bytes] = {}
+        found = studied(study, say)
+    # Outside of the progress display, whose thread would keep the drawing on one core.
+    made = report_of(found, short=summary)
+    document = only(made.document, section)
+    files: dict[str, bytes] = {}
+    with show.progress(json) as say:
         for name in formats:
             say(f"writing {name}")
             files.update(written(document, [name]))

@@ -49,8 +49,9 @@ def command(
 
     if help_options:
         from coeflab.cli.formats import explain
+        from coeflab.manoeuvres import MANOEUVRES
 
-        explain(manoeuvre)
+        explain(MANOEUVRES, manoeuvre)
         return
     if to not in TABLES:
         raise InputError(shown(to), f"one of {', '.join(TABLES)}", column="--to")

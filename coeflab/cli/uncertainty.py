@@ -57,8 +57,9 @@ def command(
 
     if help_options:
         from coeflab.cli.formats import explain
+        from coeflab.manoeuvres import MANOEUVRES
 
-        explain(manoeuvre)
+        explain(MANOEUVRES, manoeuvre)
         return
     water = current_of(current)
     question = Question(

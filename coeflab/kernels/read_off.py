@@ -56,23 +56,29 @@ def settled(time: Array, values: Array, window: float, tolerance: float) -> floa
 
 
 def decay(time: Array, values: Array) -> tuple[float, float] | None:
-    """Period and damping ratio of a free decay about zero, from successive extremes of both signs.
+    """Period and damping ratio of a free decay about whatever the values settle at, from successive extremes of both signs.
 
-    The logarithmic decrement is the slope of the logarithms of all extremes (ITTC 7.5-02-07-04.5). None where there are
-    fewer than three extremes.
+    The logarithmic decrement is the slope of the logarithms of the swings from one extreme to the next, which hold no
+    value of rest (ITTC 7.5-02-07-04.5, double amplitudes). None where there are fewer than three extremes.
     """
-    times, heights = [0.0][:0], [0.0][:0]
-    largest = values[0] < 0.0
-    after = float(time[0])
-    while (found := extreme(time, values, largest, after)) is not None:
-        if abs(found[1]) < 1e-6 * abs(values[0]):
-            break
-        times.append(found[0])
-        heights.append(abs(found[1]))
-        after, largest = found[0], not largest
-    if len(times) < 3:
+    found = extremes(time, values)
+    if len(found) < 3:
         return None
-    halves = np.arange(len(times))
-    period = 2.0 * float(np.polyfit(halves, times, 1)[0])
-    decrement = -2.0 * float(np.polyfit(halves, np.log(heights), 1)[0])
+    times, heights = found.T
+    swings = np.abs(np.diff(heights))
+    period = 2.0 * float(np.polyfit(np.arange(len(times)), times, 1)[0])
+    decrement = -2.0 * float(np.polyfit(np.arange(len(swings)), np.log(swings), 1)[0])
     return period, decrement / float(np.hypot(2.0 * np.pi, decrement))
+
+
+def extremes(time: Array, values: Array) -> Array:
+    """(k, 2) times and values of successive maxima and minima, until a swing is a millionth of the first."""
+    found: list[tuple[float, float]] = []
+    moved = np.flatnonzero(values != values[0])
+    largest = bool(len(moved)) and bool(values[moved[0]] > values[0])
+    while (one := extreme(time, values, largest, found[-1][0] if found else float(time[0]))) is not None:
+        if len(found) > 1 and abs(one[1] - found[-1][1]) < 1e-6 * abs(found[1][1] - found[0][1]):
+            break
+        found.append(one)
+        largest = not largest
+    return np.array(found).reshape(-1, 2)

@@ -102,20 +102,28 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
 
 
 def _steady(trajectory: Trajectory) -> list[Figure]:
-    t, nu = trajectory.time, trajectory.velocity
+    """Rate of heading and horizontal speed, so that a turn which climbs or rolls has the diameter of its track."""
+    t, speeds = trajectory.time, trajectory.speed
+    turning, ahead = trajectory.heading_rate, trajectory.horizontal_speed
     window = 0.1 * float(t[-1] - t[0])
-    rate = settled(t, nu[:, 5], window, SETTLED * float(np.max(np.abs(nu[:, 5]))) + 1e-12)
-    speed = settled(t, trajectory.speed, window, SETTLED * float(np.max(trajectory.speed)))
-    steady = rate is not None and speed is not None and rate != 0.0
-    why = "" if steady else f"rate and speed still change by more than {100 * SETTLED:g} % in the last tenth"
-    status = "ok" if steady else "not reached"
-    last = nu[-1]
-    drift = float(np.arcsin(np.clip(last[1] / max(float(trajectory.speed[-1]), 1e-9), -1.0, 1.0)))
-    diameter = 2.0 * speed / abs(rate) if steady and speed is not None and rate else None
-    values = (
-        ("steady turning diameter", diameter, "m", "2 V / |r| once both are steady (ITTC 7.5-02-06-01)"),
-        ("steady yaw rate", rate if steady else None, "rad/s", "of the turn once it is steady"),
-        ("steady drift", drift if steady else None, "rad", "asin(v/V) once it is steady"),
-        ("speed in the turn", speed / float(trajectory.speed[0]) if steady and speed else None, "1", "over that of the approach"),
-    )  # fmt: skip
-    return [judged(Figure(n, v, u, d, status, why), trajectory, float(t[-1])) for n, v, u, d in values]
+    rate = settled(t, turning, window, SETTLED * float(np.max(np.abs(turning))) + 1e-12)
+    speed = settled(t, speeds, window, SETTLED * float(np.max(speeds)))
+    flat = settled(t, ahead, window, SETTLED * float(np.max(speeds)))
+    why = "" if rate else "the vehicle does not turn"
+    if rate is None or speed is None or flat is None:
+        why = f"rate and speed still change by more than {100 * SETTLED:g} % in the last tenth"
+    drift = float(np.arcsin(np.clip(trajectory.velocity[-1, 1] / max(float(speeds[-1]), 1e-9), -1.0, 1.0)))
+    values: tuple[float | None, ...] = (None,) * 4
+    if not why and rate and speed is not None and flat is not None:
+        values = 2.0 * flat / abs(rate), rate, drift, speed / float(speeds[0])
+    status = "not reached" if why else "ok"
+    rows = (
+        ("steady turning diameter", "m", "of the circle seen from above, through the water (ITTC 7.5-02-06-01)"),
+        ("steady yaw rate", "rad/s", "of the heading, once it is steady"),
+        ("steady drift", "rad", "asin(v/V) once it is steady"),
+        ("speed in the turn", "1", "over that of the approach"),
+    )
+    return [
+        judged(Figure(n, v, u, d, status, why), trajectory, float(t[-1]))
+        for (n, u, d), v in zip(rows, values, strict=True)
+    ]

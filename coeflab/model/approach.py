@@ -59,7 +59,7 @@ def turning_sense(vehicle: Vehicle, control: str, about: str, speed: float) -> f
         raise InputError(
             f"no coefficient of {control}", f"a derivative such as {'N' if about == 'r' else 'M'}{control}",
             column="coefficients",
-            advice=f"The file has {', '.join(known)}." if known else "Order thrusters instead, with --command NAME=VALUE.",
+            advice=f"The file has {', '.join(known)}." if known else _instead(vehicle),
         )  # fmt: skip
     nu = along(vehicle, speed)[None, :]
     angles = np.zeros((2, 3))
@@ -69,6 +69,14 @@ def turning_sense(vehicle: Vehicle, control: str, about: str, speed: float) -> f
     if turning == 0.0:
         raise InputError(f"{control} without a moment", f"an effect of {control} on {about}", column="coefficients")
     return 1.0 if turning > 0.0 else -1.0
+
+
+def _instead(vehicle: Vehicle) -> str:
+    """What a vehicle without control surfaces can do."""
+    if not vehicle.thrusters:
+        return "The file has neither control surfaces nor thrusters."
+    orders = " ".join(f"{t.name}={t.curve.segments[-1].high:g}" for t in vehicle.thrusters)
+    return f'A turning circle takes thrusters in its place: --commands "{orders}", unequal.'
 
 
 def within_limit(vehicle: Vehicle, control: str, angle: float, key: str) -> float:
@@ -148,6 +156,17 @@ def unlimited(vehicle: Vehicle, rate: str, speed: float) -> str:
     return (
         f"straight motion is unstable, and the file has no nonlinear term in {rate} of {components[0]} or {components[1]} "
         "that would limit the turn"
+    )
+
+
+def in_current(current: Array) -> tuple[str, ...]:
+    """What a current does to the figures of a manoeuvre, in words; nothing in still water."""
+    if not np.any(current):
+        return ()
+    flows = ", ".join(f"{v:g} {name}" for v, name in zip(current, ("north", "east", "down"), strict=True) if v)
+    return (
+        f"current of {flows} m/s: speeds are through the water, positions over the ground, and distances such as advance and "
+        "head reach hold the drift, for which IMO and ITTC correct",
     )
 
 

@@ -79,8 +79,9 @@ def stability(parameters: ParameterFile, draws: int = DRAWS, seed: int = SEED) -
             continue
         values = np.array([float(c.value or 0.0) for c in chosen])
         mass, moment = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
-        rows = [parameters.covariance.symbols.index(c.symbol) for c in chosen]
-        cells = [[parameters.covariance.matrix[i][j] for j in rows] for i in rows]
+        place = {s: i for i, s in enumerate(parameters.covariance.symbols)}
+        rows = [place.get(c.symbol) for c in chosen]
+        cells = [[None if i is None or j is None else parameters.covariance.matrix[i][j] for j in rows] for i in rows]
         whole = np.array([[np.nan if v is None else v for v in row] for row in cells])
         gradient = index_gradient(
             float(values[0]), float(values[1]), float(values[2]), float(values[3]), mass, moment

@@ -126,7 +126,9 @@ def motion(trajectory: Trajectory) -> Table:
         (name, *(number(float(v) + 0.0) for v in (x[0], x[-1], x.min(), x.max()))) for name, x in columns.items()
     )
     beyond = [name for name, flags in trajectory.outside.items() if flags.any()]
-    notes: tuple[str, ...] = (f"ended: {trajectory.ended.value.replace('_', ' ')}{': ' * bool(trajectory.why)}{trajectory.why}",)
+    notes: tuple[str, ...] = (
+        f"ended: {trajectory.ended.value.replace('_', ' ')}{': ' * bool(trajectory.why)}{trajectory.why}",
+    )
     notes += (f"beyond the data: {', '.join(beyond)}",) if beyond else ()
     title = f"Motion over {trajectory.time[-1] - trajectory.time[0]:g} s in {len(trajectory.time)} rows"
     return Table(title, ("", "start", "end", "least", "largest"), rows, notes)

@@ -9,11 +9,12 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.kernels.vehicle_motion import euler_angles
+from coeflab.kernels.vehicle_motion import euler_angles, rotations
 from coeflab.model import noun_tables
 from coeflab.model.frozen import locked, locked_columns
 
 Array = NDArray[np.float64]
+STEEPEST = 1e-6
 
 
 class Ended(StrEnum):
@@ -88,6 +89,19 @@ class Trajectory:
     def speed(self) -> Array:
         """(n,) through the water, m/s."""
         return np.asarray(np.linalg.norm(self.velocity[:, :3], axis=1))
+
+    @property
+    def heading_rate(self) -> Array:
+        """(n,) rate of the heading, rad/s: (q sin(phi) + r cos(phi)) / cos(theta) (Fossen 2011, equation 2.28)."""
+        roll, pitch, _ = self.angles.T
+        turned = self.velocity[:, 4] * np.sin(roll) + self.velocity[:, 5] * np.cos(roll)
+        return np.asarray(turned / np.maximum(np.cos(pitch), STEEPEST))
+
+    @property
+    def horizontal_speed(self) -> Array:
+        """(n,) horizontal part of the speed through the water, m/s."""
+        moved = np.einsum("nij,nj->ni", rotations(np.asarray(self.attitude)), self.velocity[:, :3])
+        return np.asarray(np.hypot(moved[:, 0], moved[:, 1]))
 
     def _repr_html_(self) -> str:
         """Beginning, end and range, for notebooks."""

@@ -141,7 +141,8 @@ class Vehicle:
         InputError
             A name that no thruster has.
         """
-        known = {k for t in self.thrusters for k in (t.name, f"{t.name}.tilt")} | {THRUST}
+        known = {t.name for t in self.thrusters} | {THRUST}
+        known |= {f"{t.name}.tilt" for t in self.thrusters if t.tilt_axis is not None}
         strange = sorted(set(commands) - known)
         if strange:
             raise InputError(
@@ -260,7 +261,7 @@ def _inertia(parameters: ParameterFile, moves: Sequence[str]) -> Array:
     if spinning:
         raise InputError(
             f"no moment of inertia for {', '.join(sorted(spinning))}", "mass.inertia_matrix and mass.centre",
-            column="mass", advice="Or hold the motion: leave it out of the free ones.",
+            column="mass", advice="Or hold the motion: --free with the others, such as --free u,v,r; coeflab trim also takes --plane horizontal.",
         )  # fmt: skip
     return np.zeros((3, 3))
 

@@ -20,7 +20,6 @@ from coeflab.presentation.figures import sweep_figure
 from coeflab.presentation.model_figure import distinct, model_figures, over_what
 from coeflab.presentation.variables import moving, response_name
 
-
 LONGEST = 80
 
 

@@ -119,6 +119,7 @@ def _re_analysis(study: Study) -> list[str]:
 
 
 def verdict(study: Study) -> Section:
+    """What comes out, in sentences; the first is the verdict itself."""
     text = [*_re_analysis(study), _harvest(study)]
     others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
     if others:

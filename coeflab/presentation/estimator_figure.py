@@ -64,15 +64,11 @@ def estimator_figure(sweep: Sweep, published: tuple[Comparison, ...], anchor: st
 def _series(sweep: Sweep, estimates: tuple[Estimate, ...], frame: tuple[float, float], sidestep: float) -> list[Series]:
     """The estimates inside the frame, a series a form, in groups of one window."""
     out = []
-    unit = " deg" if is_in_degrees(sweep) else ""
     for i, family in enumerate(styles(sweep)):
         mine = [e for e in estimates if e.family.name == family and frame[0] <= e.value <= frame[1]]
         if mine:
             windows = on_axis(sweep, np.array([e.window for e in mine]))
-            notes = [
-                f"± {coefficient(_half(e))}, window {x:.3g}{unit}, {len(e.rows)} points{', member' * (e.role == MEMBER)}"
-                for e, x in zip(mine, windows, strict=True)
-            ]
+            notes = [f"± {coefficient(_half(e))}, {len(e.rows)} points{', member' * (e.role == MEMBER)}" for e in mine]
             x, y = windows + (i - 1.5) * sidestep, np.array([e.value for e in mine])
             out.append(
                 points(

@@ -65,11 +65,17 @@ def sweep_figure(sweep: Sweep, anchor: str) -> Figure:
 def _series(sweep: Sweep, left_out: list[LeftOut]) -> list[Series]:
     """Points, those left out, and the curves of the members."""
     half = [""] * len(sweep.x) if sweep.se is None else [f", ± {2.0 * s:.3g}" for s in sweep.se]
-    notes = [f"{label}{h}" for label, h in zip(sweep.labels, half, strict=True)]
+    notes = [f"point {label}{h}" for label, h in zip(sweep.labels, half, strict=True)]
     out = [points("points", "points", on_axis(sweep, sweep.x), np.asarray(sweep.y), notes)]
     at = on_axis(sweep, np.array([p.x for p in left_out]))
     out.append(
-        points("left", "left out", at, np.array([p.y for p in left_out]), [f"{p.label}: {p.reason}" for p in left_out])
+        points(
+            "left",
+            "left out",
+            at,
+            np.array([p.y for p in left_out]),
+            [f"point {p.label}: {p.reason}" for p in left_out],
+        )
     )
     for e in sweep.recommendation.members:
         x = np.linspace(sweep.x[e.rows].min(), sweep.x[e.rows].max(), FINE)
@@ -82,7 +88,7 @@ def _left(sweep: Sweep) -> list[Series]:
     return [
         points(
             family_key(sweep, e), family_name(sweep, e), on_axis(sweep, sweep.x[e.rows]),
-            sweep.y[e.rows] - e.curve(sweep.x[e.rows]), [sweep.labels[i] for i in e.rows],
+            sweep.y[e.rows] - e.curve(sweep.x[e.rows]), [f"point {sweep.labels[i]}" for i in e.rows],
         )
         for e in sweep.recommendation.members
     ]  # fmt: skip

@@ -23,14 +23,23 @@ FLAT = 1e-9
 STILL = 1e-12
 
 
-def track_figure(trajectory: Trajectory, anchor: str, length: float) -> Figure:
-    """The track in its plane, with the body drawn at equal times; grey where the motion leaves what data cover."""
+def track_figures(trajectory: Trajectory, anchor: str, length: float) -> tuple[Figure, ...]:
+    """The track in the plane in which it leaves its course the more; in both where the other holds half a length too."""
+    aside, down = np.ptp(trajectory.position[:, 1]), np.ptp(trajectory.position[:, 2])
+    planes = [v for v, one, other in ((False, aside, down), (True, down, aside)) if one > other or one > 0.5 * length]
+    return tuple(
+        track_figure(trajectory, f"{anchor}-{'profile' if i else 'track'}", length, vertical)
+        for i, vertical in enumerate(planes or [False])
+    )
+
+
+def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: bool) -> Figure:
+    """The track in a plane, with the body drawn at equal times; grey where the motion leaves what data cover."""
     x = np.asarray(trajectory.position)
-    vertical = float(np.ptp(x[:, 2])) > float(np.ptp(x[:, 1]))
     across, up = (x[:, 0], x[:, 2]) if vertical else (x[:, 1], x[:, 0])
     names = ("north  [m]", "depth  [m]") if vertical else ("east  [m]", "north  [m]")
     top = TOP + 24.0
-    ranges = _equal(across, up, (WIDTH - LEFT - RIGHT) / (top - BOTTOM), length)
+    wide, tall = _equal(across, up, (WIDTH - LEFT - RIGHT) / (top - BOTTOM), length)
     beyond = _outside(trajectory)
     title = f"Track in the {'vertical' if vertical else 'horizontal'} plane"
     description = (
@@ -39,8 +48,9 @@ def track_figure(trajectory: Trajectory, anchor: str, length: float) -> Figure:
     with settings():
         figure = drawing()
         axes = panel(
-            figure, BOTTOM, top - BOTTOM, across=ranges[0], up=ranges[1], name_up=names[1], name_across=names[0]
-        )
+            figure, BOTTOM, top - BOTTOM, across=wide, up=tall[::-1] if vertical else tall, name_up=names[1],
+            name_across=names[0],
+        )  # fmt: skip
         axes.plot(across, np.where(beyond, np.nan, up), color=COLOURS["a"], linewidth=1.4, zorder=3)
         axes.plot(
             across,
@@ -52,8 +62,6 @@ def track_figure(trajectory: Trajectory, anchor: str, length: float) -> Figure:
         )
         axes.plot(across[:1], up[:1], linestyle="none", marker="o", markersize=4.0, color=COLOURS["a"], zorder=4)
         _bodies(axes, trajectory, across, up, vertical, length)
-        if vertical:
-            axes.invert_yaxis()
         handles: list[Any] = [Line2D([], [], color=COLOURS["a"], linewidth=1.4, label="track")]
         if np.any(beyond):
             handles.append(
@@ -75,7 +83,8 @@ def _equal(x: Array, y: Array, ratio: float, length: float) -> tuple[tuple[float
 
 def _bodies(axes: Axes, trajectory: Trajectory, across: Array, up: Array, vertical: bool, length: float) -> None:
     psi, theta = trajectory.angles[:, 2], trajectory.angles[:, 1]
-    ahead = (np.cos(theta), -np.sin(theta)) if vertical else (np.sin(psi), np.cos(psi))
+    flat = np.cos(theta)
+    ahead = (flat * np.cos(psi), -np.sin(theta)) if vertical else (flat * np.sin(psi), flat * np.cos(psi))
     times = np.linspace(trajectory.time[0], trajectory.time[-1], 13)
     for i in np.unique(np.searchsorted(trajectory.time, times).clip(0, len(trajectory.time) - 1)):
         dx, dy = 0.5 * length * ahead[0][i], 0.5 * length * ahead[1][i]
@@ -117,6 +126,7 @@ def history_figures(trajectory: Trajectory, anchor: str) -> tuple[Figure, ...]:
 def _history(time: Array, series: Mapping[str, Array], anchor: str, name_up: str, title: str) -> Figure:
     span = (float(time[0]), float(time[-1]))
     up = limits(np.concatenate(list(series.values())), 0.06) or (-1.0, 1.0)
+    up = up[::-1] if "depth" in series else up
     description = f"{title} over {span[1] - span[0]:g} s: {', '.join(series)}."
     with settings():
         figure = drawing(240.0)
@@ -135,5 +145,5 @@ def _history(time: Array, series: Mapping[str, Array], anchor: str, name_up: str
 
 
 def motion_figures(trajectory: Trajectory, anchor: str, length: float) -> tuple[Figure, ...]:
-    """The track and all histories."""
-    return track_figure(trajectory, f"{anchor}-track", length), *history_figures(trajectory, anchor)
+    """Tracks and all histories."""
+    return *track_figures(trajectory, anchor, length), *history_figures(trajectory, anchor)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -11,6 +13,7 @@ from coeflab.model.fitted_model import FittedModel
 from coeflab.presentation.document import Figure
 from coeflab.presentation.model_words import law_in_words, scatter_in_words
 from coeflab.presentation.panel import BOTTOM, Array, drawing, legend, limits, panel
+from coeflab.presentation.plotted import numbers, points
 from coeflab.presentation.points import hollow, used
 from coeflab.presentation.svg import COLOURS, settings, svg_text
 from coeflab.presentation.variables import axis_name, moving, response_name, response_unit, scale_of, shown_values
@@ -42,10 +45,19 @@ def residual_figure(model: FittedModel, anchor: str) -> Figure:
             handles += hollow(axes, model.evaluate(aside.x)[0] * factor, aside.y * factor)
         handles.append(Line2D([], [], color=COLOURS["a"], linewidth=1.1, label="measured = fitted"))
         legend(figure, handles, above)
+        labels = [f"point {label}" for label in model.labels]
+        unit = f"[{response_unit(model)}]"
+        told = points("points", "points", fitted, model.y, labels)
+        # The factor of the upright axis is that of the other as well.
+        top = numbers(axes, (told,), f"{name} fitted  {unit}", f"{name} measured  {unit}", factor)
+        panels = [replace(top, across=top.up)]
         for i, variable in enumerate(names):
-            _residuals(figure, model, variable, (len(names) - 1 - i) * (RESIDUALS + BOTTOM + ROOM) + BOTTOM)
+            bottom = (len(names) - 1 - i) * (RESIDUALS + BOTTOM + ROOM) + BOTTOM
+            lower, below = _residuals(figure, model, variable, bottom)
+            left = points("points", "points", shown_values(variable, model.x[variable]), model.fit.residuals, labels)
+            panels.append(numbers(lower, (left,), axis_name(variable, model), f"residual  {unit}", below))
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, _caption(model), description)
+    return Figure(anchor, svg, title, _caption(model), description, tuple(panels))
 
 
 def _measured(figure: Drawing, model: FittedModel, fitted: Array, bottom: float) -> tuple[Axes, float]:
@@ -62,7 +74,7 @@ def _measured(figure: Drawing, model: FittedModel, fitted: Array, bottom: float)
     return axes, factor
 
 
-def _residuals(figure: Drawing, model: FittedModel, variable: str, bottom: float) -> None:
+def _residuals(figure: Drawing, model: FittedModel, variable: str, bottom: float) -> tuple[Axes, float]:
     residuals = model.fit.residuals
     largest = float(np.max(np.abs(residuals), initial=0.0))
     factor, power = scale_of(residuals)
@@ -74,6 +86,7 @@ def _residuals(figure: Drawing, model: FittedModel, variable: str, bottom: float
     )  # fmt: skip
     axes.axhline(0.0, color=COLOURS["muted"], linewidth=0.6)
     used(axes, x, residuals * factor)
+    return axes, factor
 
 
 def _caption(model: FittedModel) -> str:

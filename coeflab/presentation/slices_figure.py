@@ -8,8 +8,9 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from coeflab.model.fitted_model import FittedModel
-from coeflab.presentation.document import Figure
+from coeflab.presentation.document import Figure, Series
 from coeflab.presentation.panel import BOTTOM, drawing, legend, limits, panel
+from coeflab.presentation.plotted import curve, numbers, points, tagged
 from coeflab.presentation.series import STYLES
 from coeflab.presentation.svg import settings, svg_text
 from coeflab.presentation.variables import (
@@ -66,7 +67,8 @@ def slices_figure(model: FittedModel, anchor: str) -> Figure:
             name_across=axis_name(first, model),
         )  # fmt: skip
         handles: list[Any] = []
-        for level, mine, style in zip(levels, rows, STYLES, strict=False):
+        told: list[Series] = []
+        for i, (level, mine, style) in enumerate(zip(levels, rows, STYLES, strict=False)):
             fine = np.linspace(model.x[first].min(), model.x[first].max(), FINE)
             columns = {v: np.zeros_like(fine) for v in model.domain.variables}
             values, _, inside = model.evaluate(columns | {first: fine, second: np.full_like(fine, level)})
@@ -77,16 +79,22 @@ def slices_figure(model: FittedModel, anchor: str) -> Figure:
                 "markerfacecolor": "none",
                 "markeredgewidth": 0.9,
             }
-            axes.plot(shown_values(first, fine), np.where(inside, values, np.nan) * factor, zorder=2.5, **look)
-            axes.plot(
-                shown_values(first, model.x[first][mine]), model.y[mine] * factor, zorder=4,
+            seen_at, curved = shown_values(first, model.x[first][mine]), np.where(inside, values, np.nan)
+            tagged(axes.plot(shown_values(first, fine), curved * factor, zorder=2.5, **look), f"slice{i}")
+            markers = axes.plot(
+                seen_at, model.y[mine] * factor, zorder=4,
                 **(mark | {"linestyle": "none", "markeredgecolor": style.colour}),
             )  # fmt: skip
+            tagged(markers, f"slice{i}")
             label = f"{symbol_of(second, model)} = {_spoken(model, second, level)}"
-            handles.append(Line2D([], [], label=label, markeredgecolor=style.colour, **mark, **look))
+            handles += tagged([Line2D([], [], label=label, markeredgecolor=style.colour, **mark, **look)], f"slice{i}")
+            labels = [f"point {model.labels[j]}" for j in np.flatnonzero(mine)]
+            told.append(points(f"slice{i}", label, seen_at, model.y[mine], labels))
+            told.append(curve(f"slice{i}", f"{label}, fit", shown_values(first, fine), curved))
         legend(figure, handles, BOTTOM + FIELD)
+        shown = numbers(axes, told, axis_name(first, model), f"{name}  [{response_unit(model)}]", factor)
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, _caption(model), description)
+    return Figure(anchor, svg, title, _caption(model), description, (shown,))
 
 
 def _spoken(model: FittedModel, variable: str, level: float) -> str:

@@ -83,7 +83,7 @@ def _points(model: FittedModel, x: Array, y: Array, name: str) -> Series:
     """The data with the response as it was measured and as the surface has it."""
     unit = f" {model.unit}" if model.unit != "1" else ""
     notes = [
-        f"{name} {v:.4g}{unit}, fitted {v - r:.4g}{unit}; {label}"
+        f"{name} {v:.4g}{unit}, fitted {v - r:.4g}{unit}; point {label}"
         for v, r, label in zip(model.y, model.fit.residuals, model.labels, strict=True)
     ]
     return points("points", "points", x, y, notes)

@@ -103,6 +103,6 @@ def _notes(model: FittedModel, measured: Array) -> tuple[str, ...]:
     units = [unit_of(v, model) for v in moving(model)] + [response_unit(model)]
     return tuple(
         ", ".join(f"{n} {v:.4g}{'' if u == '-' else f' {u}'}" for n, v, u in zip(names, row, units, strict=True))
-        + f"; {label}"
+        + f"; point {label}"
         for row, label in zip(measured, model.labels, strict=True)
     )

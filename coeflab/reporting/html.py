@@ -16,7 +16,7 @@ from coeflab.presentation.document import Document
 from coeflab.presentation.embedded import panels_json, scene_json
 
 summary = "one HTML file with tables and figures, for browser and printer"
-SCRIPTS = ("figures.js", "scenes.js")
+SCRIPTS = ("figures.js", "painting.js", "scenes.js")
 citations: tuple[str, ...] = ()
 
 

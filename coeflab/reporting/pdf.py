@@ -20,10 +20,12 @@ from coeflab.presentation.sheet import plain, size_of
 summary = "one PDF to print and to keep: typeset tables, mathematics and vector figures"
 citations: tuple[str, ...] = ()
 
+TEMPLATE = ("data", "symbols", "page", "figures", "tables", "report")
 CLOCK = datetime(2000, 1, 1, tzinfo=UTC)
 LONGEST_TITLE, LONGEST_HEAD, LONGEST_COLUMN, LONGEST_CAPTION = 300, 64, 160, 800
 WHOLE, WORDY = 20, re.compile(r"[a-df-z,]")
 LONG, DEEP = 18, 3
+FEW, ON_A_PAGE, CHAPTER = 14, 3000, 4
 
 
 def render(document: Document) -> Mapping[str, bytes]:
@@ -51,7 +53,8 @@ def typeset(content: Mapping[str, Any]) -> bytes:
     import typst
     from matplotlib import get_data_path
 
-    template = (files("coeflab.reporting") / "_pdf" / "report.typ").read_bytes()
+    folder = files("coeflab.reporting") / "_pdf"
+    template = b"\n".join((folder / f"{name}.typ").read_bytes() for name in TEMPLATE)
     try:
         made, warnings = typst.compile_with_warnings(
             template,
@@ -78,23 +81,24 @@ def content(document: Document) -> dict[str, Any]:
         "digest": document.digest,
         "author": f"coeflab {VERSION}",
         "parts": [part for s in document.sections for part in _parts(s, 1)],
-        "works": [glyphs(breakable(text)) for _, text in document.works],
+        "works": [breakable(glyphs(text)) for _, text in document.works],
     }
 
 
-def _parts(section: Section, level: int) -> Iterator[dict[str, Any]]:
-    """A section and its subsections, in the order of reading."""
+def _parts(section: Section, level: int, later: bool = True) -> Iterator[dict[str, Any]]:
+    """A section and its subsections, in the order of reading; ``later``: others of its level stand before it."""
     yield {
         "level": level,
         "anchor": section.anchor,
+        "fresh": level > 1 and later and len(section.subsections) >= CHAPTER,
         "title": _text(shortened(section.title, LONGEST_TITLE)),
         "paragraphs": [_text(p) for p in section.paragraphs],
-        "code": [glyphs(breakable(line)) for line in section.code],
+        "code": [breakable(glyphs(line)) for line in section.code],
         "figures": [_figure(f) for f in section.figures],
         "tables": [_table(t, level) for t in section.tables],
     }
-    for part in section.subsections:
-        yield from _parts(part, level + 1)
+    for i, part in enumerate(section.subsections):
+        yield from _parts(part, level + 1, i > 0)
 
 
 def _figure(figure: Figure) -> dict[str, Any]:
@@ -117,9 +121,11 @@ def _table(table: Table, level: int) -> dict[str, Any]:
     rows = [[_cell(text, i in units, folds[i]) for i, text in enumerate(row)] for row in table.rows]
     return {
         "later": level >= DEEP and len(table.rows) > LONG,
+        "together": len(table.rows) <= FEW and _letters(table) < ON_A_PAGE,
         "title": _text(shortened(table.title, LONGEST_TITLE)),
         "headers": [_text(shortened(h, LONGEST_COLUMN)) for h in table.headers],
         "rows": rows,
+        "whole": all(len(cell) < ON_A_PAGE // 4 for row in table.rows for cell in row),
         "left": [i in table.left for i in columns],
         "folds": folds,
         "longest": [_longest([row[i] for row in rows]) for i in columns],
@@ -127,6 +133,10 @@ def _table(table: Table, level: int) -> dict[str, Any]:
         "verdicts": [[text in ("fail", "warn") for text in row] for row in table.rows],
         "notes": [_text(n) for n in table.notes],
     }
+
+
+def _letters(table: Table) -> int:
+    return sum(map(len, table.notes)) + sum(len(cell) for row in table.rows for cell in row)
 
 
 def _longest(cells: list[list[Any]]) -> list[list[Any]]:
@@ -141,7 +151,7 @@ def _longest(cells: list[list[Any]]) -> list[list[Any]]:
 def _word(table: Table, column: int) -> str:
     """The longest word of a column, its header among them: the least width that it can have."""
     texts = [table.headers[column], *(row[column] for row in table.rows)]
-    words = (w for text in texts for w in glyphs(breakable(text)).replace("\u200b", " ").split())
+    words = (w for text in texts for w in breakable(glyphs(text)).replace("\u200b", " ").split())
     return max(words, key=len, default="")
 
 
@@ -156,7 +166,7 @@ def _text(text: str) -> list[Any]:
 
 def _piece(piece: Run) -> Any:
     if isinstance(piece, str):
-        return glyphs(breakable(piece))
+        return breakable(glyphs(piece))
     if isinstance(piece, Raised):
         return {"up": piece.text}
     return {

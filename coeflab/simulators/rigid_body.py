@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, one_of, parse_options
+from coeflab.model.approach import in_current
 from coeflab.model.manoeuvre import Manoeuvre
 from coeflab.model.marching import march, march_by_tolerance
 from coeflab.model.trajectory import Ended, Trajectory
@@ -70,11 +72,17 @@ def simulate(vehicle: Vehicle, manoeuvre: Manoeuvre, options: Mapping[str, Any] 
     """
     o = parse_options(Options, options or {}, "rigid_body")
     current = np.array([o.north, o.east, o.down])
+    if o.integrator == "adaptive" and o.step > 0.0:
+        raise InputError(
+            f"a step of {o.step:g} s for the adaptive integrator", "the integrator rk4, or no step",
+            column="rigid_body.step", advice="The tolerance chooses the steps of adaptive.",
+        )  # fmt: skip
     if o.integrator == "adaptive":
         found = march_by_tolerance(vehicle, manoeuvre, o.record, o.tolerance, current)
     else:
         found = march(vehicle, manoeuvre, o.step, o.record, o.kernel, current)
     motion = found.trajectory()
+    motion = replace(motion, statements=(*motion.statements, *in_current(current)))
     return _stopped_outside(motion) if o.outside == "stop" else motion
 
 

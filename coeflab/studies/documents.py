@@ -12,7 +12,7 @@ from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.model.acceptance import Acceptance
 from coeflab.model.plan import read_plan
-from coeflab.model.study import Plan
+from coeflab.model.study import Plan, Study
 from coeflab.presentation import acceptance_document, content, summary
 from coeflab.presentation.document import Document, Section
 from coeflab.reporting import REPORTERS
@@ -29,15 +29,13 @@ class Report:
     failed: bool
 
 
-def report_of(study: str, *, short: bool = False, progress: Progress = lambda _: None) -> Report:
-    """Compute a study and put its report together.
+def studied(study: str, progress: Progress = lambda _: None) -> Study | Acceptance:
+    """Compute a study.
 
     Parameters
     ----------
     study : str
         A plan.toml, a folder with one, or the name of a shipped validation.
-    short : bool
-        One page instead of everything.
     progress : callable, optional
         Told in words what happens.
 
@@ -50,16 +48,25 @@ def report_of(study: str, *, short: bool = False, progress: Progress = lambda _:
 
     found = _meant(study)
     if isinstance(found, Plan):
-        done = run(found, progress)
-        progress("drawing the report")
-        return Report(summary.study_summary(done) if short else content.document(done), done.failed)
+        return run(found, progress)
     progress(f"computing {found}")
     made = validation(found)
-    if not isinstance(made, Acceptance):
-        raise TypeError(found)
-    progress("drawing the report")
-    whole = acceptance_document.document(made, _inputs(made.name))
-    return Report(summary.acceptance_summary(made, whole) if short else whole, not made.holds)
+    return run(made, progress) if isinstance(made, Plan) else made
+
+
+def report_of(found: Study | Acceptance, *, short: bool = False) -> Report:
+    """The report of what was computed; figures are drawn on several cores while this process has a single thread.
+
+    Parameters
+    ----------
+    found : Study or Acceptance
+    short : bool
+        One page instead of everything.
+    """
+    if isinstance(found, Study):
+        return Report(summary.study_summary(found) if short else content.document(found), found.failed)
+    whole = acceptance_document.document(found, _inputs(found.name))
+    return Report(summary.acceptance_summary(found, whole) if short else whole, not found.holds)
 
 
 def only(document: Document, names: Sequence[str]) -> Document:

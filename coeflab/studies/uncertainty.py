@@ -17,6 +17,7 @@ from coeflab.core.machine import stage
 from coeflab.core.version import VERSION
 from coeflab.kernels.sobol import known_share, share_noise, sobol_indices
 from coeflab.manoeuvres import MANOEUVRES
+from coeflab.model.approach import in_current
 from coeflab.model.carried import Carried, Question
 from coeflab.model.derived import INDICES
 from coeflab.model.drawn_stability import drawn_stability
@@ -94,7 +95,8 @@ def uncertainty(
         )
         others = frozenset(varied.symbols) - {str(s) for s in INDICES[name][:4]}
         importances.append(_importance(spreads[-1], values, members, varied, others, sampled, found))
-    statements = (*body.statements, *plan.statements, EACH, *varied.statements, *_said(whole.ended[:count], how))
+    statements = (*body.statements, *plan.statements, *in_current(np.array(setup.current)), EACH)
+    statements += (*varied.statements, *_said(whole.ended[:count], how))
     if sampled:
         statements += (sampled.statement,)
     if felt:

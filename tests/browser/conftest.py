@@ -54,7 +54,9 @@ def _study(kind: str):
     return small_study(FULL, named=NAMES[kind], published=True)
 
 
-@pytest.fixture(scope="module", params=["plain", "hostile", "endless", "models", pytest.param("suboff", marks=pytest.mark.slow)])
+@pytest.fixture(
+    scope="module", params=["plain", "hostile", "endless", "models", pytest.param("suboff", marks=pytest.mark.slow)]
+)
 def address(request, written):
     return written(request.param)
 
@@ -97,5 +99,3 @@ def visit(browser):
 @pytest.fixture
 def opened(visit, address):
     return lambda width, scheme="light": visit(address, width, scheme)
-
-

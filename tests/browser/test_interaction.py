@@ -183,6 +183,8 @@ def test_every_picture_has_a_text(visit, written):
     page = visit(written("models"))
     for svg in page.locator("figure .plot > svg").all():
         assert svg.get_attribute("role") == "img"
-        assert svg.evaluate("s => s.getAttribute('aria-labelledby').split(' ').every(i => document.getElementById(i).textContent)")
+        assert svg.evaluate(
+            "s => s.getAttribute('aria-labelledby').split(' ').every(i => document.getElementById(i).textContent)"
+        )
     for canvas in page.locator("canvas").all():
         assert len(canvas.get_attribute("aria-label")) > 40

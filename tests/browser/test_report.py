@@ -51,7 +51,9 @@ def test_the_page_is_silent_and_loads_nothing_else(opened, address, width):
 
 def test_the_script_is_all_that_runs(opened):
     page = opened(1440)
-    assert page.evaluate("[...document.querySelectorAll('script')].map(s => s.type).filter(t => t !== 'application/json')") == ["module"]
+    assert page.evaluate(
+        "[...document.querySelectorAll('script')].map(s => s.type).filter(t => t !== 'application/json')"
+    ) == ["module"]
     assert page.locator("[onload], [onclick], [onerror], iframe, object, embed").count() == 0
 
 

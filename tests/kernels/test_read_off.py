@@ -56,6 +56,9 @@ def test_decay_of_a_linear_oscillator(damping: float) -> None:
     period, ratio = decay(t, x) or (np.nan, np.nan)
     assert period == pytest.approx(2.0 * np.pi / damped, rel=1e-4)
     assert ratio == pytest.approx(damping, rel=1e-3)
+    for rest in (-0.4, 0.3, 2.0):
+        assert decay(t, rest + x) == pytest.approx((period, ratio), rel=1e-5)
+    assert decay(t, -x) == pytest.approx((period, ratio), rel=1e-9)
 
 
 def test_decay_needs_three_extremes() -> None:

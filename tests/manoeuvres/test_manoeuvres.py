@@ -11,6 +11,7 @@ from coeflab.core.errors import InputError
 from coeflab.manoeuvres import MANOEUVRES
 from coeflab.model.manoeuvre import Figure
 from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.parameter_vehicle import ParameterHydrostatics
 from coeflab.studies.simulate import Simulation, simulate
 from tests.manoeuvres.vehicles import DENSITY, INERTIA, LENGTH, MASS, SPEED, STABLE, UNSTABLE, made, with_limits
 
@@ -165,6 +166,47 @@ def test_the_period_of_a_free_roll() -> None:
     period = 2.0 * np.pi * np.sqrt(INERTIA[0, 0] / (MASS * 9.81 * lever))
     assert value(found, "period") == pytest.approx(period, rel=1e-4)
     assert value(found, "damping ratio") == pytest.approx(0.0, abs=1e-4)
+
+
+def pitched(ahead: float) -> ParameterFile:
+    """The vehicle with a centre of buoyancy ahead of that of gravity and 0.02 m above it: nose up at rest."""
+    file = made()
+    apart = ParameterHydrostatics(volume=MASS / DENSITY, centre_of_buoyancy=(ahead, 0.0, -0.02), gravity=9.81)
+    return file.model_copy(update={"hydrostatics": apart})
+
+
+def test_a_turn_that_dives_has_the_diameter_of_its_track() -> None:
+    found = run(pitched(-0.01), "turning_circle", tuple("uvwpqr"), turns=4.0)
+    motion = found.trajectory
+    last = motion.heading > motion.heading[-1] - 2.0 * np.pi
+    assert np.degrees(motion.angles[-1, 1]) < -15.0
+    across = float(np.ptp(motion.position[last, 1]))
+    assert value(found, "steady turning diameter") == pytest.approx(across, rel=2e-3)
+    turned = float(motion.heading[-1] - motion.heading[last][0]) / float(motion.time[-1] - motion.time[last][0])
+    assert value(found, "steady yaw rate") == pytest.approx(turned, rel=2e-3)
+
+
+def test_what_does_not_turn_is_not_said_to_change() -> None:
+    found = figures(run(made(), "turning_circle", commands="thrust=9", longest=400.0))
+    assert found["steady turning diameter"].why == "the vehicle does not turn"
+
+
+def test_a_free_pitch_decays_about_its_own_angle_of_rest() -> None:
+    """Small swings at speed zero have no damping here; T = 2 pi sqrt(Iy / (m g BG))."""
+    found = run(pitched(0.01), "free_decay", ("q",), motion="pitch", angle=float(np.arctan(0.5)) + 0.02)
+    lever = float(np.hypot(0.01, 0.02))
+    assert value(found, "period") == pytest.approx(2.0 * np.pi * np.sqrt(INERTIA[1, 1] / (MASS * 9.81 * lever)), rel=1e-3)
+    assert value(found, "damping ratio") == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_current_is_said_beside_the_distances_that_hold_it() -> None:
+    still = simulate(made(), "turning_circle", {}, free=HORIZONTAL)
+    drifted = simulate(made(), "turning_circle", {}, {"north": 0.25, "east": -0.125}, free=HORIZONTAL)
+    assert any("current of 0.25 north, -0.125 east m/s" in s for s in drifted.statements)
+    assert not any("current" in s for s in still.statements)
+    gained = value(drifted, "advance") - value(still, "advance")
+    assert gained == pytest.approx(0.25 * value(still, "time to 90 deg"), rel=1e-6)
+    assert value(drifted, "steady turning diameter") == pytest.approx(value(still, "steady turning diameter"), rel=1e-6)
 
 
 def test_figures_beyond_the_data_say_so() -> None:

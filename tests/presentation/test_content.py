@@ -29,9 +29,11 @@ def test_sections_come_in_the_order_of_reading():
         "coefficients",
         "budget",
         "campaigns",
+        "data-quality",
         "checks",
         "conventions",
         "provenance",
+        "reproduce",
     ]
 
 

@@ -32,7 +32,12 @@ def test_no_long_word_is_left_and_nothing_else_changes(text):
 
 @pytest.mark.parametrize(
     ("text", "shown"),
-    [("Yv′ α β ṙ −5", "Yv′ α β ṙ −5"), ("a\u202eb", "aU+202Eb"), ("rocket 🚀", "rocket U+1F680"), ("船\x07", "U+8239U+0007")],
+    [
+        ("Yv′ α β ṙ −5", "Yv′ α β ṙ −5"),
+        ("a\u202eb", "aU+202Eb"),
+        ("rocket 🚀", "rocket U+1F680"),
+        ("船\x07", "U+8239U+0007"),
+    ],
 )
 def test_what_the_fonts_lack_is_named(text, shown):
     assert glyphs(text) == shown

@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+import base64
+import hashlib
+import json
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -71,8 +74,28 @@ def test_equal_studies_give_equal_bytes():
 
 def test_names_of_users_are_text():
     text = text_of(small_study(FULL, named=HOSTILE, published=True))
-    assert Page(text).named("script") == []
+    assert {a["type"] for a in Page(text).named("script")} == {"application/json", "module"}
     assert "&lt;script&gt;" in text
+    assert "<script>alert" not in text
+
+
+def test_numbers_of_figures_are_json_that_cannot_leave_its_element():
+    text = text_of(small_study(FULL, named=HOSTILE))
+    found = re.findall(r'<script type="application/json" class="numbers">(.*?)</script>', text, flags=re.DOTALL)
+    assert len(found) == 4
+    read = [json.loads(f) for f in found]
+    assert all("<" not in f and "&" not in f for f in found)
+    assert any(HOSTILE in panel for panel in (r["title"] for r in read))
+    points = read[0]["panels"][0]["series"][0]
+    assert points["x"] == pytest.approx([a for a in FULL if a != -10.0])
+    assert len(points["notes"]) == len(points["x"]) == len(points["y"])
+
+
+def test_the_policy_names_the_script_and_nothing_else():
+    text = text_of(small_study(FULL))
+    script = re.search(r'<script type="module">(.*?)</script>', text, flags=re.DOTALL)[1]
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert f"default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'sha256-{digest}'" in text
 
 
 def test_nothing_is_loaded_from_elsewhere():
@@ -96,7 +119,7 @@ def test_links_inside_the_page_lead_somewhere():
 def test_every_figure_is_described():
     text = text_of(small_study(FULL))
     figures = re.findall(r"<figure.*?</figure>", text, flags=re.DOTALL)
-    assert len(figures) == 6
+    assert len(figures) == 9
     for figure in figures:
         assert 'role="img"' in figure
         for element in ("title", "desc", "figcaption"):
@@ -122,7 +145,10 @@ def test_the_validation_makes_a_page_of_moderate_size():
     budgeted = [c for c in study.coefficients if c.symbol in study.plan.wanted and c.value is not None]
     hulls = {h.body.name for h in study.hulls.values()}
     assert hulls == {"suboff_aff8", "suboff_bare_hull"}
-    assert len(drawings) == 2 * sum(len(f.sweeps) for f in study.fits) + len(budgeted) + len(hulls)
+    planes, sketches, motions = 4, 3, 2 * 4
+    sweeps = 2 * sum(len(f.sweeps) for f in study.fits)
+    assert len(drawings) == sweeps + len(budgeted) + len(hulls) + planes + sketches + motions
+    assert text.count('class="space" hidden') == len(hulls)
     assert max(len(d.encode()) for d in drawings) < 60_000
     assert Page(text).crossed == []
     assert text == text_of(study)

@@ -52,7 +52,7 @@ def flaws(made: pymupdf.Document) -> list[str]:
     """Missing glyphs, and text beyond the margins of its page."""
     out = []
     for page in made:
-        frame = page.rect + (56, 30, -56, -30)
+        frame = pymupdf.Rect(52, 30, page.rect.x1 - 52, page.rect.y1 - 30)
         for span in page.get_texttrace():
             out += [f"page {page.number + 1}: no glyph for U+{c[0]:04X}" for c in span["chars"] if c[1] == 0]
             box = pymupdf.Rect(span["bbox"]) * page.rotation_matrix

@@ -173,7 +173,7 @@ class Plot {
     const column = Math.max(0, Math.min(order.length - 1, here.column + along));
     this.at = {row, column};
     const i = order[column];
-    this.tell(panel, series, series.x[i], series.y[i], series.notes && series.notes[i], order.length - 1, column);
+    this.tell(panel, series, series.x[i], series.y[i], i, order.length - 1, column);
   }
 
   point(e) {
@@ -192,7 +192,7 @@ class Plot {
         if (far < (series.curve ? NEAR_CURVE : NEAR_POINT) && (!best || score < best.score)) best = {score, panel, series, x, y, i};
       }
     }
-    if (best) this.tell(best.panel, best.series, best.x, best.y, best.series.notes && best.series.notes[best.i]);
+    if (best) this.tell(best.panel, best.series, best.x, best.y, best.i);
     else this.hide();
   }
 
@@ -206,8 +206,9 @@ class Plot {
     return null;
   }
 
-  tell(panel, series, x, y, note, most, now) {
-    const lines = [series.name, valued(panel.names[0], x, panel.units[0]), valued(panel.names[1], y, panel.units[1])];
+  tell(panel, series, x, y, i, most, now) {
+    const note = series.notes && series.notes[i], stands = series.groups ? Number(series.groups[i]) : x;
+    const lines = [series.name, valued(panel.names[0], stands, panel.units[0]), valued(panel.names[1], y, panel.units[1])];
     if (note) lines.push(note);
     this.said.replaceChildren(...lines.map((line, i) => {
       const out = document.createElement(i ? "span" : "strong");

@@ -1,0 +1,105 @@
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pymupdf
+import pytest
+
+from tests.cli.conftest import COEFLAB
+
+
+@pytest.fixture
+def study(coeflab, tmp_path) -> Path:
+    """The template of `coeflab new`: one small campaign."""
+    assert coeflab("new", "boat").returncode == 0
+    return tmp_path / "boat"
+
+
+def files_in(folder: Path) -> set[str]:
+    return {str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file()}
+
+
+def test_both_formats_are_written(coeflab, study, tmp_path):
+    done = coeflab("report", study, "--to", "html,pdf", "--out", "made")
+    assert done.returncode == 0, done.stderr
+    assert files_in(tmp_path / "made") == {"report.html", "report.pdf"}
+    assert "made/report.pdf" in done.stdout
+    assert done.stderr == ""
+    made = pymupdf.open(tmp_path / "made" / "report.pdf")
+    assert made.metadata["title"] in (tmp_path / "made" / "report.html").read_text()
+
+
+def test_a_plan_and_its_folder_give_the_same_bytes(coeflab, study, tmp_path):
+    coeflab("report", study, "--out", "a")
+    coeflab("report", study / "plan.toml", "--out", "b")
+    for name in ("report.html", "report.pdf"):
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+
+
+def test_the_summary_has_one_page_and_a_name_of_its_own(coeflab, study, tmp_path):
+    done = coeflab("report", study, "--summary", "--out", "made")
+    assert done.returncode == 0, done.stderr
+    assert files_in(tmp_path / "made") == {"summary.html", "summary.pdf"}
+    assert len(pymupdf.open(tmp_path / "made" / "summary.pdf")) == 1
+
+
+def test_only_the_named_sections(coeflab, study, tmp_path):
+    done = coeflab("report", study, "--section", "checks", "--section", "Verdict", "--json", "--out", "made")
+    assert done.returncode == 0, done.stderr
+    said = json.loads(done.stdout)
+    assert [s["anchor"] for s in said["sections"]] == ["verdict", "checks"]
+    titles = [t for _, t, _ in pymupdf.open(tmp_path / "made" / "report.pdf").get_toc()]
+    assert any(t.endswith("Verdict") for t in titles)
+    assert not any(t.endswith("Conventions") for t in titles)
+    assert [Path(p).name for p in said["files"]] == ["report.html", "report.pdf"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("boat", "--section", "verdikt"), ("verdikt", "Did you mean verdict?")),
+        (("boat", "--to", "html,docx"), ("docx", "html, pdf")),
+        (("boat", "--to", ","), ("no format",)),
+        (("boat", "--summary", "--section", "verdict"), ("--summary",)),
+        (("subof",), ("subof", "Did you mean suboff?")),
+        (("boat/campaign",), ("a folder without plan.toml",)),
+        (("nowhere.toml",), ("nowhere.toml",)),
+    ],
+)
+def test_one_error_and_nothing_written(coeflab, study, tmp_path, arguments, words):
+    before = files_in(tmp_path)
+    done = coeflab("report", *arguments, "--out", "made")
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.strip().splitlines()) <= 4
+    for word in words:
+        assert word in done.stderr
+    assert files_in(tmp_path) == before
+
+
+def test_open_hands_the_file_to_the_browser(study, tmp_path):
+    browser = tmp_path / "browser"
+    browser.write_text(f'#!/bin/sh\necho "$1" > {tmp_path}/shown\n')
+    browser.chmod(0o755)
+    command = [str(COEFLAB), "report", str(study), "--to", "pdf", "--open", "--out", "made"]
+    done = subprocess.run(
+        command,
+        cwd=tmp_path,
+        env=os.environ | {"BROWSER": f"{browser} %s"},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "shown").read_text().strip() == (tmp_path / "made" / "report.pdf").as_uri()
+
+
+@pytest.mark.slow
+def test_a_publication_by_name(coeflab, tmp_path):
+    done = coeflab("report", "flyingfish")
+    assert done.returncode == 0, done.stderr
+    assert files_in(tmp_path / "reports" / "flyingfish") == {"report.html", "report.pdf"}

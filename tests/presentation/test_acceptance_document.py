@@ -1,0 +1,69 @@
+from __future__ import annotations
+
+from coeflab.core.provenance import InputFile
+from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
+from coeflab.presentation import acceptance_document
+from coeflab.presentation.summary import acceptance_summary
+
+SVG = b'<svg viewBox="0 0 340 100"><title id="a">A &amp; B</title><desc id="b">two lines</desc></svg>'
+
+
+def found(second: float, **changes) -> Acceptance:
+    rows = (
+        Compared("case 1", "u", "m/s", 1.0, 1.05, 0.1),
+        Compared("case 2", "u", "m/s", 2.0, second, 0.1, "in-sample"),
+        Compared("case 3", "rms", "1", 0.5, 0.1, 0.0, at_most=True),
+    )
+    table = ComparedTable("turns_a", "Turns", rows, "Table 1", ("a statement",))
+    made = {
+        "errata": ("one",),
+        "statements": ("know this",),
+        "citations": ("huuv2025",),
+        "figures": (("A b.svg", "cap", SVG),),
+    }
+    return Acceptance("boat", "Boat", (table,), **(made | changes))
+
+
+def test_all_parts_are_there():
+    document = acceptance_document.document(found(2.05), (InputFile("boat/a.csv", "0" * 64),))
+    assert [s.anchor for s in document.sections] == [
+        "verdict",
+        "figures",
+        "compared",
+        "statements",
+        "errata",
+        "provenance",
+    ]
+    assert document.name == "boat"
+    assert len(document.digest) == 16
+    assert document.works[0][0] == "huuv2025"
+    (figure,) = document.sections[1].figures
+    assert (figure.anchor, figure.title, figure.description) == ("a-b", "A & B", "two lines")
+    assert document.sections[2].subsections[0].anchor == "table-turns-a"
+    assert document.sections[5].tables[0].rows == (("boat/a.csv", "0" * 64),)
+
+
+def test_parts_without_content_are_left_out():
+    document = acceptance_document.document(found(2.05, errata=(), statements=(), figures=()))
+    assert [s.anchor for s in document.sections] == ["verdict", "compared", "provenance"]
+    assert document.digest == ""
+
+
+def test_the_verdict_counts_and_names_what_fails():
+    assert acceptance_document.verdict(found(2.05)).paragraphs[0] == "All 3 numbers lie within what is allowed."
+    failed = acceptance_document.verdict(found(2.5))
+    assert failed.paragraphs[0] == "2 of 3 numbers lie within what is allowed."
+    assert failed.paragraphs[1] == "Outside, Turns: u of case 2."
+    assert "1 in-sample" in failed.paragraphs[2]
+
+
+def test_the_overview_shows_how_much_of_the_allowance_is_used():
+    assert acceptance_document.overview(found(2.08)).rows == (("Turns", "Table 1", "3 of 3", "80 %", "pass"),)
+    assert acceptance_document.overview(found(2.5)).rows[0][2:] == ("2 of 3", "500 %", "fail")
+
+
+def test_the_summary_keeps_verdict_and_first_figure():
+    made = found(2.05)
+    short = acceptance_summary(made, acceptance_document.document(made))
+    assert [s.anchor for s in short.sections] == ["verdict", "figure"]
+    assert short.works == ()

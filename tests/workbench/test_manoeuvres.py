@@ -1,0 +1,79 @@
+"""Manoeuvres of a plan: what they come to, and plans that ask for what cannot be."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from coeflab.core.errors import InputError
+from coeflab.core.files import shipped
+from coeflab.model.plan import read_plan
+from coeflab.model.study import PlannedManoeuvre
+from coeflab.presentation.manoeuvre_section import manoeuvre_sections
+from coeflab.workbench.manoeuvres import manoeuvres_of
+from tests.manoeuvres.vehicles import UNSTABLE, made
+from tests.presentation.studies import FULL, small_study
+
+PLAN = '[study]\nname = "s"\n[[table]]\ncampaign = "suboff_roddy_2"\n'
+
+
+def quiet(_: str) -> None:
+    """Nobody listens."""
+
+
+def test_the_plan_of_suboff_asks_for_a_zigzag_and_a_turning_circle() -> None:
+    planned = read_plan(shipped("cfd_data") / "suboff" / "plan.toml").manoeuvres
+    assert [(m.parameter_file, m.name) for m in planned] == [
+        ("suboff_fully_appended", "zigzag"),
+        ("suboff_fully_appended", "turning_circle"),
+    ]
+
+
+def test_options_of_a_manoeuvre_are_read_from_the_plan(tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(
+        PLAN + '[[manoeuvre]]\nparameter_file = "a"\nname = "zigzag"\n[manoeuvre.options]\nrudder = "20 deg"\n'
+    )
+    (planned,) = read_plan(path).manoeuvres
+    assert planned.options == {"rudder": "20 deg"}
+    assert planned.file == path
+
+
+def test_an_unknown_key_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(PLAN + '[[manoeuvre]]\nparameter_file = "a"\nname = "zigzag"\nrudder = 3\n')
+    with pytest.raises(InputError, match="rudder"):
+        read_plan(path)
+
+
+def test_options_reach_the_manoeuvre() -> None:
+    found = [
+        manoeuvres_of([PlannedManoeuvre("v", "straight_run", {"duration": d})], {"v": made()}, quiet)[0]
+        for d in (5.0, 9.0)
+    ]
+    assert [f.trajectory.time[-1] for f in found] == [5.0, 9.0]
+
+
+@pytest.mark.parametrize(
+    ("planned", "column"),
+    [
+        (PlannedManoeuvre("other", "zigzag", place="manoeuvre[0]"), "manoeuvre[0].parameter_file"),
+        (PlannedManoeuvre("v", "zigzag", {"rudder": "400 deg"}, place="manoeuvre[0]"), "manoeuvre[0].zigzag.rudder"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_its_key(planned: PlannedManoeuvre, column: str) -> None:
+    with pytest.raises(InputError) as caught:
+        manoeuvres_of([planned], {"v": made()}, quiet)
+    assert caught.value.column == column
+
+
+def test_a_turn_that_nothing_limits_is_said_to_be_undetermined() -> None:
+    from dataclasses import replace
+
+    made_up = manoeuvres_of([PlannedManoeuvre("v", "turning_circle")], {"v": made(UNSTABLE)}, quiet)
+    (section,) = manoeuvre_sections(replace(small_study(FULL), manoeuvres=made_up))
+    (turn,) = section.subsections
+    status = {row[0]: row[-2] for row in turn.tables[0].rows}
+    assert status["steady turning diameter"] == "not determined"
+    assert len(turn.figures) >= 3
