@@ -241,7 +241,9 @@ def _reproduction(study: Study) -> Section:
     """The exact command, and how to know that it gave the same."""
     if study.plan.file is None:
         return Section(
-            "reproduce", "How to reproduce", ("The plan was made by a program, not read from a file, so no command gives it.",)
+            "reproduce",
+            "How to reproduce",
+            ("The plan was made by a program, not read from a file, so no command gives it.",),
         )
     text = (
         f"With coeflab {VERSION} installed, run this in the folder of {study.plan.file.name}. The folder has to hold what "

@@ -195,7 +195,9 @@ def test_a_free_pitch_decays_about_its_own_angle_of_rest() -> None:
     """Small swings at speed zero have no damping here; T = 2 pi sqrt(Iy / (m g BG))."""
     found = run(pitched(0.01), "free_decay", ("q",), motion="pitch", angle=float(np.arctan(0.5)) + 0.02)
     lever = float(np.hypot(0.01, 0.02))
-    assert value(found, "period") == pytest.approx(2.0 * np.pi * np.sqrt(INERTIA[1, 1] / (MASS * 9.81 * lever)), rel=1e-3)
+    assert value(found, "period") == pytest.approx(
+        2.0 * np.pi * np.sqrt(INERTIA[1, 1] / (MASS * 9.81 * lever)), rel=1e-3
+    )
     assert value(found, "damping ratio") == pytest.approx(0.0, abs=1e-3)
 
 
