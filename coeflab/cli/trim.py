@@ -18,12 +18,12 @@ EXAMPLE = "coeflab trim vehicle.parameters.json --speed 1.5 --yaw-rate 3"
 
 def command(
     file: Path = typer.Argument(..., help="A parameter file."),
-    speed: float | None = typer.Option(None, help="u, m/s."),
-    sway: float | None = typer.Option(None, help="v, m/s."),
-    heave: float | None = typer.Option(None, help="w, m/s."),
-    yaw_rate: float | None = typer.Option(None, help="Rate of heading, deg/s."),
-    roll: float | None = typer.Option(None, help="deg."),
-    pitch: float | None = typer.Option(None, help="deg."),
+    speed: str = typer.Option("", metavar="VALUE", help='u, bare in m/s, or with its unit: "3 kn".'),
+    sway: str = typer.Option("", metavar="VALUE", help="v, bare in m/s."),
+    heave: str = typer.Option("", metavar="VALUE", help="w, bare in m/s."),
+    yaw_rate: str = typer.Option("", metavar="VALUE", help="Rate of heading, bare in deg/s."),
+    roll: str = typer.Option("", metavar="VALUE", help="Bare in deg."),
+    pitch: str = typer.Option("", metavar="VALUE", help="Bare in deg."),
     command: list[str] = typer.Option(
         [],
         "--command",
@@ -37,7 +37,9 @@ def command(
         "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
     ),
     plane: str = typer.Option(
-        "", help="horizontal or vertical: where the file does not know enough of all six motions."
+        "",
+        help="horizontal or vertical, where the file does not know enough of all six motions; by default what is asked "
+        "for tells.",
     ),
     tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
     computed_added_mass: bool = typer.Option(
@@ -58,11 +60,14 @@ def command(
     from coeflab.studies.trim import trim
 
     given = {"speed": speed, "sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch}
-    motion = {AXES.get(k, k): _si(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v is not None}
+    motion = {AXES.get(k, k): _measured(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v}
+    orders = _named(command, "--command")
+    upright = bool({"w", "pitch", "ds", "db"} & {*motion, *orders})
+    chosen = plane or ("vertical" if upright else "horizontal")
     craft = vehicle(
-        read_parameter_file(file), tuple(free.replace(",", " ").split()), plane, tables, not computed_added_mass
+        read_parameter_file(file), tuple(free.replace(",", " ").split()), chosen, tables, not computed_added_mass
     )
-    found = trim(craft, motion, _named(command, "--command"), _named(near, "--near"), starts, seed)
+    found = trim(craft, motion, orders, _named(near, "--near"), starts, seed)
     if json:
         show.json_object(as_json(found))
     else:
@@ -72,6 +77,24 @@ def command(
             show.table(found.other_table())
     if not found.point.outcome.solved:
         raise typer.Exit(1)
+
+
+def _measured(name: str, text: str, option: str) -> float:
+    """A motion in SI; bare angles and rates are in degrees.
+
+    Raises
+    ------
+    InputError
+        Not a finite number, or a unit that does not fit.
+    """
+    from coeflab.core.units import quantity
+
+    try:
+        bare = float(text)
+    except ValueError:
+        dimension = "speed" if name in AXES else "rate" if name == "yaw_rate" else "angle"
+        return quantity(text, dimension, key=option)
+    return _si(name, bare, option)
 
 
 def _named(texts: list[str], option: str) -> dict[str, float]:

@@ -89,9 +89,10 @@ def shallowest(polar: Polar) -> tuple[float, float]:
     """
     if polar.drag[1] == 0.0:
         return 0.0, 0.0
-    ratio, lift0 = polar.drag[1] / polar.lift[1], polar.lift[0] / polar.lift[1]
-    reach = float(np.sqrt(lift0**2 + polar.drag[0] / polar.drag[1]))
-    return float(np.arctan(2.0 * ratio * (lift0 - reach))), float(np.arctan(2.0 * ratio * (lift0 + reach)))
+    slope = polar.lift[1]
+    tilt = polar.drag[1] * polar.lift[0] / slope**2
+    reach = float(np.sqrt(tilt**2 + polar.drag[0] / slope * (polar.drag[1] / slope)))
+    return float(np.arctan(2.0 * (tilt - reach))), float(np.arctan(2.0 * (tilt + reach)))
 
 
 def pitch_moment(

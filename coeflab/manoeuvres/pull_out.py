@@ -70,13 +70,13 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
 def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]:
     """Residual yaw rates after either turn."""
     parse_options(Options, options, NAME)
-    top = float(np.max(np.abs(trajectory.velocity[:, 5])))
+    top = float(np.max(np.abs(trajectory.heading_rate)))
     out = []
     for k, side in ((1, "starboard"), (3, "port")):
         rows = trajectory.phase == k
         rate, end = None, None
         if np.count_nonzero(rows) > 3:
-            t, r = trajectory.time[rows], trajectory.velocity[rows, 5]
+            t, r = trajectory.time[rows], trajectory.heading_rate[rows]
             end = float(t[-1])
             rate = settled(t, r, 0.2 * float(t[-1] - t[0]), SETTLED * top + 1e-12)
         status, why = ("ok", "") if rate is not None else ("not reached", "the rate still changes in the last fifth")

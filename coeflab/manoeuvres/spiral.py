@@ -82,8 +82,8 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         rows = trajectory.phase == k
         rate = None
         if np.count_nonzero(rows) > 3:
-            t, r = trajectory.time[rows], trajectory.velocity[rows, 5]
-            top = float(np.max(np.abs(trajectory.velocity[:, 5])))
+            t, r = trajectory.time[rows], trajectory.heading_rate[rows]
+            top = float(np.max(np.abs(trajectory.heading_rate)))
             rate = settled(t, r, 0.2 * float(t[-1] - t[0]), SETTLED * top + 1e-12)
         status, why = ("ok", "") if rate is not None else ("not reached", "the rate still changes in the last fifth")
         text = f"steady, rudder {np.degrees(angle):+.4g} deg, on the way {way} (IMO MSC/Circ.1053)"

@@ -53,14 +53,12 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
     parse_options(Options, options, NAME)
     t, end = trajectory.time, float(trajectory.time[-1])
     speed = settled(t, trajectory.speed, 0.1 * (end - t[0]), 1e-3 * float(trajectory.speed.max()))
-    return (
-        judged(
-            Figure(
-                "steady speed", speed, "m/s", "mean of the last tenth, where it varies by less than 0.1 %",
-                "ok" if speed is not None else "not reached",
-            ), trajectory, end,
-        ),
-        Figure("distance", float(trajectory.position[-1, 0]), "m", "along the first course"),
-        Figure("deviation", float(trajectory.position[-1, 1]), "m", "from the first course, to starboard"),
-        Figure("depth change", float(trajectory.position[-1, 2]), "m", "down"),
-    )  # fmt: skip
+    north, east, down = (float(v) for v in trajectory.position[-1])
+    settled_at = "ok" if speed is not None else "not reached"
+    found = (
+        Figure("steady speed", speed, "m/s", "mean of the last tenth, where it varies by less than 0.1 %", settled_at),
+        Figure("distance", north, "m", "along the first course"),
+        Figure("deviation", east, "m", "from the first course, to starboard"),
+        Figure("depth change", down, "m", "down"),
+    )
+    return tuple(judged(f, trajectory, end) for f in found)

@@ -261,7 +261,7 @@ def _inertia(parameters: ParameterFile, moves: Sequence[str]) -> Array:
     if spinning:
         raise InputError(
             f"no moment of inertia for {', '.join(sorted(spinning))}", "mass.inertia_matrix and mass.centre",
-            column="mass", advice="Or hold the motion: --free with the others, such as --free u,v,r; coeflab trim also takes --plane horizontal.",
+            column="mass", advice="Or hold the motion: --free with the others, such as --free u,v,r.",
         )  # fmt: skip
     return np.zeros((3, 3))
 

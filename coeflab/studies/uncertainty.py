@@ -23,8 +23,8 @@ from coeflab.model.derived import INDICES
 from coeflab.model.drawn_stability import drawn_stability
 from coeflab.model.drawn_vehicle import drawn, unfelt
 from coeflab.model.draws import Uncertain
-from coeflab.model.manoeuvre import Manoeuvre
-from coeflab.model.marching import chosen_step
+from coeflab.model.manoeuvre import Figure, Manoeuvre
+from coeflab.model.marching import chosen_step, march_by_tolerance
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.sobol_design import SobolDesign, sobol_design
 from coeflab.model.spread import MOST_LACKING, Importance, Spread, shares, spread
@@ -37,6 +37,7 @@ BATCH, LEAST_BATCH, MEMORY = 100, 5, 128 << 20
 STATE_BYTES = 14 * 8
 CHUNK = 2000
 SEEN = 0.005
+STEPPED = 1e-3
 EACH = (
     "every member starts in an equilibrium of its own: its thrust is what its straight run at the approach speed takes"
 )
@@ -96,7 +97,7 @@ def uncertainty(
         others = frozenset(varied.symbols) - {str(s) for s in INDICES[name][:4]}
         importances.append(_importance(spreads[-1], values, members, varied, others, sampled, found))
     statements = (*body.statements, *plan.statements, *in_current(np.array(setup.current)), EACH)
-    statements += (*varied.statements, *_said(whole.ended[:count], how))
+    statements += (*varied.statements, *_missed(setup, plan, nominal, how), *_said(whole.ended[:count], how))
     if sampled:
         statements += (sampled.statement,)
     if felt:
@@ -131,6 +132,36 @@ def _step(setup: Setup, plan: Manoeuvre, every: Array) -> float:
     return min(
         chosen_step(drawn(body, parameters, varied.symbols, rows, setup.measured), plan, current) for rows in parts
     )
+
+
+def _missed(setup: Setup, plan: Manoeuvre, nominal: tuple[Figure, ...], how: str) -> list[str]:
+    """Figures at the values of the file that fixed steps do not find as the adaptive integrator does, in words."""
+    _, body, _ = prepared(setup)
+    motion = march_by_tolerance(body, plan, setup.record, current=np.array(setup.current)).trajectory()
+    exact = MANOEUVRES.load(setup.manoeuvre).figures(motion, body, dict(setup.options))
+    time = body.length / body.speed
+    sizes = {"m": body.length, "s": time, "m/s": body.speed, "rad/s": 1.0 / time}
+    missed = [
+        f"{e.name} ({_digits(f.value)} for {_digits(e.value)} {e.unit})"
+        for f, e in zip(nominal, exact, strict=True)
+        if (f.value is None) != (e.value is None)
+        or (
+            (f.value is not None and e.value is not None)
+            and abs(f.value - e.value) > STEPPED * max(abs(e.value), sizes.get(e.unit, 0.1))
+        )
+    ]
+    if how != motion.ended.value:
+        missed.append(f"the end ({how} for {motion.ended.value})")
+    if not missed:
+        return []
+    return [
+        f"fixed steps of {setup.step:.3g} s do not stand this motion: at the values of the file they miss {', '.join(missed)} "
+        "of the adaptive integrator. No interval holds that error"
+    ]
+
+
+def _digits(value: float | None) -> str:
+    return "none" if value is None else f"{value:.5g}"
 
 
 def _run(

@@ -73,3 +73,27 @@ def test_wrong_input_is_one_message_and_exit_2(coeflab: Run, twin: Path, words: 
     assert done.stderr.count("error: ") == 1
     assert said in done.stderr
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("speed", "rate"), [("1.5", "3"), ("1.5 m/s", "3 deg/s"), ("150 cm/s", "0.05235987755982988 rad/s")]
+)
+def test_motions_take_their_units(coeflab: Run, twin: Path, speed: str, rate: str) -> None:
+    done = coeflab("trim", twin, "--speed", speed, "--yaw-rate", rate, *FREE)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "yaw_rate 3.00000 deg/s given" in " ".join(done.stdout.split())
+
+
+@pytest.mark.parametrize("words", [("--speed", "2 N"), ("--yaw-rate", "fast"), ("--roll", "2 m")])
+def test_a_unit_that_does_not_fit(coeflab: Run, twin: Path, words: tuple[str, str]) -> None:
+    done = coeflab("trim", twin, *words, *FREE)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f'"{words[0]}"' in done.stderr
+
+
+def test_a_file_of_three_motions_needs_no_plane(coeflab: Run) -> None:
+    huuv = Path(__file__).parents[2] / "cfd_data" / "huuv" / "huuv.parameters.json"
+    done = coeflab("trim", huuv, "--command", "left=40", "--command", "right=100")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "w, p, q held at the values of the start; the file does not know enough of p" in done.stdout
+    assert "radius 1.14374 m" in " ".join(done.stdout.split())

@@ -186,6 +186,19 @@ def test_a_turn_that_dives_has_the_diameter_of_its_track() -> None:
     assert value(found, "steady yaw rate") == pytest.approx(turned, rel=2e-3)
 
 
+def test_spiral_and_circle_speak_of_the_same_rate_where_the_turn_dives() -> None:
+    turned = run(pitched(-0.01), "turning_circle", tuple("uvwpqr"), turns=4.0, rudder=0.1)
+    swept = run(pitched(-0.01), "spiral", tuple("uvwpqr"), largest=0.1, steps=1)
+    (first, *_) = swept.figures
+    assert first.value == pytest.approx(value(turned, "steady yaw rate"), rel=2e-3)
+
+
+def test_a_run_astern_is_beyond_the_data_in_all_its_figures() -> None:
+    found = run(made(), "straight_run", commands="thrust=-30", duration=60.0)
+    assert found.trajectory.velocity[-1, 0] < 0.0
+    assert {f.status for f in found.figures} == {"extrapolated"}
+
+
 def test_what_does_not_turn_is_not_said_to_change() -> None:
     found = figures(run(made(), "turning_circle", commands="thrust=9", longest=400.0))
     assert found["steady turning diameter"].why == "the vehicle does not turn"

@@ -18,6 +18,7 @@ from coeflab.model.carried import Carried, Question
 from coeflab.presentation.uncertainty_tables import members_csv, ranking
 from coeflab.studies.uncertainty import uncertainty
 from tests.exporters.massed import VALUES, with_mass
+from tests.manoeuvres.vehicles import STABLE, made
 from tests.model.test_force_law import parameters
 from tests.studies.uncertain import uncertain_torpedo, with_uncertainty
 
@@ -261,3 +262,16 @@ def test_the_interval_of_g_h_is_that_of_the_report() -> None:
     assert found.high is not None
     assert found.low == pytest.approx(report.result.low, abs=4.0 * (found.low_error or 0.0))
     assert found.high == pytest.approx(report.result.high, abs=4.0 * (found.high_error or 0.0))
+
+
+@pytest.mark.slow
+def test_a_motion_that_fixed_steps_do_not_stand_is_said() -> None:
+    """Damping by r|r| does not show at the start, which chooses the step; in the turn its rate is 2000 1/s."""
+    asked = Question("turning_circle", {"longest": 20.0}, members=40, hold=("w", "p", "q"))
+    stiff = with_uncertainty(made({**STABLE, "Nr|r|": -1e3}), {"Ndr'": 5e-4}, {})
+    (said,) = (s for s in uncertainty(stiff, asked).statements if "fixed steps" in s)
+    assert "do not stand this motion" in said
+    sound = with_uncertainty(made(), {"Ndr'": 5e-4}, {})
+    for manoeuvre in ("turning_circle", "pull_out"):
+        found = uncertainty(sound, replace(asked, manoeuvre=manoeuvre, options={}))
+        assert not any("fixed steps" in s for s in found.statements)

@@ -1,0 +1,62 @@
+"""``coeflab simulate`` as a real process: options explained, what is drawn, input that cannot be."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.conftest import Run
+from tests.manoeuvres.vehicles import STABLE, made
+
+FREE = ("--free", "u,v,r")
+
+
+@pytest.fixture
+def torpedo(tmp_path: Path) -> Path:
+    path = tmp_path / "torpedo.parameters.json"
+    path.write_bytes(made().to_json())
+    return path
+
+
+@pytest.mark.parametrize("command", ["simulate", "uncertainty"])
+def test_options_of_a_manoeuvre_are_explained(coeflab: Run, torpedo: Path, command: str) -> None:
+    done = coeflab(command, torpedo, "--manoeuvre", "zigzag", "--help-options")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "Options of zigzag" in done.stdout
+    assert "executes" in done.stdout
+
+
+def test_a_current_is_said(coeflab: Run, torpedo: Path) -> None:
+    done = coeflab("simulate", torpedo, *FREE, "--current", "0.3,-0.2,0", "--rudder", "10 deg")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "current of 0.3 north, -0.2 east m/s" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("--step", "0.01"), "a step of 0.01 s for the adaptive integrator"),
+        (("--current", "1,2"), "three numbers in m/s"),
+        (("--manoeuvre", "loop"), "Known: depth_change"),
+        (("--manoeuvre", "free_decay"), "p held"),
+        (("--commands", "left.tilt=1"), "one of thrust"),
+    ],
+)
+def test_what_cannot_be_is_one_message(coeflab: Run, torpedo: Path, words: tuple[str, ...], says: str) -> None:
+    done = coeflab("simulate", torpedo, *FREE, *words)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("error:") == 1
+    assert says in done.stderr
+
+
+def test_without_control_surfaces_the_way_out_exists(coeflab: Run, tmp_path: Path) -> None:
+    path = tmp_path / "bare.parameters.json"
+    path.write_bytes(made({k: v for k, v in STABLE.items() if k[1:] not in ("dr", "ds")}).to_json())
+    done = coeflab("simulate", path, *FREE)
+    assert done.returncode == 2
+    assert "neither control surfaces nor thrusters" in done.stderr
+    huuv = Path(__file__).parents[2] / "cfd_data" / "huuv" / "huuv.parameters.json"
+    told = coeflab("simulate", huuv).stderr
+    assert '--commands "left=100 right=100", unequal' in told
+    assert coeflab("simulate", huuv, "--commands", "left=40 right=100").returncode == 0
