@@ -17,25 +17,52 @@ def added_mass_of(parameters: ParameterFile) -> tuple[Array, str]:
 
     Acceleration derivatives are used only where there is no added mass; an off-diagonal one stands for its mirror image.
     """
-    density, length = parameters.conditions.density, parameters.scaling.length
     if parameters.added_mass is not None:
         given = parameters.added_mass
-        return np.array(given.matrix) * (density / given.density), f"added mass of {given.body} by {given.method}"
-    matrix = np.zeros((6, 6))
-    known = []
+        matrix = np.array(given.matrix) * (parameters.conditions.density / given.density)
+        return matrix, f"added mass of {given.body} by {given.method}"
+    stated = _stated(parameters)
+    if not stated:
+        return np.zeros((6, 6)), "no added mass is known"
+    names = ", ".join(name for name, _ in stated.values())
+    return (
+        _with(np.zeros((6, 6)), stated),
+        f"acceleration derivatives {names} only; every other entry is unknown and written as zero",
+    )
+
+
+def measured_first(parameters: ParameterFile) -> tuple[Array, str]:
+    """The same with acceleration derivatives, where the file states any, in place of computed entries."""
+    matrix, source = added_mass_of(parameters)
+    stated = _stated(parameters)
+    if parameters.added_mass is None or not stated:
+        return matrix, source
+    names = ", ".join(name for name, _ in stated.values())
+    said = f"added mass: {names} measured, every other entry {source.removeprefix('added mass ')}"
+    return _with(matrix, stated), said
+
+
+def _stated(parameters: ParameterFile) -> dict[tuple[int, int], tuple[str, float]]:
+    """Symbol and entry of the added mass of every acceleration derivative, by row and column."""
+    density, length = parameters.conditions.density, parameters.scaling.length
+    out = {}
     for c in parameters.coefficients:
         d = derivative(c.symbol)
         if c.value is None or len(d.factors) != 1 or not d.factors[0].endswith("dot"):
             continue
-        i, j = COMPONENTS.index(d.component), MOTIONS.index(d.factors[0].removesuffix("dot"))
-        value = -c.value * 0.5 * density * length ** d.powers[1]
-        matrix[i, j] = value
-        if matrix[j, i] == 0.0:
-            matrix[j, i] = value
-        known.append(d.text)
-    if not known:
-        return matrix, "no added mass is known"
-    return matrix, f"acceleration derivatives {', '.join(known)} only; every other entry is unknown and written as zero"
+        at = COMPONENTS.index(d.component), MOTIONS.index(d.factors[0].removesuffix("dot"))
+        out[at] = d.text, -c.value * 0.5 * density * length ** d.powers[1]
+    return out
+
+
+def _with(matrix: Array, stated: dict[tuple[int, int], tuple[str, float]]) -> Array:
+    """The matrix with these entries, each also as its mirror image unless that is stated itself."""
+    out = matrix.copy()
+    for (i, j), (_, value) in stated.items():
+        out[i, j] = value
+        if (j, i) not in stated:
+            out[j, i] = value
+    return out
 
 
 def converted(parameters: ParameterFile) -> tuple[str, ...]:

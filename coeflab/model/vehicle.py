@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.kernels.motion_law import MotionLaw
 from coeflab.kernels.rigid_body import rigid_body_inertia
 from coeflab.kernels.transforms import rigid_body_force
 from coeflab.kernels.vehicle_motion import restoring, turned_about
 from coeflab.model.frozen import locked
-from coeflab.model.inertia import added_mass_of
+from coeflab.model.inertia import added_mass_of, measured_first
 from coeflab.model.motion_terms import MotionTerm, as_arrays, motion_terms, open_products
 from coeflab.model.parameter_file import CoveredRange, ParameterFile
 from coeflab.model.parameter_vehicle import ParameterHydrostatics, ParameterSurface, ParameterThruster
@@ -212,7 +212,7 @@ def vehicle(
         why = "" if free else f"; the file does not know enough of {', '.join(m for m in MOTIONS if m not in known)}"
         said.append(f"{', '.join(lacking)} held at the values of the start{why}")
     inertia = _inertia(parameters, moves)
-    added, source = _added(parameters, measured)
+    added, source = measured_first(parameters) if measured else added_mass_of(parameters)
     said.append(source)
     hydrostatics = parameters.hydrostatics
     if hydrostatics is None:
@@ -264,29 +264,6 @@ def _inertia(parameters: ParameterFile, moves: Sequence[str]) -> Array:
             column="mass", advice="Or hold the motion: --free with the others, such as --free u,v,r.",
         )  # fmt: skip
     return np.zeros((3, 3))
-
-
-def _added(parameters: ParameterFile, measured: bool) -> tuple[Array, str]:
-    """(6, 6), and where it comes from: measured entries where there are any, the others computed."""
-    matrix, source = added_mass_of(parameters)
-    if parameters.added_mass is None or not measured:
-        return matrix, source
-    density, length = parameters.conditions.density, parameters.scaling.length
-    stated: dict[tuple[int, int], tuple[float, str]] = {}
-    for c in parameters.coefficients:
-        d = derivative(c.symbol)
-        if c.value is None or len(d.factors) != 1 or not d.factors[0].endswith("dot"):
-            continue
-        at = COMPONENTS.index(d.component), MOTIONS.index(d.factors[0].removesuffix("dot"))
-        stated[at] = -c.value * 0.5 * density * length ** d.powers[1], d.text
-    if not stated:
-        return matrix, source
-    for (i, j), (value, _) in stated.items():
-        matrix[i, j] = value
-        if (j, i) not in stated:
-            matrix[j, i] = value
-    names = ", ".join(text for _, text in stated.values())
-    return matrix, f"added mass: {names} measured, every other entry {source.removeprefix('added mass ')}"
 
 
 def _positive(made: Vehicle) -> None:
