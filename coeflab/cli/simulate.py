@@ -28,6 +28,7 @@ def command(
     current: str = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down."),
     integrator: str = typer.Option("adaptive", help="adaptive (scipy), or rk4 (fixed steps)."),
     step: float = typer.Option(0.0, help="Step of rk4 in s; 0: chosen."),
+    record: float = typer.Option(0.0, help="Time between rows of the motion in s; 0: chosen."),
     tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
     computed_added_mass: bool = typer.Option(
         False, "--computed-added-mass", help="Leave measured acceleration derivatives aside."
@@ -56,7 +57,7 @@ def command(
     if to not in TABLES:
         raise InputError(shown(to), f"one of {', '.join(TABLES)}", column="--to")
     parameters = read_parameter_file(file)
-    how: dict[str, Any] = {"integrator": integrator, "step": step, **current_of(current)}
+    how: dict[str, Any] = {"integrator": integrator, "step": step, "record": record, **current_of(current)}
     made = simulate(
         parameters, manoeuvre, further(ctx.args), how, listed(free), listed(hold),
         tables=tables, measured=not computed_added_mass,

@@ -183,7 +183,9 @@ def _fitted(
                 continue
             factors = tuple((variables[f.variable], f.power, f.absolute) for f in t.factors)
             out.append(MotionTerm(f"{m.response} {t.symbol}", component, scale * t.value, scale, power, factors))
-        statements.append(f"{m.response}: beyond the box of its data the value at the edge stands in")
+    if used:
+        names = ", ".join(dict.fromkeys(m.response for m in used))
+        statements.append(f"tables of {names}: beyond the box of their data the value at the edge stands in")
     return tuple(out), tuple(statements)
 
 

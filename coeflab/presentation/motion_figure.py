@@ -21,6 +21,7 @@ from coeflab.presentation.svg import COLOURS, settings, svg_text
 Array = NDArray[np.float64]
 FLAT = 1e-9
 STILL = 1e-12
+MOST_BODIES, CLEAR = 12, 1.6
 
 
 def track_figures(trajectory: Trajectory, anchor: str, length: float) -> tuple[Figure, ...]:
@@ -34,7 +35,7 @@ def track_figures(trajectory: Trajectory, anchor: str, length: float) -> tuple[F
 
 
 def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: bool) -> Figure:
-    """The track in a plane, with the body drawn at equal times; grey where the motion leaves what data cover."""
+    """The track in a plane, with the body drawn at equal distances; grey where the motion leaves what data cover."""
     x = np.asarray(trajectory.position)
     across, up = (x[:, 0], x[:, 2]) if vertical else (x[:, 1], x[:, 0])
     names = ("north  [m]", "depth  [m]") if vertical else ("east  [m]", "north  [m]")
@@ -74,7 +75,9 @@ def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: b
 
 def _equal(x: Array, y: Array, ratio: float, length: float) -> tuple[tuple[float, float], tuple[float, float]]:
     """Ranges with one scale on both axes."""
-    (x0, x1), (y0, y1) = (limits(v, 0.08) or (-1.0, 1.0) for v in (x, y))
+    (x0, x1), (y0, y1) = (
+        limits(np.concatenate([v - 0.55 * length, v + 0.55 * length]), 0.02) or (-1.0, 1.0) for v in (x, y)
+    )
     wide = max(x1 - x0, ratio * (y1 - y0), 2.0 * length)
     tall = wide / ratio
     cx, cy = (x0 + x1) / 2.0, (y0 + y1) / 2.0
@@ -85,8 +88,9 @@ def _bodies(axes: Axes, trajectory: Trajectory, across: Array, up: Array, vertic
     psi, theta = trajectory.angles[:, 2], trajectory.angles[:, 1]
     flat = np.cos(theta)
     ahead = (flat * np.cos(psi), -np.sin(theta)) if vertical else (flat * np.sin(psi), flat * np.cos(psi))
-    times = np.linspace(trajectory.time[0], trajectory.time[-1], 13)
-    for i in np.unique(np.searchsorted(trajectory.time, times).clip(0, len(trajectory.time) - 1)):
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(across), np.diff(up)))])
+    apart = max(way[-1] / MOST_BODIES, CLEAR * length)
+    for i in np.unique(np.searchsorted(way, np.arange(0.0, way[-1] + apart / 2.0, apart)).clip(0, len(way) - 1)):
         dx, dy = 0.5 * length * ahead[0][i], 0.5 * length * ahead[1][i]
         axes.plot(
             [across[i] - dx, across[i] + dx], [up[i] - dy, up[i] + dy], color=COLOURS["b"], linewidth=2.2,
