@@ -1,6 +1,7 @@
 """Set up coeflab in an environment of its own, then run it or its tests. Needs only CPython 3.11 or later.
 
 python3 start.py validate suboff     any coeflab command
+python3 start.py gallery             the sample reports in reports/gallery, made anew
 python3 start.py test                style, types, floors and tests; further arguments go to pytest
 """
 
@@ -16,6 +17,8 @@ ROOT = Path(__file__).resolve().parent
 ENVIRONMENT = ROOT / ".venv"
 BIN = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")
 PYTHON = BIN / ("python.exe" if os.name == "nt" else "python")
+GALLERY = ROOT / "reports" / "gallery" / "make.py"
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 OLDEST = (3, 11)
 
 
@@ -50,7 +53,7 @@ def set_up(groups: tuple[str, ...]) -> None:
 
 def test(arguments: list[str]) -> int:
     """Every gate in turn; stops at the first that does not hold."""
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    environment = os.environ | ONE_THREAD
     sources = ["coeflab", "tests", "benchmarks", "cfd_data", "geometry", "reports", "start.py"]
     gates = [
         [str(PYTHON), "-m", "ruff", "check", *sources],
@@ -78,6 +81,8 @@ def main() -> int:
         set_up(("test", "lint"))
         return test(arguments[1:])
     set_up(())
+    if arguments == ["gallery"]:
+        return subprocess.run([str(PYTHON), str(GALLERY)], env=os.environ | ONE_THREAD, check=False).returncode
     return subprocess.run([str(BIN / "coeflab"), *arguments], check=False).returncode
 
 

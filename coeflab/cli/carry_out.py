@@ -23,8 +23,9 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
     folder = out if out is not None else Path(REPORTS) / plan.name
     with show.progress(as_json) as say:
         study = run(plan, say)
-        say("drawing the report")
-        files = rendered(study)
+    # Outside of the progress display, whose thread would keep the drawing on one core.
+    show.step("drawing the report", as_json)
+    files = rendered(study)
     changed = [name for name, content in sorted(files.items()) if write_atomically(folder / name, content)]
     paths = [str(folder / name) for name in sorted(files)]
     if as_json:

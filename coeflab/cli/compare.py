@@ -11,7 +11,6 @@ from coeflab.cli import show
 
 if TYPE_CHECKING:
     from coeflab.studies.compare import Comparison
-    from coeflab.studies.compare_models import ComparedModel
 
 EXAMPLE = "coeflab compare a.parameters.json b.parameters.json"
 
@@ -79,42 +78,13 @@ def as_json(found: Comparison) -> dict[str, Any]:
 
 
 def _print(found: Comparison) -> None:
-    from coeflab.model.table import Table, coefficient, number
+    from coeflab.studies import comparison_tables
     from coeflab.studies.shared_tables import Verdict
 
-    rows = tuple(
-        (
-            r.symbol, coefficient(r.a), coefficient(r.u95_a), coefficient(r.b), coefficient(r.u95_b),
-            coefficient(r.difference), coefficient(r.combined), number(r.ratio, 3), r.verdict.value, r.reason,
-        )
-        for r in found.rows
-    )  # fmt: skip
-    headers = ("", "first", "U95", "second", "U95", "difference", "combined", "ratio", "verdict", "")
-    title = f"{found.b} against {found.a}"
-    show.table(Table(title, headers, rows, () if found.models else found.statements, frozenset({0, 8, 9})))
-    models = tuple(
-        (
-            m.name, str(m.n_points) if m.n_points else "-", number(m.rms, 3), number(m.largest, 3), _place(m),
-            number(m.combined, 3), number(None if m.share is None else 100.0 * m.share, 3), m.verdict.value, m.reason,
-        )
-        for m in found.models
-    )  # fmt: skip
-    columns = ("", "points", "rms diff.", "largest", "at", "combined", "% within", "verdict", "")
-    show.table(Table("Fitted tables", columns, models, found.statements, frozenset({0, 4, 7, 8})))
-    if not rows and not models:
+    for table in (comparison_tables.coefficients(found), comparison_tables.models(found)):
+        show.table(table)
+    if not found.rows and not found.models:
         show.text("Neither file has coefficients or fitted tables.")
     for what, verdicts in (("", [r.verdict for r in found.rows]), ("Tables: ", [m.verdict for m in found.models])):
         if verdicts:
             show.text(what + ", ".join(f"{verdicts.count(v)} {v.value}" for v in Verdict) + ".")
-
-
-def _place(m: ComparedModel) -> str:
-    """Where the largest difference is: angles in degrees, primes as such."""
-    from math import degrees
-
-    from coeflab.core.symbols import CONTROLS
-
-    angles = ("alpha", "beta", *CONTROLS)
-    return ", ".join(
-        f"{v} {degrees(x) + 0.0:.3g} deg" if v in angles else f"{v} {x + 0.0:.3g}" for v, x in (m.at or {}).items()
-    )

@@ -40,6 +40,7 @@ def command(
     with show.progress(json) as say:
         found = studied(study, say)
     # Outside of the progress display, whose thread would keep the drawing on one core.
+    show.step("drawing the figures", json)
     made = report_of(found, short=summary)
     document = only(made.document, section)
     files: dict[str, bytes] = {}
@@ -66,14 +67,6 @@ def command(
         for path in paths:
             show.text(f"  {path}  {len(files[path.name]) / 1e6:.2f} MB")
     if open_:
-        _shown(paths[0])
+        show.in_browser(paths[0].resolve().as_uri())
     if made.failed:
         raise typer.Exit(1)
-
-
-def _shown(path: Path) -> None:
-    """Open a file in the browser; says so where there is none."""
-    import webbrowser
-
-    if not webbrowser.open(path.resolve().as_uri()):
-        typer.echo(f"No browser could be started; open {path} yourself.", err=True)

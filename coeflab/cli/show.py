@@ -87,16 +87,36 @@ def json_object(content: dict[str, Any]) -> None:
     typer.echo(json.dumps(content, indent=2, allow_nan=False, ensure_ascii=False))
 
 
+def in_browser(address: str) -> None:
+    """Open an address in the browser; says so where there is none."""
+    import webbrowser
+
+    if not webbrowser.open(address):
+        typer.echo(f"No browser could be started; open {address} yourself.", err=True)
+
+
+def step(line: str, quiet: bool) -> None:
+    """What begins, on standard error while it is a terminal; without a thread, so that work can be shared among cores."""
+    if not quiet and sys.stderr.isatty():
+        typer.echo(f"{line} ...", err=True)
+
+
 @contextmanager
 def progress(quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Says what happens on standard error, while it is a terminal."""
+    """Says what happens on standard error, while it is a terminal; its thread is gone afterwards."""
     if quiet or not sys.stderr.isatty():
         yield lambda _: None
         return
+    import threading
+
     from rich.console import Console
 
     with Console(stderr=True).status("reading") as status:
         yield status.update
+    # rich tells its thread to end and does not wait; while it lives, drawing keeps to one core.
+    for thread in threading.enumerate():
+        if type(thread).__module__.startswith("rich."):
+            thread.join(1.0)
 
 
 @contextmanager

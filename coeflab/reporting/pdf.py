@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from importlib.resources import files
-from typing import Any
+from typing import Any, Literal
 
 from coeflab.core.errors import OutputError
 from coeflab.core.version import VERSION
@@ -50,6 +50,15 @@ def render(document: Document) -> Mapping[str, bytes]:
 
 def typeset(content: Mapping[str, Any]) -> bytes:
     """A PDF from the content that the template reads as data; nothing in it is ever taken for markup."""
+    return _compiled(content, "pdf", None)[0]
+
+
+def page_pictures(document: Document, ppi: float) -> tuple[bytes, ...]:
+    """The pages of the PDF as PNG pictures, ``ppi`` pixels an inch."""
+    return _compiled(content(document), "png", ppi)
+
+
+def _compiled(content: Mapping[str, Any], form: Literal["pdf", "png"], ppi: float | None) -> tuple[bytes, ...]:
     import typst
     from matplotlib import get_data_path
 
@@ -58,7 +67,8 @@ def typeset(content: Mapping[str, Any]) -> bytes:
     try:
         made, warnings = typst.compile_with_warnings(
             template,
-            format="pdf",
+            format=form,
+            ppi=ppi,
             sys_inputs={"report": json.dumps(content, ensure_ascii=False)},
             font_paths=typst.Fonts(include_system_fonts=False, font_paths=[f"{get_data_path()}/fonts/ttf"]),
             ignore_system_fonts=True,
@@ -68,7 +78,7 @@ def typeset(content: Mapping[str, Any]) -> bytes:
         raise OutputError(f"the PDF could not be typeset: {why}") from None
     if warnings:
         raise OutputError(f"the PDF could not be typeset: {warnings[0].message}")
-    return bytes(made)
+    return tuple(map(bytes, made)) if isinstance(made, list) else (bytes(made),)
 
 
 def content(document: Document) -> dict[str, Any]:

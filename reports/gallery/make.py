@@ -1,30 +1,65 @@
-"""Draw the picture of the README from the shipped SUBOFF study: ``python reports/gallery/make.py``."""
+"""Make the gallery from the shipped studies: ``make gallery``, or ``python3 start.py gallery``.
+
+One page on each study as HTML, PDF and picture, and its main drawing. Equal sources give equal bytes, whatever the processor;
+a test holds the committed files to that. Parameter files, whose last digits depend on it, are no part.
+"""
 
 from __future__ import annotations
 
+import sys
+from collections.abc import Mapping
 from pathlib import Path
 
+from coeflab.core.files import write_atomically
+from coeflab.model.acceptance import Acceptance
+from coeflab.model.study import Study
+from coeflab.presentation import acceptance_document
+from coeflab.presentation.document import Figure
 from coeflab.presentation.estimator_figure import estimator_figure
 from coeflab.presentation.sheet import plain
-from coeflab.studies.validate import validation
-from coeflab.workbench import run
+from coeflab.reporting.pdf import page_pictures
+from coeflab.studies.documents import report_of, studied, written
 
 HERE = Path(__file__).resolve().parent
+STUDIES = ("suboff", "huuv", "flyingfish", "thauv")
+PIXELS_AN_INCH = 84.0
 
 
-def standalone(svg: str) -> str:
+def standalone(figure: Figure) -> bytes:
     """The drawing as a file of its own: white ground, colours in place of the page's variables."""
     head = '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" style="background:#fff" '
-    return plain(svg).replace("<svg ", head, 1) + "\n"
+    return (plain(figure.svg).replace("<svg ", head, 1) + "\n").encode()
 
 
-def main() -> None:
-    """Write the picture."""
-    study = run(validation("suboff"))
+def of_suboff(study: Study) -> dict[str, bytes]:
+    """The picture that the README opens with."""
     judged = [c for c in study.comparisons if c.passed is not None]
     published = tuple(c for c in judged if (c.coefficient.symbol, c.coefficient.campaign) == ("Yv", "suboff_roddy_2"))
     figure = estimator_figure(study.fits[0].sweep("Yv"), published, "yv-estimators")
-    (HERE / "suboff_yv_estimators.svg").write_text(standalone(figure.svg), encoding="utf-8")
+    return {"suboff_yv_estimators.svg": standalone(figure)}
+
+
+def of_publication(found: Acceptance) -> dict[str, bytes]:
+    """Its first drawing, where it has one."""
+    return {f"{found.name}.svg": standalone(f) for f in acceptance_document.figures(found)[:1]}
+
+
+def made(name: str) -> Mapping[str, bytes]:
+    """The files of one study by their paths below the gallery."""
+    found = studied(name)
+    document = report_of(found, short=True).document
+    pages = {f"{name}/{k.replace('report', 'summary')}": v for k, v in written(document, ["html", "pdf"]).items()}
+    (page,) = page_pictures(document, PIXELS_AN_INCH)
+    more = of_suboff(found) if isinstance(found, Study) else of_publication(found)
+    return pages | {f"{name}/summary.png": page} | more
+
+
+def main() -> None:
+    """Write the gallery."""
+    for name in STUDIES:
+        for path, content in made(name).items():
+            if write_atomically(HERE / path, content):
+                sys.stdout.write(f"{path}  {len(content) / 1e3:.0f} kB\n")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,7 @@
+.PHONY: gallery test
+
+gallery:
+	python3 start.py gallery
+
+test:
+	python3 start.py test

@@ -1,0 +1,26 @@
+from __future__ import annotations
+
+import sys
+import threading
+
+import pytest
+import typer
+
+from coeflab import workbench
+from coeflab.cli.carry_out import carry_out
+from coeflab.model.study import Plan, PlannedTable
+
+
+def test_the_report_is_drawn_with_one_thread_on_a_terminal(write_campaign, tmp_path, monkeypatch, capsys):
+    """Drawing is shared among cores only while no other thread, such as a progress display's, is there."""
+    threads = []
+    monkeypatch.setattr(workbench, "rendered", lambda study: threads.append(threading.active_count()) or {})
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    before = threading.active_count()
+    plan = Plan(name="tow", title="Tow", tables=(PlannedTable(write_campaign(), ("slope_at_origin",), {}),))
+    try:
+        carry_out(plan, tmp_path / "out", as_json=False)
+    except typer.Exit:
+        pytest.fail("the study fails")
+    assert threads == [before]
+    assert "drawing the report" in capsys.readouterr().err
