@@ -12,8 +12,8 @@ from coeflab.model.export import Export
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.manoeuvre import Figure
 from coeflab.model.pooling import Pooling
+from coeflab.model.simulation import Simulation
 from coeflab.model.study import Study
-from coeflab.studies.simulate import Simulation
 
 
 def coefficient(c: Coefficient, scaling: str) -> dict[str, Any]:

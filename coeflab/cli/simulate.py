@@ -10,7 +10,7 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.studies.simulate import Simulation
+    from coeflab.model.simulation import Simulation
 
 EXAMPLE = "coeflab simulate reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
@@ -46,7 +46,7 @@ def command(
     from coeflab.cli.fit import further
     from coeflab.core.errors import InputError, shown
     from coeflab.model.parameter_file import read_parameter_file
-    from coeflab.studies.simulate import simulate
+    from coeflab.workbench.manoeuvres import simulate
 
     if help_options:
         from coeflab.cli.formats import explain

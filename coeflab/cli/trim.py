@@ -105,23 +105,9 @@ def _named(texts: list[str], option: str) -> dict[str, float]:
     InputError
         No name, no finite number, or a name twice.
     """
-    from math import isfinite
+    from coeflab.core.options import named_numbers
 
-    from coeflab.core.errors import InputError, shown
-
-    out: dict[str, float] = {}
-    for text in texts:
-        name, _, value = text.partition("=")
-        try:
-            number = float(value)
-        except ValueError:
-            number = float("nan")
-        if not name or not isfinite(number):
-            raise InputError(shown(text), "NAME=NUMBER, such as left=60", column=option)
-        if name in out:
-            raise InputError(f"{shown(name)} twice", "every name once", column=option)
-        out[name] = _si(name, number, option)
-    return out
+    return {name: _si(name, number, option) for name, number in named_numbers(texts, option).items()}
 
 
 def _si(name: str, value: float, option: str) -> float:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import inspect
+import math
 import re
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar, cast
 
 from coeflab.core.errors import InputError, shown
@@ -148,3 +149,26 @@ def parse_options(kind: type[Options], given: Mapping[str, Any], where: str) -> 
             raise InputError(shown(value), expected, column=f"{where}.{name}", advice=_explained(where))
         filled[name] = value
     return kind(**filled)
+
+
+def named_numbers(texts: Iterable[str], column: str) -> dict[str, float]:
+    """``left=60`` and the like as numbers by name.
+
+    Raises
+    ------
+    InputError
+        No name, no finite number, or a name twice.
+    """
+    out: dict[str, float] = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        try:
+            number = float(value)
+        except ValueError:
+            number = math.nan
+        if not name or not math.isfinite(number):
+            raise InputError(shown(text), "NAME=NUMBER, such as left=60", column=column)
+        if name in out:
+            raise InputError(f"{shown(name)} twice", "every name once", column=column)
+        out[name] = number
+    return out

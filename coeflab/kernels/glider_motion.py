@@ -175,12 +175,16 @@ def eigenvalues(body: GliderBody, setting: Setting, speed: float, alpha: float, 
 
 
 class March(NamedTuple):
-    """Times (n,) and states (n, 6) after the start of a leg, whether a depth was met, and why it stopped early, or empty."""
+    """Times (n,) and states (n, 6) after the start of a leg, whether a depth was met, and how it ended.
+
+    ``why`` says why it stopped early, or is empty; ``finite`` whether its state was one of numbers to the end.
+    """
 
     time: Array
     state: Array
     met: bool
     why: str
+    finite: bool
 
 
 def march(
@@ -206,7 +210,7 @@ def march(
     most = FEW_CALLS + CALLS_A_SECOND * (leg.ends - leg.begins)
     times: list[float] = []
     states: list[Array] = []
-    next_row = 0
+    next_row, finite = 0, True
     with warnings.catch_warnings(record=True) as told, np.errstate(all="ignore"):
         warnings.simplefilter("always")
         solver = LSODA(rates(body, leg), leg.begins, start, leg.ends, rtol=tolerance, atol=1e-3 * tolerance)
@@ -214,13 +218,13 @@ def march(
             try:
                 why = solver.step() or ""
             except (OverflowError, ValueError) as error:
-                why = f"the state is not finite ({error})"
+                why, finite = f"the state is not finite ({error})", False
             if not why and not np.isfinite(solver.y).all():
-                why = "the state is not finite"
+                why, finite = "the state is not finite", False
             if not why and solver.nfev > most:
                 why = "the motion is too stiff or too fast to integrate"
             if why:
-                return _march(times, states, False, str(told[-1].message) if told else why)
+                return _march(times, states, False, str(told[-1].message) if told else why, finite)
             at = solver.dense_output()
             end = _crossed(at, solver.t_old, solver.t, depth)
             reached = int(
@@ -230,12 +234,12 @@ def march(
             states += [at(t) for t in wanted[next_row:reached]]
             next_row = reached
             if end is not None:
-                return _march([*times, end], [*states, at(end)], True, "")
-    return _march(times, states, False, "")
+                return _march([*times, end], [*states, at(end)], True)
+    return _march(times, states, False)
 
 
-def _march(times: list[float], states: list[Array], met: bool, why: str) -> March:
-    return March(np.array(times), np.array(states).reshape(-1, 6), met, why)
+def _march(times: list[float], states: list[Array], met: bool, why: str = "", finite: bool = True) -> March:
+    return March(np.array(times), np.array(states).reshape(-1, 6), met, why, finite)
 
 
 def _crossed(

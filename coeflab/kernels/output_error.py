@@ -125,9 +125,9 @@ def by_likelihood(p: Problem, groups: NDArray[np.int_], rounds: int = 50) -> tup
     Returns
     -------
     Estimate, Problem
-        The latter with the errors that were found.
+        The former not converged where the errors still change after all rounds, the latter with the errors that were found.
     """
-    best, least = estimate(p), ROUNDING * p.errors
+    best, least, still = estimate(p), ROUNDING * p.errors, False
     for _ in range(rounds):
         spread = p.errors.copy()
         for g in np.unique(groups):
@@ -137,7 +137,7 @@ def by_likelihood(p: Problem, groups: NDArray[np.int_], rounds: int = 50) -> tup
         best = estimate(p, best.parameters)
         if still:
             break
-    return best, p
+    return replace(best, converged=best.converged and still), p
 
 
 def solved(p: Problem, start: Array, most: int, leash: float) -> Any:

@@ -29,6 +29,7 @@ citations = ("imo_msc137", "ittc_free_running")
 plane = "horizontal"
 NAME = "turning_circle"
 SETTLED = 2e-3
+STRAIGHT = 1e-6  # r L/V below which a turn is rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,10 +99,10 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         status = "ok" if value is not None else "not reached"
         why = "" if value is not None else f"heading changed by {np.degrees(heading[-1]):.3g} deg in {t[-1]:g} s"
         out.append(judged(Figure(name, value, unit, text, status, why), trajectory, when, lacking))
-    return (*out, *(undetermined(f, lacking) for f in _steady(trajectory)))
+    return (*out, *(undetermined(f, lacking) for f in _steady(trajectory, vehicle.length)))
 
 
-def _steady(trajectory: Trajectory) -> list[Figure]:
+def _steady(trajectory: Trajectory, length: float) -> list[Figure]:
     """Rate of heading and horizontal speed, so that a turn which climbs or rolls has the diameter of its track."""
     t, speeds = trajectory.time, trajectory.speed
     turning, ahead = trajectory.heading_rate, trajectory.horizontal_speed
@@ -109,12 +110,13 @@ def _steady(trajectory: Trajectory) -> list[Figure]:
     rate = settled(t, turning, window, SETTLED * float(np.max(np.abs(turning))) + 1e-12)
     speed = settled(t, speeds, window, SETTLED * float(np.max(speeds)))
     flat = settled(t, ahead, window, SETTLED * float(np.max(speeds)))
-    why = "" if rate else "the vehicle does not turn"
+    turns = rate is not None and abs(rate) * length > STRAIGHT * float(np.max(speeds))
+    why = "" if turns else "the vehicle does not turn"
     if rate is None or speed is None or flat is None:
         why = f"rate and speed still change by more than {100 * SETTLED:g} % in the last tenth"
     drift = float(np.arcsin(np.clip(trajectory.velocity[-1, 1] / max(float(speeds[-1]), 1e-9), -1.0, 1.0)))
     values: tuple[float | None, ...] = (None,) * 4
-    if not why and rate and speed is not None and flat is not None:
+    if turns and rate is not None and speed is not None and flat is not None:
         values = 2.0 * flat / abs(rate), rate, drift, speed / float(speeds[0])
     status = "not reached" if why else "ok"
     rows = (

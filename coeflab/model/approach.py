@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import InputError
+from coeflab.core.options import named_numbers
 from coeflab.core.symbols import ANGULAR, CONTROLS, MOTIONS
 from coeflab.kernels.linearisation import linearised, modes
 from coeflab.model.manoeuvre import UPRIGHT, Figure
@@ -103,15 +104,9 @@ def thruster_orders(vehicle: Vehicle, commands: Sequence[str]) -> dict[str, floa
     Raises
     ------
     InputError
-        Not NAME=NUMBER, or a name that the vehicle does not have.
+        Not NAME=NUMBER, a name twice, or one that the vehicle does not have.
     """
-    out: dict[str, float] = {}
-    for text in commands:
-        name, _, value = text.partition("=")
-        try:
-            out[name] = float(value)
-        except ValueError:
-            raise InputError(shown(text), "NAME=NUMBER, such as left=60", column="commands") from None
+    out = named_numbers(commands, "commands")
     known = {*CONTROLS}
     vehicle.wrench({k: v for k, v in out.items() if k not in known})
     return out

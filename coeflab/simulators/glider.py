@@ -158,7 +158,7 @@ class _Flight:
                 self.why = (
                     f"in {phase.name}, after {self.time[-1]:.6g} s at {self.rows[-1][1]:.4g} m depth: {found.why}"
                 )
-                self.ended = Ended.NOT_FINITE if "finite" in found.why else Ended.STEP_TOO_SMALL
+                self.ended = Ended.STEP_TOO_SMALL if found.finite else Ended.NOT_FINITE
                 return False
             if found.met:
                 return True

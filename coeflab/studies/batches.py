@@ -27,7 +27,7 @@ from coeflab.model.manoeuvre import Figure, Manoeuvre
 from coeflab.model.marching import march
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.vehicle import Vehicle
-from coeflab.studies.simulate import moved
+from coeflab.workbench.manoeuvres import moved
 
 Array = NDArray[np.float64]
 NO_PLAN = "no start"

@@ -49,7 +49,8 @@ def uncertainty(
 ) -> Carried:
     """Draw, run, and read intervals off.
 
-    The numbers hang on file, question and release alone, not on workers, scheduler or on what was stored before.
+    The numbers hang on file, question, release and kernel (compiled where numba is installed, which agrees to 1e-12), not on
+    workers, scheduler or on what was stored before.
 
     Parameters
     ----------

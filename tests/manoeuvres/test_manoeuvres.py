@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
+from coeflab.core.files import shipped
 from coeflab.manoeuvres import MANOEUVRES
 from coeflab.model.manoeuvre import Figure
-from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.parameter_file import ParameterFile, read_parameter_file
 from coeflab.model.parameter_vehicle import ParameterHydrostatics
-from coeflab.studies.simulate import Simulation, simulate
+from coeflab.model.simulation import Simulation
+from coeflab.workbench.manoeuvres import simulate
 from tests.manoeuvres.vehicles import DENSITY, INERTIA, LENGTH, MASS, SPEED, STABLE, UNSTABLE, made, with_limits
 
 Q = 0.5 * DENSITY * LENGTH**2
@@ -204,6 +206,13 @@ def test_what_does_not_turn_is_not_said_to_change() -> None:
     assert found["steady turning diameter"].why == "the vehicle does not turn"
 
 
+def test_rounding_of_a_command_is_no_turn() -> None:
+    file = read_parameter_file(shipped("cfd_data") / "huuv" / "huuv.parameters.json")
+    found = figures(run(file, "turning_circle", commands="left=59.999999999 right=60", longest=100.0))
+    assert found["steady turning diameter"].value is None
+    assert found["steady turning diameter"].why == "the vehicle does not turn"
+
+
 def test_a_free_pitch_decays_about_its_own_angle_of_rest() -> None:
     """Small swings at speed zero have no damping here; T = 2 pi sqrt(Iy / (m g BG))."""
     found = run(pitched(0.01), "free_decay", ("q",), motion="pitch", angle=float(np.arctan(0.5)) + 0.02)
@@ -240,6 +249,7 @@ def test_figures_beyond_the_data_say_so() -> None:
         ("zigzag", STABLE, {"rudder": "200 deg"}, "200 deg"),
         ("turning_circle", STABLE, {"commands": "left=1"}, 'the command "left"'),
         ("turning_circle", STABLE, {"commands": "left"}, 'found "left"; expected NAME=NUMBER'),
+        ("turning_circle", STABLE, {"commands": "thrust=1 thrust=2"}, 'found "thrust" twice'),
         ("free_decay", STABLE, {}, "p held"),
     ],
 )

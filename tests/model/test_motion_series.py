@@ -13,7 +13,7 @@ from coeflab.core.errors import InputError
 from coeflab.model.motion_series import FEWEST, read_series
 from coeflab.model.vehicle import vehicle
 from coeflab.presentation.motion_tables import motion_csv
-from coeflab.studies.simulate import simulate
+from coeflab.workbench.manoeuvres import simulate
 from tests.manoeuvres.vehicles import made
 
 BODY = vehicle(made(), free=("u",))

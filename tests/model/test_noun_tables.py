@@ -12,8 +12,8 @@ from coeflab.fits import FITS
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.study import PlannedTable
 from coeflab.model.table import Table
-from coeflab.studies.simulate import simulate
 from coeflab.workbench import read_tables
+from coeflab.workbench.manoeuvres import simulate
 from tests.manoeuvres.vehicles import made
 from tests.presentation.studies import FULL, HOSTILE, LENGTH, small_study
 

@@ -17,7 +17,7 @@ from coeflab.model.parameter_vehicle import ParameterSurface
 from coeflab.presentation.identified_figure import identified_figure
 from coeflab.presentation.motion_tables import motion_csv
 from coeflab.studies.identify import identify_from
-from coeflab.studies.simulate import simulate
+from coeflab.workbench.manoeuvres import simulate
 from tests.manoeuvres.vehicles import STABLE, made, with_limits
 
 pytestmark = pytest.mark.slow
