@@ -16,7 +16,8 @@ GROWN = 1.03
 def convex_pieces(of: Solid) -> list[Solid]:
     """Pieces that hardly differ from their convex hulls and fill the solid but for slivers, the largest first.
 
-    V-HACD (Mamou, through trimesh) gives up to 16 hulls on 400,000 voxels, which lie along the oriented box. Two are joined while the hull of both holds
+    V-HACD (Mamou, through trimesh) gives up to 16 hulls on 400,000 voxels, which lie along the oriented box. Two are
+    joined while the hull of both holds
     at most 3 % of the solid's volume from outside it, the pair that holds least first. The solid is cut along the
     hulls that are left, the largest first, each 3 % larger, since hulls of voxels lie a little within the surface. The
     same solid gives the same pieces.

@@ -9,7 +9,8 @@ axes (Leonard and Graver 2001; equations 14-25 of the THAUV paper)::
     H_dot     =  P3 v1 - P1 v3 + M - ahead cos(theta) - below sin(theta)
     P1 = m1 v1 + p1    P3 = m3 v3 + p3    H = J q + r3 p1 - r1 p3    p1 = m_p (v1 + q r3 + r1_dot)    p3 = m_p (v3 - q r1)
 
-The engine changes the displaced volume: m0 follows it, the momenta do not. They keep the sliding mass exact without the forces u_p that move it. Written out, P3_dot has +m1 v1 q, where the
+The engine changes the displaced volume: m0 follows it, the momenta do not. The momenta keep the sliding mass exact
+without the forces u_p that move it. Written out, P3_dot has +m1 v1 q, where the
 paper's equation 18 prints -m1 v1 q; H_dot has the moments ahead and below of the whole centre of gravity, where its
 equation 19 prints those of the roller; m1 and m3 are mass plus added mass, where its text has added mass alone; and b in
 its equation 9 is b_dot. P3 v1 - P1 v3 holds the Munk moment (m3 - m1) v1 v3, which is left out where M has it already.

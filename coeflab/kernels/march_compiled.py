@@ -264,8 +264,9 @@ def _member(
 
 @numba.njit(cache=True, parallel=True, error_model="numpy")
 def _all(
-    shared: tuple[Ints, Array, Ints, NDArray[np.uint64], bool], coefficient: Array, bodies: Array, angles: Array, begun_at: Array, rate: Array, wrenches: Array, watched: Ints, sign: Array,
-    value: Array, longest: Array, start: Array, step: float, steps: int, every: int, fastest: float, records: Array,
+    shared: tuple[Ints, Array, Ints, NDArray[np.uint64], bool], coefficient: Array, bodies: Array, angles: Array,
+    begun_at: Array, rate: Array, wrenches: Array, watched: Ints, sign: Array, value: Array,
+    longest: Array, start: Array, step: float, steps: int, every: int, fastest: float, records: Array,
     switch_time: Array, switch_state: Array, met: NDArray[np.bool_], ended: Ints, end_time: Array, end_state: Array,
 ) -> None:  # fmt: skip
     """Every member on copies of its own: two cores that count the references of one array wait for each other."""

@@ -6,7 +6,8 @@ the derivative from the measurement to the known function::
     <f> = int w f dt / int w dt        <df/dt> = - int w' f dt / int w dt
 
 Measurements are taken as straight between their times, and the integrals of that are exact for any steps: the rate of a
-constant is zero to rounding. Rows that are few for that are joined by splines first. Test functions and their use with sparse regression: Gurevich, Reinbold & Grigoriev (2019),
+constant is zero to rounding. Rows that are few for that are joined by splines first. Test functions and their use with
+sparse regression: Gurevich, Reinbold & Grigoriev (2019),
 Messenger & Bortz (2021), and pysindy's ``WeakPDELibrary``, which wants even steps and draws its windows at random.
 """
 
