@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -194,7 +196,29 @@ def _in_words(kind: str, message: str, value: object) -> tuple[str, str]:
         return "an unknown key", "only the keys of the schema"
     if kind == "value_error":
         return message.removeprefix("Value error, "), "a parameter file that agrees with itself"
-    return shown(value), message.removeprefix("Input should be ").removeprefix("String should ")
+    return shown(value), message.removeprefix("Input should be ").removeprefix("String should ").removeprefix("have ")
+
+
+@contextmanager
+def refusals_told(place: str) -> Iterator[None]:
+    """What the models refuse while a file is put together, as one error.
+
+    Parameters
+    ----------
+    place : str
+        Key that the refused key stands below, for example ``parameter_file.hull``.
+
+    Raises
+    ------
+    InputError
+        In place of pydantic's error.
+    """
+    try:
+        yield
+    except ValidationError as why:
+        first = why.errors()[0]
+        found, expected = _in_words(first["type"], first["msg"], first["input"])
+        raise InputError(found, expected, column=".".join(map(str, (place, *first["loc"])))) from None
 
 
 def read_parameter_file(path: Path) -> ParameterFile:

@@ -19,6 +19,7 @@ from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
 from coeflab.model.joint_rows import joint_name
 from coeflab.model.model_budget import with_model_budgets
+from coeflab.model.parameter_file import refusals_told
 from coeflab.model.reference import compare, compare_set, read_references
 from coeflab.model.scaling import Scaling
 from coeflab.model.several_campaigns import one_length
@@ -85,10 +86,12 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     conditions = plan.conditions or tables[0].conditions
     hulls = hulls_of(groups, conditions.density, progress)
     inputs = _inputs(plan, tables, [b for b in (body, *(h.body for h in hulls.values())) if b is not None])
-    files = {
-        g.name: assemble(g, plan.name, fits, tables, missing, references, body, conditions, inputs, hulls.get(g.name))
-        for g in groups
-    }
+    files = {}
+    for g in groups:
+        with refusals_told(f"parameter_file.{g.name}"[:80]):
+            files[g.name] = assemble(
+                g, plan.name, fits, tables, missing, references, body, conditions, inputs, hulls.get(g.name)
+            )
     study = Study(
         plan=plan,
         tables=tuple(tables),

@@ -13,6 +13,7 @@ from coeflab.core.toml import read_toml
 from coeflab.model.check import Severity
 from coeflab.model.input_uncertainty import read_input_uncertainty
 from coeflab.model.plan import read_plan
+from coeflab.model.scaling import Scaling
 from coeflab.model.study import Plan, PlannedTable, Study
 from coeflab.workbench import run
 
@@ -94,3 +95,12 @@ def test_the_added_mass_of_another_vehicle_fails(tmp_path: Path) -> None:
     assert found.failed
     (length,) = [c for c in found.checks if c.name == "hull" and c.severity is Severity.FAIL]
     assert "15 m against 4.261 m" in length.statistic
+
+
+def test_a_name_too_long_for_the_file_is_one_error() -> None:
+    table = PlannedTable(shipped("cfd_data") / "suboff_roddy_3", ("slope_at_origin",), {})
+    plan = Plan(name="s", title="", tables=(table,), wanted=(), scaling=Scaling(4.26086, "L" * 800))
+    with pytest.raises(InputError, match="at most 200 characters") as why:
+        run(plan)
+    assert "length_name" in str(why.value)
+    assert len(str(why.value)) < 500
