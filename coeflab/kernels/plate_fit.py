@@ -41,6 +41,14 @@ def plate_fit(of: Surface, turn: Array) -> PlateFit:
         Its third column is the normal.
     """
     vertices, faces = of
+    # Outlines are cut on a grid of fixed pitch, so that a small body is drawn large first.
+    unit = float(np.max(np.ptp(vertices, axis=0)))
+    found = _fitted((vertices / unit, faces), turn)
+    return PlateFit(found.chord * unit, found.span * unit, found.rotation, found.centre * unit)
+
+
+def _fitted(of: Surface, turn: Array) -> PlateFit:
+    vertices, faces = of
     normal = turn[:, 2]
     local = vertices @ turn
     a, b, c = (local[faces[:, k], :2] for k in range(3))

@@ -70,6 +70,7 @@ def test_a_slender_spheroid_is_lambs_within_a_thousandth(kernel: str) -> None:
 def test_the_error_estimate_holds_the_error(axes: tuple[float, float, float], panels: int) -> None:
     found = solved(Ellipsoid(*axes), panels=panels, kernel="numpy")
     assert held(found, ellipsoid_added_mass(np.array(axes), RHO))
+    # Two meshes carry Roache's factor 3 where three carry half of it or less.
     widest = 0.15 if "from two meshes" in found.statements[2] else 0.08
     assert np.all(np.diag(found.error)[:3] < widest * np.diag(found.matrix)[:3])
 
@@ -96,6 +97,7 @@ def test_a_flat_ended_cylinder() -> None:
     mass = RHO * np.pi * 0.25 * 5.0
     assert found.error is not None
     assert np.diag(found.matrix)[:3] / mass == pytest.approx([0.127, 0.877, 0.877], rel=0.01)
+    assert found.matrix[1, 1] / mass == pytest.approx(0.877, rel=0.005)
     assert np.all(np.diag(found.error)[:3] < 0.03 * np.diag(found.matrix)[:3])
 
 

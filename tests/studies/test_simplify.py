@@ -107,7 +107,7 @@ def test_scale_does_not_matter() -> None:
     for p, q in zip(simplify(small).parts, simplify(large).parts, strict=True):
         assert p.part.name == q.part.name
         assert type(p.part.form) is type(q.part.form)
-        assert np.array(p.likeness.sizes) * 3000.0 == pytest.approx(q.likeness.sizes, rel=1e-4)
+        assert np.array(p.likeness.sizes) * 3000.0 == pytest.approx(q.likeness.sizes, rel=1e-6)
 
 
 def test_separate_shells_that_overlap() -> None:
