@@ -39,15 +39,18 @@ def relabelled(turn: Array, normal: bool = False) -> Array:
     normal : bool
         Whether the third column stays the third.
     """
-    best, largest = turn, -np.inf
+    best, first = turn, (-np.inf,)
     for order in permutations(range(3)):
         if normal and order[2] != 2:
             continue
         for signs in product((1.0, -1.0), repeat=3):
             made = turn[:, order] * signs
-            trace = float(np.trace(made))
-            if np.linalg.det(made) > 0.0 and trace > largest + 1e-9:
-                best, largest = made, trace
+            if np.linalg.det(made) < 0.0:
+                continue
+            # Of equal traces the axes that point ahead, to starboard and down first, whatever signs came in.
+            key = (round(float(np.trace(made)), 9), *np.round(made.T.ravel(), 6).tolist())
+            if key > first:
+                best, first = made, key
     return np.asarray(best)
 
 
