@@ -16,10 +16,14 @@ from coeflab.kernels.least_squares import Array
 from coeflab.kernels.surface_mesh import Faces
 
 Index = NDArray[np.int64]
+Lots = NDArray[np.uint64]
 LENGTH, PULL = 1e-2, 1e-3
 SHARE, FEWEST = 0.12, 512
-TURN, SHAPE = 0.5, 0.3
-LOT = 1997
+TURN, SHAPE, NEEDLE = 0.5, 0.3, 1e-6
+SIX, DIAGONAL = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)), [0, 3, 5]
+THOUSAND, NEAR = 2.0**10, 1.0 + 1e-9
+# No round number: coordinates of CAD must not lie midway between two places.
+PLACE = 1.2345e-7
 FAR = np.iinfo(np.int64).max
 
 
@@ -44,8 +48,9 @@ def decimated(vertices: Array, faces: Faces, target: int) -> tuple[Array, Faces]
     """
     middle, share = vertices.mean(axis=0), SHARE
     vertices = vertices - middle
+    names = _names(vertices)
     while len(faces) > target:
-        edges = _cheapest(vertices, faces, share)
+        edges = _cheapest(vertices, faces, names, share)
         chosen = _apart(_sound(edges, vertices, faces), len(vertices))[: (len(faces) - target + 1) // 2]
         if not len(chosen.ends):
             if share == 1.0:
@@ -53,7 +58,7 @@ def decimated(vertices: Array, faces: Faces, target: int) -> tuple[Array, Faces]
             share = 1.0
             continue
         share = SHARE
-        vertices, faces = _collapsed(chosen, vertices, faces)
+        vertices, faces, names = _collapsed(chosen, vertices, faces, names)
     return vertices + middle, faces
 
 
@@ -63,38 +68,102 @@ class _Edges:
 
     ends: Index
     to: Array
+    lot: Lots
     ring: Index
     start: Index
 
     def __getitem__(self, kept: slice | NDArray[np.bool_]) -> _Edges:
-        return _Edges(self.ends[kept], self.to[kept], self.ring, self.start)
+        return _Edges(self.ends[kept], self.to[kept], self.lot[kept], self.ring, self.start)
 
 
-def _cheapest(vertices: Array, faces: Faces, share: float) -> tuple[Index, Array]:
-    """The share of the edges that cost least, cheapest first, and the point where each collapses to."""
+def _cheapest(vertices: Array, faces: Faces, names: Lots, share: float) -> tuple[Index, Array, Lots]:
+    """The share of the edges that cost least, cheapest first, the point where each collapses to, and its lot.
+
+    All planes about a vertex pass through it: their quadric there is (x - u)' A (x - u) with A the sum of area n n', and
+    nothing cancels. Costs within a thousandth are equal and go by lot, so that rounding, which differs from machine to
+    machine, hardly ever decides.
+    """
     corner = vertices[faces]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) / 2.0
-    area = np.linalg.norm(normal, axis=1)
-    unit = normal / np.maximum(area, np.finfo(float).tiny)[:, None]
-    offset = -np.einsum("ij,ij->i", unit, corner[:, 0])
-    plane = np.column_stack([unit, offset])
-    products = np.column_stack([(area[:, None, None] * plane[:, :, None] * plane[:, None, :]).reshape(-1, 16), area])
+    area = np.sqrt(_dot(normal, normal))
+    across = normal / np.sqrt(np.maximum(area, np.finfo(float).tiny))[:, None]
     at = faces.ravel()
-    quadric = np.stack([np.bincount(at, np.repeat(p, 3), len(vertices)) for p in products.T], axis=1)
+    tensor = np.stack(
+        [np.bincount(at, np.repeat(across[:, i] * across[:, j], 3), len(vertices)) for i, j in SIX], axis=1
+    )
+    weights = np.bincount(at, np.repeat(area, 3), len(vertices))
     run = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     ends = run[run[:, 0] < run[:, 1]]
     u, v = vertices[ends[:, 0]], vertices[ends[:, 1]]
-    both = quadric[ends[:, 0]] + quadric[ends[:, 1]]
-    q, weight = both[:, :16].reshape(-1, 4, 4), np.maximum(both[:, 16], np.finfo(float).tiny)
-    mid = (u + v) / 2.0
-    pull = PULL * weight[:, None]
-    left = q[:, :3, :3] + pull[:, :, None] * np.eye(3)
-    to = np.linalg.solve(left, (pull * mid - q[:, :3, 3])[:, :, None])[:, :, 0]
-    flat = np.einsum("ki,kij,kj->k", to, q[:, :3, :3], to) + 2.0 * np.einsum("ki,ki->k", q[:, :3, 3], to) + q[:, 3, 3]
-    cost = flat + LENGTH * weight * (np.sum((to - mid) ** 2, axis=1) + np.sum((u - v) ** 2, axis=1) / 4.0)
+    one, other = tensor[ends[:, 0]], tensor[ends[:, 1]]
+    weight = np.maximum(weights[ends[:, 0]] + weights[ends[:, 1]], np.finfo(float).tiny)
+    half = (v - u) / 2.0
+    left = one + other
+    left[:, DIAGONAL] += PULL * weight[:, None]
+    moved = _solved(left, _times(other - one, half))
+    flat = _dot(moved + half, _times(one, moved + half)) + _dot(moved - half, _times(other, moved - half))
+    cost = flat + LENGTH * weight * (_dot(moved, moved) + _dot(half, half))
     count = min(len(ends), max(FEWEST, int(share * len(ends))))
-    order = np.argsort(cost, kind="stable")[:count]
-    return ends[order], to[order]
+    lot = _lots(names[ends])
+    order = np.lexsort((lot, _rounded(cost)))[:count]
+    return ends[order], ((u + v) / 2.0 + moved)[order], lot[order]
+
+
+def _rounded(cost: Array) -> Array:
+    """Positive numbers to a thousandth."""
+    mantissa, power = np.frexp(cost)
+    return np.asarray(np.ldexp(np.round(mantissa * THOUSAND), power))
+
+
+def _names(vertices: Array) -> Lots:
+    """A number for each vertex by its place alone, whatever the order of the list."""
+    place = np.round(vertices / (PLACE * np.max(np.abs(vertices)))).astype(np.int64).astype(np.uint64)
+    out = np.zeros(len(vertices), dtype=np.uint64)
+    for along in place.T:
+        out = _mixed(out + along)
+    return out
+
+
+def _lots(names: Lots) -> Lots:
+    """A number for each edge by the names of its two ends alone, as if drawn.
+
+    Edges of equal cost stand in rows on a structured mesh, where the first of each neighbourhood would be few; and a
+    change in one place leaves the lots of all others as they are.
+    """
+    low, high = np.sort(names, axis=1).T
+    return _mixed(_mixed(low) + high)
+
+
+def _mixed(number: Lots) -> Lots:
+    """SplitMix64 (Steele, Lea & Flood 2014)."""
+    number = number + np.uint64(0x9E3779B97F4A7C15)
+    number = (number ^ number >> np.uint64(30)) * np.uint64(0xBF58476D1CE4E5B9)
+    number = (number ^ number >> np.uint64(27)) * np.uint64(0x94D049BB133111EB)
+    return number ^ number >> np.uint64(31)
+
+
+def _dot(a: Array, b: Array) -> Array:
+    return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2])
+
+
+def _times(tensor: Array, x: Array) -> Array:
+    """Symmetric tensors, six numbers each, on vectors."""
+    a, b, c, d, e, f = tensor.T
+    return np.stack([_dot(np.stack(row, axis=1), x) for row in ((a, b, c), (b, d, e), (c, e, f))], axis=1)
+
+
+def _solved(tensor: Array, right: Array) -> Array:
+    """Solutions for positive definite tensors, by factors L D L'."""
+    a, b, c, d, e, f = tensor.T
+    p, q = b / a, c / a
+    second = d - p * b
+    r = (e - p * c) / second
+    third = f - q * c - r * r * second
+    x = right[:, 0]
+    y = right[:, 1] - p * x
+    z = (right[:, 2] - q * x - r * y) / third
+    y = y / second - r * z
+    return np.stack([x / a - p * y - q * z, y, z], axis=1)
 
 
 def _spread(lengths: Index) -> tuple[Index, Index]:
@@ -106,14 +175,15 @@ def _spread(lengths: Index) -> tuple[Index, Index]:
 def _shape(corner: Array) -> tuple[Array, Array]:
     """Normals, and how near triangles are to equilateral: 1 at best, 0 without area."""
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    sides = np.sum((corner - np.roll(corner, 1, axis=1)) ** 2, axis=(1, 2))
-    length = np.linalg.norm(normal, axis=1)
+    runs = corner - np.roll(corner, 1, axis=1)
+    sides = _dot(runs[:, 0], runs[:, 0]) + _dot(runs[:, 1], runs[:, 1]) + _dot(runs[:, 2], runs[:, 2])
+    length = np.sqrt(_dot(normal, normal))
     return normal, 2.0 * np.sqrt(3.0) * length / np.maximum(sides, np.finfo(float).tiny)
 
 
-def _sound(edges: tuple[Index, Array], vertices: Array, faces: Faces) -> _Edges:
+def _sound(edges: tuple[Index, Array, Lots], vertices: Array, faces: Faces) -> _Edges:
     """Those edges whose collapse leaves a surface: no hole, no fold, and no sliver worse than there was."""
-    ends, to = edges
+    ends, to, lot = edges
     order = np.argsort(faces.ravel(), kind="stable")
     valence = np.bincount(faces.ravel(), minlength=len(vertices))
     first = np.cumsum(valence) - valence
@@ -133,35 +203,33 @@ def _sound(edges: tuple[Index, Array], vertices: Array, faces: Faces) -> _Edges:
     (old, was), (new, now) = _shape(before), _shape(after)
     start = np.concatenate([[0], np.flatnonzero(np.diff(group)) + 1])
     worst = np.minimum.reduceat(was, start)[group]
-    folded = np.einsum("ij,ij->i", old, new) < TURN * np.linalg.norm(old, axis=1) * np.linalg.norm(new, axis=1)
-    bad = stays & ((folded & (was > SHAPE / 10.0)) | (now < np.minimum(SHAPE, worst)))
+    folded = _dot(old, new) * NEAR < TURN * np.sqrt(_dot(old, old) * _dot(new, new))
+    bad = stays & ((folded & (was > NEEDLE)) | (now * NEAR < np.minimum(SHAPE, worst)))
     fine = (shared == 2) & (valence[ends].sum(axis=1) > 6) & ~np.logical_or.reduceat(bad, start)
     kept = fine[group]
     lengths = np.bincount(group, minlength=len(ends))[fine]
-    return _Edges(ends[fine], to[fine], ring[kept], np.cumsum(lengths) - lengths)
+    return _Edges(ends[fine], to[fine], lot[fine], ring[kept], np.cumsum(lengths) - lengths)
 
 
 def _apart(edges: _Edges, count: int) -> _Edges:
-    """Edges of which none reaches into the ring of another.
-
-    Drawn by lot, always the same: equal costs stand in rows on a structured mesh, where the cheapest of each
-    neighbourhood would be few.
-    """
+    """Edges of which none reaches into the ring of another; where several would, the least lot."""
     if not len(edges.ends):
         return edges
-    rank = np.random.default_rng(LOT).permutation(len(edges.ends))
+    rank = np.empty(len(edges.ends), dtype=np.int64)
+    rank[np.argsort(edges.lot, kind="stable")] = np.arange(len(rank))
     best = np.full(count, FAR)
     np.minimum.at(best, edges.ends[:, 0], rank)
     np.minimum.at(best, edges.ends[:, 1], rank)
     return edges[np.minimum.reduceat(best[edges.ring], edges.start) >= rank]
 
 
-def _collapsed(edges: _Edges, vertices: Array, faces: Faces) -> tuple[Array, Faces]:
-    vertices = vertices.copy()
+def _collapsed(edges: _Edges, vertices: Array, faces: Faces, names: Lots) -> tuple[Array, Faces, Lots]:
+    vertices, names = vertices.copy(), names.copy()
     vertices[edges.ends[:, 0]] = edges.to
+    names[edges.ends[:, 0]] = edges.lot
     goes = np.arange(len(vertices))
     goes[edges.ends[:, 1]] = edges.ends[:, 0]
     faces = goes[faces]
     whole = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
     used, place = np.unique(faces[whole], return_inverse=True)
-    return vertices[used], place.reshape(-1, 3)
+    return vertices[used], place.reshape(-1, 3), _mixed(names[used])

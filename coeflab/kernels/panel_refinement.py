@@ -7,7 +7,8 @@ What is left is estimated by the difference of the extrapolations from the finer
 order p, that would be 2^p - 1 times the error when panels are halved: at least the error itself for every p from 1 on;
 below 1 the rest is made up for, and Roache's factor of 1.25 is kept. Two refinements show no order: his factor of 3 on
 the correction. It is never taken below a quarter of the correction,
-nor below a tenth of the largest of a diagonal entry, each over its size: differences can cross zero by chance.
+nor below a tenth of the largest of a diagonal entry, each over its size: differences can cross zero by chance. Of two
+refinements, which cannot tell, no entry has less than the median.
 """
 
 from __future__ import annotations
@@ -87,7 +88,7 @@ def refined(matrices: Sequence[Array], counts: Sequence[int], edges: bool = Fals
         used = EDGED if edges else SMOOTH
         correction = changes[0] / (ratios[0] ** used - 1.0)
         limit = finest + correction
-        return Refinement(limit, _floored(TWO_ONLY * np.abs(correction), limit, scale), None, used)
+        return Refinement(limit, _floored(TWO_ONLY * np.abs(correction), limit, scale, like_most=True), None, used)
     # A motion that only facets resist would drown the order of the others.
     live = np.abs(np.diag(changes[0])) < 0.5 * np.diag(finest)
     if not np.any(live):
@@ -121,13 +122,16 @@ def _order(gain: float, ratios: Sequence[float]) -> float:
     return large if short(large) < 0.0 else float(brentq(short, small, large))
 
 
-def _floored(error: Array, limit: Array, scale: Array) -> Array:
+def _floored(error: Array, limit: Array, scale: Array, like_most: bool = False) -> Array:
     """Errors not below a share of the largest relative one of entries that matter, nor below the integrals' own."""
     size = np.abs(np.diag(limit))
     live = (size > SUBSTANTIAL * np.diag(scale)) & (np.diag(error) < size)
-    worst = float(np.max(np.diag(error)[live] / size[live], initial=0.0))
+    relative = np.diag(error)[live] / size[live]
+    least = LEAST_OF_WORST * float(np.max(relative, initial=0.0))
+    if like_most and len(relative):
+        least = max(least, float(np.median(relative)))
     root = np.sqrt(size)
-    return np.maximum(np.maximum(error, LEAST_OF_WORST * worst * np.outer(root, root)), ROUNDING * scale)
+    return np.maximum(np.maximum(error, least * np.outer(root, root)), ROUNDING * scale)
 
 
 def _scale(matrix: Array) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -95,6 +97,52 @@ def test_same_again_and_anywhere() -> None:
     assert one[1].tobytes() == other[1].tobytes()
     far = decimated(fine[0] + np.array([100.0, 0.0, -50.0]), fine[1], 500)
     assert mesh_integrals(*far).volume == pytest.approx(mesh_integrals(*one).volume, rel=1e-2)
+
+
+@pytest.mark.parametrize("noise", [1e-16, 1e-14])
+def test_rounding_does_not_choose(noise: float) -> None:
+    """Costs of a structured mesh are equal in rows; another machine's last digit must not make another mesh of it."""
+    vertices, faces = sphere(3000)
+    stretched = vertices * np.array([6.0, 1.0, 1.0])
+    shaken = stretched * (1.0 + noise * np.random.default_rng(5).standard_normal(stretched.shape))
+    one, other = decimated(stretched, faces, 700), decimated(shaken, faces, 700)
+    assert one[1].tobytes() == other[1].tobytes()
+    assert other[0] == pytest.approx(one[0], abs=1e-10)
+
+
+def test_the_order_of_the_list_does_not_choose() -> None:
+    vertices, faces = sphere(2000)
+    place = np.random.default_rng(3).permutation(len(vertices))
+    vertices = vertices * np.array([3.0, 1.0, 0.7])
+    other = np.empty_like(vertices)
+    other[place] = vertices
+    one, again = decimated(vertices, faces, 500), decimated(other, place[faces][::-1], 500)
+    assert np.sort(again[0], axis=0) == pytest.approx(np.sort(one[0], axis=0), abs=1e-9)
+
+
+@pytest.mark.parametrize("around", [100, 256])
+def test_needles_are_not_turned_over(around: int) -> None:
+    """A disc-ended prism whose caps are one needle a facet; every remaining face of a cap still looks outward."""
+    angle = 2.0 * np.pi * np.arange(around) / around
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    levels = np.linspace(0.0, 1.0, 6)
+    vertices = np.concatenate([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], *(np.insert(ring, 0, x, axis=1) for x in levels)])
+    i, j = np.arange(around), (np.arange(around) + 1) % around
+    at = [2 + k * around for k in range(6)]
+    sides = [
+        np.concatenate([np.stack([a + i, b + j, b + i], axis=1), np.stack([a + i, a + j, b + j], axis=1)])
+        for a, b in pairwise(at)
+    ]
+    caps = [np.stack([0 * i, at[0] + j, at[0] + i], axis=1), np.stack([0 * i + 1, at[-1] + i, at[-1] + j], axis=1)]
+    faces = np.concatenate([*sides, *caps])
+    assert is_closed(faces)
+    found, fewer = decimated(vertices, faces, 300)
+    corner = found[fewer]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) / 2.0
+    outward = corner.mean(axis=1)[:, 0] - 0.5
+    on_cap = np.ptp(corner[:, :, 0], axis=1) < 0.02
+    assert np.all(normal[on_cap, 0] * outward[on_cap] > 0.0)
+    assert np.sum(np.abs(normal[:, 0])) == pytest.approx(2.0 * np.pi, rel=0.02)
 
 
 def test_what_is_closed() -> None:
