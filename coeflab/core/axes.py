@@ -57,6 +57,14 @@ class Axes:
 def parse_axes(declared: Any, file: str | Path | None = None, key: str = "axes.frame") -> Axes:
     """Read an axes declaration: ``"FRD"``, ``"FLU"``, ``"CFD"`` or three directions.
 
+    Parameters
+    ----------
+    declared : object
+        As TOML gave it.
+    file : path, optional
+    key : str
+        Both for the error.
+
     Raises
     ------
     AxesError
@@ -88,6 +96,14 @@ def parse_axes(declared: Any, file: str | Path | None = None, key: str = "axes.f
 
 def angle_sign(name: str, declared: Any, file: str | Path | None = None) -> float:
     """Sign of v (starboard) for beta, of w (down) for alpha, from the declaration in words.
+
+    Parameters
+    ----------
+    name : {"alpha", "beta"}
+    declared : object
+        As TOML gave it.
+    file : path, optional
+        For the error.
 
     Raises
     ------

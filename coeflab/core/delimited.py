@@ -221,6 +221,14 @@ def _rows(lines: Iterator[str], path: Path, header_line: int, width: int) -> lis
 def require_unit(header: Header, path: Path, line: int, example: str) -> str:
     """The unit of a header.
 
+    Parameters
+    ----------
+    header : Header
+    path, line : Path, int
+        Where it stands.
+    example : str
+        A unit that would do.
+
     Raises
     ------
     UnitsError

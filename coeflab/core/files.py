@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Mapping
+from errno import EISDIR
 from importlib.resources import files
 from pathlib import Path
 
@@ -20,6 +22,14 @@ def shipped(kind: str) -> Path:
 
 def located(name: str | Path, kind: str, base: Path | None = None) -> Path:
     """The path that a plan or a person means: relative to ``base``, to the current folder, or a shipped name.
+
+    Parameters
+    ----------
+    name : str or Path
+    kind : {"cfd_data", "geometry"}
+        Which shipped names are meant.
+    base : Path, optional
+        Folder of the plan that names it.
 
     Raises
     ------
@@ -43,8 +53,72 @@ def located(name: str | Path, kind: str, base: Path | None = None) -> Path:
     )
 
 
+def write_all(folder: Path, contents: Mapping[str, bytes]) -> dict[str, bool]:
+    """Write files so that all of them change or none: every content first goes to a temporary neighbour, then into place.
+
+    A fault while a content is written, such as a full disk, leaves the folder as it was. Only a stop between the
+    replacements at the end, which need no space, leaves old and new files side by side, each of them whole.
+
+    Parameters
+    ----------
+    folder : Path
+    contents : mapping of str to bytes
+        By name, or path below the folder.
+
+    Returns
+    -------
+    dict of str to bool
+        Whether a file changed; an equal file is left untouched.
+
+    Raises
+    ------
+    OutputError
+        A folder cannot be made or written.
+    """
+    staged: dict[Path, Path] = {}
+    changed = {}
+    path = folder
+    try:
+        try:
+            for name, content in contents.items():
+                path = folder / name
+                changed[name] = not (path.is_file() and path.read_bytes() == content)
+                if changed[name]:
+                    staged[path] = _staged(path, content)
+            for path, temporary in staged.items():
+                temporary.replace(path)
+        finally:
+            for temporary in staged.values():
+                temporary.unlink(missing_ok=True)
+    except OSError as why:
+        raise OutputError(f"cannot write {path}: {why.strerror or why}. Choose another folder.") from None
+    return changed
+
+
+def _staged(path: Path, content: bytes) -> Path:
+    """A temporary neighbour of the path with the content."""
+    if path.is_dir():
+        raise IsADirectoryError(EISDIR, "a folder of that name is in the way")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:40]}.")
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(content)
+        temporary.chmod(0o644)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
+    return temporary
+
+
 def write_atomically(path: Path, content: bytes) -> bool:
-    """Write a file through a temporary neighbour; an equal file is left untouched.
+    """Write one file through a temporary neighbour; an equal file is left untouched.
+
+    Parameters
+    ----------
+    path : Path
+    content : bytes
 
     Returns
     -------
@@ -56,19 +130,4 @@ def write_atomically(path: Path, content: bytes) -> bool:
     OutputError
         The folder cannot be made or written.
     """
-    try:
-        if path.is_file() and path.read_bytes() == content:
-            return False
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:40]}.")
-        try:
-            with os.fdopen(handle, "wb") as stream:
-                stream.write(content)
-            Path(temporary).chmod(0o644)
-            Path(temporary).replace(path)
-        except BaseException:
-            Path(temporary).unlink(missing_ok=True)
-            raise
-    except OSError as why:
-        raise OutputError(f"cannot write {path}: {why.strerror or why}. Choose another folder.") from None
-    return True
+    return write_all(path.parent, {path.name: content})[path.name]

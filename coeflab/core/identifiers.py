@@ -18,6 +18,14 @@ def identifier(text: str, reserved: AbstractSet[str] = frozenset(), longest: int
     """An ASCII identifier like a name: letters, digits and underscores, a letter first.
 
     ``vehicle_`` stands before what begins with a digit, is a reserved word, in whatever letters, or a device of Windows.
+
+    Parameters
+    ----------
+    text : str
+    reserved : set of str, optional
+        Words of the language that it goes into.
+    longest : int
+        Characters; those of MATLAB by default.
     """
     name = re.sub(r"[^A-Za-z0-9]+", "_", text).strip("_") or "vehicle"
     if not name[0].isalpha() or {name, name.lower()} & {*reserved, *DEVICES}:

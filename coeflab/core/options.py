@@ -18,12 +18,26 @@ Options = TypeVar("Options")
 
 
 def bounded(default: float, low: float, high: float) -> Any:
-    """A dataclass field with bounds; an int default takes whole numbers only."""
+    """A dataclass field with bounds; an int default takes whole numbers only.
+
+    Parameters
+    ----------
+    default, low, high : float
+        The bounds are allowed values.
+    """
     return dataclasses.field(default=default, metadata={"low": low, "high": high})
 
 
 def measured(default: float, low: float, high: float, dimension: str) -> Any:
-    """A dataclass field that takes an SI number, or a text with its unit (``"0.05 m^2"``); bounds in SI."""
+    """A dataclass field that takes an SI number, or a text with its unit (``"0.05 m^2"``); bounds in SI.
+
+    Parameters
+    ----------
+    default, low, high : float
+        SI; the bounds are allowed values.
+    dimension : str
+        Key of `coeflab.core.units.SI`.
+    """
     return dataclasses.field(default=default, metadata={"low": low, "high": high, "dimension": dimension})
 
 
@@ -117,6 +131,14 @@ def _meanings(text: str) -> dict[str, str]:
 
 def parse_options(kind: type[Options], given: Mapping[str, Any], where: str) -> Options:
     """Fill an options dataclass.
+
+    Parameters
+    ----------
+    kind : type
+        The dataclass.
+    given : mapping of str to value
+    where : str
+        Stands before the option's name in an error.
 
     Raises
     ------

@@ -8,6 +8,9 @@ from pathlib import Path
 
 from coeflab.core.toml import Section
 
+TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic")
+BODY_KINDS = (*TABLE_KINDS, "computed")
+
 
 @dataclass(frozen=True, slots=True)
 class Source:
@@ -22,7 +25,7 @@ class Source:
     how_obtained : str
         Printed, computed, read from a figure, synthetic ...
     kind : str
-        ``experiment``, ``cfd``, ``literature`` or ``synthetic``.
+        One of `TABLE_KINDS` or `BODY_KINDS`; empty where a body says nothing.
     stated_uncertainty : str
         What the source itself says of its uncertainty; empty if nothing.
     """
@@ -34,24 +37,27 @@ class Source:
     stated_uncertainty: str = ""
 
 
-def read_source(section: Section, kinds: tuple[str, ...] = ()) -> Source:
+def read_source(section: Section, kinds: tuple[str, ...] = BODY_KINDS, required: bool = False) -> Source:
     """A ``[source]`` table.
 
     Parameters
     ----------
     section : Section
     kinds : tuple of str, optional
-        The kinds of source that are allowed; the kind is then required.
+        The kinds of source that are allowed.
+    required : bool
+        Whether a kind must be named.
 
     Raises
     ------
     InputError
+        No citation, no kind where one is required, or a kind of no such name.
     """
     return Source(
         citation=section.text("citation"),
         place=section.text("place", ""),
         how_obtained=section.text("how_obtained", ""),
-        kind=section.text("kind", choices=kinds) if kinds else section.text("kind", ""),
+        kind=section.text("kind", choices=kinds) if required or section.has("kind") else "",
         stated_uncertainty=section.text("stated_uncertainty", ""),
     )
 

@@ -6,6 +6,7 @@ import difflib
 import importlib
 import inspect
 import pkgutil
+from functools import cached_property
 from importlib.metadata import entry_points
 from typing import Any, Generic, TypeVar
 
@@ -33,14 +34,16 @@ class Registry(Generic[Port]):
     def __init__(self, package: str, kind: str, port: type[Port]) -> None:
         self.package, self.kind, self._port = package, kind, port
 
+    @cached_property
     def _outside(self) -> dict[str, Any]:
+        """Looked up once: the metadata of every installed package is read for it."""
         return {point.name: point for point in entry_points(group=self.package)}
 
     def names(self) -> tuple[str, ...]:
         """Names of all plugins of the room, sorted; nothing is imported."""
         room = importlib.import_module(self.package)
         own = {module.name for module in pkgutil.iter_modules(room.__path__) if not module.name.startswith("_")}
-        return tuple(sorted(own | set(self._outside())))
+        return tuple(sorted(own | set(self._outside)))
 
     def load(self, name: str) -> Port:
         """Import one plugin.
@@ -55,8 +58,8 @@ class Registry(Generic[Port]):
             hint = f"did you mean {' or '.join(near)}? " if near else ""
             known = ", ".join(self.names()) or "none in this release"
             raise PluginError(f"no {self.kind} is called {shown(name)}: {hint}Known: {known}.")
-        outside = self._outside()
-        plugin = outside[name].load() if name in outside else importlib.import_module(f"{self.package}.{name}")
+        point = self._outside.get(name)
+        plugin = point.load() if point is not None else importlib.import_module(f"{self.package}.{name}")
         if not isinstance(plugin, self._port):
             missing = [a for a in _members(self._port) if not hasattr(plugin, a)]
             raise PluginError(f"the {self.kind} {shown(name)} lacks {', '.join(missing)}.")

@@ -39,7 +39,14 @@ class Section:
         return f"{self.name}.{key}" if self.name else key
 
     def fail(self, key: str, found: str, expected: str, advice: str = "") -> InputError:
-        """An error about one key, to be raised by the caller."""
+        """An error about one key, to be raised by the caller.
+
+        Parameters
+        ----------
+        key : str
+        found, expected : str
+        advice : str, optional
+        """
         return InputError(found, expected, file=self.file, column=self.key(key), advice=advice)
 
     def has(self, key: str) -> bool:
@@ -58,7 +65,16 @@ class Section:
         return self.raw(key)
 
     def text(self, key: str, default: str | None = None, choices: tuple[str, ...] = ()) -> str:
-        """A text, optionally one of several."""
+        """A text, optionally one of several.
+
+        Parameters
+        ----------
+        key : str
+        default : str, optional
+            Without it the key is required, and not blank.
+        choices : tuple of str, optional
+            Words that are allowed; empty: any.
+        """
         value = self._required(key, "a text") if default is None else self.raw(key, default)
         if not isinstance(value, str) or (default is None and not value.strip()):
             raise self.fail(key, shown(value), "a text")
@@ -74,7 +90,14 @@ class Section:
         return value
 
     def integer(self, key: str, default: int, low: int, high: int) -> int:
-        """A whole number within bounds."""
+        """A whole number within bounds.
+
+        Parameters
+        ----------
+        key : str
+        default, low, high : int
+            The bounds are allowed values.
+        """
         value = self.raw(key, default)
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
             raise self.fail(key, shown(value), f"a whole number from {low} to {high}")
@@ -105,7 +128,15 @@ class Section:
         return np.array(self.triple(key, "length", "a point [x, y, z] in metres, FRD, from the datum"))
 
     def triple(self, key: str, dimension: str, kind: str = "") -> tuple[float, float, float]:
-        """Three numbers in SI or texts with units."""
+        """Three numbers in SI or texts with units.
+
+        Parameters
+        ----------
+        key, dimension : str
+            The latter of `coeflab.core.units.SI`.
+        kind : str, optional
+            What the three are, for the error.
+        """
         expected = kind or f"three numbers [x, y, z] of {dimension}"
         value = self._required(key, expected)
         if not isinstance(value, list) or len(value) != 3:

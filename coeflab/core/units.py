@@ -13,6 +13,7 @@ from typing import Any
 
 from coeflab.core.errors import InputError, UnitsError, shown
 
+STANDARD_GRAVITY = 9.80665  # m/s^2, 3rd General Conference on Weights and Measures (1901)
 SI = {
     "length": "m",
     "speed": "m/s",
@@ -118,6 +119,16 @@ def factor(unit: str, dimension: str) -> float:
 
 def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key: str = "") -> float:
     """A number of a TOML file in SI: a bare number is SI already, a text carries its unit (``"13.9792 ft"``).
+
+    Parameters
+    ----------
+    value : object
+        As TOML gave it.
+    dimension : str
+        Key of `SI`.
+    file : path, optional
+    key : str, optional
+        Both for the error.
 
     Raises
     ------

@@ -110,6 +110,15 @@ def serialised(root: ElementTree.Element, comment: tuple[str, ...]) -> bytes:
 def numbers(text: str | None, count: tuple[int, ...], where: str, file: Path | str | None = None) -> tuple[float, ...]:
     """Numbers between blanks.
 
+    Parameters
+    ----------
+    text : str or None
+    count : tuple of int
+        How many there may be.
+    where : str
+    file : path, optional
+        Both for the error.
+
     Raises
     ------
     InputError

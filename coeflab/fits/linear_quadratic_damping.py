@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
+from coeflab.core.wording import finite
 from coeflab.kernels.terms import Term
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.model.fit_result import FitResult
@@ -150,7 +151,7 @@ def _coefficients(model: FittedModel, axis: str, citation: str) -> tuple[list[Co
         out.append(
             Coefficient(
                 symbol=model.symbols[i],
-                value=value if np.isfinite(value) else None,
+                value=finite(value),
                 u95=float(u95) if sure else None,
                 status=status,
                 body=model.body,

@@ -17,6 +17,7 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.symbols import MOTIONS
+from coeflab.core.wording import finite
 from coeflab.kernels.least_squares import Array
 from coeflab.model.asked_terms import AskedTerms, asked_terms
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
@@ -120,7 +121,7 @@ def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
         if not np.isfinite(value):
             out.append(Coefficient(symbol, None, None, Status.NOT_DETERMINED, **shared))
             continue
-        u95 = half if np.isfinite(half) else None
+        u95 = finite(half)
         status = Status.FORM_ASSUMED if u95 is not None else Status.SINGLE_ESTIMATOR
         at_rest = not np.any(model.terms[i].evaluate(model.x))
         own = {"n_points": 0, "estimator": f"from the equations alone, no motion of {symbol} in its rows"}

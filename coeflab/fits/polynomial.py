@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.symbols import COMPONENTS, primed
+from coeflab.core.wording import finite
 from coeflab.kernels.sharpened import sharpened
 from coeflab.kernels.terms import Term, power_terms
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
@@ -100,12 +101,12 @@ def _coefficients(
     out = []
     for i in keep:
         value, half = float(model.fit.coefficients[i]), float(model.fit.half_width[i])
-        u95 = half if np.isfinite(half) else None
+        u95 = finite(half)
         status = Status.SINGLE_ESTIMATOR if u95 is None else Status.FORM_ASSUMED
         out.append(
             Coefficient(
                 symbol=model.symbols[i].removesuffix("'"),
-                value=value if np.isfinite(value) else None,
+                value=finite(value),
                 u95=u95,
                 status=status if np.isfinite(value) else Status.TOO_FEW_POINTS,
                 body=model.body,

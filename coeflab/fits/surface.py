@@ -155,6 +155,13 @@ def compared(additive: FittedModel | None, full: FittedModel | None, rows: Rows)
 
     Both by rms, by the rms of left-out points (PRESS) and by AICc; the F test of the interaction terms assumes equal,
     independent, normal noise.
+
+    Parameters
+    ----------
+    additive, full : FittedModel or None
+        None where it could not be fitted.
+    rows : Rows
+        What both were fitted to.
     """
     if additive is None or full is None:
         what = "additive form has no terms of this parity" if additive is None else "full form has too many terms"

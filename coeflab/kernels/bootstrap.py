@@ -107,6 +107,7 @@ def wild(f: Factorised, coefficients: Array, residuals: Array, replicates: int, 
     coefficients : (p,) array
     residuals : (n,) array
         Weighted residuals from `solve`.
+    replicates, seed : int
 
     Returns
     -------

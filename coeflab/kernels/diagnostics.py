@@ -50,8 +50,14 @@ def lack_of_fit(f: Factorised, residuals: Array, x: Array, tolerance: float, kno
 
     Parameters
     ----------
+    f : Factorised
     residuals : (n,) array
         Weighted residuals; already divided by the standard errors when ``known_errors``.
+    x : (n,) or (n, d) array
+        Where the points lie; those that agree are replicates.
+    tolerance : float
+        Within which they agree.
+    known_errors : bool
     """
     freedom = f.freedom
     if freedom < 1:

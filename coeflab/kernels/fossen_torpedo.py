@@ -15,7 +15,7 @@ import numpy as np
 from coeflab.kernels.least_squares import Array
 
 WATER = 1026.0
-GRAVITY = 9.81
+GRAVITY = 9.81  # written into set_torpedo_parameters
 STRIPS = 20
 CROSS_FLOW = 1.2108 + (0.5 - 0.4933) / (0.5585 - 0.4933) * (1.0836 - 1.2108)  # Hoerner's table at B / 2T = 1/2
 FADING = 3.0

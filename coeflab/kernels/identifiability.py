@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from coeflab.kernels.least_squares import Array
 
-OPEN = 0.5
-ROUNDING = 1e-7
-TAKES_PART = 1e-4
-LARGEST_SET = 5
-NEW = 0.3
+OPEN = 0.5  # standard uncertainty over size at which the 95 % interval reaches zero
+ROUNDING = 1e-7  # of the largest singular value: the slopes are differences, good to about eps^(1/2)
+TAKES_PART = 1e-4  # entry of a void direction: sqrt(eps) with room for the same slopes
+LARGEST_SET = 5  # more names than that tell a reader nothing, and the sets to try grow as their binomial
+NEW = 0.3  # share of a change outside of the span of earlier ones, sin 17 deg: less is the same statement again
 
 
 def determined(data: Array, prior: Array) -> tuple[Array, NDArray[np.bool_]]:

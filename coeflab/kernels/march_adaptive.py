@@ -55,8 +55,9 @@ def march_adaptive(
     out = blank(1, orders, interval, 1)
     out.records[0, 0] = start
     at, begin = _At(0.0, start.copy()), orders.begin.copy()
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")
+    # A motion that runs away overflows in the solver, and LSODA warns that it gives up: both end as a status of the motion.
+    with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
+        warnings.filterwarnings("ignore", message="lsoda: ", category=UserWarning)
         for k in range(orders.count):
             phase = _Phase(dynamics, orders, k, begin, at.time, fastest)
             for length in phase.pieces():

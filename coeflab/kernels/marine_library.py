@@ -13,14 +13,12 @@ from itertools import combinations
 import numpy as np
 
 from coeflab.kernels.least_squares import Array
-from coeflab.kernels.motion_law import SLOWEST
+from coeflab.kernels.motion_law import CONTROLS, REVERSAL, SLOWEST
 from coeflab.kernels.terms import Term
 
 ALONG = {"X": "u", "Y": "v", "Z": "w", "K": "p", "M": "q", "N": "r"}
-CONTROLS = ("dr", "ds", "db")
 _FLIPPED = frozenset(("v", "p", "r", "dr"))
 _FLIPPED_FORCES = frozenset("YKN")
-_AHEAD = 10.0
 
 
 def allowed(component: str, term: Term) -> bool:
@@ -89,7 +87,7 @@ def column(component: str, term: Term, columns: Mapping[str, Array], rest: bool 
     """
     speed = np.sqrt(columns["u"] ** 2 + columns["v"] ** 2 + columns["w"] ** 2)
     if component == "X" and not term.factors:
-        ahead = np.clip(_AHEAD * columns["u"] / np.maximum(speed, SLOWEST), -1.0, 1.0)
+        ahead = np.clip(REVERSAL * columns["u"] / np.maximum(speed, SLOWEST), -1.0, 1.0)
         return np.asarray(speed**2 * ahead)
     power = 0 if rest else 2 - sum(n for v, n, _ in term.factors if v not in CONTROLS)
     out = term.evaluate(columns)

@@ -18,7 +18,10 @@ from coeflab.kernels.wind_axes import body_forces, incidence
 BASE = ("u", "v", "w", "p", "q", "r", "dr", "ds", "db", "V", "alpha", "beta")
 SPEED, ALPHA, BETA = BASE.index("V"), BASE.index("alpha"), BASE.index("beta")
 WIND = ("D", "S", "L")
+CONTROLS = BASE[6:9]
 SLOWEST = 1e-9
+# X0' V^2 turns from drag ahead to drag astern within |u| < V / 10, so that no simulator meets a jump at u = 0.
+REVERSAL = 10.0
 
 Ints = NDArray[np.int64]
 

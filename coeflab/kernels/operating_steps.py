@@ -19,12 +19,14 @@ from coeflab.kernels.least_squares import Array
 
 Mask = NDArray[np.bool_]
 
-HOLDS = 1e-9
-RANK = 1e-8
-DIFFERENCE = 6e-6
-BEND = 1e-4
+# Scaled equations below HOLDS count as met, below EXACT no step is left to take; singular values below RANK of the largest
+# are rounding: differences know slopes to about eps^(2/3) = 4e-11.
+HOLDS, EXACT, RANK = 1e-9, 1e-12, 1e-8
+# Steps of first and second differences: eps^(1/3) and eps^(1/4), where truncation and rounding are alike.
+DIFFERENCE, BEND = 6e-6, 1e-4
+# Most steps; Newton needs about ten, the rest is for starts far away and for bounds that come and go.
 RESTORING, RETURNING, SELECTING = 150, 10, 60
-REST, EXACT = 1e-8, 1e-12
+REST = 1e-8  # relative size of a gradient that counts as zero
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -52,7 +52,6 @@ class Estimate:
         sqrt(chi^2 / freedom) where above 1, else 1; the covariance holds its square.
     chi_square, freedom : float
     converged : bool
-    evaluations : int
     message : str
     """
 
@@ -70,7 +69,6 @@ class Estimate:
     chi_square: float
     freedom: float
     converged: bool = True
-    evaluations: int = 0
     message: str = ""
 
     @property
@@ -107,7 +105,7 @@ def estimate(p: Problem, first: Array | None = None, most: int = 500) -> Estimat
 
 
 def _ended(account: Estimate, found: Any) -> Estimate:
-    return replace(account, converged=found.status > 0, evaluations=int(found.nfev), message=str(found.message))
+    return replace(account, converged=found.status > 0, message=str(found.message))
 
 
 def by_likelihood(p: Problem, groups: NDArray[np.int_], rounds: int = 50) -> tuple[Estimate, Problem]:

@@ -129,6 +129,8 @@ def propagate(
         Derivatives at the nominal inputs.
     covariance : (k, k) array
         Of the inputs' standard uncertainties.
+    draws, seed : int
+        Of the Monte Carlo.
     """
     k = len(gradient)
     sample = function(normal_draws(covariance, draws, seed))

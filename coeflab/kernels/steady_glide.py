@@ -69,19 +69,6 @@ def glide(polar: Polar, net_weight: float, alpha: Array) -> tuple[Array, Array]:
     return np.sqrt(abs(net_weight) / np.hypot(lift, drag)), np.arctan2(-drag * down, lift * down)
 
 
-def incidence(polar: Polar, zeta: Array) -> Array:
-    """Angle of attack, rad, that glides at an angle; NaN where none does (Leonard and Graver 2001).
-
-    The smaller root of D2 alpha^2 + L1 tan(zeta) alpha + D0 + L0 tan(zeta) = 0, the side of the polar on which a steeper
-    glide has the smaller angle of attack.
-    """
-    slope = np.tan(zeta)
-    linear, free = polar.lift[1] * slope, polar.drag[0] + polar.lift[0] * slope
-    inside = linear**2 - 4.0 * polar.drag[1] * free
-    root = np.sqrt(np.where(inside >= 0.0, inside, np.nan))
-    return -2.0 * free / (linear + np.copysign(root, linear))
-
-
 def shallowest(polar: Polar) -> tuple[float, float]:
     """Glide angles, rad, nearest to level of a dive and of a climb (Leonard and Graver 2001).
 
@@ -134,19 +121,3 @@ def balanced(
         found.append(float(brentq(left_over, at[i], at[i + 1], xtol=1e-15, rtol=1e-14)))
     roots = np.array(sorted(found))
     return np.asarray(roots[np.abs(glide(polar, net_weight, roots)[1] + roots) < np.pi / 2])
-
-
-def needed(polar: Polar, zeta: float, speed: float, munk: float, below: float) -> tuple[float, float, float]:
-    """What flies a wanted glide: angle of attack, rad, net weight, N, and the moment ``ahead``, N m.
-
-    Leonard and Graver (2001), written for any polar of the module. NaN where the angle is shallower than `shallowest`.
-    """
-    alpha = float(incidence(polar, np.array(zeta)))
-    weight = (
-        -float(np.sign(zeta))
-        * speed**2
-        * float(np.hypot(polar.lift_at(np.array(alpha)), polar.drag_at(np.array(alpha))))
-    )
-    hydrodynamic = munk * np.sin(alpha) * np.cos(alpha) + polar.moment[0] + polar.moment[1] * alpha
-    theta = zeta + alpha
-    return alpha, weight, float((speed**2 * hydrodynamic - below * np.sin(theta)) / np.cos(theta))

@@ -18,7 +18,6 @@ covers |beta| <= 25 deg ahead. Every force is linear in the coefficients, which 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,11 +76,6 @@ class SteadyTurns:
 def drift(velocity: Array) -> Array:
     """asin(v/V) of velocities (..., 3), exact near 0 and near 90 deg; zero at rest."""
     return np.asarray(np.arctan2(velocity[..., 1], np.abs(velocity[..., 0])))
-
-
-def coefficients(values: Mapping[str, float]) -> Array:
-    """(13,) array in the order of `COEFFICIENTS`; what is not named is zero."""
-    return np.array([values.get(name, 0.0) for name in COEFFICIENTS], dtype=float)
 
 
 def inertia(theta: Array) -> Array:

@@ -140,12 +140,14 @@ def _split(corners: Faces, parity: Faces) -> Faces:
 
 
 def box_surface(sides: Array, panels: int) -> tuple[Array, Faces]:
-    """Vertices and faces of a box about the origin, about ``panels`` triangles of like size.
+    """Vertices and faces of a box about the origin, in triangles of like size.
 
     Parameters
     ----------
     sides : (3,) array
         Length along x, y, z, m.
+    panels : int
+        About how many triangles.
     """
     area = 2.0 * float(sides[0] * sides[1] + sides[1] * sides[2] + sides[2] * sides[0])
     size = np.sqrt(2.0 * area / panels)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.errors import InputError, OutputError
-from coeflab.core.files import located, shipped, write_atomically
+from coeflab.core.files import located, shipped, write_all, write_atomically
 from coeflab.core.provenance import sha256_of
 
 
@@ -44,6 +44,36 @@ def test_a_failure_leaves_the_old_file_and_no_litter(
         write_atomically(target, b"new")
     assert target.read_bytes() == b"old"
     assert [p.name for p in tmp_path.iterdir()] == ["c.txt"]
+
+
+def test_several_files_and_folders(tmp_path: Path) -> None:
+    assert write_all(tmp_path, {"a.txt": b"a", "below/b.txt": b"b"}) == {"a.txt": True, "below/b.txt": True}
+    assert write_all(tmp_path, {"a.txt": b"a", "below/b.txt": b"B"}) == {"a.txt": False, "below/b.txt": True}
+    assert (tmp_path / "below" / "b.txt").read_bytes() == b"B"
+    assert sorted(p.name for p in tmp_path.rglob("*")) == ["a.txt", "b.txt", "below"]
+
+
+@pytest.mark.parametrize("how", ["a full disk", "a folder in the way"])
+def test_a_failure_at_the_last_of_several_files_leaves_all_old_ones(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, how: str
+) -> None:
+    write_all(tmp_path, {"a.txt": b"old", "b.txt": b"old"})
+    opened = os.fdopen
+
+    def full(*arguments: object, **more: object) -> object:
+        if any(tmp_path.glob(".c.txt*")):
+            raise OSError(28, "No space left on device")
+        return opened(*arguments, **more)  # type: ignore[call-overload]
+
+    if how == "a full disk":
+        monkeypatch.setattr(os, "fdopen", full)
+    else:
+        (tmp_path / "c.txt").mkdir()
+    before = sorted(p.name for p in tmp_path.iterdir())
+    with pytest.raises(OutputError, match=r"cannot write .*c\.txt"):
+        write_all(tmp_path, {"a.txt": b"new", "b.txt": b"new", "c.txt": b"new"})
+    assert (tmp_path / "a.txt").read_bytes() == (tmp_path / "b.txt").read_bytes() == b"old"
+    assert sorted(p.name for p in tmp_path.iterdir()) == before
 
 
 def test_places_that_cannot_be_written(tmp_path: Path) -> None:

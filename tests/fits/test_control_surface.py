@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.core.files import shipped
 from coeflab.fits import FITS
-from coeflab.importers import IMPORTERS
 from coeflab.kernels.least_squares import factorise, solve
 from coeflab.kernels.robust import bell_mccaffrey, hc_variance, t_factor
 from coeflab.kernels.terms import design
 from coeflab.kernels.wind_axes import body_forces
-from coeflab.model.campaign import FILE, read_campaign
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
 from coeflab.model.model_record import recorded
+from tests.fits.shipped import rows, tables
 
 # Chosen in cfd_data/make_synthetic_vehicles.py: the HUUV paper plots its own and prints none.
 CHOSEN = {"C_D0": 0.03, "C_D2": 1.1, "C_L1": -2.4, "C_L3": 1.5, "C_m1": 0.45, "C_m3": -0.3}
@@ -29,9 +26,8 @@ BY_AREA = {"area": AREA, "area_name": "planform"}
 CAMPAIGNS = 20_000
 
 
-@cache
 def table() -> ForceTable:
-    return IMPORTERS.load("csv").read(read_campaign(shipped("cfd_data") / "huuv_elevator_synthetic" / FILE))[0]
+    return tables("huuv_elevator_synthetic")[0]
 
 
 def fitted(t: ForceTable, **options: object) -> FitResult:
@@ -59,16 +55,6 @@ def with_law(t: ForceTable, effective: np.ndarray, k: dict[str, float]) -> Force
     alpha, none = angles(t)[1], np.zeros(len(t))
     x, _, z = body_forces(alpha, none, drag, none, lift)
     return replace(t, forces={"X": x, "Z": z, "M": moment})
-
-
-def rows(t: ForceTable, keep: np.ndarray) -> ForceTable:
-    def cut(columns):
-        return {k: v[keep] for k, v in columns.items()}
-
-    return replace(
-        t, motion=cut(t.motion), controls=cut(t.controls), speed=t.speed[keep], forces=cut(t.forces),
-        errors=cut(t.errors), usable=cut(t.usable), labels=tuple(np.array(t.labels)[keep]),
-    )  # fmt: skip
 
 
 def exact() -> ForceTable:

@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.core.files import shipped
 from coeflab.fits import FITS
 from coeflab.fits.glide_polar import angle_unit_of
-from coeflab.importers import IMPORTERS
 from coeflab.kernels.least_squares import factorise, solve
 from coeflab.kernels.robust import bell_mccaffrey, hc_variance, t_factor
 from coeflab.kernels.terms import design
 from coeflab.kernels.wind_axes import body_forces
-from coeflab.model.campaign import FILE, read_campaign
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
 from coeflab.model.model_record import recorded
+from tests.fits.shipped import rows, tables
 
 # Table 3 of the THAUV paper.
 SYMBOLS = ("K_L0", "K_L", "K_D0", "K_D", "K_M0", "K_M")
@@ -34,9 +31,8 @@ DEGREES = np.degrees(1.0)
 CAMPAIGNS = 20_000
 
 
-@cache
 def table(case: str) -> ForceTable:
-    return IMPORTERS.load("csv").read(read_campaign(shipped("cfd_data") / f"thauv_case_{case}_synthetic" / FILE))[0]
+    return tables(f"thauv_case_{case}_synthetic")[0]
 
 
 def fitted(t: ForceTable, **options: object) -> FitResult:
@@ -51,16 +47,6 @@ def law(result: FitResult, force: str, unit: str) -> FittedModel:
 
 def printed(case: str) -> dict[str, float]:
     return dict(zip(SYMBOLS, PRINTED[case], strict=True))
-
-
-def rows(t: ForceTable, keep: np.ndarray) -> ForceTable:
-    def cut(columns):
-        return {k: v[keep] for k, v in columns.items()}
-
-    return replace(
-        t, motion=cut(t.motion), controls=cut(t.controls), speed=t.speed[keep], forces=cut(t.forces),
-        errors=cut(t.errors), usable=cut(t.usable), labels=tuple(np.array(t.labels)[keep]),
-    )  # fmt: skip
 
 
 def with_polar(t: ForceTable, lift: np.ndarray, drag: np.ndarray, moment: np.ndarray) -> ForceTable:

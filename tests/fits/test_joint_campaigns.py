@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
-from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -14,8 +12,6 @@ import pytest
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.files import shipped
 from coeflab.fits import FITS
-from coeflab.importers import IMPORTERS
-from coeflab.model.campaign import FILE, read_campaign
 from coeflab.model.check import Severity
 from coeflab.model.coefficient import Status
 from coeflab.model.fit_result import FitResult
@@ -24,6 +20,9 @@ from coeflab.model.plan import read_plan, table_at
 from coeflab.model.pooling import Pooling
 from coeflab.model.study import Plan, PlannedJoint, Study
 from coeflab.workbench import run
+from tests.fits.shipped import tables
+
+pytestmark = pytest.mark.usefixtures("one_thread")
 
 MOTION = ("u", "v", "w", "p", "q", "r")
 POINT, OTHER = np.array([-0.5, 0.0, 0.0]), np.array([-0.3, 0.0, 0.0])
@@ -31,18 +30,6 @@ TRUTH = {"Yv": -0.028, "Yv|v|": -0.06, "Yr": 0.005, "Nv": -0.0128, "Nv|v|": 0.02
 NAMES = " ".join(TRUTH)
 DRIFT, SHORT, ARM = np.linspace(-0.3, 0.3, 15), np.linspace(-0.2, 0.25, 10), np.linspace(-0.6, 0.6, 11)
 Z15, Z10, Z11 = np.zeros(15), np.zeros(10), np.zeros(11)
-
-
-@pytest.fixture(autouse=True)
-def one_thread() -> Iterator[None]:
-    """Several BLAS threads on matrices of 40 rows cost more than they save."""
-    with import_module("threadpoolctl").threadpool_limits(1):
-        yield
-
-
-@cache
-def tables(campaign: str) -> tuple[ForceTable, ...]:
-    return IMPORTERS.load("csv").read(read_campaign(shipped("cfd_data") / campaign / FILE))
 
 
 def synthetic(campaign: str, rows: dict[str, np.ndarray], forces: dict[str, np.ndarray]) -> ForceTable:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -20,6 +19,7 @@ from coeflab.model.coefficient import Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.force_table import ForceTable
+from tests.fits.shipped import rows, tables
 
 # Equations 49 and 50 of the TJ-FlyingFish paper, printed for F = -(a + b |x|) x.
 PRINTED = {
@@ -35,23 +35,12 @@ PRINTED = {
 CAMPAIGNS = 20_000
 
 
-@cache
 def table(medium: str) -> ForceTable:
-    return IMPORTERS.load("csv").read(read_campaign(shipped("cfd_data") / f"flyingfish_{medium}_synthetic" / FILE))[0]
+    return tables(f"flyingfish_{medium}_synthetic")[0]
 
 
 def fitted(t: ForceTable, **options: object) -> FitResult:
     return FITS.load("linear_quadratic_damping").fit([t], t.scaling, options)
-
-
-def rows(t: ForceTable, keep: np.ndarray) -> ForceTable:
-    def cut(columns):
-        return {k: v[keep] for k, v in columns.items()}
-
-    return replace(
-        t, motion=cut(t.motion), controls=cut(t.controls), speed=t.speed[keep], forces=cut(t.forces),
-        errors=cut(t.errors), usable=cut(t.usable), labels=tuple(np.array(t.labels)[keep]),
-    )  # fmt: skip
 
 
 def with_forces(t: ForceTable, **forces: np.ndarray) -> ForceTable:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
-from importlib import import_module
 
 import numpy as np
 import pytest
@@ -14,12 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from coeflab.core.errors import InputError
-from coeflab.core.files import shipped
 from coeflab.fits import FITS
-from coeflab.importers import IMPORTERS
 from coeflab.kernels.stacked import freed
 from coeflab.kernels.terms import Term
-from coeflab.model.campaign import FILE, read_campaign
 from coeflab.model.coefficient import Coefficient, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
@@ -27,24 +22,15 @@ from coeflab.model.force_table import ForceTable
 from coeflab.model.manoeuvring_terms import SETS, Equation, canonical, read_equation, read_term, read_terms, symmetric
 from coeflab.model.out_of_sample import every_third_point
 from coeflab.model.secant import explain, secant
+from tests.fits.shipped import tables
+
+pytestmark = pytest.mark.usefixtures("one_thread")
 
 RODDY = "Yv Yv|v| Yvvv Yvv Ydr Nv Nv|v| Nvvv Nvv Ndr Zv Zvv Zvvvv Zdr Kv Kv|v| Kvv Kdr"
 BARE_HULL = "Yv Yv|v| Yvvv Yr Yr|r| Nv Nv|v| Nr Nr|r|"
 PMM = {"Yr": 0.001811, "Nr": -0.001597}  # Roddy (1990), Table 4, configuration 3
 MOTION = ("u", "v", "w", "p", "q", "r")
 CAMPAIGNS = 1000
-
-
-@pytest.fixture(autouse=True)
-def one_thread() -> Iterator[None]:
-    """Several BLAS threads on matrices of 40 rows cost more than they save."""
-    with import_module("threadpoolctl").threadpool_limits(1):
-        yield
-
-
-@cache
-def tables(campaign: str) -> tuple[ForceTable, ...]:
-    return IMPORTERS.load("csv").read(read_campaign(shipped("cfd_data") / campaign / FILE))
 
 
 def fitted(used: tuple[ForceTable, ...], **options: object) -> FitResult:

@@ -1,0 +1,101 @@
+"""Docstrings against signatures: what is listed is what there is, and long signatures are explained."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+import pytest
+
+import coeflab
+
+ROOT = Path(coeflab.__file__).parent
+FEW = 2  # parameters that a summary line can explain
+ROOMS = (
+    "importers",
+    "bodies",
+    "fits",
+    "added_mass",
+    "simulators",
+    "manoeuvres",
+    "exporters",
+    "parameter_importers",
+    "checks",
+    "reporting",
+)
+EXPLAINED = ("core", "workbench", "studies", *ROOMS)
+SECTION = re.compile(r"^Parameters\n-+\n(.*?)(?=\n\n[A-Z]\w*\n-+\n|\Z)", re.MULTILINE | re.DOTALL)
+Function = tuple[Path, str, tuple[str, ...], str]
+
+
+def functions(within: ast.AST, file: Path, owner: str = "") -> list[Function]:
+    """Public functions and methods: file, name, parameters and docstring."""
+    found: list[Function] = []
+    for node in getattr(within, "body", []):
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+            found += functions(node, file, f"{node.name}.")
+        elif isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+            a = node.args
+            every = [*a.posonlyargs, *a.args, *a.kwonlyargs, *(x for x in (a.vararg, a.kwarg) if x)]
+            names = tuple(x.arg for x in every if x.arg not in ("self", "cls"))
+            found.append((file, owner + node.name, names, ast.get_docstring(node) or ""))
+    return found
+
+
+def listed(docstring: str) -> tuple[str, ...] | None:
+    """Names of the section Parameters; None where there is none."""
+    section = SECTION.search(docstring)
+    if section is None:
+        return None
+    heads = [line.partition(" :")[0] for line in section.group(1).splitlines() if line and not line.startswith(" ")]
+    return tuple(name.strip().lstrip("*") for head in heads for name in head.split(","))
+
+
+def every() -> list[Function]:
+    files = [
+        p for p in sorted(ROOT.rglob("*.py")) if not any(re.match("_[^_]", part) for part in p.relative_to(ROOT).parts)
+    ]
+    return [f for p in files for f in functions(ast.parse(p.read_text("utf-8")), p.relative_to(ROOT))]
+
+
+PORTS = {
+    name.partition(".")[2] for _, name, _, _ in functions(ast.parse((ROOT / "ports.py").read_text("utf-8")), Path())
+}
+
+
+def test_the_reader_of_docstrings_reads() -> None:
+    text = "One.\n\nParameters\n----------\na, b : float\n    Two of them.\nc : (n,) array\n\nRaises\n------\nInputError\n    d : no."
+    assert listed(text) == ("a", "b", "c")
+    assert listed("One.\n\nRaises\n------\nInputError") is None
+
+
+def test_a_list_of_parameters_is_the_signature() -> None:
+    wrong = [
+        f"{file}: {name} lists {listed(doc)}, takes {names}"
+        for file, name, names, doc in every()
+        if (found := listed(doc)) is not None and sorted(found) != sorted(names)
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("where", EXPLAINED)
+def test_many_parameters_are_explained(where: str) -> None:
+    """Of a plugin's own functions the port explains those that it asks for; validations reproduce papers for nobody to call."""
+    bare = [
+        f"{file}: {name}{names}"
+        for file, name, names, doc in every()
+        if file.parts[0] == where and len(names) > FEW and listed(doc) is None
+        and not (where in ROOMS and name in PORTS) and "validations" not in file.parts
+    ]  # fmt: skip
+    assert not bare, "\n".join(bare)
+
+
+def test_ports_explain_every_parameter() -> None:
+    bare = [
+        f"{name}{names}"
+        for file, name, names, doc in every()
+        if file == Path("ports.py") and names and listed(doc) is None
+    ]
+    assert PORTS
+    assert not bare
