@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import re
-from html import unescape
-
 from coeflab.core.citations import work
 from coeflab.core.provenance import InputFile
 from coeflab.model.acceptance import BASES, Acceptance, ComparedTable
 from coeflab.model.table import Table
 from coeflab.presentation import acceptance_tables
-from coeflab.presentation.content import digest_of
+from coeflab.presentation.allowance_figure import allowance_figure, share
+from coeflab.presentation.conventions_section import published_conventions
 from coeflab.presentation.document import Document, Figure, Section
+from coeflab.presentation.reproduction import digest_of, published_reproduction
 
 
 def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
@@ -33,7 +32,9 @@ def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
         Section("compared", "Compared with the publication", (DIFFERENCES,), subsections=tables),
         *_section("statements", "What to know", found.statements),
         *_errata(found),
-        Section("provenance", "Provenance", _PROVENANCE[: 1 + bool(inputs)], _inputs(inputs), code=(command(found),)),
+        published_conventions(found.conventions),
+        *_provenance(inputs),
+        published_reproduction(found, inputs),
     )
     works = tuple((k, work(k)) for k in found.citations)
     return Document(found.title, SUBTITLE, sections, found.name, digest_of(inputs), works)
@@ -44,15 +45,7 @@ DIFFERENCES = (
     "Difference: found less published, as a share of the published number where a per cent sign stands. A number passes when "
     "the difference is no larger than what is allowed."
 )
-_PROVENANCE = (
-    "To reproduce it, run this command; equal inputs give this report byte for byte.",
-    "The files below are known by the sha256 of their bytes.",
-)
-
-
-def command(found: Acceptance) -> str:
-    """What to type for it."""
-    return f"coeflab report {found.name} --to html,pdf"
+PROVENANCE = "The files below are known by the sha256 of their bytes."
 
 
 def verdict(found: Acceptance) -> Section:
@@ -70,7 +63,8 @@ def verdict(found: Acceptance) -> Section:
             text.append(f"Outside, {t.title}: {', '.join(failed)}.")
     kinds = [f"{sum(r.basis == b for r in rows)} {b} ({meaning})" for b, meaning in BASES.items()]
     text.append(f"What they are held against: {'; '.join(kinds)}. A number met in-sample proves nothing new.")
-    return Section("verdict", "Verdict", tuple(text), (overview(found),))
+    drawn = (allowance_figure(found, "allowances"),) if rows else ()
+    return Section("verdict", "Verdict", tuple(text), (overview(found),), drawn)
 
 
 def overview(found: Acceptance) -> Table:
@@ -85,33 +79,21 @@ def overview(found: Acceptance) -> Table:
         )
         for t in found.tables
     )
-    notes = ("used: the largest difference as a share of what is allowed, where that is not zero",)
+    notes = (
+        "used: the largest difference as a share of what is allowed, where that is not zero; of a limit the share that is reached",
+    )
     headers = ("what", "of the publication", "hold", "used", "verdict")
     return Table("Tables of the publication", headers, rows, notes, frozenset({0, 1, 4}))
 
 
 def _closest(t: ComparedTable) -> str:
-    shares = [
-        (r.difference if r.at_most else abs(r.difference)) / r.tolerance
-        for r in t.rows
-        if r.difference is not None and r.tolerance > 0.0
-    ]
-    return f"{100.0 * max(*shares, 0.0):.0f} %" if shares else "-"
+    shares = [abs(share(r)) for r in t.rows if r.found is not None and (r.tolerance > 0.0 or r.at_most)]
+    return f"{100.0 * max(shares):.0f} %" if shares else "-"
 
 
 def figures(found: Acceptance) -> tuple[Figure, ...]:
-    """Its drawings, with the titles and descriptions that they hold."""
-    out = []
-    for name, caption, content in found.figures:
-        svg = content.decode()
-        anchor = re.sub(r"[^a-z0-9]+", "-", name.removesuffix(".svg").lower()).strip("-")
-        out.append(Figure(anchor, svg, _inside(svg, "title") or name, caption, _inside(svg, "desc")))
-    return tuple(out)
-
-
-def _inside(svg: str, element: str) -> str:
-    found = re.search(rf"<{element}[^>]*>(.*?)</{element}>", svg, flags=re.DOTALL)
-    return unescape(found[1]) if found else ""
+    """Its drawings."""
+    return tuple(Figure(d.anchor, d.svg, d.title, d.caption, d.description, d.panels) for _, d in found.figures)
 
 
 def _section(
@@ -126,8 +108,9 @@ def _errata(found: Acceptance) -> tuple[Section, ...]:
     return (Section("errata", "Errata of the publication", tables=(acceptance_tables.errata(found),)),)
 
 
-def _inputs(inputs: tuple[InputFile, ...]) -> tuple[Table, ...]:
+def _provenance(inputs: tuple[InputFile, ...]) -> tuple[Section, ...]:
     if not inputs:
         return ()
     rows = tuple((f.name, f.sha256) for f in inputs)
-    return (Table("Inputs", ("file", "sha256"), rows, (), frozenset({0, 1})),)
+    table = Table("Inputs", ("file", "sha256"), rows, (), frozenset({0, 1}))
+    return (Section("provenance", "Provenance", (PROVENANCE,), (table,)),)

@@ -12,9 +12,10 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from coeflab.model.fitted_model import FittedModel
-from coeflab.presentation.document import Figure
+from coeflab.presentation.document import Figure, Panel
 from coeflab.presentation.model_words import band_in_words
 from coeflab.presentation.panel import BOTTOM, Array, drawing, legend, limits, panel
+from coeflab.presentation.plotted import curve, numbers, points, tagged
 from coeflab.presentation.points import hollow, used
 from coeflab.presentation.svg import COLOURS, settings, svg_text
 from coeflab.presentation.variables import (
@@ -55,19 +56,19 @@ def along_figure(model: FittedModel, anchor: str) -> Figure:
     description = _description(model, names)
     with settings():
         figure = drawing(above + 8.0 + LEGEND)
-        any_aside = False
+        panels = []
         for i, variable in enumerate(names):
             bottom = (len(names) - 1 - i) * (FIELD + BOTTOM + ROOM) + BOTTOM
-            any_aside |= _panel(figure, model, variable, bottom, factor, f"{name}{power}  [{response_unit(model)}]")
+            panels.append(_panel(figure, model, variable, bottom, factor, (name, power)))
         ink: dict[str, Any] = {"color": COLOURS["ink"], "linestyle": "none", "marker": "o"}
-        handles = [Line2D([], [], markersize=3.2, markeredgewidth=0.0, label="points", **ink)]
-        if any_aside:
-            handles.append(Line2D([], [], markersize=4.6, markerfacecolor="none", label="rejected or doubtful", **ink))
-        handles.append(Line2D([], [], color=COLOURS["a"], linewidth=1.4, label="fit"))
-        band = Patch(facecolor=COLOURS["band"], alpha=0.4, edgecolor="none", label="95 % band of the mean")
-        legend(figure, [*handles, band], above)
+        marks: dict[str, Any] = {"points": Line2D([], [], markersize=3.2, markeredgewidth=0.0, label="points", **ink)}
+        if any(s.key == "aside" for p in panels for s in p.series):
+            marks["aside"] = Line2D([], [], markersize=4.6, markerfacecolor="none", label="rejected or doubtful", **ink)
+        marks["fit"] = Line2D([], [], color=COLOURS["a"], linewidth=1.4, label="fit")
+        marks["band"] = Patch(facecolor=COLOURS["band"], alpha=0.4, edgecolor="none", label="95 % band of the mean")
+        legend(figure, [tagged(mark, key) for key, mark in marks.items()], above)
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, _caption(model, names), description)
+    return Figure(anchor, svg, title, _caption(model, names), description, tuple(panels))
 
 
 def _alone(model: FittedModel, columns: Mapping[str, Array], variable: str) -> NDArray[np.bool_]:
@@ -79,30 +80,41 @@ def _alone(model: FittedModel, columns: Mapping[str, Array], variable: str) -> N
     return rows
 
 
-def _panel(figure: Drawing, model: FittedModel, variable: str, bottom: float, factor: float, name: str) -> bool:
-    """Draws one panel; whether it shows a point that is set aside."""
+def _panel(
+    figure: Drawing, model: FittedModel, variable: str, bottom: float, factor: float, name: tuple[str, str]
+) -> Panel:
+    """Draws one panel; its numbers."""
     mine, aside = _alone(model, model.x, variable), model.set_aside
     x, y = shown_values(variable, model.x[variable][mine]), model.y[mine] * factor
     fine = np.linspace(float(model.x[variable][mine].min()), float(model.x[variable][mine].max()), FINE)
     columns = {v: np.zeros_like(fine) for v in {*model.domain.variables, *moving(model)}}
     values, half, _ = model.evaluate(columns | {variable: fine})
     values, half = values * factor, np.nan_to_num(half) * factor
-    beside, at = np.zeros(0), np.zeros(0)
+    beside, at, out = np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool)
+    unit = f"[{response_unit(model)}]"
     if aside is not None:
         out = _alone(model, aside.x, variable)
         beside, at = aside.y[out] * factor, shown_values(variable, aside.x[variable][out])
     axes = panel(
         figure, bottom, FIELD, across=limits(x, 0.04) or (-1.0, 1.0),
-        up=limits(np.concatenate([y, values - half, values + half, beside]), 0.06) or (-1.0, 1.0), name_up=name,
+        up=limits(np.concatenate([y, values - half, values + half, beside]), 0.06) or (-1.0, 1.0), name_up=f"{name[0]}{name[1]}  {unit}",
         name_across=axis_name(variable, model), most_up=4,
     )  # fmt: skip
     shown = shown_values(variable, fine)
-    axes.fill_between(shown, values - half, values + half, color=COLOURS["band"], alpha=0.4, linewidth=0, zorder=1)
-    axes.plot(shown, values, color=COLOURS["a"], linewidth=1.4, zorder=2.5)
-    used(axes, x, y)
+    band = axes.fill_between(
+        shown, values - half, values + half, color=COLOURS["band"], alpha=0.4, linewidth=0, zorder=1
+    )
+    tagged(band, "band")
+    tagged(axes.plot(shown, values, color=COLOURS["a"], linewidth=1.4, zorder=2.5), "fit")
+    tagged(used(axes, x, y), "points")
     if len(beside):
-        hollow(axes, at, beside)
-    return len(beside) > 0
+        tagged(hollow(axes, at, beside), "aside")
+    told = (
+        points("points", "points", x, model.y[mine], [f"point {model.labels[i]}" for i in np.flatnonzero(mine)]),
+        points("aside", "rejected or doubtful", at, beside / factor),
+        curve("fit", "fit", shown, values / factor),
+    )
+    return numbers(axes, told, axis_name(variable, model), f"{name[0]}  {unit}", factor)
 
 
 def _caption(model: FittedModel, names: tuple[str, ...]) -> str:

@@ -17,22 +17,22 @@ Array = NDArray[np.float64]
 WIDTH, HEIGHT = 340.0, 248.0
 LONG, WIDE = 84.0, 11.0
 DRIFT = 24.0
+MIDDLES = {"plan": np.array([160.0, 118.0]), "profile": np.array([168.0, 136.0])}
+AHEAD = {"plan": np.array([0.0, 1.0]), "profile": np.array([1.0, 0.0])}
 # Unit vectors along x, y, z on paper: an orthographic view from 35 degrees above, starboard and abaft.
 AXES = np.array([[0.820, 0.328], [0.572, -0.470], [0.0, -0.819]])
 VIEWS = (
     (
-        "plan", "from above", "Sideslip, yaw and rudder, from above",
-        "Positive senses from above: v' = sin(beta). A positive rudder angle has its trailing edge to port, which gives a "
-        "positive Y; the fits take control angles with the sign of their table.",
+        "plan", "from above", "Sideslip and yaw, from above",
+        "Positive senses from above: v' = sin(beta).",
         "A body from above, bow up: y to starboard, the velocity V between x and y, so that v and the sideslip beta are positive. "
-        "Yaw r turns the bow to starboard. The rudder at positive dr has its trailing edge to port.",
+        "Yaw r turns the bow to starboard.",
     ),
     (
-        "profile", "from starboard", "Angle of attack, pitch and stern planes, from starboard",
-        "Positive senses from starboard: w' = sin(alpha) cos(beta). A positive stern plane angle has its trailing edge down, which "
-        "gives a negative Z (Feldman 1979).",
+        "profile", "from starboard", "Angle of attack and pitch, from starboard",
+        "Positive senses from starboard: w' = sin(alpha) cos(beta).",
         "A body from starboard, bow to the right: z down, the velocity V between x and z, so that w and the angle of attack alpha are "
-        "positive. Pitch q raises the bow. The stern plane at positive ds has its trailing edge down.",
+        "positive. Pitch q raises the bow.",
     ),
     (
         "triad", "obliquely", "Axes, forces and moments",
@@ -41,19 +41,36 @@ VIEWS = (
         "one after.",
     ),
 )  # fmt: skip
+# No source at hand states the sense of a control angle; the signs of measured derivatives do.
+TURNED = {
+    "plan": (
+        "The rudder is drawn where its force is to starboard, as a positive angle gives it in Roddy (1990), Table 4: "
+        "Ydr' > 0, Ndr' < 0. A table with another sign keeps it.",
+        "A rudder at the stern is turned to port.",
+    ),
+    "profile": (
+        "The stern plane is drawn where its force is up, as a positive angle gives it in Roddy (1990), Table 4: Zds' < 0, "
+        "Mds' < 0. A table with another sign keeps it.",
+        "A stern plane is turned down.",
+    ),
+}
 
 
-def axes_figures(anchor: str) -> tuple[Figure, ...]:
+def axes_figures(anchor: str, *, controls: bool = True) -> tuple[Figure, ...]:
     """From above, from starboard, and obliquely.
 
     Parameters
     ----------
     anchor : str
         Beginning of the figures' anchors.
+    controls : bool
+        Whether rudder and stern plane are drawn.
     """
     draw = {"plan": _plan, "profile": _profile, "triad": _oblique}
     out = []
-    for key, view, title, caption, said in VIEWS:
+    for key, view, title, *texts in VIEWS:
+        turned = TURNED.get(key) if controls else None
+        caption, said = (" ".join(both) for both in zip(texts, turned or ("", ""), strict=True))
         with settings():
             figure = Drawing(figsize=(WIDTH / POINTS, HEIGHT / POINTS))
             axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -61,9 +78,11 @@ def axes_figures(anchor: str) -> tuple[Figure, ...]:
             axes.set_xlim(0.0, WIDTH)
             axes.set_ylim(0.0, HEIGHT)
             draw[key](axes)
+            if turned:
+                _control(axes, key)
             axes.text(14.0, HEIGHT - 14.0, view, color=COLOURS["muted"], fontsize=8.75)
-            svg = svg_text(figure, f"{anchor}-{key}", title, said)
-        out.append(Figure(f"{anchor}-{key}", svg, title, caption, said))
+            svg = svg_text(figure, f"{anchor}-{key}", title, said.strip())
+        out.append(Figure(f"{anchor}-{key}", svg, title, caption.strip(), said.strip()))
     return tuple(out)
 
 
@@ -138,9 +157,17 @@ def _drift(axes: Axes, middle: Array, ahead: Array, aside: Array, names: tuple[s
     _text(axes, middle + 76.0 * np.array([np.cos(half), np.sin(half)]), names[2], "a")
 
 
+def _control(axes: Axes, view: str) -> None:
+    """The rudder from above, or the stern plane from starboard."""
+    middle, ahead = MIDDLES[view], AHEAD[view]
+    _flap(axes, middle - 86.0 * ahead, ahead, -25.0 if view == "plan" else 25.0)
+    aside = np.array([-24.0, -106.0] if view == "plan" else [-104.0, -24.0])
+    _text(axes, middle + aside, "δr" if view == "plan" else "δs", "c")
+
+
 def _plan(axes: Axes) -> None:
     """Bow up, starboard to the right."""
-    middle = np.array([160.0, 118.0])
+    middle = MIDDLES["plan"]
     ahead, aside = np.array([0.0, 1.0]), np.array([1.0, 0.0])
     _hull(axes, middle, ahead, aside)
     _arrow(axes, middle, middle + 112.0 * ahead)
@@ -150,15 +177,13 @@ def _plan(axes: Axes) -> None:
     _drift(axes, middle, ahead, aside, ("u", "v", "β"))
     _turn(axes, middle, 44.0, 245.0, 130.0)
     _text(axes, middle + np.array([-54.0, 12.0]), "r", "b")
-    _flap(axes, middle - 86.0 * ahead, ahead, -25.0)
-    _text(axes, middle + np.array([-24.0, -106.0]), "δr", "c")
     _text(axes, middle + np.array([-46.0, 66.0]), "port", "muted")
     _text(axes, middle + np.array([62.0, -40.0]), "starboard", "muted")
 
 
 def _profile(axes: Axes) -> None:
     """Bow to the right, z down."""
-    middle = np.array([168.0, 136.0])
+    middle = MIDDLES["profile"]
     ahead, aside = np.array([1.0, 0.0]), np.array([0.0, -1.0])
     _hull(axes, middle, ahead, aside)
     _arrow(axes, middle, middle + 112.0 * ahead)
@@ -168,8 +193,6 @@ def _profile(axes: Axes) -> None:
     _drift(axes, middle, ahead, aside, ("u", "w", "α"))
     _turn(axes, middle, 44.0, 50.0, 150.0)
     _text(axes, middle + np.array([-8.0, 56.0]), "q", "b")
-    _flap(axes, middle - 86.0 * ahead, ahead, 25.0)
-    _text(axes, middle + np.array([-104.0, -24.0]), "δs", "c")
 
 
 def _oblique(axes: Axes) -> None:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
-import shlex
 from functools import partial
 
-from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import primed
-from coeflab.core.version import VERSION
+from coeflab.core.wording import listed
 from coeflab.model import noun_tables
 from coeflab.model.check import Severity
 from coeflab.model.coefficient import Status
@@ -25,7 +22,9 @@ from coeflab.presentation.export_section import export_sections
 from coeflab.presentation.in_parallel import begun
 from coeflab.presentation.manoeuvre_section import manoeuvre_sections
 from coeflab.presentation.quality_section import quality_sections
-from coeflab.presentation.stability_section import stability_sections
+from coeflab.presentation.reproduction import digest_of, reproduction
+from coeflab.presentation.stability_section import in_words, stability_sections
+from coeflab.presentation.svg import settings
 
 FEW = 8
 
@@ -35,7 +34,8 @@ def document(study: Study) -> Document:
     places: set[str] = set()
     own = [anchor(f"campaign {fit.campaign}", places) for fit in study.fits]
     alone = [partial(_alone, study, fit, place, places) for fit, place in zip(study.fits, own, strict=True)]
-    with begun(alone if sum(len(f.sweeps) for f in study.fits) > FEW else ()) as drawn:
+    sizes = [len(f.sweeps) for f in study.fits]
+    with settings(), begun(alone if sum(sizes) > FEW else (), sizes) as drawn:
         about = [
             *budget_sections(study),
             *added_mass_sections(study),
@@ -60,7 +60,7 @@ def document(study: Study) -> Document:
         _checks(study),
         conventions_section(study),
         _provenance(study),
-        _reproduction(study),
+        reproduction(study),
     )
     names = ", ".join(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
     return Document(
@@ -71,16 +71,6 @@ def document(study: Study) -> Document:
 
 def _alone(study: Study, fit: FitResult, place: str, places: set[str]) -> Section:
     return campaign_section(study, fit, place, set(places))
-
-
-def digest_of(inputs: tuple[InputFile, ...]) -> str:
-    """Sixteen hexadecimal digits over all inputs; empty where there are none."""
-    whole = "".join(f"{f.name} {f.sha256}\n" for f in inputs)
-    return hashlib.sha256(whole.encode()).hexdigest()[:16] if whole else ""
-
-
-def _listed(parts: list[str]) -> str:
-    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
 
 
 def _counted(n: int, one: str) -> str:
@@ -101,7 +91,7 @@ def _re_analysis(study: Study) -> list[str]:
     if failed:
         out = [
             f"{len(failed)} of {count} with the authors' own evaluation of the same data failed: "
-            f"{_listed([_named(c) for c in failed])} lies further from the published value than U95."
+            f"{listed([_named(c) for c in failed])} lies further from the published value than U95."
         ]
     else:
         verb = "passed" if len(judged) == 1 else "all passed"
@@ -109,7 +99,7 @@ def _re_analysis(study: Study) -> list[str]:
             f"{count} with the authors' own evaluation of the same data {verb}: each difference lies within our U95."
         ]
     if len(ours) > len(judged):
-        rest = _listed([_named(c) for c in ours if c.passed is None])
+        rest = listed([_named(c) for c in ours if c.passed is None])
         out.append(f"No verdict could be given for {rest}, which has no U95.")
     out.append(
         "This is a re-analysis: both sides use the same measurements. A pass says that the evaluation reproduces the "
@@ -123,12 +113,12 @@ def verdict(study: Study) -> Section:
     text = [*_re_analysis(study), _harvest(study)]
     others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
     if others:
-        names = _listed(list(dict.fromkeys(c.reference for c in others)))
+        names = listed(list(dict.fromkeys(c.reference for c in others)))
         text.append(
             f"Cross-body comparison with {names}: those values belong to another body or come from another method, so "
             "they stand beside ours without a verdict. A difference there may be the appendages as well as an error."
         )
-    text += _without_value(study)
+    text += [*in_words(study), *_without_value(study)]
     failed = [c for c in study.checks if c.severity is Severity.FAIL]
     warned = sum(c.severity is Severity.WARN for c in study.checks)
     if study.checks:
@@ -149,7 +139,7 @@ def _harvest(study: Study) -> str:
     if not campaigns:
         return "The study holds no tables."
     rows = _counted(sum(len(t) for t in study.tables), "row")
-    source = f"{rows} of {_counted(len(campaigns), 'campaign')}: {_listed(campaigns)}."
+    source = f"{rows} of {_counted(len(campaigns), 'campaign')}: {listed(campaigns)}."
     models = sum(len(f.models) for f in study.fits)
     if not found and models:
         return (
@@ -169,7 +159,7 @@ def _without_value(study: Study) -> list[str]:
         for c in absent:
             if c.status is status:
                 places.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
-        names = "; ".join(f"{_listed(symbols)} of {place}" for place, symbols in places.items())
+        names = "; ".join(f"{listed(symbols)} of {place}" for place, symbols in places.items())
         out.append(f"Without a value: {names}. {status.advice}".strip())
     return out
 
@@ -235,21 +225,3 @@ def _provenance(study: Study) -> Section:
     )
     text += settings
     return Section("provenance", "Provenance", tuple(text), filled(tables.provenance(study)))
-
-
-def _reproduction(study: Study) -> Section:
-    """The exact command, and how to know that it gave the same."""
-    if study.plan.file is None:
-        return Section(
-            "reproduce",
-            "How to reproduce",
-            ("The plan was made by a program, not read from a file, so no command gives it.",),
-        )
-    text = (
-        f"With coeflab {VERSION} installed, run this in the folder of {study.plan.file.name}. The folder has to hold what "
-        "the plan names; the sha256 of every file stands under Provenance.",
-        f"All inputs together have the digest {digest_of(study.inputs)}, which the head of this report shows as well. A report with "
-        "another digest has other inputs.",
-    )
-    code = (f"coeflab run {shlex.quote(study.plan.file.name)}",)
-    return Section("reproduce", "How to reproduce", text, code=code)

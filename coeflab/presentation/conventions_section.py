@@ -6,15 +6,29 @@ from coeflab.model.study import Study
 from coeflab.presentation.axes_figure import axes_figures
 from coeflab.presentation.document import Section
 
+TITLE = "Conventions used"
+AXES = (
+    "Axes: x forward, y to starboard, z down, right-handed, fixed in the body. X, Y, Z, K, M, N are what the fluid "
+    "exerts on the body."
+)
+ANGLES = (
+    "Angles: v' = v/U = sin(beta), positive when the body moves to starboard; w' = w/U = sin(alpha) cos(beta), "
+    "positive when it moves down."
+)
+CONTROLS = (
+    "Control angles keep the sign of their table. In the towing tank of SUBOFF a positive rudder angle gives Y to starboard and "
+    "turns the bow to port (Ydr' = 0.005929, Ndr' = -0.002217), a positive stern plane angle gives Z up and turns the bow down "
+    "(Zds' = -0.005603, Mds' = -0.002409): Roddy (1990), Table 4. The sketch has the sign of these."
+)
+
 
 def conventions_section(study: Study) -> Section:
     """Axes, signs, reference point, length, and what the forces contain."""
     text = [
-        "Axes: x forward, y to starboard, z down, right-handed, fixed in the body. X, Y, Z, K, M, N are what the fluid "
-        "exerts on the body. Tables in other axes are turned into these as they are read.",
-        "Angles: v' = v/U = sin(beta), positive when the body moves to starboard; w' = w/U = sin(alpha) cos(beta), "
-        "positive when it moves down. A table has to declare its own sign; figures show the sign used here. The fits "
+        f"{AXES} Tables in other axes are turned into these as they are read.",
+        f"{ANGLES} A table has to declare its own sign; figures show the sign used here. The fits "
         "use v' and w' themselves, the figures label them in degrees.",
+        CONTROLS,
         _reference_points(study),
         _lengths(study),
         "Contents of the forces: hydrodynamic force in steady motion. Velocity derivatives therefore contain their "
@@ -23,7 +37,18 @@ def conventions_section(study: Study) -> Section:
         "Forces at zero angle need not vanish on a real model. Every curve has a value at rest of its own, and where "
         "the points lie on both sides of zero it has a term of the other parity as well.",
     ]
-    return Section("conventions", "Conventions", tuple(t for t in text if t), figures=axes_figures("axes"))
+    return Section("conventions", TITLE, tuple(t for t in text if t), figures=axes_figures("axes"))
+
+
+def published_conventions(own: tuple[str, ...]) -> Section:
+    """Axes and signs of a publication reproduced.
+
+    Parameters
+    ----------
+    own : tuple of str
+        What holds for this publication alone.
+    """
+    return Section("conventions", TITLE, (AXES, ANGLES, *own), figures=axes_figures("axes", controls=False))
 
 
 def _reference_points(study: Study) -> str:

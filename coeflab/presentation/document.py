@@ -55,6 +55,9 @@ class Panel:
     series : tuple of Series
     grouped_by : str
         What the groups of its points are, such as ``window``.
+    bars : str
+        ``across`` or ``up`` where the points are ends of bars that lie or stand. Lying ones have no upright quantity, each
+        note names its bar.
     """
 
     frame: tuple[float, float, float, float]
@@ -66,6 +69,7 @@ class Panel:
     unit_up: str
     series: tuple[Series, ...]
     grouped_by: str = ""
+    bars: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.presentation.document import Axis, Figure, Layer, Panel, Scene, Series
+from coeflab.presentation.lettering import label, unit_label
+from coeflab.presentation.printable import visible
 
 STEPS = 65535
 KINDS = {1: "points", 2: "lines", 3: "triangles"}
@@ -18,7 +20,7 @@ KINDS = {1: "points", 2: "lines", 3: "triangles"}
 def panels_json(figure: Figure) -> str:
     """What a page needs to tell the values of a drawing; empty where there is nothing to tell."""
     told = [p for p in figure.panels if p.series]
-    return _inside_a_page({"title": figure.title, "panels": [_panel(p) for p in told]}) if told else ""
+    return _inside_a_page({"title": visible(figure.title), "panels": [_panel(p) for p in told]}) if told else ""
 
 
 def scene_json(scene: Scene) -> str:
@@ -41,21 +43,24 @@ def _inside_a_page(content: dict[str, Any]) -> str:
 
 
 def _panel(panel: Panel) -> dict[str, Any]:
-    return {
+    out: dict[str, Any] = {
         "frame": panel.frame,
         "across": panel.across,
         "up": panel.up,
-        "names": [panel.name_across, panel.name_up],
-        "units": [panel.unit_across, panel.unit_up],
+        "names": [label(panel.name_across), label(panel.name_up)],
+        "units": [unit_label(panel.unit_across), unit_label(panel.unit_up)],
         "grouped": panel.grouped_by,
         "series": [_series(s) for s in panel.series],
     }
+    if panel.bars:
+        out["bars"] = panel.bars
+    return out
 
 
 def _series(series: Series) -> dict[str, Any]:
-    out: dict[str, Any] = {"key": series.key, "name": series.name, "x": series.x, "y": series.y}
+    out: dict[str, Any] = {"key": series.key, "name": label(series.name), "x": series.x, "y": series.y}
     if series.notes:
-        out["notes"] = series.notes
+        out["notes"] = [label(n) for n in series.notes]
     if series.groups:
         out["groups"] = series.groups
     if series.is_curve:
@@ -64,7 +69,13 @@ def _series(series: Series) -> dict[str, Any]:
 
 
 def _axis(axis: Axis) -> dict[str, Any]:
-    return {"name": axis.name, "unit": axis.unit, "ends": axis.ends, "marks": axis.marks, "texts": axis.texts}
+    return {
+        "name": label(axis.name),
+        "unit": unit_label(axis.unit),
+        "ends": axis.ends,
+        "marks": axis.marks,
+        "texts": [label(t) for t in axis.texts],
+    }
 
 
 def _layer(layer: Layer, axes: tuple[Axis, ...]) -> dict[str, Any]:
@@ -73,12 +84,12 @@ def _layer(layer: Layer, axes: tuple[Axis, ...]) -> dict[str, Any]:
     wide = "<u2" if len(layer.places) <= STEPS else "<u4"
     corners = layer.index.shape[1] if layer.index.ndim == 2 else 1
     return {
-        "name": layer.name,
+        "name": label(layer.name),
         "kind": KINDS[corners],
         "colour": layer.colour,
         "opacity": layer.opacity,
-        "label": layer.label,
-        "notes": layer.notes,
+        "label": label(layer.label),
+        "notes": [label(n) for n in layer.notes],
         "wide": wide[-1],
         "places": _packed(np.rint(share * STEPS).astype("<u2")),
         "index": _packed(layer.index.astype(wide)),

@@ -14,6 +14,7 @@ from coeflab.kernels.slopes import MEMBER, Estimate
 from coeflab.model.fit_result import Sweep
 from coeflab.model.reference import Comparison
 from coeflab.model.table import coefficient
+from coeflab.presentation.bare import strokes
 from coeflab.presentation.document import Figure, Series
 from coeflab.presentation.panel import BOTTOM, GAP, TOP, drawing, heading, legend, panel
 from coeflab.presentation.plotted import numbers, points, tagged
@@ -123,7 +124,8 @@ def _estimates(axes: Axes, sweep: Sweep, estimates: tuple[Estimate, ...], factor
         bottom, top = np.clip(y - half, low, high), np.clip(y + half, low, high)
         for chosen, thick in ((seen & ~kept, 0.7), (seen & kept, 1.6)):
             if np.any(chosen):
-                bars = axes.vlines(x[chosen], bottom[chosen], top[chosen], color=style.colour, linewidth=thick)
+                at = x[chosen]
+                bars = strokes(axes, (at, at), (bottom[chosen], top[chosen]), color=style.colour, linewidth=thick)
                 tagged(bars, family_key(sweep, mine[0]))
         for chosen, filled in ((inside & ~kept, False), (inside & kept, True)):
             if np.any(chosen):

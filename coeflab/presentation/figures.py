@@ -11,6 +11,7 @@ from matplotlib.figure import Figure as Drawing
 from coeflab.core.symbols import primed
 from coeflab.model.fit_result import LeftOut, Sweep
 from coeflab.model.table import coefficient
+from coeflab.presentation.bare import strokes
 from coeflab.presentation.document import Figure, Series
 from coeflab.presentation.panel import BOTTOM, GAP, TOP, Array, Range, drawing, legend, limits, panel
 from coeflab.presentation.plotted import curve, numbers, points, tagged
@@ -98,7 +99,8 @@ def _points(axes: Axes, sweep: Sweep, left_out: list[Any], factor: float) -> lis
     x, y = on_axis(sweep, sweep.x), sweep.y * factor
     if sweep.se is not None:
         reach = 2.0 * sweep.se * factor
-        tagged(axes.vlines(x, y - reach, y + reach, color=COLOURS["ink"], linewidth=0.8, zorder=3), "points")
+        bars = strokes(axes, (x, x), (y - reach, y + reach), color=COLOURS["ink"], linewidth=0.8, zorder=3)
+        tagged(bars, "points")
     handles: list[Any] = axes.plot(
         x, y, linestyle="none", marker="o", markersize=3.6, markerfacecolor="none", markeredgecolor=COLOURS["ink"],
         markeredgewidth=0.9, zorder=4, label="points" if sweep.se is None else "points, ± 2 standard errors",

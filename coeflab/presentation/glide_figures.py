@@ -11,14 +11,17 @@ from matplotlib.lines import Line2D
 from coeflab.kernels.steady_glide import glide
 from coeflab.model.glide import GlideRun, SteadyGlide
 from coeflab.model.glider import Glider
+from coeflab.presentation import plotted
 from coeflab.presentation.document import Figure
 from coeflab.presentation.panel import BOTTOM, LEGEND_ROW, Array, Range, drawing, legend, limits, panel
+from coeflab.presentation.plotted import numbers, points, tagged
 from coeflab.presentation.series import STYLES, Style
 from coeflab.presentation.svg import COLOURS, settings, svg_text
 
 FIELD, TALL, ROOM = 104.0, 164.0, 13.0
 STEEPEST = np.radians(70.0)
 FINE = 241
+BALANCED = "in balance of pitch"
 SOLID = Style(COLOURS["a"], "-", "o")
 
 
@@ -39,6 +42,7 @@ def motion_figure(runs: Sequence[GlideRun], anchor: str) -> Figure:
     above = BOTTOM + len(columns) * (FIELD + ROOM) - ROOM
     title = f"{_names(runs)}: speed, distance, depth and angle of attack in time"
     description = "Four panels over time: " + ", ".join(name.replace("  ", " ") for name, _ in columns) + "."
+    panels = []
     with settings():
         figure = drawing(above + 10.0 + LEGEND_ROW * ((len(shown) + 1) // 2))
         for i, (name, values) in enumerate(columns):
@@ -47,12 +51,17 @@ def motion_figure(runs: Sequence[GlideRun], anchor: str) -> Figure:
                 figure, bottom, FIELD, across=limits(times, 0.02) or (0.0, 1.0), up=_up(name, values), name_up=name,
                 name_across="time  [s]" if i == len(columns) - 1 else "", most_up=4,
             )  # fmt: skip
-            for (run, style), y in zip(shown, values, strict=True):
-                axes.plot(run.time, y, color=style.colour, linestyle=style.line, linewidth=1.3, zorder=2.5)
-        legend(figure, [_line(s, r.glider.name) for r, s in shown], above)
+            told = []
+            for k, ((run, style), y) in enumerate(zip(shown, values, strict=True)):
+                look: dict[str, Any] = {"color": style.colour, "linestyle": style.line, "linewidth": 1.3, "zorder": 2.5}
+                tagged(axes.plot(run.time, y, **look), f"glider{k}")
+                told.append(plotted.curve(f"glider{k}", run.glider.name, run.time, y))
+            panels.append(numbers(axes, told, "time  [s]", name))
+        handles = [tagged(_line(s, r.glider.name), f"glider{k}") for k, (r, s) in enumerate(shown)]
+        legend(figure, handles, above)
         svg = svg_text(figure, anchor, title, description)
     caption = "Depth grows downward. Angles of attack at starts and turns, at next to no speed, leave the frame."
-    return Figure(anchor, svg, title, caption, description)
+    return Figure(anchor, svg, title, caption, description, tuple(panels))
 
 
 def polar_figure(glider: Glider, steady: Sequence[SteadyGlide], anchor: str) -> Figure:
@@ -70,26 +79,40 @@ def polar_figure(glider: Glider, steady: Sequence[SteadyGlide], anchor: str) -> 
         figure = drawing(above + 10.0 + LEGEND_ROW * ((len(masses) + 2) // 2))
         speeds = limits(np.concatenate([v for _, _, v in curves.values()]), 0.06) or (0.0, 1.0)
         upper = panel(figure, BOTTOM + TALL + ROOM, TALL, across=across, up=speeds, name_up="V  [m/s]")
-        for (_, zeta, speed), style in zip(curves.values(), STYLES, strict=False):
-            upper.plot(np.degrees(zeta), speed, color=style.colour, linestyle=style.line, linewidth=1.3, zorder=2.5)
-        upper.plot(np.degrees([s.zeta for s in dots]), [s.speed for s in dots], **_DOT)
+        told = []
+        for k, ((_, zeta, speed), style) in enumerate(zip(curves.values(), STYLES, strict=False)):
+            look: dict[str, Any] = {"color": style.colour, "linestyle": style.line, "linewidth": 1.3, "zorder": 2.5}
+            tagged(upper.plot(np.degrees(zeta), speed, **look), f"mass{k}")
+            told.append(plotted.curve(f"mass{k}", f"net mass {masses[k]:.4g} kg", np.degrees(zeta), speed))
+        at, notes = np.degrees([s.zeta for s in dots]), [f"net mass {s.net_mass:.4g} kg" for s in dots]
+        fast, steep = np.array([s.speed for s in dots]), np.degrees([s.alpha for s in dots])
+        tagged(upper.plot(at, fast, **_DOT), "dots")
+        told.append(points("dots", BALANCED, at, fast, notes))
         angles = limits(np.degrees(np.concatenate([a for a, _, _ in curves.values()])), 0.06) or (-30.0, 30.0)
         lower = panel(
             figure, BOTTOM, TALL, across=across, up=angles, name_up="alpha  [deg]",
             name_across="glide angle zeta  [deg]",
         )  # fmt: skip
+        angled = []
         for mass in {m > 0.0: m for m in masses}.values():
             alpha, zeta, _ = curves[mass]
             lower.plot(np.degrees(zeta), np.degrees(alpha), color=COLOURS["ink"], linewidth=1.1, zorder=2.5)
-        lower.plot(np.degrees([s.zeta for s in dots]), np.degrees([s.alpha for s in dots]), **_DOT)
+            angled.append(plotted.curve("angle", "every net mass", np.degrees(zeta), np.degrees(alpha)))
+        tagged(lower.plot(at, steep, **_DOT), "dots")
+        angled.append(points("dots", BALANCED, at, steep, notes))
         handles = [_line(s, f"net mass {m:.4g} kg") for m, s in zip(masses, STYLES, strict=False)]
-        legend(figure, [*handles, Line2D([], [], label="in balance of pitch", **_DOT)], above)
+        handles = [tagged(h, f"mass{k}") for k, h in enumerate(handles)]
+        legend(figure, [*handles, tagged(Line2D([], [], label=BALANCED, **_DOT), "dots")], above)
+        panels = (
+            numbers(upper, told, "glide angle zeta  [deg]", "V  [m/s]"),
+            numbers(lower, angled, "glide angle zeta  [deg]", "alpha  [deg]"),
+        )
         svg = svg_text(figure, anchor, title, description)
     caption = (
         "Every point of a curve balances the forces; at the dots the pitch moment balances too. Dives are below zero. The "
         "angle of attack belongs to the glide angle, whatever the net mass."
     )
-    return Figure(anchor, svg, title, caption, description)
+    return Figure(anchor, svg, title, caption, description, panels)
 
 
 _DOT: dict[str, Any] = {

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 
 from coeflab.model.identified import Identified, IdentifiedTerm, Outcome
-from coeflab.presentation.document import Figure
+from coeflab.model.table import coefficient
+from coeflab.presentation.document import Figure, Panel
 from coeflab.presentation.panel import tick_texts, ticks
+from coeflab.presentation.plotted import numbers, points
 from coeflab.presentation.svg import COLOURS, POINTS, settings, svg_text
 
 WIDTH, LEFT, MIDDLE, RIGHT = 340.0, 46.0, 14.0, 12.0
@@ -40,8 +43,7 @@ def identified_figure(found: Identified, anchor: str) -> Figure:
     with settings():
         tall = BOTTOM + HEAD + ROW * max(len(rows), 1)
         figure = Drawing(figsize=(WIDTH / POINTS, tall / POINTS))
-        _values(figure, rows, tall)
-        _frequencies(figure, rows, tall)
+        panels = (_values(figure, rows, tall), _frequencies(figure, rows, tall))
         names = {Outcome.IDENTIFIED: "identified", Outcome.EXCHANGEABLE: "exchangeable"}
         marks = [Line2D([], [], linestyle="none", label=names[o], **style) for o, style in MARKS.items()]
         marks.append(Line2D([], [], linestyle="none", label="parameter file", **FROM_FILE))
@@ -50,7 +52,7 @@ def identified_figure(found: Identified, anchor: str) -> Figure:
             borderaxespad=0.0, handletextpad=0.2, columnspacing=1.2,
         )  # fmt: skip
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, caption, description)
+    return Figure(anchor, svg, title, caption, description, panels)
 
 
 def _axes(figure: Drawing, left: float, width: float, tall: float, rows: int, across: tuple[float, float]) -> Axes:
@@ -66,7 +68,7 @@ def _axes(figure: Drawing, left: float, width: float, tall: float, rows: int, ac
     return axes
 
 
-def _values(figure: Drawing, rows: list[IdentifiedTerm], tall: float) -> None:
+def _values(figure: Drawing, rows: list[IdentifiedTerm], tall: float) -> Panel:
     axes = _axes(figure, LEFT, VALUES, tall, len(rows), (-REACH, REACH))
     axes.axvline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=1)
     for k, t in enumerate(rows):
@@ -84,6 +86,28 @@ def _values(figure: Drawing, rows: list[IdentifiedTerm], tall: float) -> None:
             if t.low is not None and t.high is not None:
                 _bar(axes, t.low / size, t.high / size, y - 0.14, COLOURS["a"])
     figure.text((LEFT + VALUES / 2.0) / WIDTH, (BOTTOM - 27.5) / tall, "over the file's size  [-]", ha="center")
+    at = np.arange(len(rows))[::-1] + 0.0
+    sizes = np.array([abs(t.file_value or t.value or 1.0) for t in rows])
+    own, file = (
+        np.array([np.nan if v is None else v for v in vs])
+        for vs in zip(*((t.value, t.file_value) for t in rows), strict=True)
+    )
+    told = (
+        points("own", "identified", own / sizes, at - 0.14, [_said(t.symbol, t.value, t.low, t.high) for t in rows]),
+        points("file", "parameter file", file / sizes, at + 0.14, [_of_file(t) for t in rows]),
+    )
+    return numbers(axes, told, "over the file's size  [-]", "", bars="across")
+
+
+def _said(symbol: str, value: float | None, low: float | None, high: float | None) -> str:
+    """A value with the ends of its interval."""
+    ends = "" if low is None or high is None else f", {coefficient(low)} to {coefficient(high)}"
+    return f"{symbol} = {coefficient(value)}{ends}"
+
+
+def _of_file(t: IdentifiedTerm) -> str:
+    half = "" if t.file_u95 is None else f" ± {coefficient(t.file_u95)}"
+    return f"{t.symbol} = {coefficient(t.file_value)}{half}"
 
 
 def _mark(axes: Axes, x: float, y: float, style: dict[str, Any]) -> None:
@@ -97,7 +121,7 @@ def _bar(axes: Axes, low: float, high: float, y: float, colour: str) -> None:
     axes.plot(ends, [y, y], color=colour, linewidth=1.2, zorder=2)
 
 
-def _frequencies(figure: Drawing, rows: list[IdentifiedTerm], tall: float) -> None:
+def _frequencies(figure: Drawing, rows: list[IdentifiedTerm], tall: float) -> Panel:
     left = LEFT + VALUES + MIDDLE
     width = WIDTH - left - RIGHT
     axes = _axes(figure, left, width, tall, len(rows), (0.0, 100.0))
@@ -109,3 +133,6 @@ def _frequencies(figure: Drawing, rows: list[IdentifiedTerm], tall: float) -> No
         colour = COLOURS["a"] if t.value is not None else COLOURS["band"]
         axes.barh(y, 100.0 * t.frequency, height=0.6, color=colour, zorder=2)
     figure.text((left + width / 2.0) / WIDTH, (BOTTOM - 27.5) / tall, "kept in  [%]", ha="center")
+    shares = np.array([np.nan if t.frequency is None else 100.0 * t.frequency for t in rows])
+    told = points("kept", "resamples that keep it", shares, np.arange(len(rows))[::-1] + 0.0, [t.symbol for t in rows])
+    return numbers(axes, (told,), "kept in  [%]", "", bars="across")

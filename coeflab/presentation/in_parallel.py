@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import os
+import gc
+import sys
 import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
@@ -12,13 +13,15 @@ from contextlib import contextmanager
 from multiprocessing import current_process, get_all_start_methods, get_context
 from typing import TypeVar
 
+from coeflab.core.machine import cores
+
 Part = TypeVar("Part")
 MOST = 4
 _JOBS: list[Callable[[], object]] = []
 
 
 @contextmanager
-def begun(jobs: Sequence[Callable[[], Part]]) -> Iterator[Callable[[], list[Part]]]:
+def begun(jobs: Sequence[Callable[[], Part]], sizes: Sequence[int] = ()) -> Iterator[Callable[[], list[Part]]]:
     """Start jobs; the yielded function waits for what they return, in their own order.
 
     Copies of this process do the work, so that a job may hold anything; what it returns is pickled. Where copying is not
@@ -28,21 +31,25 @@ def begun(jobs: Sequence[Callable[[], Part]]) -> Iterator[Callable[[], list[Part
     ----------
     jobs : sequence of callable
         Pure, and of numpy and matplotlib alone: libraries with threads of their own do not survive the copying.
+    sizes : sequence of int, optional
+        How much each has to do; the largest begins.
     """
-    workers = min(MOST, len(jobs), _cores())
+    workers = min(MOST, len(jobs), cores())
     if workers < 2 or _JOBS or not _safe():
         yield lambda: [job() for job in jobs]
         return
     _JOBS.extend(jobs)
     try:
-        with ProcessPoolExecutor(workers, get_context("fork")) as pool:
+        # What was there before the copying is not searched for garbage again and again.
+        with ProcessPoolExecutor(workers, get_context("fork"), initializer=gc.freeze) as pool:
             with warnings.catch_warnings():
                 warnings.filterwarnings("ignore", message=".*fork", category=DeprecationWarning)
-                waiting = [pool.submit(_done, i) for i in range(len(jobs))]
+                order = sorted(range(len(jobs)), key=lambda i: -sizes[i] if sizes else i)
+                waiting = {i: pool.submit(_done, i) for i in order}
 
             def results() -> list[Part]:
                 try:
-                    return [w.result() for w in waiting]  # type: ignore[misc]
+                    return [waiting[i].result() for i in range(len(jobs))]  # type: ignore[misc]
                 except BrokenProcessPool:
                     return [job() for job in jobs]
 
@@ -55,9 +62,6 @@ def _done(index: int) -> object:
     return _JOBS[index]()
 
 
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
-
-
 def _safe() -> bool:
-    return "fork" in get_all_start_methods() and not current_process().daemon and threading.active_count() == 1
+    forks = "fork" in get_all_start_methods() and sys.platform != "darwin"  # whose system libraries do not survive it
+    return forks and not current_process().daemon and threading.active_count() == 1

@@ -34,7 +34,7 @@ def forces(loss: Loss) -> Table:
         f"over {loss.grid}; steady motion, FRD, about the file's reference point; 0 is less than {LOSSLESS:g} of the largest"
     ]
     notes += [
-        f"WORSE THAN NO FORCE: {c}, whose rms difference is {number(loss.rms[i], 3)} where the file's own rms is {number(loss.size[i], 3)}"
+        f"worse than no force at all: {c}, whose rms difference is {number(loss.rms[i], 3)} where the file's own rms is {number(loss.size[i], 3)}"
         for i, c in enumerate(COMPONENTS)
         if c in loss.worse_than_nothing
     ]
@@ -78,7 +78,7 @@ def parts(parameters: ParameterFile) -> Table:
     hull = parameters.added_mass
     notes = [] if hull is None else [f"potential part by the added mass of {hull.body}, method {hull.method}"]
     if hull is not None and hull.body != parameters.body:
-        notes.append(f"MISMATCH: the coefficients are those of {parameters.body}")
+        notes.append(f"not of one body: the coefficients are those of {parameters.body}")
     headers = ("", "total", "potential", "viscous", "origin")
     return Table("Parts of the coefficients", headers, rows, tuple(notes), frozenset({0, 4}))
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from coeflab.core.wording import listed
 from coeflab.model.fitted_model import FittedModel
 from coeflab.presentation.along_figure import along, along_figure
 from coeflab.presentation.curve_figure import curve_figure
@@ -68,4 +69,4 @@ def _same(one: FittedModel, other: FittedModel) -> bool:
 def over_what(model: FittedModel) -> str:
     """The variables of a model in words."""
     names = [symbol_of(v, model).removesuffix("_deg") for v in moving(model)]
-    return " and ".join(names) if len(names) < 3 else f"{', '.join(names[:-1])} and {names[-1]}"
+    return listed(names)

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from coeflab.core.symbols import CONTROLS
 from coeflab.model.trajectory import Trajectory
-from coeflab.presentation.document import Figure
+from coeflab.presentation.document import Figure, Series
 from coeflab.presentation.panel import BOTTOM, LEFT, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
-from coeflab.presentation.plotted import curve, numbers, tagged
+from coeflab.presentation.plotted import curve, numbers, points, tagged
 from coeflab.presentation.series import STYLES
 from coeflab.presentation.svg import COLOURS, settings, svg_text
 
@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 FLAT = 1e-9
 STILL = 1e-12
 MOST_BODIES, CLEAR = 12, 1.6
+MOST_TOLD = 150
+BEYOND: dict[str, Any] = {"color": COLOURS["muted"], "linewidth": 1.4, "linestyle": (0, (3, 2))}
 
 
 def track_figures(trajectory: Trajectory, anchor: str, length: float) -> tuple[Figure, ...]:
@@ -52,25 +54,32 @@ def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: b
             figure, BOTTOM, top - BOTTOM, across=wide, up=tall[::-1] if vertical else tall, name_up=names[1],
             name_across=names[0],
         )  # fmt: skip
-        axes.plot(across, np.where(beyond, np.nan, up), color=COLOURS["a"], linewidth=1.4, zorder=3)
-        axes.plot(
-            across,
-            np.where(beyond, up, np.nan),
-            color=COLOURS["muted"],
-            linewidth=1.4,
-            linestyle=(0, (3, 2)),
-            zorder=2.8,
-        )
+        tagged(axes.plot(across, np.where(beyond, np.nan, up), color=COLOURS["a"], linewidth=1.4, zorder=3), "track")
+        tagged(axes.plot(across, np.where(beyond, up, np.nan), zorder=2.8, **BEYOND), "beyond")
         axes.plot(across[:1], up[:1], linestyle="none", marker="o", markersize=4.0, color=COLOURS["a"], zorder=4)
         _bodies(axes, trajectory, across, up, vertical, length)
-        handles: list[Any] = [Line2D([], [], color=COLOURS["a"], linewidth=1.4, label="track")]
+        marks = {"track": Line2D([], [], color=COLOURS["a"], linewidth=1.4, label="track")}
         if np.any(beyond):
-            handles.append(
-                Line2D([], [], color=COLOURS["muted"], linewidth=1.4, linestyle=(0, (3, 2)), label="beyond the data")
-            )
-        legend(figure, handles, top)
+            marks["beyond"] = Line2D([], [], label="beyond the data", **BEYOND)
+        legend(figure, [tagged(mark, key) for key, mark in marks.items()], top)
+        shown = numbers(axes, _places(trajectory, across, up, beyond), names[0], names[1])
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, f"{title}; the dot is the start, the strokes are the body.", description)
+    return Figure(
+        anchor, svg, title, f"{title}; the dot is the start, the strokes are the body.", description, (shown,)
+    )
+
+
+def _places(trajectory: Trajectory, across: Array, up: Array, beyond: NDArray[np.bool_]) -> list[Series]:
+    """Points of the track at even steps of its samples, with the time and speed at each."""
+    every = np.unique(np.linspace(0, len(across) - 1, min(len(across), MOST_TOLD)).round().astype(int))
+    out = []
+    for key, name, rows in (
+        ("track", "track", every[~beyond[every]]),
+        ("beyond", "track beyond the data", every[beyond[every]]),
+    ):
+        notes = [f"at {trajectory.time[i]:.4g} s, {trajectory.speed[i]:.3g} m/s" for i in rows]
+        out.append(points(key, name, across[rows], up[rows], notes))
+    return out
 
 
 def _equal(x: Array, y: Array, ratio: float, length: float) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -10,16 +10,19 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.markers import TICKDOWN, TICKLEFT
+from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
+from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from coeflab.presentation.plotted import mark_legend
+from coeflab.presentation.bare import bare, label, strokes
+from coeflab.presentation.legends import SIZE
+from coeflab.presentation.legends import legend as framed
 from coeflab.presentation.svg import COLOURS, POINTS
 
 Array = NDArray[np.float64]
 WIDTH, HEIGHT = 340.0, 336.0
-LEFT, RIGHT, BOTTOM, GAP = 52.0, 10.0, 34.0, 16.0
+LEFT, RIGHT, BOTTOM, GAP, TICK = 52.0, 10.0, 34.0, 16.0, 3.0
 LEGEND_ROW, LEGEND_ROWS = 12.2, 4
 TOP = HEIGHT - 4.0 - LEGEND_ROW * LEGEND_ROWS - 8.0
 Range = tuple[float, float]
@@ -87,54 +90,43 @@ def panel(
         Largest number of steps of the upright axis.
     """
     width, whole = WIDTH - LEFT - RIGHT, height_of(figure)
-    axes = figure.add_axes((LEFT / WIDTH, bottom / whole, width / WIDTH, height / whole))
-    axes.set_axis_off()
+    axes = bare(figure, (LEFT / WIDTH, bottom / whole, width / WIDTH, height / whole))
     axes.set_xlim(*across)
     axes.set_ylim(*up)
     at_x, at_y = ticks(across, 7), ticks(up, most_up)
-    axes.hlines(at_y, *across, color=COLOURS["rule"], linewidth=0.5, zorder=0)
-    thin: dict[str, Any] = {"color": COLOURS["muted"], "clip_on": False, "zorder": 1.5}
-    axes.plot([across[0], across[0], across[1]], [up[1], up[0], up[0]], linewidth=0.6, **thin)
-    for x, y, mark in (
-        (at_x, np.full_like(at_x, up[0]), TICKDOWN),
-        (np.full_like(at_y, across[0]), at_y, TICKLEFT),
-    ):
-        axes.plot(x, y, linestyle="none", marker=mark, markersize=3.0, markeredgewidth=0.6, **thin)
-    for y, text in zip(at_y, tick_texts(at_y), strict=True):
-        level = bottom + height * (float(y) - up[0]) / (up[1] - up[0])
-        figure.text((LEFT - 5.5) / WIDTH, (level - 2.9) / whole, text, ha="right", va="baseline")
-    figure.text(
-        9.5 / WIDTH, (bottom + height / 2.0) / whole, name_up, rotation=90, ha="center", va="center",
-        rotation_mode="anchor",
-    )  # fmt: skip
+    strokes(axes, across, (at_y, at_y), color=COLOURS["rule"], linewidth=0.5, zorder=0)
+    x, y = LEFT + width * _shares(at_x, across), bottom + height * _shares(at_y, up)
+    _frame(figure, axes, (LEFT, bottom, LEFT + width, bottom + height), x, y)
+    for level, text in zip(y, tick_texts(at_y), strict=True):
+        label(figure, (LEFT - 5.5) / WIDTH, (level - 2.9) / whole, text, "right")
+    label(figure, (7.5 + 0.35 * SIZE) / WIDTH, (bottom + height / 2.0) / whole, name_up, rotation=90)
     if name_across:
-        for x, text in zip(at_x, tick_texts(at_x), strict=True):
-            place = LEFT + width * (float(x) - across[0]) / (across[1] - across[0])
-            figure.text(place / WIDTH, (bottom - 13.5) / whole, text, ha="center", va="baseline")
-        figure.text((LEFT + width / 2.0) / WIDTH, (bottom - 27.5) / whole, name_across, ha="center", va="baseline")
+        for place, text in zip(x, tick_texts(at_x), strict=True):
+            label(figure, place / WIDTH, (bottom - 13.5) / whole, text)
+        label(figure, (LEFT + width / 2.0) / WIDTH, (bottom - 27.5) / whole, name_across)
     return axes
+
+
+def _shares(at: Array, within: Range) -> Array:
+    return (at - within[0]) / (within[1] - within[0])
+
+
+def _frame(figure: Figure, axes: Axes, box: tuple[float, float, float, float], x: Array, y: Array) -> None:
+    """The left and the lower edge with their ticks, points from the lower left corner of the figure."""
+    left, bottom, right, top = box
+    points = Affine2D().scale(1.0 / WIDTH, 1.0 / height_of(figure)) + figure.transFigure
+    look: dict[str, Any] = {"color": COLOURS["muted"], "linewidth": 0.6, "clip_on": False, "zorder": 1.5}
+    axes.add_artist(Line2D([left, left, right], [top, bottom, bottom], transform=points, **look))
+    first_x, first_y = np.append(x, np.full_like(y, left)), np.append(np.full_like(x, bottom), y)
+    last_x, last_y = np.append(x, np.full_like(y, left - TICK)), np.append(np.full_like(x, bottom - TICK), y)
+    strokes(axes, (first_x, last_x), (first_y, last_y), transform=points, **look)
 
 
 def heading(figure: Figure, above: float, text: str) -> None:
     """A small title over a panel whose upper edge is ``above`` points from the lower edge of the figure."""
-    figure.text(LEFT / WIDTH, (above + 4.0) / height_of(figure), text, color=COLOURS["muted"], va="baseline")
+    label(figure, LEFT / WIDTH, (above + 4.0) / height_of(figure), text, "left", color=COLOURS["muted"])
 
 
 def legend(figure: Figure, handles: list[Any], above: float = TOP) -> None:
-    """One legend in two columns above the panels, whose upper edge is ``above`` points from the lower edge.
-
-    Entries of handles that `coeflab.presentation.plotted.tagged` marked are marked in the drawing.
-    """
-    drawn = figure.legend(
-        handles=handles,
-        loc="lower left",
-        bbox_to_anchor=((LEFT - 16.0) / WIDTH, (above + 8.0) / height_of(figure)),
-        ncols=2,
-        borderpad=0.0,
-        borderaxespad=0.0,
-        handlelength=2.5,
-        handletextpad=0.6,
-        columnspacing=1.0,
-        labelspacing=0.38,
-    )
-    mark_legend(drawn, handles)
+    """One legend in two columns above the panels, whose upper edge is ``above`` points from the lower edge."""
+    framed(figure, handles, LEFT - 16.0, above + 8.0)

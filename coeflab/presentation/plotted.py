@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from matplotlib.legend import Legend
 from numpy.typing import NDArray
 
 from coeflab.presentation.document import Panel, Series
@@ -17,7 +16,7 @@ from coeflab.presentation.svg import POINTS
 Array = NDArray[np.float64]
 SERIES, SWATCH, LEGEND = "data-series=", "data-swatch=", "data-legend=legend"
 DIGITS = 6
-FEWER = 3
+FEWER, MOST = 3, 400
 
 
 def tagged(artists: Any, key: str) -> Any:
@@ -27,25 +26,14 @@ def tagged(artists: Any, key: str) -> Any:
     return artists
 
 
-def mark_legend(legend: Legend, handles: Sequence[Any]) -> None:
-    """Mark a legend and those of its entries whose handles belong to a series."""
-    keys = [str(h.get_gid() or "") for h in handles]
-    if not any(k.startswith(SERIES) for k in keys):
-        return
-    legend.set_gid(LEGEND)
-    for key, swatch, text in zip(keys, legend.legend_handles, legend.get_texts(), strict=True):
-        name = key.removeprefix(SERIES)
-        if swatch is not None:
-            swatch.set_gid(f"{SWATCH}{name}")
-        text.set_gid(f"data-label={name}")
-
-
 def rounded(values: Any) -> tuple[float, ...]:
     """Numbers to six significant digits."""
     return tuple(float(f"{v + 0.0:.{DIGITS}g}") for v in np.asarray(values, dtype=float).ravel())
 
 
-def points(key: str, name: str, x: Array, y: Array, notes: Sequence[str] = (), groups: Sequence[str] = ()) -> Series:
+def points(
+    key: str, name: str, x: NDArray[Any], y: NDArray[Any], notes: Sequence[str] = (), groups: Sequence[str] = ()
+) -> Series:
     """Points of a drawing; those that are not finite are left out."""
     kept = [int(i) for i in np.flatnonzero(np.isfinite(x) & np.isfinite(y))]
     told, grouped = (tuple(texts[i] for i in kept) if texts else () for texts in (notes, groups))
@@ -53,8 +41,8 @@ def points(key: str, name: str, x: Array, y: Array, notes: Sequence[str] = (), g
 
 
 def curve(key: str, name: str, x: Array, y: Array) -> Series:
-    """A curve of a drawing; every third of its many values."""
-    every = FEWER if len(x) > 60 else 1
+    """A curve of a drawing; every third of its many values, 400 at most."""
+    every = max(FEWER, -(-len(x) // MOST)) if len(x) > 60 else 1
     finite = np.isfinite(y)
     return Series(key, name, rounded(x[finite][::every]), rounded(y[finite][::every]), is_curve=True)
 
@@ -66,6 +54,8 @@ def numbers(
     name_up: str,
     factor: float = 1.0,
     grouped_by: str = "",
+    factor_across: float = 1.0,
+    bars: str = "",
 ) -> Panel:
     """The panel of some axes.
 
@@ -79,18 +69,21 @@ def numbers(
     factor : float
         Of the upright axis over the values of the series.
     grouped_by : str
+    factor_across : float
+        The same for the other axis.
+    bars : str
     """
     figure: Drawing = axes.figure  # type: ignore[assignment]
     wide, tall = (float(s) * POINTS for s in figure.get_size_inches())
     box = axes.get_position()
     frame = rounded((box.x0 * wide, (1.0 - box.y1) * tall, box.width * wide, box.height * tall))
     low, high = rounded(np.array(axes.get_ylim()) / factor)
-    left, right = rounded(axes.get_xlim())
+    left, right = rounded(np.array(axes.get_xlim()) / factor_across)
     (along, along_unit), (upright, upright_unit) = _apart(name_across), _apart(name_up)
     shown = tuple(s for s in series if s.x)
     place = (frame[0], frame[1], frame[2], frame[3])
     return Panel(
-        place, (left, right), (low, high), along, along_unit, upright, upright_unit, shown, grouped_by
+        place, (left, right), (low, high), along, along_unit, upright, upright_unit, shown, grouped_by, bars
     )  # fmt: skip
 
 

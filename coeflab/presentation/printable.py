@@ -7,6 +7,7 @@ from functools import cache
 
 WORD, STEP = 22, 12
 BREAK = "\u200b"
+UNBROKEN = "\u00a0\u202f"
 AFTER = "/_,;:="
 
 
@@ -51,11 +52,27 @@ def glyphs(text: str) -> str:
     return "".join(_shown(ch) for ch in text)
 
 
+def visible(text: str) -> str:
+    """The text with ``U+XXXX`` in place of every character that has no shape or steers the direction of writing."""
+    if text.isprintable():
+        return text
+    return "".join(ch if ch.isprintable() or ch in UNBROKEN else _without_shape(ch) for ch in text)
+
+
+def _without_shape(ch: str) -> str:
+    return " " if ch.isspace() else f"U+{ord(ch):04X}"
+
+
+def runs_to_the_left(text: str) -> bool:
+    """Whether some of it is written from right to left."""
+    return not text.isascii() and any(unicodedata.bidirectional(ch) in ("R", "AL", "AN") for ch in text)
+
+
 def _shown(ch: str) -> str:
     if ch == BREAK or (" " <= ch <= "~"):
         return ch
     if ch.isspace():
-        return ch if ch in "\u00a0\u202f" else " "
+        return ch if ch in UNBROKEN else " "
     if unicodedata.category(ch).startswith("C") or ord(ch) not in _drawn():
         return f"U+{ord(ch):04X}"
     return ch

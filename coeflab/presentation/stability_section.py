@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import CoeflabError
-from coeflab.model.derived import INDICES, stability
+from coeflab.model.derived import INDICES, Derived, sense, stability
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.root_locus import RootLocus, root_locus
 from coeflab.model.study import Study
@@ -16,11 +16,28 @@ from coeflab.presentation.root_locus_figure import IN_PLANE, root_locus_figure
 
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')]: positive is "
-    "directionally stable with controls fixed. G_v is the limit of high speed, without the restoring moment of weight and "
+    "directionally stable with controls fixed, negative is unstable; where U95 holds zero it is not determined which. G_v is the limit of high speed, without the restoring moment of weight and "
     "buoyancy.",
     "The roots are the eigenvalues of small motions about a straight course with the speed held, by the force law and the added "
     "mass of the parameter file; its derivatives are taken to hold at every speed shown.",
 )
+
+
+def in_words(study: Study) -> list[str]:
+    """Which parameter files are unstable, and which are not, a sentence each; none where no index can be given."""
+    said: dict[str, dict[str, list[str]]] = {}
+    for parameters in study.parameter_files.values():
+        for d in stability(parameters):
+            said.setdefault(sense(d), {}).setdefault(parameters.name, []).append(_value(d))
+    out = []
+    for verdict, places in sorted(said.items(), key=lambda item: ("unstable" not in item[0], item[0])):
+        each = ", ".join(f"{name} ({', '.join(values)})" for name, values in places.items())
+        out.append(f"{verdict[0].upper()}{verdict[1:]} on a straight course with controls fixed: {each}.")
+    return out
+
+
+def _value(d: Derived) -> str:
+    return f"{d.name} = {d.value:.3g}" + ("" if d.result is None else f" +- {d.result.linear:.2g}")
 
 
 def stability_sections(study: Study) -> tuple[Section, ...]:
@@ -66,12 +83,10 @@ def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
             continue
         d = given[index]
         half = None if d.result is None else d.result.linear
-        verdict = "stable" if d.value > 0.0 else "unstable"
-        verdict += "" if half is not None and abs(d.value) > half else ", not beyond its uncertainty"
         stated = [c.symbol for c in found if c is not None and c.origin == "literature"]
         remarks = [f"{', '.join(stated)} from literature"] if stated else []
         remarks += [d.statement] if half is None else []
-        out.append((parameters.name, index, number(d.value), number(half, 2), verdict, "; ".join(remarks)))
+        out.append((parameters.name, index, number(d.value), number(half, 2), sense(d), "; ".join(remarks)))
     return out
 
 

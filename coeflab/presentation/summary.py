@@ -1,34 +1,37 @@
-"""A report on one page: the verdict, the wanted coefficients, the main figure, stability."""
+"""A report on one page: the verdict, the wanted coefficients, two figures, stability."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 from coeflab.model.acceptance import Acceptance
-from coeflab.model.derived import centre_of_pressure, stability
+from coeflab.model.derived import INDICES, Derived, centre_of_pressure, sense, stability
 from coeflab.model.fit_result import Sweep
 from coeflab.model.study import Study
-from coeflab.model.table import Table
-from coeflab.presentation import acceptance_document, budget_tables, content, tables
+from coeflab.model.table import ABSENT, Table, number
+from coeflab.presentation import acceptance_document, content, tables
 from coeflab.presentation.document import Document, Figure, Section
+from coeflab.presentation.estimator_figure import estimator_figure
 from coeflab.presentation.figures import sweep_figure
 from coeflab.presentation.model_figure import model_figures
 from coeflab.presentation.model_tables import quality
+from coeflab.presentation.reproduction import digest_of
+from coeflab.presentation.stability_section import in_words
 
-MOST_ROWS, MOST_PARAGRAPHS, MOST_NOTES, LONGEST_NOTE = 12, 3, 4, 120
+MOST_ROWS, MOST_PARAGRAPHS, MOST_NOTES, LONGEST_NOTE, LONGEST_CAPTION = 12, 3, 4, 120, 200
 
 
 def study_summary(study: Study) -> Document:
     """One page on a study."""
     sections = (
-        _first(content.verdict(study)),
+        _first(content.verdict(study), in_words(study)),
         *_coefficients(study),
         *_main(study),
         *_stability(study),
     )
     return Document(
         study.plan.title or study.plan.name, "Summary on one page; the whole report holds budgets, checks and sources",
-        sections, study.plan.name, content.digest_of(study.inputs),
+        sections, study.plan.name, digest_of(study.inputs),
     )  # fmt: skip
 
 
@@ -42,25 +45,41 @@ def acceptance_summary(found: Acceptance, whole: Document) -> Document:
         Its whole report.
     """
     first = acceptance_document.verdict(found)
-    figures = tuple(_short(f) for f in acceptance_document.figures(found)[:1])
-    sections = (replace(first, paragraphs=first.paragraphs[:MOST_PARAGRAPHS]), *_drawn(figures))
+    figures = (*acceptance_document.figures(found)[:1], *first.figures)
+    sections = (replace(first, paragraphs=first.paragraphs[:MOST_PARAGRAPHS], figures=()), *_drawn(figures))
     return replace(
         whole, subtitle="Summary on one page; the whole report holds every number", sections=sections, works=()
     )
 
 
-def _first(verdict: Section) -> Section:
-    return replace(verdict, paragraphs=(*verdict.paragraphs[:MOST_PARAGRAPHS], verdict.paragraphs[-1]))
+def _first(verdict: Section, stability: list[str]) -> Section:
+    """The first paragraphs and the last, and what is unstable, in the place of one."""
+    kept = (*verdict.paragraphs[: MOST_PARAGRAPHS - bool(stability)], *stability, verdict.paragraphs[-1])
+    return replace(verdict, paragraphs=tuple(dict.fromkeys(kept)))
 
 
 def _coefficients(study: Study) -> tuple[Section, ...]:
-    wanted = tables.by_campaign(study)
+    wanted = _with_centres(tables.by_campaign(study), study)
     if not wanted.rows:
         models = tuple(m for f in study.fits for m in f.models)
         wanted = quality(models) if models else tables.coefficients(study)
     if not wanted.rows:
         return ()
     return (Section("coefficients", "Coefficients with U95", tables=(_cut(wanted),)),)
+
+
+def _with_centres(table: Table, study: Study) -> Table:
+    """Below the coefficients where the force of drift acts, forward of the reference point over L."""
+    found = [d for f in study.fits for d in centre_of_pressure(f.coefficients, f.campaign)]
+    rows = []
+    for name in dict.fromkeys(d.name for d in found):
+        cells = {d.subject: _with_half(d) for d in found if d.name == name}
+        rows.append((f"x/L = {name}", *(cells.get(campaign, ABSENT) for campaign in table.headers[1:])))
+    return replace(table, rows=(*table.rows, *rows)) if table.rows else table
+
+
+def _with_half(d: Derived) -> str:
+    return number(d.value) + (f" +- {number(d.result.linear, 2)}" if d.result else "")
 
 
 def _cut(table: Table) -> Table:
@@ -72,37 +91,45 @@ def _cut(table: Table) -> Table:
 
 
 def _main(study: Study) -> tuple[Section, ...]:
-    """The curve of the first wanted coefficient that has a value, else of the first sweep, else of the first model."""
+    """The curve of the first wanted coefficient that has a value, with all its estimators; else the first model."""
     sweeps = [s for f in study.fits for s in f.sweeps if len(s.x) and s.recommendation.value is not None]
     order = {symbol: i for i, symbol in enumerate(study.plan.wanted)}
     if sweeps:
         main: Sweep = min(sweeps, key=lambda s: order.get(s.symbol, len(order)))
-        return _drawn((_short(sweep_figure(main, "main")),))
+        judged = tuple(c for c in study.comparisons if c.passed is not None)
+        held = tuple(
+            c for c in judged if (c.coefficient.symbol, c.coefficient.campaign) == (main.symbol, main.campaign)
+        )
+        return _drawn((sweep_figure(main, "main"), estimator_figure(main, held, "estimators")))
     models = [m for f in study.fits for m in f.models]
-    return _drawn(tuple(_short(f) for f in model_figures(models[0], "main")[:1])) if models else ()
+    return _drawn(model_figures(models[0], "main")[:2]) if models else ()
 
 
 def _drawn(figures: tuple[Figure, ...]) -> tuple[Section, ...]:
-    return (Section("figure", "Main figure", figures=figures),) if figures else ()
+    """Two at most, beside each other."""
+    title = "Main figure" if len(figures) == 1 else "Main figures"
+    return (Section("figure", title, figures=tuple(map(_short, figures))),) if figures else ()
 
 
 def _short(figure: Figure) -> Figure:
-    """No more than the first sentences of its caption; the page has one figure."""
-    return replace(figure, anchor="main", caption=figure.caption[:400])
+    """No more than the first sentences of its caption."""
+    caption = figure.caption
+    if len(caption) > LONGEST_CAPTION:
+        end = caption.rfind(". ", 0, LONGEST_CAPTION)
+        caption = caption[: end + 1] if end > 0 else ""
+    return replace(figure, caption=caption)
 
 
 def _stability(study: Study) -> tuple[Section, ...]:
-    derived = [d for f in study.fits for d in centre_of_pressure(f.coefficients, f.campaign)]
-    derived += [d for p in study.parameter_files.values() for d in stability(p)]
-    table = budget_tables.derived(derived)
-    if not table.rows:
+    """A row for every parameter file with an index."""
+    rows = []
+    for name, parameters in study.parameter_files.items():
+        given = {d.name: d for d in stability(parameters)}
+        if given:
+            pairs = ((_with_half(given[i]), sense(given[i])) if i in given else (ABSENT, ABSENT) for i in INDICES)
+            rows.append((name, *(cell for pair in pairs for cell in pair)))
+    if not rows:
         return ()
-    kept = [i for i, h in enumerate(table.headers) if i == 0 or h in ("subject", "value", "95 % Monte Carlo")]
-    narrow = Table(
-        "Centre of pressure over L and stability indices",
-        tuple(table.headers[i].removesuffix(" Monte Carlo") for i in kept),
-        tuple(tuple(row[i] for i in kept) for row in table.rows),
-        (),
-        frozenset({0, 1}),
-    )
-    return (Section("stability", "Stability", tables=(_cut(narrow),)),)
+    headers = ("parameter file", "G_h", "horizontal", "G_v", "vertical")
+    table = Table("Stability of straight motion with controls fixed", headers, tuple(rows), (), frozenset({0, 2, 4}))
+    return (Section("stability", "Stability", tables=(_cut(table),)),)

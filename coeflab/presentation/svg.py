@@ -6,11 +6,14 @@ import io
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from html import escape
+from html import escape, unescape
 from typing import Any
 
 import matplotlib as mpl
 from matplotlib.figure import Figure
+
+from coeflab.presentation.lettering import drawn
+from coeflab.presentation.printable import visible
 
 POINTS = 72.0
 # Every colour of a drawing is one of these. The values are what a renderer without style sheets shows: dark on white,
@@ -42,12 +45,19 @@ _SETTINGS: dict[Any, object] = {
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _DECIMALS = re.compile(r"-?\d+\.\d{3,}")
 _MARKED = re.compile(r' id="data-([a-z]+)=([^"]*)"')
+_LABELS = re.compile(r"(<text [^>]*>)([^<]*)(?=</text>)")
 _REFERENCES = re.compile(r'(?:xlink:href="#|url\(#)([^")]+)')
 
 
 @contextmanager
 def settings() -> Iterator[None]:
-    """Matplotlib's defaults with this report's settings, whatever the user's own are; restored afterwards."""
+    """Matplotlib's defaults with this report's settings, whatever the user's own are; restored afterwards.
+
+    Within itself it does nothing.
+    """
+    if mpl.rcParams["svg.hashsalt"] == _SETTINGS["svg.hashsalt"]:
+        yield
+        return
     with mpl.rc_context():
         mpl.rcdefaults()
         mpl.rcParams.update(_SETTINGS)
@@ -97,6 +107,7 @@ def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
     text = re.sub(r"url\(#([^)]+)", lambda m: f"url(#{short[m[1]]}", text)
     text = re.sub(r' (?:d|x|y)="[^"]*"', lambda m: _DECIMALS.sub(_rounded, m[0]), text)
     text = text.replace(f" font-family: '{_FONT}';", "")
+    text = _LABELS.sub(lambda m: m[1] + drawn(unescape(m[2])), text)
     text = re.sub(r' transform="rotate\(-0 [^)]*\)"', "", text)
     for name, colour in COLOURS.items():
         text = text.replace(colour, f"var(--fig-{name}, {colour})")
@@ -106,7 +117,7 @@ def svg_text(figure: Figure, prefix: str, title: str, description: str) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" {box[0] if box else ""} role="img" '
         f'aria-labelledby="{prefix}-title {prefix}-desc" font-family="Helvetica, Arial, sans-serif" '
         'stroke-linejoin="round" stroke-linecap="butt">\n'
-        f'<title id="{prefix}-title">{escape(title)}</title>\n<desc id="{prefix}-desc">{escape(description)}</desc>\n'
+        f'<title id="{prefix}-title">{escape(visible(title))}</title>\n<desc id="{prefix}-desc">{escape(visible(description))}</desc>\n'
     )
     return head + text[text.index(">") + 1 :].strip() + "\n"
 

@@ -227,6 +227,10 @@ def works(study: Study) -> tuple[tuple[str, str], ...]:
     """Key and text of every work that was used, in the order of its first use."""
     keys = [t.source.citation for t in study.tables] + [k for f in study.fits for k in f.citations]
     keys += [r.citation for r in study.references] + ([study.body.source.citation] if study.body else [])
+    keys += [k for found in study.hulls.values() for k in found.citations]
+    keys += ["feldman1979"] if study.parameter_files else []
+    keys += [k for made in study.exports for k in made.citations]
+    keys += ["sname1950", "roddy1990"]  # axes, symbols and the sense of control angles, under Conventions
     return tuple((k, work(k)) for k in dict.fromkeys(keys))
 
 

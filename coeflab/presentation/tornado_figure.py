@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from coeflab.core.symbols import primed
@@ -9,6 +11,7 @@ from coeflab.model.budget import Budget
 from coeflab.model.table import coefficient, percent
 from coeflab.presentation.document import Figure
 from coeflab.presentation.panel import tick_texts, ticks
+from coeflab.presentation.plotted import numbers, points
 from coeflab.presentation.svg import COLOURS, POINTS, power_of_ten, settings, svg_text
 
 WIDTH, LEFT, RIGHT, BOTTOM, TOP = 340.0, 112.0, 44.0, 34.0, 8.0
@@ -34,12 +37,17 @@ def tornado_figure(b: Budget, anchor: str) -> Figure:
     with settings():
         height = BOTTOM + TOP + ROW * max(len(bars), 1)
         figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
-        _bars(figure, bars, height, factor, f"change of {name}{power}")
+        axes = _bars(figure, bars, height, factor, f"change of {name}{power}")
+        told = points(
+            "bars", "95 % half-width", np.array([h for _, h in bars]), np.arange(len(bars))[::-1] + 0.0,
+            [f"{label}, {percent(half, b.value)} of the value" for label, half in bars],
+        )  # fmt: skip
+        shown = numbers(axes, (told,), f"change of {name}", "", factor_across=factor, bars="across")
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, _caption(b), description)
+    return Figure(anchor, svg, title, _caption(b), description, (shown,))
 
 
-def _bars(figure: Drawing, bars: list[tuple[str, float]], height: float, factor: float, name: str) -> None:
+def _bars(figure: Drawing, bars: list[tuple[str, float]], height: float, factor: float, name: str) -> Axes:
     width, tall = WIDTH - LEFT - RIGHT, height - BOTTOM - TOP
     axes = figure.add_axes((LEFT / WIDTH, BOTTOM / height, width / WIDTH, tall / height))
     axes.set_axis_off()
@@ -61,6 +69,7 @@ def _bars(figure: Drawing, bars: list[tuple[str, float]], height: float, factor:
         place = LEFT + width * (float(x) - across[0]) / (across[1] - across[0])
         figure.text(place / WIDTH, (BOTTOM - 13.5) / height, text, ha="center", va="baseline")
     figure.text((LEFT + width / 2.0) / WIDTH, (BOTTOM - 27.5) / height, name, ha="center", va="baseline")
+    return axes
 
 
 def _caption(b: Budget) -> str:

@@ -1,8 +1,7 @@
-"""Figures of a tuned model: what was measured, and what the model gave before and after."""
+"""Figures of a tuned model: the data, and what the model gave before and after."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,10 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from coeflab.core.wording import listed
 from coeflab.model.table import number
 from coeflab.model.tuning import TunedQuantity, Tuning
-from coeflab.presentation.document import Figure
+from coeflab.presentation.document import Figure, Panel, Series
 from coeflab.presentation.panel import BOTTOM, drawing, legend, limits, panel
+from coeflab.presentation.plotted import curve, numbers, points, tagged
 from coeflab.presentation.series import STYLES
 from coeflab.presentation.svg import COLOURS, settings, svg_text
 
@@ -54,9 +55,10 @@ class Groups:
 def agreement_figure(tuning: Tuning, anchor: str) -> Figure:
     """Model against measurement, one panel a quantity: on the line they agree."""
     title = f"{tuning.name}: model against measurement, before and after"
-    caption = f"Every case of {_listed(tuning)}. {_scatter(tuning)} On the line the model gives what was measured."
-    description = f"Points of {_listed(tuning)}, model over measurement, before (hollow) and after (filled) the fit."
-    marks = [Line2D([], [], label="before", **BEFORE), Line2D([], [], label="after", **AFTER)]
+    caption = f"Every case of {_named(tuning)}. {_scatter(tuning)} On the line the model gives the data."
+    description = f"Points of {_named(tuning)}, model over measurement, before (hollow) and after (filled) the fit."
+    marks = [tagged(Line2D([], [], label=key, **style), key) for key, style in (("before", BEFORE), ("after", AFTER))]
+    panels: list[Panel] = []
     with settings():
         tall = len(tuning.quantities) * (TALL + NAMED) + HEAD + ROW
         figure = drawing(tall)
@@ -64,26 +66,27 @@ def agreement_figure(tuning: Tuning, anchor: str) -> Figure:
             bottom = tall - HEAD - ROW - TALL - k * (TALL + NAMED)
             both = limits(np.concatenate([q.measured, q.after, q.before]), 0.06) or (-1.0, 1.0)
             across = limits(q.measured, 0.06) or (-1.0, 1.0)
-            axes = panel(
-                figure, bottom, TALL, across=across, up=both, name_up=f"model {q.name}  [{q.unit}]",
-                name_across=f"measured {q.name}  [{q.unit}]",
-            )  # fmt: skip
+            along, upright = f"data {q.name}  [{q.unit}]", f"model {q.name}  [{q.unit}]"
+            axes = panel(figure, bottom, TALL, across=across, up=both, name_up=upright, name_across=along)
             axes.plot(across, across, color=COLOURS["muted"], linewidth=0.8, zorder=1)
-            axes.plot(q.measured, q.before, zorder=2.5, **BEFORE)
-            axes.plot(q.measured, q.after, zorder=3, **AFTER)
+            tagged(axes.plot(q.measured, q.before, zorder=2.5, **BEFORE), "before")
+            tagged(axes.plot(q.measured, q.after, zorder=3, **AFTER), "after")
+            cases = [f"case {i + 1}" for i in range(len(q.measured))]
+            told = (points(key, key, q.measured, y, cases) for key, y in (("before", q.before), ("after", q.after)))
+            panels.append(numbers(axes, told, along, upright))
         legend(figure, marks, tall - HEAD - ROW)
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, caption, description)
+    return Figure(anchor, svg, title, caption, description, tuple(panels))
 
 
 def curves_figure(tuning: Tuning, groups: Groups, anchor: str) -> Figure:
-    """Every quantity over one variable, one curve a group: measured points, the model before (dashed) and after."""
-    title = f"{tuning.name}: {_listed(tuning)} over {groups.name_x.partition('  ')[0]}"
-    caption = f"Points: measured. Dashed: model before, solid: after. {_scatter(tuning)}"
-    description = f"{_listed(tuning)} over {groups.name_x.partition('  ')[0]} in curves of {', '.join(groups.names)}."
+    """Every quantity over one variable, one curve a group: the data as points, the model before (dashed) and after."""
+    title = f"{tuning.name}: {_named(tuning)} over {groups.name_x.partition('  ')[0]}"
+    caption = f"Points: data. Dashed: model before, solid: after. {_scatter(tuning)}"
+    description = f"{_named(tuning)} over {groups.name_x.partition('  ')[0]} in curves of {', '.join(groups.names)}."
     marks = [
         Line2D(
-            [], [], label=f"measured, {name}", color=style.colour, linestyle="none", marker=style.marker, markersize=3.8
+            [], [], label=f"data, {name}", color=style.colour, linestyle="none", marker=style.marker, markersize=3.8
         )
         for name, style in zip(groups.names, STYLES, strict=False)
     ]
@@ -91,6 +94,9 @@ def curves_figure(tuning: Tuning, groups: Groups, anchor: str) -> Figure:
         Line2D([], [], label="model before", color=COLOURS["ink"], **BARE),
         Line2D([], [], label="model after", color=COLOURS["ink"], linewidth=1.3),
     ]
+    for key, mark in zip((*(f"group{k}" for k in range(len(marks) - 2)), "before", "after"), marks, strict=True):
+        tagged(mark, key)
+    panels: list[Panel] = []
     rows = (len(marks) + 1) // 2
     across = limits(groups.x, 0.04) or (-1.0, 1.0)
     with settings():
@@ -102,28 +108,35 @@ def curves_figure(tuning: Tuning, groups: Groups, anchor: str) -> Figure:
                 figure, BOTTOM + k * (TALL + APART), TALL, across=across, up=up, name_up=f"{q.name}  [{q.unit}]",
                 name_across=groups.name_x if k == 0 else "",
             )  # fmt: skip
-            _curves(axes, q, groups)
+            panels.append(numbers(axes, _curves(axes, q, groups), groups.name_x, f"{q.name}  [{q.unit}]"))
         legend(figure, marks, tall - HEAD - rows * ROW)
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, caption, description)
+    return Figure(anchor, svg, title, caption, description, tuple(reversed(panels)))
 
 
-def _curves(axes: Axes, q: TunedQuantity, groups: Groups) -> None:
+def _curves(axes: Axes, q: TunedQuantity, groups: Groups) -> list[Series]:
+    """Draws every group; its numbers."""
+    told: list[Series] = []
     for number_, style in zip(range(len(groups.names)), STYLES, strict=False):
         mine = np.flatnonzero(groups.member == number_)
         mine = mine[np.argsort(groups.x[mine], kind="stable")]
         x = groups.x[mine]
-        axes.plot(x, q.before[mine], color=style.colour, zorder=2.2, **BARE)
-        axes.plot(x, q.after[mine], color=style.colour, linewidth=1.3, zorder=2.6)
-        axes.plot(
+        key, name = f"group{number_}", groups.names[number_]
+        tagged(axes.plot(x, q.before[mine], color=style.colour, zorder=2.2, **BARE), "before")
+        tagged(axes.plot(x, q.after[mine], color=style.colour, linewidth=1.3, zorder=2.6), "after")
+        dots = axes.plot(
             x, q.measured[mine], linestyle="none", marker=style.marker, markersize=3.8, markerfacecolor=style.colour,
             markeredgewidth=0.0, zorder=3,
         )  # fmt: skip
+        tagged(dots, key)
+        told.append(points(key, f"data, {name}", x, q.measured[mine]))
+        told.append(curve("before", f"model before, {name}", x, q.before[mine]))
+        told.append(curve("after", f"model after, {name}", x, q.after[mine]))
+    return told
 
 
-def _listed(tuning: Tuning) -> str:
-    names: Sequence[str] = [q.name for q in tuning.quantities]
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+def _named(tuning: Tuning) -> str:
+    return listed([q.name for q in tuning.quantities])
 
 
 def _scatter(tuning: Tuning) -> str:

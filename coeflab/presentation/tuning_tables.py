@@ -33,7 +33,7 @@ def quantities(tuning: Tuning) -> Table:
         for q in tuning.quantities
     )
     headers = ("quantity", "unit", "cases", "rms before", "rms after", "largest after")
-    return Table(f"{tuning.name}: model less measured", headers, rows, (), frozenset({0, 1}))
+    return Table(f"{tuning.name}: model less data", headers, rows, (), frozenset({0, 1}))
 
 
 def correlations(tuning: Tuning) -> Table:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from coeflab.model.carried import Carried
 from coeflab.model.spread import Importance, Spread
-from coeflab.presentation.document import Figure
+from coeflab.presentation.document import Figure, Series
 from coeflab.presentation.panel import BOTTOM, WIDTH, Array, drawing, legend, panel, tick_texts, ticks
+from coeflab.presentation.plotted import numbers, points
 from coeflab.presentation.svg import COLOURS, settings, svg_text
 from coeflab.presentation.uncertainty_tables import SMALL, shown_unit
 
@@ -68,8 +71,11 @@ def histogram(s: Spread, sample: Array, anchor: str) -> Figure:
             axes.axvline(s.figure.value * factor, color=COLOURS["b"], linewidth=1.4, zorder=3)
             handles.append(Line2D([], [], color=COLOURS["b"], linewidth=1.4, label="values of the file"))
         legend(figure, handles, TALL - LEGEND)
+        ranges = [f"{a:.4g} to {b:.4g}{f' {unit}' if unit else ''}" for a, b in itertools.pairwise(edges)]
+        told = points("members", "members in the bar", (edges[:-1] + edges[1:]) / 2.0, counts + 0.0, ranges)
+        shown = numbers(axes, (told,), name, "members", bars="up")
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, f"{title}; the outermost 0.4 % lie outside of the axis.", description)
+    return Figure(anchor, svg, title, f"{title}; the outermost 0.4 % lie outside of the axis.", description, (shown,))
 
 
 def bars(found: Importance, anchor: str) -> Figure:
@@ -92,16 +98,26 @@ def bars(found: Importance, anchor: str) -> Figure:
     height = max(BOTTOM + LEGEND + ROW * max(len(rows), 1), TALL)
     with settings():
         figure = drawing(height)
-        _draw(figure, rows, height, "Sobol index" if grouped else "share of the variance")
-        handles: list[Any] = [
-            Patch(color=COLOURS["a"], linewidth=0.0, label="first order" if grouped else "if known exactly")
-        ]
+        name = "Sobol index" if grouped else "share of the variance"
+        axes = _draw(figure, rows, height, name)
+        own = "first order" if grouped else "if known exactly"
+        shown = numbers(axes, _told(rows, own, axes.get_ylim()[1] - 0.5), name, "", bars="across")
+        handles: list[Any] = [Patch(color=COLOURS["a"], linewidth=0.0, label=own)]
         if grouped:
             handles.append(Patch(color=COLOURS["band"], linewidth=0.0, label="total"))
             handles.append(Line2D([], [], color=COLOURS["ink"], linewidth=0.9, label="95 % of first order"))
         legend(figure, handles, height - LEGEND)
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, f"{title}.", description)
+    return Figure(anchor, svg, title, f"{title}.", description, (shown,))
+
+
+def _told(rows: list[Bar], own: str, top: float) -> list[Series]:
+    """The ends of the bars, the upper row first."""
+    at = top - np.arange(len(rows))
+    spans = ["" if a == b else f", 95 % {a:.2f} to {b:.2f}" for _, _, (a, b), _ in rows]
+    out = [points("own", own, np.array([r[1] for r in rows]), at, [r[0] + s for r, s in zip(rows, spans, strict=True)])]
+    total = np.array([np.nan if r[3] is None else r[3] for r in rows])
+    return [*out, points("total", "total", total, at, [r[0] for r in rows])]
 
 
 def _label(symbols: tuple[str, ...]) -> str:
@@ -112,7 +128,7 @@ def _label(symbols: tuple[str, ...]) -> str:
     return f"{' '.join(kept)} + {len(symbols) - len(kept)}"
 
 
-def _draw(figure: Drawing, rows: list[Bar], height: float, name: str) -> None:
+def _draw(figure: Drawing, rows: list[Bar], height: float, name: str) -> Axes:
     width, tall = WIDTH - LEFT - RIGHT, height - BOTTOM - LEGEND
     axes = figure.add_axes((LEFT / WIDTH, BOTTOM / height, width / WIDTH, tall / height))
     axes.set_axis_off()
@@ -136,3 +152,4 @@ def _draw(figure: Drawing, rows: list[Bar], height: float, name: str) -> None:
         place = LEFT + width * float(x) / reach
         figure.text(place / WIDTH, (BOTTOM - 13.5) / height, text, ha="center", va="baseline")
     figure.text((LEFT + width / 2.0) / WIDTH, (BOTTOM - 27.5) / height, name, ha="center", va="baseline")
+    return axes

@@ -13,7 +13,7 @@ from coeflab.core.errors import OutputError
 from coeflab.core.version import VERSION
 from coeflab.model.table import Table
 from coeflab.presentation.document import Document, Figure, Section
-from coeflab.presentation.notation import Raised, Run, cell_runs, runs
+from coeflab.presentation.notation import Raised, Run, cell_runs, runs, unit_runs
 from coeflab.presentation.printable import breakable, glyphs, shortened
 from coeflab.presentation.sheet import plain, size_of
 
@@ -166,7 +166,7 @@ def _word(table: Table, column: int) -> str:
 
 
 def _cell(text: str, unit: bool, folds: bool) -> list[Any]:
-    pieces = [glyphs(text.replace("*", "·"))] if unit else [_piece(p) for p in cell_runs(text)]
+    pieces = [_piece(p) for p in (unit_runs(text) if unit else cell_runs(text))]
     return pieces if folds else [p.replace(" ", "\u00a0") if isinstance(p, str) else p for p in pieces]
 
 

@@ -77,10 +77,10 @@ def test_the_keyboard_tells_value_unit_and_row(plain):
     plain.keyboard.press("ArrowRight")
     plain.keyboard.press("Home")
     text = probe.get_attribute("aria-valuetext")
-    assert text.startswith("points, sideslip asin v' = −12 deg, Y' = 0.00")
+    assert re.match(r"points, sideslip asin v.? = −12 ?(deg|°), Y.? = 0\.00", text)
     assert text.endswith("tow 0")
     plain.keyboard.press("End")
-    assert "= 12 deg" in probe.get_attribute("aria-valuetext")
+    assert re.search(r" = 12 ?(deg|°)", probe.get_attribute("aria-valuetext"))
     assert plain.locator(f"{DATA} .said").is_visible()
     plain.keyboard.press("Escape")
     assert not plain.locator(f"{DATA} .said").is_visible()
@@ -94,7 +94,7 @@ def test_the_pointer_tells_the_point_under_it(plain):
     plain.mouse.move(*place)
     said = plain.locator(f"{DATA} .said")
     assert said.is_visible()
-    assert "−12 deg" in said.inner_text()
+    assert re.search(r"−12 ?(deg|°)", said.inner_text())
     assert "tow 0" in said.inner_text()
 
 

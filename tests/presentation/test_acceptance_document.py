@@ -3,9 +3,10 @@ from __future__ import annotations
 from coeflab.core.provenance import InputFile
 from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
 from coeflab.presentation import acceptance_document
+from coeflab.presentation.document import Figure
 from coeflab.presentation.summary import acceptance_summary
 
-SVG = b'<svg viewBox="0 0 340 100"><title id="a">A &amp; B</title><desc id="b">two lines</desc></svg>'
+DRAWN = Figure("a-b", '<svg viewBox="0 0 340 100"></svg>', "A & B", "cap", "two lines")
 
 
 def found(second: float, **changes) -> Acceptance:
@@ -19,7 +20,8 @@ def found(second: float, **changes) -> Acceptance:
         "errata": ("one",),
         "statements": ("know this",),
         "citations": ("huuv2025",),
-        "figures": (("A b.svg", "cap", SVG),),
+        "figures": (("a_b", DRAWN),),
+        "conventions": ("y points to port in the paper.",),
     }
     return Acceptance("boat", "Boat", (table,), **(made | changes))
 
@@ -32,20 +34,25 @@ def test_all_parts_are_there():
         "compared",
         "statements",
         "errata",
+        "conventions",
         "provenance",
+        "reproduce",
     ]
     assert document.name == "boat"
     assert len(document.digest) == 16
     assert document.works[0][0] == "huuv2025"
     (figure,) = document.sections[1].figures
-    assert (figure.anchor, figure.title, figure.description) == ("a-b", "A & B", "two lines")
+    assert figure == DRAWN
     assert document.sections[2].subsections[0].anchor == "table-turns-a"
-    assert document.sections[5].tables[0].rows == (("boat/a.csv", "0" * 64),)
+    assert "y points to port in the paper." in document.sections[5].paragraphs
+    assert [f.anchor for f in document.sections[5].figures] == ["axes-plan", "axes-profile", "axes-triad"]
+    assert document.sections[6].tables[0].rows == (("boat/a.csv", "0" * 64),)
+    assert document.sections[7].code == ("coeflab report boat --to html,pdf",)
 
 
 def test_parts_without_content_are_left_out():
     document = acceptance_document.document(found(2.05, errata=(), statements=(), figures=()))
-    assert [s.anchor for s in document.sections] == ["verdict", "compared", "provenance"]
+    assert [s.anchor for s in document.sections] == ["verdict", "compared", "conventions", "reproduce"]
     assert document.digest == ""
 
 
@@ -62,8 +69,16 @@ def test_the_overview_shows_how_much_of_the_allowance_is_used():
     assert acceptance_document.overview(found(2.5)).rows[0][2:] == ("2 of 3", "500 %", "fail")
 
 
-def test_the_summary_keeps_verdict_and_first_figure():
+def test_a_limit_that_is_nearly_reached_shows_in_the_overview():
+    rows = (Compared("case", "rms", "1", 0.5, 0.45, 0.0, at_most=True),)
+    made = Acceptance("boat", "Boat", (ComparedTable("t", "T", rows, "Table 1"),), (), (), ())
+    assert acceptance_document.overview(made).rows[0][2:] == ("1 of 1", "90 %", "pass")
+
+
+def test_the_summary_keeps_verdict_first_figure_and_all_numbers():
     made = found(2.05)
     short = acceptance_summary(made, acceptance_document.document(made))
     assert [s.anchor for s in short.sections] == ["verdict", "figure"]
+    assert short.sections[0].figures == ()
+    assert [f.anchor for f in short.sections[1].figures] == ["a-b", "allowances"]
     assert short.works == ()

@@ -157,7 +157,8 @@ def test_ticks() -> None:
 
 def test_axes_carry_metres_and_grow_as_the_body_says() -> None:
     """Side view: z grows downward, x to the right; front view: y grows to the left."""
-    texts = re.findall(r"<text[^>]*>([^<]*)</text>", body_figure("b", SHAPE, None, "o").svg)
+    root = ET.fromstring(body_figure("b", SHAPE, None, "o").svg)
+    texts = ["".join(t.itertext()) for t in root.iter(f"{SVG}text")]
     assert [texts.count(f"{axis} [m]") for axis in "xyz"] == [2, 2, 2]
     drawn = Drawing()
     axes = drawn.add_axes((0.0, 0.0, 1.0, 1.0))

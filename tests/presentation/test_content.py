@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from coeflab.model.check import Check, Severity
+from coeflab.model.export import Export
 from coeflab.presentation.content import document
 from tests.presentation.studies import FEW, FULL, HALF, HOSTILE, small_study
 
@@ -87,6 +88,14 @@ def test_points_that_determine_nothing_are_drawn_without_estimators():
     found = next(s for s in flat(document(small_study(FEW)).sections) if s.anchor == "campaign-tow-yv")
     assert [f.anchor for f in found.figures] == ["campaign-tow-yv-data"]
     assert "No coefficient could be determined" in words(small_study(FEW), "verdict")
+
+
+def test_works_of_exports_and_of_the_conventions_are_listed():
+    made = Export("boat", "mss", {"boat.m": b""}, None, ("fossen2011", "mss"))
+    keys = [k for k, _ in document(replace(small_study(FULL), exports=(made,))).works]
+    assert {"mss", "fossen2011", "sname1950", "roddy1990"} <= set(keys)
+    assert len(keys) == len(set(keys))
+    assert "mss" not in [k for k, _ in document(small_study(FULL)).works]
 
 
 def test_a_plan_without_a_file_gets_no_command():

@@ -75,3 +75,15 @@ def test_a_neutral_phase_has_no_steady_glide() -> None:
     assert run.nearest(0) is None
     assert not run.settled(0)
     assert glide_tables.phases(run).rows[0][6] == "-"
+
+
+def test_figures_tell_speeds_and_steady_glides(run: GlideRun) -> None:
+    panels = motion_figure([run], "m").panels
+    assert [(p.name_up, p.unit_up) for p in panels] == [("V", "m/s"), ("x", "m"), ("depth", "m"), ("alpha", "deg")]
+    assert panels[2].up[0] > panels[2].up[1]
+    (depth,) = panels[2].series
+    assert depth.y == pytest.approx(np.interp(depth.x, run.time, run.depth), abs=1e-3)
+    steady = [s for p in SLOCUM.phases for s in steady_glides(SLOCUM, p)]
+    upper, _ = polar_figure(SLOCUM, steady, "p").panels
+    dots = next(s for s in upper.series if s.key == "dots")
+    assert dots.y == pytest.approx([s.speed for s in steady], rel=1e-5)

@@ -22,7 +22,7 @@ def test_results_come_in_the_order_of_the_jobs():
 
 def test_other_processes_do_the_work(monkeypatch):
     monkeypatch.setattr(in_parallel, "_safe", lambda: True)
-    monkeypatch.setattr(in_parallel, "_cores", lambda: 2)
+    monkeypatch.setattr(in_parallel, "cores", lambda: 2)
     with begun([partial(square, 1), partial(square, 2)]) as results:
         assert os.getpid() not in {process for _, process in results()}
 
@@ -51,3 +51,10 @@ def failing():
 def test_an_error_in_a_job_is_the_same_error_here():
     with begun([failing, partial(square, 1)]) as results, pytest.raises(InputError, match="this"):
         results()
+
+
+def test_sizes_do_not_change_the_order_of_results(monkeypatch):
+    monkeypatch.setattr(in_parallel, "_safe", lambda: True)
+    monkeypatch.setattr(in_parallel, "cores", lambda: 2)
+    with begun([partial(square, n) for n in (1, 2, 3)], [1, 3, 2]) as results:
+        assert [value for value, _ in results()] == [1, 4, 9]

@@ -115,7 +115,7 @@ def test_a_surface_needs_rows_in_which_both_variables_move():
 def test_slices_stand_at_values_of_the_grid():
     m = models("huuv_synthetic", "surface", (("degree", 3),))[0]
     assert np.degrees(slices_of(m)) == pytest.approx([0.0, 7.5, 17.5, 25.0], abs=0.01)
-    assert "beta = 17.5 deg" in words(model_figures(m, "m")[1].svg)
+    assert "β = 17.5°" in words(model_figures(m, "m")[1].svg)
     scattered = replace(m, x={**m.x, "beta": m.x["beta"] + 1e-2 * np.arange(m.n_points) / m.n_points})
     assert slices_of(scattered) == ()
 

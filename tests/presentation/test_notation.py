@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.presentation.notation import MINUS, Factor, Raised, Symbol, cell_runs, runs
+from coeflab.presentation.notation import MINUS, Factor, Raised, Symbol, cell_runs, runs, unit_runs
 
 
 def spelled(text: str) -> list[str]:
@@ -27,6 +27,15 @@ def spelled(text: str) -> list[str]:
         ("sin(beta), C_A(nu) nu", ["sin(", "{beta}", "), ", "{C_A}", "(", "{nu}", ") ", "{nu}"]),
         ("E = S - D at U95", [f"E = S {MINUS} D at ", "{U95}"]),
         ("m3 - m1", [f"m3 {MINUS} m1"]),
+        ("2.0e+00 of 0.0e+00, 10⁻³", ["2.0 of 0.0, 10", f"^{MINUS}3"]),
+        ("1/2 rho U^2 L^k", ["½ ", "{rho}", " ", "{U}", "^2", " ", "{L}", "^k"]),
+        ("(Yr' - m') / (xG' m')", ["(", "{Yr'}", f" {MINUS} ", "{m'}", ") / (", "{xG'}", " ", "{m'}", ")"]),
+        ("C_D(beta) - C_D(0)", ["{C_D}", "(", "{beta}", f") {MINUS} ", "{C_D}", "(0)"]),
+        ("cos a F_x - sin a z_CG", ["cos a ", "{F_x}", f" {MINUS} sin a ", "{z_CG}"]),
+        ("-1.10 b - 2.40 b^3, n - p", [f"{MINUS}1.10 b {MINUS} 2.40 b", "^3", f", n {MINUS} ", "{p}"]),
+        ("R2 of 3 m^2", ["R", "^2", " of 3 m", "^2"]),
+        ("angle  [deg], as angle deg", ["angle  [°], as angle °"]),
+        ("terms X0 Yv Xvr, Xuq, Nur", ["terms ", "{X0}", " ", "{Yv}", " ", "{Xvr}", ", ", "{Xuq}", ", ", "{Nur}"]),
         ("Y|v|v, Nrdot, Ydr', dr'", ["{Y|v|v}", ", ", "{Nrdot}", ", ", "{Ydr'}", ", ", "{dr'}"]),
     ],
 )
@@ -43,6 +52,8 @@ def test_symbols_and_numbers_are_found(text, pieces):
         "M. Gertler, G. R. Hagen, NSRDC 2510, DTRC/SHD-1298-08",
         "don't, the author's own, 'quoted'",
         "Mr Yup and Zuma",
+        "Nu Kp Nr 5",
+        "C_D_alphabet, my_long_name, x_boat",
         "https://example.org/x?y=-",
     ],
 )
@@ -59,6 +70,26 @@ def test_a_derivative_in_parts():
     (rest,) = runs("X0'")
     assert isinstance(rest, Symbol)
     assert (rest.letter, rest.index, rest.primed) == ("X", "0", True)
+
+
+def test_a_coefficient_of_a_model_has_its_term_below():
+    (squared,) = runs("C_D_alpha^2 beta")
+    assert squared == Symbol("C", "C_D_alpha^2 beta", index="Dα²β")
+    (slope,) = runs("X'_beta")
+    assert slope == Symbol("X", "X'_beta", index="β", primed=True)
+    (rest,) = cell_runs("C_L_0")
+    assert rest == Symbol("C", "C_L_0", index="L0")
+
+
+def test_controls_alone_in_a_cell_are_deflections():
+    assert cell_runs("ds") == (Symbol("δ", "ds", index="s"),)
+    assert runs("δs") == (Symbol("δ", "δs", index="s"),)
+
+
+def test_a_unit_holds_no_symbol():
+    assert unit_runs("N*m") == ("N·m",)
+    assert unit_runs("kg*m^2") == ("kg·m", Raised("2"))
+    assert unit_runs("m/s^-1") == ("m/s", Raised(f"{MINUS}1"))
 
 
 def test_a_whole_cell_needs_no_prime():

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.presentation.printable import BREAK, STEP, WORD, breakable, glyphs, shortened
+from coeflab.presentation.printable import BREAK, STEP, WORD, breakable, glyphs, runs_to_the_left, shortened, visible
 
 
 def test_a_short_text_is_left_alone():
@@ -45,3 +45,20 @@ def test_what_the_fonts_lack_is_named(text, shown):
 
 def test_right_to_left_letters_that_the_fonts_have_stay():
     assert glyphs("שלום مرحبا") == "שלום مرحبا"
+
+
+@pytest.mark.parametrize("ch", ["\u202e", "\u2066", "\u200b", "\u00ad", "\x07", "\ud800", "\ue000"])
+def test_characters_without_a_shape_are_seen(ch):
+    assert visible(f"a{ch}b") == f"aU+{ord(ch):04X}b"
+
+
+def test_letters_of_all_scripts_and_unbroken_spaces_stay():
+    text = "Größe שלום 船体 x\u0307 1\u202f×\u00a02 🚢"
+    assert visible(text) == text
+    assert visible("a\u2028b\tc") == "a b c"
+
+
+def test_some_scripts_run_to_the_left():
+    assert runs_to_the_left("hull שלום")
+    assert runs_to_the_left("مرحبا")
+    assert not runs_to_the_left("Größe 船体 −1")

@@ -17,16 +17,21 @@ from coeflab.model.body import Body
 from coeflab.model.shape import Box, Cylinder, Part, Parts
 from coeflab.model.study import PlannedTable
 from coeflab.presentation.axes_figure import AXES, axes_figures
+from coeflab.presentation.content import document
 from coeflab.presentation.embedded import panels_json, scene_json
 from coeflab.presentation.figures import sweep_figure
 from coeflab.presentation.hull_marks import hull_marks
 from coeflab.presentation.hull_scene import FACES, Mark, hull_scene
 from coeflab.presentation.quality_section import quality_sections
-from coeflab.presentation.stability_section import stability_sections
+from coeflab.presentation.stability_section import in_words, stability_sections
+from coeflab.presentation.summary import study_summary
 from coeflab.presentation.surface_scene import surface_scene
 from coeflab.workbench import read_body, read_tables
-from tests.manoeuvres.vehicles import STABLE, made
+from tests.manoeuvres.vehicles import STABLE, UNSTABLE, made
 from tests.presentation.studies import FULL, HOSTILE, LENGTH, small_study
+
+M = 60.0 / (0.5 * 1000.0 * 2.0**3)
+NEARLY = {**STABLE, "Nv": -4e-2 * -1e-2 / (4e-3 - M) * 1.01}  # G_h = 1 - 1.01: next to nothing, below zero
 
 
 def with_files(*files):
@@ -37,7 +42,7 @@ def test_stability_has_indices_roots_and_figures():
     (section,) = stability_sections(with_files(made()))
     indices, roots = section.tables
     assert [row[1] for row in indices.rows] == ["G_h", "G_v"]
-    assert all(row[4] == "stable, not beyond its uncertainty" for row in indices.rows), "no U95, so no certainty"
+    assert all(row[4] == "stable by its value, which has no U95" for row in indices.rows)
     assert all("no U95" in row[5] for row in indices.rows)
     assert [row[-1] for row in roots.rows] == ["none", "none"]
     assert len(section.figures) == 2
@@ -48,6 +53,41 @@ def test_stability_without_hydrostatics_says_what_is_missing():
     (section,) = stability_sections(with_files(made().model_copy(update={"hydrostatics": None})))
     assert section.tables[1].rows[1][-1] == "not determined, no BG"
     assert "no hydrostatics" in section.figures[1].caption
+
+
+def with_u95(values, half):
+    """A file whose derivatives of sway and yaw are independent, with such half-widths as shares of their sizes."""
+    file = made(values)
+    deviations = [half * values[s] / 2.0 for s in ("Yv", "Nv", "Yr", "Nr")]
+    symbols = tuple(file.coefficient(s).symbol for s in ("Yv'", "Nv'", "Yr'", "Nr'"))
+    matrix = tuple(map(tuple, np.diag(np.square(deviations)).tolist()))
+    covariance = file.covariance.model_copy(update={"symbols": symbols, "matrix": matrix})
+    return file.model_copy(update={"covariance": covariance})
+
+
+@pytest.mark.parametrize(
+    ("values", "half", "said"),
+    [(STABLE, 0.05, "stable"), (UNSTABLE, 0.05, "unstable"), (NEARLY, 0.05, "not determined")],
+)
+def test_an_index_is_stable_unstable_or_not_determined_by_its_interval(values, half, said):
+    study = with_files(with_u95(values, half))
+    (section,) = stability_sections(study)
+    by_index = {row[1]: row for row in section.tables[0].rows}
+    assert by_index["G_h"][4] == said
+    (sentence,) = [text for text in in_words(study) if "G_h" in text]
+    assert sentence.startswith(f"{said[0].upper()}{said[1:]} on a straight course with controls fixed: synthetic (G_h")
+    assert sentence in document(study).sections[0].paragraphs
+    summary = study_summary(study).sections
+    assert sentence in summary[0].paragraphs
+    assert said in next(s for s in summary if s.anchor == "stability").tables[0].rows[0]
+
+
+def test_the_sketch_states_a_sense_of_control_angles_only_with_its_source():
+    with_controls, without = axes_figures("a"), axes_figures("a", controls=False)
+    assert all("Roddy (1990), Table 4" in f.caption for f in with_controls[:2])
+    assert all("Roddy" not in f.caption and "rudder" not in f.description for f in without)
+    assert with_controls[0].svg != without[0].svg
+    assert with_controls[2] == without[2]
 
 
 def test_a_missing_rate_derivative_is_named():

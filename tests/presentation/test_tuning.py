@@ -46,7 +46,7 @@ def test_curves_name_their_groups(tuning: Tuning) -> None:
     groups = Groups(X, "command  [%]", np.arange(N) % 2, ("left 0 %", "left 20 %"))
     figure = curves_figure(tuning, groups, "curves")
     ET.fromstring(figure.svg)
-    for words in ("measured, left 0 %", "measured, left 20 %", "model before", "model after", "command", "beta"):
+    for words in ("data, left 0 %", "data, left 20 %", "model before", "model after", "command", "beta"):
         assert words in figure.svg
 
 
@@ -59,3 +59,17 @@ def test_tables(tuning: Tuning) -> None:
     assert tuning_tables.quantities(tuning).rows[0][3:] == ("0.300", "0.100", "0.100")
     assert tuning_tables.correlations(tuning).rows == (("side", "drag", "-0.85"),)
     assert tuning_tables.together(tuning).rows == (("side and mass: only as a ratio.",),)
+
+
+def test_figures_tell_their_cases(tuning: Tuning) -> None:
+    both = agreement_figure(tuning, "agreement").panels
+    assert [(p.name_up, p.unit_up) for p in both] == [("model u", "m/s"), ("model beta", "deg")]
+    assert [s.name for s in both[1].series] == ["before", "after"]
+    assert len(both[1].series[0].x) == N - 1
+    assert "case 3" not in both[1].series[0].notes
+    groups = Groups(X, "thrust  [N]", np.arange(N) % 2, ("even", "odd"))
+    u, beta = curves_figure(tuning, groups, "curves").panels
+    assert (u.name_up, beta.name_up, u.name_across, u.unit_across) == ("u", "beta", "thrust", "N")
+    assert u.frame[1] < beta.frame[1]
+    assert [s.name for s in u.series][:3] == ["data, even", "model before, even", "model after, even"]
+    assert u.series[0].y == pytest.approx(X[::2])

@@ -12,6 +12,10 @@ const number = v => {
   const text = size !== 0 && (size < 1e-5 || size >= 1e6) ? v.toExponential(3) : String(Number(v.toPrecision(5)));
   return text.replace(/-/g, "−");
 };
+const inside = ([left, top, wide, tall], [x, y]) => x >= left && x <= left + wide && y >= top && y <= top + tall;
+// Bars are met anywhere along them.
+const distance = (bars, dx, dy) =>
+  bars === "across" ? Math.abs(dy) + 0.01 * Math.abs(dx) : bars ? Math.abs(dx) + 0.01 * Math.abs(dy) : Math.hypot(dx, dy);
 const valued = (name, v, unit) => `${name} = ${number(v)}${unit ? ` ${unit}` : ""}`;
 
 // A row of switches; calls `turned` with the key and whether it is on.
@@ -122,9 +126,16 @@ class Plot {
 
   place(panel, x, y) {
     const [left, top, wide, tall] = panel.frame;
-    const right = (x - panel.across[0]) / (panel.across[1] - panel.across[0]);
+    let right = (x - panel.across[0]) / (panel.across[1] - panel.across[0]);
+    if (panel.bars) right = Math.max(0, Math.min(1, right));
     const up = (y - panel.up[0]) / (panel.up[1] - panel.up[0]);
     return [left + wide * right, top + tall * (1 - up)];
+  }
+
+  // Whether a place lies in the frame; a bar that leaves it ends at its edge.
+  within(panel, x, y) {
+    const [left, top, wide, tall] = panel.frame, [px, py] = this.place(panel, x, y);
+    return px > left - 1 && px < left + wide + 1 && py > top - 1 && py < top + tall + 1;
   }
 
   shown(series, i) { return !this.off.has(series.key) && !(series.groups && this.offGroups.has(series.groups[i])); }
@@ -132,8 +143,9 @@ class Plot {
   // Series that the keyboard goes through, each with the points that are shown.
   stops() {
     return this.panels.flatMap(panel => panel.series.map(series => {
-      const order = series.x.map((_, i) => i).filter(i => this.shown(series, i));
-      return {panel, series, order: order.sort((a, b) => series.x[a] - series.x[b])};
+      const order = series.x.map((_, i) => i).filter(i => this.shown(series, i) && this.within(panel, series.x[i], series.y[i]));
+      const rank = panel.bars === "across" ? i => -series.y[i] : i => series.x[i];
+      return {panel, series, order: order.sort((a, b) => rank(a) - rank(b))};
     })).filter(s => s.order.length);
   }
 
@@ -179,15 +191,16 @@ class Plot {
   point(e) {
     const to = this.svg.getScreenCTM();
     const screen = ([x, y]) => [to.a * x + to.e, to.d * y + to.f];
+    const at = [(e.clientX - to.e) / to.a, (e.clientY - to.f) / to.d];
     let best = null;
     for (const panel of this.panels) for (const series of panel.series) {
-      if (this.off.has(series.key)) continue;
-      const near = series.curve ? this.onCurve(panel, series, (e.clientX - to.e) / to.a) : null;
+      if (this.off.has(series.key) || (panel.bars && !inside(panel.frame, at))) continue;
+      const near = series.curve ? this.onCurve(panel, series, ...at) : null;
       const candidates = series.curve ? (near ? [near] : []) : series.x.map((x, i) => [x, series.y[i], i]);
       for (const [x, y, i] of candidates) {
-        if (i !== undefined && !this.shown(series, i)) continue;
+        if ((i !== undefined && !this.shown(series, i)) || !this.within(panel, x, y)) continue;
         const [px, py] = screen(this.place(panel, x, y));
-        const far = Math.hypot(px - e.clientX, py - e.clientY);
+        const far = distance(panel.bars, px - e.clientX, py - e.clientY);
         const score = far + (series.curve ? NEAR_POINT : 0);
         if (far < (series.curve ? NEAR_CURVE : NEAR_POINT) && (!best || score < best.score)) best = {score, panel, series, x, y, i};
       }
@@ -196,20 +209,26 @@ class Plot {
     else this.hide();
   }
 
-  onCurve(panel, series, at) {
-    const [left, , wide] = panel.frame;
-    const x = panel.across[0] + (at - left) / wide * (panel.across[1] - panel.across[0]);
+  // Where a curve passes the pointer; the nearest place where it does so more than once.
+  onCurve(panel, series, across, down) {
+    const [left, top, wide, tall] = panel.frame;
+    const x = panel.across[0] + (across - left) / wide * (panel.across[1] - panel.across[0]);
+    const y = panel.up[1] - (down - top) / tall * (panel.up[1] - panel.up[0]);
+    let best = null;
     for (let i = 1; i < series.x.length; i++) {
       const a = series.x[i - 1], b = series.x[i];
-      if (a !== b && (x - a) * (x - b) <= 0) return [x, series.y[i - 1] + (series.y[i] - series.y[i - 1]) * (x - a) / (b - a)];
+      if (a === b || (x - a) * (x - b) > 0) continue;
+      const passed = series.y[i - 1] + (series.y[i] - series.y[i - 1]) * (x - a) / (b - a);
+      if (!best || Math.abs(passed - y) < Math.abs(best[1] - y)) best = [x, passed];
     }
-    return null;
+    return best;
   }
 
   tell(panel, series, x, y, i, most, now) {
     const note = series.notes && series.notes[i], stands = series.groups ? Number(series.groups[i]) : x;
-    const lines = [series.name, valued(panel.names[0], stands, panel.units[0]), valued(panel.names[1], y, panel.units[1])];
-    if (note) lines.push(note);
+    const lines = [series.name, valued(panel.names[0], stands, panel.units[0])];
+    if (panel.bars !== "across") lines.push(valued(panel.names[1], y, panel.units[1]));
+    if (note) lines[panel.bars === "across" ? "unshift" : "push"](note);
     this.said.replaceChildren(...lines.map((line, i) => {
       const out = document.createElement(i ? "span" : "strong");
       out.textContent = line;

@@ -1,0 +1,153 @@
+"""Every number of a publication as one mark: its difference over what is allowed, one strip a table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.lines import Line2D
+
+from coeflab.model.acceptance import Acceptance, Basis, Compared, ComparedTable
+from coeflab.presentation.document import Figure, Panel
+from coeflab.presentation.panel import BOTTOM, LEGEND_ROW, RIGHT, WIDTH, Array, drawing, height_of, legend, ticks
+from coeflab.presentation.plotted import numbers, points, tagged
+from coeflab.presentation.svg import COLOURS, settings, svg_text
+
+ACROSS = "difference over what is allowed  [-]"
+EDGE, BEYOND = 1.28, 1.18
+HEAD, LEAST, ROW, MOST, LONGEST = 15.0, 13.0, 2.7, 80.0, 60
+INDENT = 16.0
+HOLLOW: dict[str, Any] = {"markerfacecolor": "none", "markeredgewidth": 0.9}
+FILLED: dict[str, Any] = {"markeredgewidth": 0.0}
+MARKS: dict[Basis, dict[str, Any]] = {
+    "printed": {"marker": "D", "markersize": 3.8, "markeredgecolor": COLOURS["b"], "markerfacecolor": COLOURS["b"], **FILLED},
+    "derived": {"marker": "o", "markersize": 4.0, "markeredgecolor": COLOURS["a"], "markerfacecolor": COLOURS["a"], **FILLED},
+    "in-sample": {"marker": "s", "markersize": 3.8, "markeredgecolor": COLOURS["c"], **HOLLOW},
+}  # fmt: skip
+OUTSIDE: dict[str, Any] = {"marker": "x", "markersize": 5.0, "markeredgecolor": COLOURS["ink"], "markeredgewidth": 1.3}
+CAPTION = (
+    "One mark a number, in the order of its table. At 0 ours is the published one, at -1 and 1 the whole allowance is used. A "
+    "number that may be at most some limit stands at its share of the limit."
+)
+
+
+def allowance_figure(found: Acceptance, anchor: str) -> Figure:
+    """All compared numbers.
+
+    Parameters
+    ----------
+    found : Acceptance
+    anchor : str
+    """
+    rows = [r for t in found.tables for r in t.rows]
+    held = sum(r.holds for r in rows)
+    title = f"{held} of {len(rows)} numbers within what is allowed"
+    heights = [_height(len(t.rows)) for t in found.tables]
+    body = sum(heights) + HEAD * len(heights)
+    description = (
+        "One strip a table, one mark a number at its difference over what is allowed: "
+        + "; ".join(f"{t.title}: {_count(t)}" for t in found.tables)
+        + "."
+    )
+    with settings():
+        figure = drawing(BOTTOM + body + 10.0 + LEGEND_ROW * 2)
+        top, panels = BOTTOM + body, []
+        for t, height in zip(found.tables, heights, strict=True):
+            _heading(figure, top, t)
+            panels.append(_strip(figure, top - HEAD - height, height, t))
+            top -= HEAD + height
+        _scale(figure)
+        legend(figure, _legend(rows), BOTTOM + body)
+        svg = svg_text(figure, anchor, title, description)
+    return Figure(anchor, svg, title, CAPTION, description, tuple(panels))
+
+
+def share(r: Compared) -> float:
+    """Difference over what is allowed, of a limit the share that is used; NaN where nothing was found."""
+    if r.found is None or r.difference is None:
+        return float("nan")
+    if r.at_most:
+        limit = r.published + r.tolerance * (abs(r.published) if r.relative else 1.0)
+        return r.found / limit if limit > 0.0 else (0.0 if r.holds else float("inf"))
+    if r.tolerance == 0.0:
+        return 0.0 if r.holds else float(np.copysign(np.inf, r.difference))
+    return r.difference / r.tolerance
+
+
+def _height(count: int) -> float:
+    return min(max(LEAST, ROW * count), MOST)
+
+
+def _count(t: ComparedTable) -> str:
+    return f"{sum(r.holds for r in t.rows)} of {len(t.rows)}"
+
+
+def _heading(figure: Drawing, top: float, t: ComparedTable) -> None:
+    name = t.title if len(t.title) <= LONGEST else t.title[:LONGEST].rsplit(" ", 1)[0].rstrip(",") + " …"
+    level = (top - HEAD + 4.0) / height_of(figure)
+    figure.text(INDENT / WIDTH, level, name, va="baseline", fontsize=8.25)
+    figure.text((WIDTH - RIGHT) / WIDTH, level, _count(t), va="baseline", ha="right", color=COLOURS["muted"])
+
+
+def _axes(figure: Drawing, bottom: float, height: float, up: tuple[float, float]) -> Axes:
+    whole = height_of(figure)
+    axes = figure.add_axes((INDENT / WIDTH, bottom / whole, (WIDTH - INDENT - RIGHT) / WIDTH, height / whole))
+    axes.set_axis_off()
+    axes.set_xlim(-EDGE, EDGE)
+    axes.set_ylim(*up)
+    return axes
+
+
+def _strip(figure: Drawing, bottom: float, height: float, t: ComparedTable) -> Panel:
+    """One table: its first row on top."""
+    count = len(t.rows)
+    axes = _axes(figure, bottom, height, (count + 0.8, 0.2))
+    axes.axvspan(-1.0, 1.0, color=COLOURS["band"], alpha=0.22, linewidth=0, zorder=0)
+    for x, width in ((-1.0, 0.9), (0.0, 0.6), (1.0, 0.9)):
+        axes.axvline(x, color=COLOURS["muted"], linewidth=width, zorder=0.5)
+    at = np.array([share(r) for r in t.rows])
+    # Two decimals: further ones differ from one linear algebra to the next, and a page must not.
+    seen = np.round(np.where(np.isnan(at), BEYOND, np.clip(at, -BEYOND, BEYOND)), 2) + 0.0
+    order = np.arange(1.0, count + 1.0)
+    series = []
+    for basis, look in MARKS.items():
+        mine = np.array([r.basis == basis and r.holds for r in t.rows])
+        series.append(_drawn(axes, basis, basis, seen, order, mine, look, t.rows))
+    series.append(
+        _drawn(axes, "outside", "outside", seen, order, ~np.array([r.holds for r in t.rows]), OUTSIDE, t.rows)
+    )
+    return numbers(axes, series, ACROSS, "row of the table")
+
+
+def _drawn(
+    axes: Axes, key: str, name: str, x: Array, y: Array, mine: Any, look: dict[str, Any], rows: Sequence[Compared]
+) -> Any:
+    if np.any(mine):
+        tagged(axes.plot(x[mine], y[mine], linestyle="none", clip_on=False, zorder=3, **look), key)
+    return points(key, name, x[mine], y[mine], [_told(r) for r, yes in zip(rows, mine, strict=True) if yes])
+
+
+def _told(r: Compared) -> str:
+    unit = "" if r.unit == "1" else f" {r.unit}"
+    found = "no number" if r.found is None else f"{r.found:.6g}{unit}"
+    return f"{r.case}, {r.quantity}: paper {'at most ' if r.at_most else ''}{r.published:.6g}{unit}, found {found}"
+
+
+def _scale(figure: Drawing) -> None:
+    whole, wide = height_of(figure), WIDTH - INDENT - RIGHT
+    for x in ticks((-1.0, 1.0), 4):
+        place = (INDENT + wide * (x + EDGE) / (2.0 * EDGE)) / WIDTH
+        text = f"{x + 0.0:g}".replace("-", "−")
+        figure.text(place, (BOTTOM - 13.5) / whole, text, ha="center", va="baseline")
+    figure.text((INDENT + wide / 2.0) / WIDTH, (BOTTOM - 27.5) / whole, ACROSS, ha="center", va="baseline")
+
+
+def _legend(rows: Sequence[Compared]) -> list[Any]:
+    kinds = [b for b in MARKS if any(r.basis == b and r.holds for r in rows)]
+    handles = [tagged(Line2D([], [], linestyle="none", label=b, **MARKS[b]), b) for b in kinds]
+    if not all(r.holds for r in rows):
+        handles.append(tagged(Line2D([], [], linestyle="none", label="outside", **OUTSIDE), "outside"))
+    return handles

@@ -1,0 +1,29 @@
+// The entry of the contents whose section stands in the upper part of the window.
+{
+  const contents = document.querySelector("details.contents");
+  const entries = new Map([...contents.querySelectorAll("a")].map(a => [document.getElementById(a.hash.slice(1)), a]));
+  entries.delete(null);
+  const seen = new Set();
+  let marked = null;
+
+  const mark = entry => {
+    if (entry === marked) return;
+    marked?.removeAttribute("aria-current");
+    entry?.setAttribute("aria-current", "location");
+    marked = entry;
+    const room = contents.getBoundingClientRect();
+    if (!entry || contents.scrollHeight <= contents.clientHeight) return;
+    const {top, bottom} = entry.getBoundingClientRect();
+    if (top < room.top + 40 || bottom > room.bottom - 40) contents.scrollTop += (top + bottom - room.top - room.bottom) / 2;
+  };
+
+  // Sections stand in each other: the innermost one comes last in the document.
+  const watch = new IntersectionObserver(changes => {
+    for (const {target, isIntersecting} of changes) seen[isIntersecting ? "add" : "delete"](target);
+    mark([...entries].filter(([section]) => seen.has(section)).at(-1)?.[1] ?? null);
+  }, {rootMargin: "-8% 0px -72% 0px"});
+  for (const section of entries.keys()) watch.observe(section);
+
+  const up = document.querySelector(".up");
+  new IntersectionObserver(([{isIntersecting}]) => { up.hidden = isIntersecting; }).observe(document.getElementById("top"));
+}
