@@ -93,11 +93,12 @@ def main() -> None:
     for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(threads, "1")
     from coeflab.core.errors import CoeflabError
+    from coeflab.presentation.printable import visible
 
     try:
         app()
     except CoeflabError as why:
-        typer.echo(f"error: {why}", err=True)
+        typer.echo(visible(f"error: {why}"), err=True)
         sys.exit(2)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

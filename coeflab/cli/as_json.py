@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from coeflab.core.symbols import primed
+from coeflab.core.wording import finite
 from coeflab.model.acceptance import Acceptance
 from coeflab.model.coefficient import Coefficient
 from coeflab.model.export import Export
@@ -48,9 +49,9 @@ def model(m: FittedModel) -> dict[str, Any]:
         "body": m.body,
         "n_points": m.n_points,
         "rms": m.fit.rms,
-        "left_out_rms": _finite(m.fit.press_rms),
+        "left_out_rms": finite(m.fit.press_rms),
         "coefficients": [
-            {"symbol": s, "term": str(t), "value": _finite(float(v)), "half_width_95": _finite(float(h))}
+            {"symbol": s, "term": str(t), "value": finite(float(v)), "half_width_95": finite(float(h))}
             for s, t, v, h in rows
         ],
         "domain": {
@@ -79,16 +80,16 @@ def pooling(campaign: str, p: Pooling) -> dict[str, Any]:
                 "noise": s.noise,
                 "rms": s.rms,
                 "rms_alone": s.rms_alone,
-                "left_out_rms_of_range": _finite(s.left_out.rms) if s.left_out.told else None,
+                "left_out_rms_of_range": finite(s.left_out.rms) if s.left_out.told else None,
             }
             for s in p.shares
         ],
-        "every_third_left_out_rms_of_range": _finite(p.every_third.rms) if p.every_third.told else None,
+        "every_third_left_out_rms_of_range": finite(p.every_third.rms) if p.every_third.told else None,
         "one_law": {
-            "f": _finite(p.test.statistic),
+            "f": finite(p.test.statistic),
             "restrictions": p.test.restrictions,
-            "freedom": _finite(p.test.freedom),
-            "probability": _finite(p.test.probability),
+            "freedom": finite(p.test.freedom),
+            "probability": finite(p.test.probability),
             "rejected": p.rejected,
         },
     }
@@ -109,10 +110,6 @@ def export(made: Export) -> dict[str, Any]:
         "rms_difference": None if loss is None else loss.rms.tolist(),
         "largest_force": None if loss is None else loss.largest.tolist(),
     }
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
 
 
 def study(s: Study, files: list[str]) -> dict[str, Any]:

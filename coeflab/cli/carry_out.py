@@ -17,7 +17,7 @@ REPORTS = "reports"
 
 def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
     """Run, render everything, then write; exit code 1 when a check or a comparison fails."""
-    from coeflab.core.files import write_atomically
+    from coeflab.core.files import write_all
     from coeflab.workbench import rendered, run
 
     folder = out if out is not None else Path(REPORTS) / plan.name
@@ -26,7 +26,7 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
     # Outside of the progress display, whose thread would keep the drawing on one core.
     show.step("drawing the report", as_json)
     files = rendered(study)
-    changed = [name for name, content in sorted(files.items()) if write_atomically(folder / name, content)]
+    changed = sum(write_all(folder, files).values())
     paths = [str(folder / name) for name in sorted(files)]
     if as_json:
         from coeflab.cli.as_json import study as study_json
@@ -34,7 +34,7 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
         show.json_object(study_json(study, paths))
     else:
         summarise(study)
-        show.text(f"Written to {folder} ({len(changed)} of {len(files)} files changed):")
+        show.text(f"Written to {folder} ({changed} of {len(files)} files changed):")
         for path in paths:
             show.text(f"  {path}")
     if study.failed:

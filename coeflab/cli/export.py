@@ -21,7 +21,7 @@ def command(
 ) -> None:
     """Write what a simulator loads, prove it by the simulator's own force law, and say what is lost."""
     from coeflab.core.errors import InputError, shown
-    from coeflab.core.files import write_atomically
+    from coeflab.core.files import write_all
     from coeflab.core.identifiers import file_stem
     from coeflab.model.parameter_file import read_parameter_file
     from coeflab.presentation import loss_tables
@@ -46,8 +46,7 @@ def command(
         )
     folder = out if out is not None else file.parent / (made.folder or f"{file_stem(parameters.name)}.{to}")
     paths = [folder / name for name in sorted(made.files)]
-    for path in paths:
-        write_atomically(path, made.files[path.name])
+    write_all(folder, made.files)
     if json:
         from coeflab.cli.as_json import export as export_json
 

@@ -27,14 +27,14 @@ def command(
 
     Write CSV and figures with --out. Exit code 1 when a motion ended early.
     """
-    from coeflab.core.files import write_atomically
+    from coeflab.core.files import write_all
     from coeflab.model.trajectory import Ended
     from coeflab.presentation import glide_tables
     from coeflab.studies.glide import files, fly
 
     flown = fly(glider, cycles, {"step": step})
     made = {} if out is None else files(flown)
-    changed = {name: write_atomically(Path(out or "") / name, content) for name, content in made.items()}
+    changed = write_all(Path(out or ""), made)
     if json:
         show.json_object({"gliders": [as_json(f) for f in flown], "files": [str(Path(out or "") / n) for n in made]})
     else:

@@ -105,7 +105,7 @@ def _write(found: Identified, folder: Path) -> list[Path]:
     """CSV, JSON and SVG; none where one cannot be made."""
     import json
 
-    from coeflab.core.files import write_atomically
+    from coeflab.core.files import write_all
     from coeflab.presentation.identified_figure import identified_figure
     from coeflab.presentation.identified_tables import terms_csv
     from coeflab.presentation.sheet import sheet
@@ -115,6 +115,5 @@ def _write(found: Identified, folder: Path) -> list[Path]:
         f"{found.name}.identified.json": (json.dumps(as_json(found), indent=2, allow_nan=False) + "\n").encode(),
         f"{found.name}.identified.svg": sheet([(identified_figure(found, "identified"),)]),
     }
-    for name, data in content.items():
-        write_atomically(folder / name, data)
+    write_all(folder, content)
     return [folder / name for name in content]

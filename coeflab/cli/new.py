@@ -17,12 +17,13 @@ def command(folder: Path = typer.Argument(..., help="A folder that does not exis
     from importlib.resources import files
 
     from coeflab.core.errors import OutputError
-    from coeflab.core.files import write_atomically
+    from coeflab.core.files import write_all
 
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise OutputError(f"{folder} exists and is not empty. Name a new folder.")
     template = files("coeflab.cli") / "template"
-    for name in ("plan.toml", "body.toml", "campaign/campaign.toml", "campaign/drift.csv", "campaign/rotating_arm.csv"):
-        write_atomically(folder / name, template.joinpath(*name.split("/")).read_bytes())
+    names = ("plan.toml", "body.toml", "campaign/campaign.toml", "campaign/drift.csv", "campaign/rotating_arm.csv")
+    write_all(folder, {name: template.joinpath(*name.split("/")).read_bytes() for name in names})
+    for name in names:
         show.text(f"  {folder / name}")
     show.text(f"Run it: coeflab run {shlex.quote(str(folder / 'plan.toml'))}")

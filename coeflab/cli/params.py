@@ -56,4 +56,4 @@ def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schem
     from coeflab.model import parameter_file
     from coeflab.presentation.schema_page import schema_page
 
-    show.text((parameter_file.schema() if json else schema_page()).decode().removesuffix("\n"))
+    show.lines((parameter_file.schema() if json else schema_page()).decode().removesuffix("\n"))

@@ -26,7 +26,7 @@ def command(
     """
     from coeflab.cli.carry_out import REPORTS
     from coeflab.core.errors import InputError
-    from coeflab.core.files import write_atomically
+    from coeflab.core.files import write_all
     from coeflab.reporting import REPORTERS
     from coeflab.studies.documents import only, report_of, studied, written
 
@@ -51,8 +51,7 @@ def command(
     if summary:
         files = {name.replace("report", "summary", 1): content for name, content in files.items()}
     folder = out if out is not None else Path(REPORTS) / document.name
-    for name, content in files.items():
-        write_atomically(folder / name, content)
+    write_all(folder, files)
     paths = [folder / name for name in files]
     if json:
         show.json_object(

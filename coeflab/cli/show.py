@@ -1,4 +1,7 @@
-"""Printing: rich tables on a terminal, plain text in a pipe, one JSON object for machines."""
+"""Printing: rich tables on a terminal, plain text in a pipe, one JSON object for machines.
+
+What users named can hold control characters, which a terminal obeys; they are shown as ``U+XXXX``.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,8 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import typer
+
+from coeflab.presentation.printable import visible
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,17 +26,37 @@ COLOURS = {"pass": "green", "fail": "bold red", "warn": "yellow", "no verdict": 
 
 def text(line: str = "") -> None:
     """A line on standard output."""
-    typer.echo(line)
+    typer.echo(visible(line))
+
+
+def lines(many: str) -> None:
+    """Lines on standard output."""
+    for line in many.split("\n"):
+        text(line)
+
+
+def error(line: str) -> None:
+    """A line on standard error."""
+    typer.echo(visible(line), err=True)
 
 
 def table(content: Table) -> None:
     """A table for a person on a terminal, or aligned plain text in a pipe."""
     if not content.rows:
         return
+    content = _visible(content)
     if sys.stdout.isatty() and _fits(content):
         _rich(content)
     else:
         _plain(content)
+
+
+def _visible(content: Table) -> Table:
+    from dataclasses import replace
+
+    headers, notes = (tuple(map(visible, texts)) for texts in (content.headers, content.notes))
+    rows = tuple(tuple(map(visible, row)) for row in content.rows)
+    return replace(content, title=visible(content.title), headers=headers, rows=rows, notes=notes)
 
 
 def _fits(content: Table) -> bool:
@@ -51,7 +76,8 @@ def _rich(content: Table) -> None:
     from rich.table import Table as RichTable
     from rich.text import Text
 
-    out = RichTable(title=content.title, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD, pad_edge=False)
+    # A title that is no Text is read for rich's own markup, which names may happen to hold.
+    out = RichTable(title=Text(content.title, "bold"), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
     for i, header in enumerate(content.headers):
         out.add_column(
             Text(header),
@@ -84,7 +110,8 @@ def _plain(content: Table) -> None:
 
 def json_object(content: dict[str, Any]) -> None:
     """One JSON object on standard output."""
-    typer.echo(json.dumps(content, indent=2, allow_nan=False, ensure_ascii=False))
+    written = json.dumps(content, indent=2, allow_nan=False, ensure_ascii=False)
+    typer.echo("".join(ch if ch.isprintable() or ch == "\n" else json.dumps(ch)[1:-1] for ch in written))
 
 
 def in_browser(address: str) -> None:
@@ -92,13 +119,13 @@ def in_browser(address: str) -> None:
     import webbrowser
 
     if not webbrowser.open(address):
-        typer.echo(f"No browser could be started; open {address} yourself.", err=True)
+        error(f"No browser could be started; open {address} yourself.")
 
 
 def step(line: str, quiet: bool) -> None:
     """What begins, on standard error while it is a terminal; without a thread, so that work can be shared among cores."""
     if not quiet and sys.stderr.isatty():
-        typer.echo(f"{line} ...", err=True)
+        error(f"{line} ...")
 
 
 @contextmanager
@@ -110,9 +137,10 @@ def progress(quiet: bool) -> Iterator[Callable[[str], None]]:
     import threading
 
     from rich.console import Console
+    from rich.text import Text
 
     with Console(stderr=True).status("reading") as status:
-        yield status.update
+        yield lambda line: status.update(Text(visible(line)))
     # rich tells its thread to end and does not wait; while it lives, drawing keeps to one core.
     for thread in threading.enumerate():
         if type(thread).__module__.startswith("rich."):
@@ -133,7 +161,7 @@ def narrated() -> Iterator[None]:
                 if record.name == STAGE:
                     update(record.getMessage())
                 else:
-                    typer.echo(record.getMessage(), err=True)
+                    error(record.getMessage())
 
         logger, handler = logging.getLogger("coeflab"), Echo(logging.INFO)
         before = logger.level
@@ -155,13 +183,14 @@ def _slow_status() -> Iterator[Callable[[str], None]]:
     from threading import Timer
 
     from rich.console import Console
+    from rich.text import Text
 
     status = Console(stderr=True).status("working")
     timer = Timer(SLOW, status.start)
     timer.daemon = True
     timer.start()
     try:
-        yield status.update
+        yield lambda line: status.update(Text(visible(line)))
     finally:
         timer.cancel()
         status.stop()

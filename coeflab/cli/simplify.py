@@ -34,7 +34,7 @@ def command(
     further what no form fits.
     """
     from coeflab.core.errors import InputError, OutputError, shown
-    from coeflab.core.files import write_atomically
+    from coeflab.core.files import write_all
     from coeflab.model.named_box import parse_box, read_boxes
     from coeflab.presentation.body_figure import body_figure
     from coeflab.presentation.body_scene import body_scene
@@ -57,7 +57,7 @@ def command(
         path = folder / file
         if not force and path.exists() and not (path.is_file() and path.read_bytes() == content):
             raise OutputError(f"{path} exists and differs. Name another --out, or replace it with --force.")
-    changed = {file: write_atomically(folder / file, content) for file, content in files.items()}
+    changed = write_all(folder, files)
     if json:
         show.json_object(found.as_json())
         return

@@ -112,7 +112,7 @@ def _print(made: Simulation, written: list[Path]) -> None:
 
 def _write(made: Simulation, folder: Path, to: str) -> list[Path]:
     from coeflab.core.errors import InputError
-    from coeflab.core.files import write_atomically
+    from coeflab.core.files import write_all
     from coeflab.presentation.motion_figure import motion_figures
     from coeflab.presentation.motion_tables import motion_csv, motion_parquet
     from coeflab.presentation.sheet import sheet
@@ -126,6 +126,5 @@ def _write(made: Simulation, folder: Path, to: str) -> list[Path]:
         ) from None
     rows = [(f,) for f in motion_figures(made.trajectory.until(made.determined), name, made.vehicle.length)]
     content = {f"{name}.{to}": table, f"{name}.svg": sheet(rows)}
-    for file, data in content.items():
-        write_atomically(folder / file, data)
+    write_all(folder, content)
     return [folder / file for file in content]

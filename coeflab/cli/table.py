@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from coeflab.cli import show
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -50,12 +52,12 @@ def command(
     lines = _lines(models, given, tally)
     if out is not None:
         changed = write_atomically(out, "".join(lines).encode())
-        typer.echo(f"{out}: {'written' if changed else 'unchanged'}", err=True)
+        show.error(f"{out}: {'written' if changed else 'unchanged'}")
     else:
         for chunk in lines:
             typer.echo(chunk, nl=False)
     for line in [FLOW_ANGLES[v] for v in given if v in FLOW_ANGLES] + outside_in_words(models, tally):
-        typer.echo(line, err=True)
+        show.error(line)
 
 
 @dataclass(slots=True)

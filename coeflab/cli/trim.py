@@ -131,6 +131,8 @@ def _si(name: str, value: float, option: str) -> float:
 
 def as_json(found: Trim) -> dict[str, Any]:
     """The trim as one JSON object, SI and rad."""
+    from coeflab.core.wording import finite
+
     point, f = found.point, found.point.found
     return {
         "vehicle": found.motion.vehicle.name,
@@ -138,7 +140,7 @@ def as_json(found: Trim) -> dict[str, Any]:
         "unknowns": [
             {
                 "name": u.name, "value": value, "unit": u.unit, "given": u.low == u.high,
-                "low": _finite(u.low), "high": _finite(u.high), "held": bool(held),
+                "low": finite(u.low), "high": finite(u.high), "held": bool(held),
             }
             for u, value, held in zip(point.unknowns, point.values.values(), f.held, strict=True)
         ],
@@ -158,9 +160,3 @@ def as_json(found: Trim) -> dict[str, Any]:
         "small_motions": point.growth,
         "statements": list(point.words()),
     }  # fmt: skip
-
-
-def _finite(value: float) -> float | None:
-    from math import isfinite
-
-    return value if isfinite(value) else None

@@ -90,7 +90,7 @@ def _print(made: Carried, written: list[Path]) -> None:
 
 
 def _write(made: Carried, folder: Path) -> list[Path]:
-    from coeflab.core.files import write_atomically
+    from coeflab.core.files import write_all
     from coeflab.presentation.sheet import sheet
     from coeflab.presentation.uncertainty_figure import uncertainty_figures
     from coeflab.presentation.uncertainty_tables import members_csv
@@ -100,8 +100,7 @@ def _write(made: Carried, folder: Path) -> list[Path]:
     figures = uncertainty_figures(made)
     if figures:
         content[f"{name}_uncertainty.svg"] = sheet(figures)
-    for file, data in content.items():
-        write_atomically(folder / file, data)
+    write_all(folder, content)
     return [folder / file for file in content]
 
 

@@ -35,14 +35,13 @@ def command(
 
 
 def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
-    from coeflab.core.files import write_atomically
+    from coeflab.core.files import write_all
     from coeflab.presentation import acceptance_tables
 
     files = {f"{found.name}.csv": acceptance_tables.acceptance_csv(found)}
-    files |= {name: content for name, _, content in found.figures}
+    files |= {f"{name}.svg": figure.svg.encode() for name, figure in found.figures}
+    write_all(folder, files)
     paths = [folder / name for name in sorted(files)]
-    for path in paths:
-        write_atomically(path, files[path.name])
     if json:
         from coeflab.cli.as_json import acceptance
 

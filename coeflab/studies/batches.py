@@ -143,6 +143,14 @@ def _steered(plan: Manoeuvre) -> tuple[Any, ...]:
 def run_batch(setup: Setup, names: Sequence[str], deviations: Array) -> Batch:
     """Values and statuses of the named figures.
 
+    Parameters
+    ----------
+    setup : Setup
+    names : sequence of str
+        Of the figures, in the order of the columns.
+    deviations : (m, k) array
+        Of `Uncertain.symbols`.
+
     Raises
     ------
     InputError
@@ -192,7 +200,14 @@ class Store:
         write_atomically(self.path(index), f"{_digest(text)}\n{text}\n".encode())
 
     def load(self, index: int, members: int, figures: int) -> tuple[Batch | None, str]:
-        """A batch that was kept, or none and, where there is a file, what is wrong with it."""
+        """A batch that was kept, or none and, where there is a file, what is wrong with it.
+
+        Parameters
+        ----------
+        index : int
+        members, figures : int
+            Shape that the batch must have.
+        """
         path = self.path(index)
         if not path.is_file():
             return None, ""

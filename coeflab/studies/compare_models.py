@@ -16,8 +16,8 @@ from coeflab.model.parameter_model import ParameterModel
 from coeflab.studies.shared_tables import Verdict, shared_tables
 
 Array = NDArray[np.float64]
-MOST = 2000
-SHARE = 0.95
+MOST = 2000  # points of the grid: a share to half a per cent
+SHARE = 0.95  # of them, as the half-widths are of 95 %
 MOMENTS = frozenset("KMNlmn")
 SAME = 1e-9
 

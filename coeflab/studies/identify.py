@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 citations = (
     "brunton2016", "kaptanoglu2022", "fasel2022", "messenger2021", "gurevich2019", "soderstrom1983", "fossen2011",
 )  # fmt: skip
-PASSES = 0.75
+PASSES = 0.75  # half-width of a window, in times that the vehicle passes its length
 ENOUGH_ROWS = 50
 
 

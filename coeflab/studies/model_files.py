@@ -19,7 +19,7 @@ from coeflab.parameter_importers import PARAMETER_IMPORTERS
 
 OWN = "coeflab"
 DENSITY = "density"
-STAND_IN = 1000.0
+STAND_IN = 1000.0  # kg/m^3, fresh water; the finding says so
 
 
 @dataclass(frozen=True, slots=True)

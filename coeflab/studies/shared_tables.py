@@ -43,6 +43,13 @@ def shared_tables(a: FromTable, b: FromTable, inputs_a: Provenance, inputs_b: Pr
     """Tables with the same bytes behind both, by the first file's names.
 
     A result names its table; where it does not, or not as the file's provenance does, all tables of its campaign count.
+
+    Parameters
+    ----------
+    a, b : FromTable
+        Results of the two files.
+    inputs_a, inputs_b : Provenance
+        Of the two files.
     """
     ours, theirs = _hashes(a, inputs_a), _hashes(b, inputs_b)
     return tuple(sorted({name for sha256, name in ours.items() if sha256 in theirs}))

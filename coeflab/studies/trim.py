@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.symbols import CONTROLS, MOTIONS
+from coeflab.core.symbols import CONTROLS
 from coeflab.kernels.linearisation import growth
 from coeflab.kernels.wind_axes import incidence
 from coeflab.model.operating_point import OperatingPoint, Unknown, nearest, operating_point
+from coeflab.model.outside import outside_in_words
 from coeflab.model.table import Table, number
 from coeflab.model.trim_equations import MOTION, SteadyMotion, steady_motion
 from coeflab.model.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 STRAIGHT = 1e-9
-ANGLES = {"asin(v/U)": "v", "asin(w/U)": "w"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -143,28 +143,12 @@ def _first(u: Unknown, vehicle: Vehicle) -> float:
     return float(min(max(start, u.low), u.high))
 
 
-def _beyond(vehicle: Vehicle, steady: SteadyMotion, found: OperatingPoint) -> list[str]:
+def _beyond(vehicle: Vehicle, steady: SteadyMotion, found: OperatingPoint) -> tuple[str, ...]:
     """Motions of the solution that no data behind the coefficients cover."""
-    nu, _ = steady.state(found.found.point)
-    speed = float(np.linalg.norm(nu[:3]))
-    if not found.outcome.solved or speed == 0.0:
-        return []
-    primes = {m: float(nu[i]) * (1.0 if i < 3 else vehicle.length) / speed for i, m in enumerate(MOTIONS)}
-    spans: dict[str, tuple[float, float]] = {}
-    for c in vehicle.covered:
-        low, high = spans.get(c.variable, (c.low, c.high))
-        spans[c.variable] = min(low, c.low), max(high, c.high)
-    out = []
-    for name, (low, high) in spans.items():
-        value = found.values.get(name, primes.get(name.removesuffix("'")))
-        if name in ANGLES:
-            value = float(np.arcsin(primes[ANGLES[name]]))
-        slack = 1e-9 * max(1.0, abs(low), abs(high))
-        if value is not None and not low - slack <= value <= high + slack:
-            out.append(
-                f"{name} = {number(value)} lies outside of what the data cover, {number(low)} to {number(high)}."
-            )
-    return out
+    if not found.outcome.solved:
+        return ()
+    (velocity, _), (angles, _) = steady.state(found.found.point), steady.commands(found.found.point)
+    return outside_in_words(vehicle, velocity, dict(zip(CONTROLS, angles, strict=True)))
 
 
 def _unstated(vehicle: Vehicle, unknowns: tuple[Unknown, ...]) -> list[str]:

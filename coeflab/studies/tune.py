@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import CoeflabError, InputError
-from coeflab.core.files import write_atomically
+from coeflab.core.errors import InputError
+from coeflab.core.files import write_all
 from coeflab.kernels.output_error import Estimate, by_likelihood, estimate
 from coeflab.kernels.output_problem import Problem, problem
 from coeflab.kernels.settling import differences
@@ -27,7 +27,7 @@ from coeflab.model.vehicle import Vehicle, vehicle
 from coeflab.presentation.tuning_figure import agreement_figure
 
 Array = NDArray[np.float64]
-NUDGE = 1e-6
+NUDGE = 1e-6  # of a size: central differences, errors of 1e-10 by rounding and less by curvature
 UNITS = {"u": ("m/s", 1.0), "v": ("m/s", 1.0), "V": ("m/s", 1.0), "radius": ("m", 1.0),
          "r": ("deg/s", 180.0 / np.pi), "beta": ("deg", 180.0 / np.pi)}  # fmt: skip
 
@@ -92,12 +92,7 @@ def tune(plan: TuningPlan) -> Tuned:
 
 def write(tuned: Tuned, folder: Path) -> list[Path]:
     """Write all files; none where one cannot be made."""
-    content = tuned.files()
-    out = []
-    for name, data in content.items():
-        write_atomically(folder / name, data)
-        out.append(folder / name)
-    return out
+    return [folder / name for name in write_all(folder, tuned.files())]
 
 
 def tuning_problem(plan: TuningPlan) -> Problem:
@@ -108,26 +103,34 @@ def tuning_problem(plan: TuningPlan) -> Problem:
         values = {w: float(x) for f, x in zip(free, parameters, strict=True) for w in f.places}
         return vehicle(moved(plan.parameters, values), free=("u", "v", "r"))
 
+    made(np.array([f.start for f in free]))  # from here on an error is one of values that the fit tries
+
+    def possible(parameters: Array) -> Vehicle | None:
+        """The vehicle; None where none can be, as with an effective mass that is not positive."""
+        try:
+            return made(parameters)
+        except InputError:
+            return None
+
     @lru_cache(maxsize=4)  # the derivatives are wanted where the outputs were just computed
-    def settled_at(parameters: tuple[float, ...]) -> tuple[Vehicle, Array]:
-        one = made(np.array(parameters))
+    def settled_at(parameters: tuple[float, ...]) -> tuple[Vehicle | None, Array]:
+        one = possible(np.array(parameters))
+        if one is None:
+            return None, np.full((len(cases.lines), 6), np.nan)
         return one, steady_motions(one, wrenches(one, cases.commands), cases.controls)[0]
 
-    def operating(parameters: Array) -> tuple[Vehicle, Array]:
+    def operating(parameters: Array) -> tuple[Vehicle | None, Array]:
         return settled_at(tuple(parameters.tolist()))
 
     def one_set(parameters: Array) -> Array:
-        try:
-            return figures(operating(parameters)[1], cases).ravel()
-        except CoeflabError:
-            # Such as an effective mass that is not positive: a step into what cannot be is taken back.
-            return np.full(cases.measured.size, np.nan)
+        return figures(operating(parameters)[1], cases).ravel()
 
     def jacobian(parameters: Array) -> Array:
         one, nu = operating(parameters)
-        return _slopes(one, nu, made, parameters, np.array([f.size for f in free]), cases)
+        if one is None:
+            return np.full((cases.measured.size, len(parameters)), np.nan)
+        return _slopes(one, nu, possible, parameters, np.array([f.size for f in free]), cases)
 
-    made(np.array([f.start for f in free]))
     return problem(
         lambda sets: np.array([one_set(x) for x in sets]),
         cases.measured.ravel(), cases.errors.ravel(), np.array([f.start for f in free]),
@@ -138,9 +141,17 @@ def tuning_problem(plan: TuningPlan) -> Problem:
 
 
 def _slopes(
-    one: Vehicle, nu: Array, made: Callable[[Array], Vehicle], parameters: Array, sizes: Array, cases: SteadyCases
+    one: Vehicle,
+    nu: Array,
+    possible: Callable[[Array], Vehicle | None],
+    parameters: Array,
+    sizes: Array,
+    cases: SteadyCases,
 ) -> Array:
-    """Derivatives of the outputs (implicit function theorem): how the balance of forces moves, and what restores it."""
+    """Derivatives of the outputs (implicit function theorem): how the balance of forces moves, and what restores it.
+
+    NaN where a nudge leads to what cannot be a vehicle.
+    """
     at = list(one.free_columns)
     x = nu[:, at]
 
@@ -152,7 +163,12 @@ def _slopes(
     for i, size in enumerate(sizes):
         step = np.zeros_like(parameters)
         step[i] = NUDGE * size
-        moves.append((balance(made(parameters + step), x) - balance(made(parameters - step), x)) / (2.0 * NUDGE * size))
+        more, less = possible(parameters + step), possible(parameters - step)
+        moves.append(
+            np.full_like(x, np.nan)
+            if more is None or less is None
+            else (balance(more, x) - balance(less, x)) / (2.0 * NUDGE * size)
+        )
     shift = -np.einsum("nij,njp->nip", yields, np.stack(moves, axis=-1))
     out = np.empty((cases.measured.size, len(parameters)))
     for i in range(len(parameters)):

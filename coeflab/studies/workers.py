@@ -18,11 +18,6 @@ PATIENCE = 10.0
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
-def cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 def carried_out(
     work: Callable[..., Result], tasks: Mapping[int, tuple[Any, ...]], workers: int, scheduler: str = ""
 ) -> Iterator[tuple[int, Result]]:

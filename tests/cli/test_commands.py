@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
 from pathlib import Path
+from subprocess import CompletedProcess
 
 import pytest
 
-from tests.cli.conftest import Run
+from tests.cli.conftest import COEFLAB, Run
 
 SIX = {"Yv'", "Nv'", "Zw'", "Mw'", "Yr'", "Nr'"}
 CONTRACT = {
@@ -17,31 +19,56 @@ CONTRACT = {
 }  # fmt: skip
 
 
-def files(folder: Path) -> dict[str, bytes]:
-    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+def files(folder: Path) -> dict[str, tuple[bytes, int]]:
+    """Content and time of change of every file."""
+    found = [p for p in sorted(folder.rglob("*")) if p.is_file()]
+    return {str(p.relative_to(folder)): (p.read_bytes(), p.stat().st_mtime_ns) for p in found}
 
 
-def test_validation_prints_the_verdict_and_a_second_run_changes_no_byte(coeflab: Run, tmp_path: Path) -> None:
-    done = coeflab("validate", "suboff")
+Done = CompletedProcess[str]
+Validated = tuple[Path, Done, dict[str, tuple[bytes, int]], Done]
+
+
+@pytest.fixture(scope="module")
+def validated(tmp_path_factory: pytest.TempPathFactory) -> Validated:
+    """A folder, the first run in it, the files and their times after that, and a second run, as JSON."""
+    folder = tmp_path_factory.mktemp("validated")
+
+    def run(*more: str) -> Done:
+        command = [str(COEFLAB), "validate", "suboff", *more]
+        return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=120)
+
+    first = run()
+    return folder, first, files(folder), run("--json")
+
+
+def test_validation_prints_the_verdict(validated: Validated) -> None:
+    folder, done, _, _ = validated
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
     assert "12 of 12 re-analysed coefficients agree within U95" in done.stdout
     for column in ("steady CFD, read with LBP", "steady CFD, read with LOA", "PMM CFD 2012", "experiment 1990"):
         assert column in done.stdout
     assert re.search(r"Yr' .*no table", done.stdout)
-    written = set(files(tmp_path / "reports" / "suboff"))
+    written = set(files(folder / "reports" / "suboff"))
     assert {"report.html", "suboff_fully_appended.parameters.json", "suboff_bare_hull.coefficients.csv"} <= written
-
-    first = files(tmp_path)
-    times = {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*") if p.is_file()}
-    again = coeflab("validate", "suboff")
-    assert files(tmp_path) == first
-    assert {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*") if p.is_file()} == times
-    assert "(0 of " in again.stdout
+    assert f"({len(written)} of {len(written)} files changed)" in done.stdout
+    for target, ending in (("mss", "m"), ("xdyn", "yml"), ("gazebo", "sdf")):
+        place = f"suboff_bare_hull.{target}/suboff_bare_hull"
+        assert {f"{place}.{ending}", f"{place}.{target}.loss.txt"} <= written
 
 
-def test_json_is_one_object_that_keeps_the_contract(coeflab: Run) -> None:
-    content = json.loads(coeflab("validate", "suboff", "--json").stdout)
+def test_a_second_run_changes_no_byte(validated: Validated) -> None:
+    folder, _, before, again = validated
+    assert again.returncode == 0
+    assert before
+    assert files(folder) == before
+
+
+def test_json_is_one_object_that_keeps_the_contract(
+    validated: Validated,
+) -> None:
+    content = json.loads(validated[3].stdout)
     assert content["passed"] is True
     for c in content["coefficients"]:
         assert set(c) == CONTRACT
@@ -65,6 +92,7 @@ def test_template_runs_as_it_stands_and_recovers_what_was_planted(coeflab: Run, 
     found = {c["symbol"]: c for c in json.loads(done.stdout)["coefficients"]}
     for symbol, planted in {"Yv'": -0.030, "Nv'": -0.010, "Yr'": 0.006, "Nr'": -0.005, "X0'": -0.0025}.items():
         assert abs(found[symbol]["value"] - planted) <= found[symbol]["u95"], symbol
+    assert "(0 of " in coeflab("run", "mine/plan.toml").stdout
     assert coeflab("new", "mine").returncode == 2
     assert coeflab("params", "check", "reports/my_study/my_vehicle.parameters.json").returncode == 0
 

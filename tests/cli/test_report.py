@@ -2,7 +2,10 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import shlex
 import subprocess
+from html import unescape
 from pathlib import Path
 
 import pymupdf
@@ -53,7 +56,7 @@ def test_only_the_named_sections(coeflab, study, tmp_path):
     assert [s["anchor"] for s in said["sections"]] == ["verdict", "checks"]
     titles = [t for _, t, _ in pymupdf.open(tmp_path / "made" / "report.pdf").get_toc()]
     assert any(t.endswith("Verdict") for t in titles)
-    assert not any(t.endswith("Conventions") for t in titles)
+    assert not any(t.endswith("Conventions used") for t in titles)
     assert [Path(p).name for p in said["files"]] == ["report.html", "report.pdf"]
 
 
@@ -103,3 +106,33 @@ def test_a_publication_by_name(coeflab, tmp_path):
     done = coeflab("report", "flyingfish")
     assert done.returncode == 0, done.stderr
     assert files_in(tmp_path / "reports" / "flyingfish") == {"report.html", "report.pdf"}
+    stated = commands_in(tmp_path / "reports" / "flyingfish" / "report.html")
+    assert stated == ["coeflab report flyingfish --to html,pdf"]
+    (tmp_path / "elsewhere").mkdir()
+    assert coeflab(*shlex.split(stated[0])[1:], "--out", "elsewhere/again").returncode == 0
+    for name in ("report.html", "report.pdf"):
+        again = tmp_path / "elsewhere" / "again" / name
+        assert again.read_bytes() == (tmp_path / "reports" / "flyingfish" / name).read_bytes()
+
+
+def commands_in(page: Path) -> list[str]:
+    """What a report tells to type."""
+    text = page.read_text(encoding="utf-8")
+    return [
+        unescape(line)
+        for block in re.findall(r"<pre[^>]*><code>(.*?)</code>", text, re.DOTALL)
+        for line in block.split("\n")
+    ]
+
+
+def test_the_stated_command_makes_the_same_report(coeflab, study, tmp_path):
+    plan = (study / "plan.toml").rename(study / "my plan.toml")
+    assert coeflab("report", plan, "--to", "html", "--out", "a").returncode == 0
+    (stated,) = commands_in(tmp_path / "a" / "report.html")
+    assert str(tmp_path) not in (tmp_path / "a" / "report.html").read_text(encoding="utf-8")
+    done = subprocess.run(
+        [str(COEFLAB), *shlex.split(stated)[1:], "--out", str(tmp_path / "b")], cwd=study, capture_output=True, text=True,
+        check=False, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "b" / "report.html").read_bytes() == (tmp_path / "a" / "report.html").read_bytes()

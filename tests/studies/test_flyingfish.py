@@ -96,3 +96,31 @@ def test_least_effort_needs_no_more_than_the_printed_trim() -> None:
     assert got.outcome is Outcome.FAMILY
     assert got.dimension == 2
     assert np.sum(got.found.point[4:] ** 2) < np.sum(fish.speeds[9] ** 2)
+
+
+@pytest.mark.slow
+def test_drawings_hold_the_printed_and_the_found_numbers(made: Acceptance) -> None:
+    drawn = dict(made.figures)
+    assert list(drawn) == [
+        "flyingfish_operating_points", "flyingfish_thrust_over_tilt", "flyingfish_rotors", "flyingfish_damping",
+    ]  # fmt: skip
+    tilt, apart, speed, slower = drawn["flyingfish_operating_points"].panels
+    by_name = {s.name: s.y for panel in (tilt, speed) for s in panel.series}
+    assert tilt.series[0].y[:2] == (79.72, 77.58)
+    assert by_name["rotor 4, printed"][0] == 250.03
+    assert max(abs(y) for s in apart.series for y in s.y) <= 0.01
+    assert max(abs(y) for s in slower.series for y in s.y) <= 0.1
+
+
+@pytest.mark.slow
+def test_drawn_laws_are_the_printed_ones(made: Acceptance) -> None:
+    """Equations 47 and 48 at 2000 rpm; equation 50 for surge at 0.5 m/s: 0.0998 u + 18.2222 u^2."""
+    drawn = dict(made.figures)
+    thrust, torque = drawn["flyingfish_rotors"].panels
+    assert np.interp(2000.0, thrust.series[0].x, thrust.series[0].y) == pytest.approx(1.2071 + 1.02416, rel=1e-3)
+    assert np.interp(2000.0, torque.series[0].x, torque.series[0].y) == pytest.approx(0.0208566, rel=2e-3)
+    surge = drawn["flyingfish_damping"].panels[0].series[0]
+    assert np.interp(0.5, surge.x, surge.y) == pytest.approx(-(0.0998 * 0.5 + 18.2222 * 0.25), rel=2e-3)
+    one = drawn["flyingfish_thrust_over_tilt"].panels[0].series[0]
+    assert (one.x[0], one.notes[0]) == (79.72, "motion 1")
+    assert one.y[0] == pytest.approx(6.0355e-4 * 2056.42 + 2.5604e-7 * 2056.42**2, rel=1e-5)

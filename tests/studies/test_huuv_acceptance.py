@@ -104,11 +104,27 @@ def test_exact_derivatives_of_the_turns() -> None:
 
 @SLOW
 def test_figures_are_drawings_with_words_and_the_same_bytes_again(found: Acceptance) -> None:
-    assert [name for name, _, _ in found.figures] == [
-        f"huuv_{half}_{kind}.svg" for half in ("matlab", "tracker") for kind in ("turns", "agreement")
-    ]
-    for _, caption, svg in found.figures:
-        assert svg.startswith(b"<svg")
-        assert "Root mean square before and after" in caption
-    assert b"measured, left 20 %" in found.figures[0][2]
-    assert [svg for _, _, svg in acceptance().figures] == [svg for _, _, svg in found.figures]
+    assert [name for name, _ in found.figures] == [
+        *(f"huuv_{half}_{kind}" for half in ("matlab", "tracker") for kind in ("turns", "agreement")), "huuv_forces",
+    ]  # fmt: skip
+    for _, figure in found.figures:
+        assert figure.svg.startswith("<svg")
+    for _, figure in found.figures[:-1]:
+        assert "Root mean square before and after" in figure.caption
+    assert "data, left 20 %" in found.figures[0][1].svg
+    assert [figure.svg for _, figure in acceptance().figures] == [figure.svg for _, figure in found.figures]
+
+
+@SLOW
+def test_the_drawn_forces_end_where_the_turns_end_and_name_what_is_open(found: Acceptance) -> None:
+    figure = dict(found.figures)["huuv_forces"]
+    drag, side, _ = figure.panels
+    by_name = {s.name: s for s in drag.series}
+    assert max(by_name["tuned to the pool"].x) == pytest.approx(16.98, abs=1e-3)
+    assert max(by_name["tuned to the simulation"].x) == pytest.approx(21.76, abs=1e-3)
+    for s in drag.series:
+        assert s.y == pytest.approx(s.y[::-1])
+    for s in side.series:
+        assert np.array(s.y) == pytest.approx(-np.array(s.y[::-1]), abs=1e-9)
+    assert "pool: drag C_D (beta^2)" in figure.caption
+    assert "no drag surface" in figure.caption

@@ -64,7 +64,14 @@ def test_fused_vehicle() -> None:
 
 
 def test_errors_are_those_of_the_written_numbers() -> None:
+    """64 facets leave 0.08 % of a circle's width; at a root the cut stands out by half a fin's thickness, or by the arc of the hull."""
     found = simplify(body(tailed_hull() + mast()))
+    facets = 1.0 - np.sqrt(np.sin(np.pi / 32.0) / (np.pi / 32.0))
+    arc = HULL - np.sqrt(HULL**2 - 0.08**2)
+    areas = {
+        "hull": facets + (2.0 * 0.01 * 0.3 + 2.0 * 0.08 * arc) / (2.0 * HULL * LENGTH),
+        "cylinder_top": facets + arc / (1.2 - HULL),
+    }
     whole = found.mesh.volume
     assert sum(p.volume for p in found.parts) + found.unassigned == pytest.approx(whole, rel=1e-9)
     for p in found.parts:
@@ -75,7 +82,7 @@ def test_errors_are_those_of_the_written_numbers() -> None:
         assert p.volume_error == pytest.approx(p.part.form.volume / p.volume - 1.0)
         assert abs(p.volume_error) < 5e-4
         assert p.length_error == pytest.approx(0.0, abs=1e-3)
-        assert np.mean(p.projected_errors[1:]) == pytest.approx(0.0, abs=6e-3)
+        assert np.all(np.abs(p.projected_errors[1:]) <= areas[p.part.name])
         assert p.projected_errors[0] == pytest.approx(shadow(p.part.form, np.eye(3)[0]) / p.projected[0] - 1.0)
     row = found.total_table().rows[0]
     assert row[3] == f"{100.0 * (found.shape.volume / whole - 1.0):+.1f} %"

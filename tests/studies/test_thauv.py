@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from coeflab.model.acceptance import Acceptance, ComparedTable
@@ -72,12 +73,21 @@ def test_errata_and_doubts_are_named(thauv: Acceptance) -> None:
 
 
 def test_figures(thauv: Acceptance) -> None:
-    assert [name for name, _, _ in thauv.figures] == [
-        "motion.svg", "polar_thauv_case_01.svg", "polar_thauv_case_02.svg", "polar_thauv_case_03.svg",
+    assert [name for name, _ in thauv.figures] == [
+        "motion", "polar_thauv_case_01", "polar_thauv_case_02", "polar_thauv_case_03", "forces",
     ]  # fmt: skip
-    assert all(svg.startswith(b"<svg") for _, _, svg in thauv.figures)
-    for axis in (b"V", b"x", b"depth", b"alpha"):
-        assert axis in thauv.figures[0][2]
+    assert all(figure.svg.startswith("<svg") for _, figure in thauv.figures)
+    for axis in ("V", "x", "depth", "alpha"):
+        assert axis in thauv.figures[0][1].svg
+
+
+def test_the_drawn_forces_are_those_of_table_3(thauv: Acceptance) -> None:
+    """Case 01 at 10 degrees: L/V^2 = K_L0 + 10 K_L, D/V^2 = K_D0 + 100 K_D, M/V^2 = K_M0 + 10 K_M."""
+    lift, drag, moment = (panel.series[0] for panel in dict(thauv.figures)["forces"].panels)
+    printed = {"lift": -1.9169 + 95.281, "drag": 11.1159 + 21.5, "moment": 1.1025 - 14.179}
+    for drawn, value in zip((lift, drag, moment), printed.values(), strict=True):
+        assert drawn.name == "case 01"
+        assert np.interp(10.0, drawn.x, drawn.y) == pytest.approx(value, rel=5e-3)
 
 
 def test_the_same_twice(thauv: Acceptance) -> None:

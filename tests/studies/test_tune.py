@@ -211,3 +211,16 @@ def test_the_shipped_plan_is_sound() -> None:
     plan = read_tuning_plan(HUUV / "tune.toml")
     assert len(plan.cases.lines) == 28
     assert len(plan.free) == 7
+
+
+def test_only_what_cannot_be_a_vehicle_is_without_output(plan: Write, monkeypatch: pytest.MonkeyPatch) -> None:
+    p = tuning_problem(read_tuning_plan(plan(free='[[free]]\nplaces = ["mass"]\n')))
+    assert np.isnan(p.outputs(np.array([-100.0]))).all()
+    assert np.isnan(p.slopes(np.array([-100.0]))).all()
+
+    def fault(*_: object) -> None:
+        raise InputError("a fault", "none")
+
+    monkeypatch.setattr("coeflab.studies.tune.steady_motions", fault)
+    with pytest.raises(InputError, match="a fault"):
+        p.outputs(p.start * 1.01)

@@ -231,14 +231,17 @@ class _Said(HTMLParser):
         self._inside = ""
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag == "bdi":
+            return
         given = dict(attrs)
         if tag == "meta" and given.get("name") == "generator":
             self.generator = given.get("content") or ""
         digest = tag == "p" and "digest" in (given.get("class") or "").split() and not self.subject
         self._inside = "title" if tag == "title" and not self.title else "subject" if digest else ""
 
-    def handle_endtag(self, _: str) -> None:
-        self._inside = ""
+    def handle_endtag(self, tag: str) -> None:
+        if tag != "bdi":
+            self._inside = ""
 
     def handle_data(self, data: str) -> None:
         if self._inside == "title":

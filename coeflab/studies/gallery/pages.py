@@ -10,7 +10,8 @@ from importlib.resources import files
 from typing import Any
 
 from coeflab.model.table import Table
-from coeflab.presentation.printable import shortened
+from coeflab.presentation.lettering import cell_html, html
+from coeflab.presentation.printable import shortened, visible
 from coeflab.studies.gallery.listing import Listing, ParameterEntry
 
 SHOWN, SYMBOLS = 200, 12
@@ -59,7 +60,14 @@ def comparison(tables: Sequence[Table], statements: Sequence[tuple[str, Sequence
 
 
 def refusal(code: int, phrase: str, why: str) -> bytes:
-    """A page that says why there is nothing."""
+    """A page that says why there is nothing.
+
+    Parameters
+    ----------
+    code, phrase : int, str
+        Of HTTP.
+    why : str
+    """
     return _page("refusal", title=f"{code} {phrase}", why=why)
 
 
@@ -72,22 +80,45 @@ def policy() -> str:
     )
 
 
-def symbols(entry: ParameterEntry) -> str:
+def symbols(entry: ParameterEntry) -> Any:
     """The first symbols of a file, and how many more there are."""
     left = len(entry.symbols) - SYMBOLS
-    return " ".join(entry.symbols[:SYMBOLS]) + (f" and {left} more" if left > 0 else "")
+    shown = " ".join(cell_html(s) for s in entry.symbols[:SYMBOLS])
+    return _safe(shown + (f" and {left} more" if left > 0 else ""))
 
 
 def named(path: str) -> str:
     """A path to be shown: cut, and without bytes that are no text."""
-    return shortened(path.encode("utf-8", "replace").decode(), LONGEST)
+    return cut(path.encode("utf-8", "replace").decode(), LONGEST)
+
+
+def cut(text: str, longest: int) -> str:
+    """The beginning of a text, with every character seen."""
+    return visible(shortened(text, longest))
+
+
+def spelled(text: str, longest: int) -> Any:
+    """The beginning of a text with its symbols, safe to stand in a page."""
+    return _safe(html(shortened(text, longest)))
+
+
+def spelled_cell(text: str, longest: int) -> Any:
+    """The same of a table's cell."""
+    return _safe(cell_html(shortened(text, longest)))
+
+
+def _safe(text: str) -> Any:
+    from markupsafe import Markup
+
+    return Markup(text)
 
 
 @cache
 def _style() -> str:
     """The report's style and what the gallery adds."""
-    report = (files("coeflab.reporting") / "_html" / "style.css").read_text(encoding="utf-8")
-    return "\n" + report + (files("coeflab.studies") / "gallery" / "gallery.css").read_text(encoding="utf-8")
+    report = files("coeflab.reporting") / "_html"
+    sheets = (report / "style.css", report / "symbols.css", files("coeflab.studies") / "gallery" / "gallery.css")
+    return "\n" + "".join(sheet.read_text(encoding="utf-8") for sheet in sheets)
 
 
 @cache
@@ -102,7 +133,9 @@ def _templates() -> Any:
     made = Environment(
         loader=DictLoader(texts), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    made.filters |= {"symbols": symbols, "named": named, "shortened": shortened}
+    made.filters |= {
+        "symbols": symbols, "named": named, "shortened": cut, "spelled": spelled, "spelled_cell": spelled_cell
+    }  # fmt: skip
     return made
 
 

@@ -7,12 +7,14 @@ Host header has to be this machine's. Reports are shown sandboxed: whatever a fi
 from __future__ import annotations
 
 import os
+import re
 import shutil
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
+from io import BufferedIOBase
 from pathlib import Path
 from socketserver import ThreadingTCPServer
-from typing import cast
+from typing import BinaryIO, cast
 from urllib.parse import parse_qs, urlsplit
 
 from coeflab.core.errors import CoeflabError, InputError, OutputError, shown
@@ -26,6 +28,7 @@ from coeflab.studies.gallery.places import SERVED, place_of
 ADDRESS = "127.0.0.1"
 MOST_COMPARED, LONGEST_QUERY = 8, 200
 SECONDS = 30
+FIELD = re.compile(rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+:[^\r\n\0]*\r?\n")
 ALWAYS = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
@@ -97,16 +100,44 @@ class GalleryServer(ThreadingTCPServer):
             super().handle_error(request, client_address)  # type: ignore[arg-type]
 
 
+class _Heard:
+    """A stream that keeps the lines read from it: readers of headers skip what they do not understand."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self.stream = stream
+        self.lines: list[bytes] = []
+
+    def readline(self, most: int = -1) -> bytes:
+        self.lines.append(self.stream.readline(most))
+        return self.lines[-1]
+
+    @property
+    def fields(self) -> list[bytes]:
+        """The lines before the empty one."""
+        return self.lines[:-1]
+
+
 class _Request(BaseHTTPRequestHandler):
     server_version, sys_version = "coeflab", ""
+    default_request_version = "HTTP/1.0"
     timeout = SECONDS
 
     def parse_request(self) -> bool:
         """Turn away what is not a look at this machine from this machine."""
-        if not super().parse_request():
-            return False
+        stream, heard = self.rfile, _Heard(cast(BinaryIO, self.rfile))
+        self.rfile = cast(BufferedIOBase, heard)
+        try:
+            if not super().parse_request():
+                return False
+        finally:
+            self.rfile = stream
         hosts = self.headers.get_all("Host", [])
-        if len(hosts) != 1 or hosts[0].strip().lower() not in cast(GalleryServer, self.server).hosts:
+        if len(hosts) != 1 or not all(FIELD.fullmatch(line) for line in heard.fields):
+            self._refuse(
+                HTTPStatus.BAD_REQUEST, "A request needs one Host, and one name and value on every header line."
+            )
+            return False
+        if hosts[0].strip().lower() not in cast(GalleryServer, self.server).hosts:
             self._refuse(HTTPStatus.FORBIDDEN, "This gallery answers to 127.0.0.1 and localhost only.")
             return False
         if self.command not in ("GET", "HEAD"):
@@ -116,12 +147,13 @@ class _Request(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         """Answer with the index, files side by side, or a file."""
+        if not self.path.startswith("/"):
+            self._refuse(HTTPStatus.BAD_REQUEST, "This gallery is no proxy.")
+            return
         where = urlsplit(self.path)
         asked = parse_qs(where.query, max_num_fields=100) if where.query.count("&") < 100 else {}
         shelf = cast(GalleryServer, self.server).shelf
-        if where.scheme or where.netloc or not self.path.startswith("/"):
-            self._refuse(HTTPStatus.BAD_REQUEST, "This gallery is no proxy.")
-        elif where.path == "/":
+        if where.path == "/":
             query = asked.get("q", [""])[0][:LONGEST_QUERY].strip()
             self._page(HTTPStatus.OK, pages.index(shelf.folder.name or str(shelf.folder), shelf.listing(), query))
         elif where.path == "/compare":

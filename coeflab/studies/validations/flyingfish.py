@@ -9,6 +9,7 @@ from coeflab.kernels.tilting_rotors import CONSTANTS, calibrated, steady_residua
 from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
 from coeflab.model.flyingfish import FlyingFish, read_flyingfish
 from coeflab.model.operating_point import OperatingPoint
+from coeflab.studies.validations.flyingfish_figures import figures
 from coeflab.studies.validations.flyingfish_trim import DEGREE, RPM, UNKNOWNS, trim
 
 Array = NDArray[np.float64]
@@ -18,6 +19,15 @@ LEVEL, ISOLATED = (0, 3, 4), (1, 6, 9)
 CORRECTED = (79.869, -75.109, 0.051, 0.146, 2075.18, 2082.07, 624.00, 250.51)
 DERIVED = {"net_weight": 5e-5, "mass": 5e-5, "buoyancy_moment": 5e-5, "arm_length": 5e-6, "rotor_height": 5e-6}
 UNITS = {"net_weight": "N", "mass": "kg", "buoyancy_moment": "N m", "arm_length": "m", "rotor_height": "m"}
+CONVENTIONS = (
+    "Reference point: the centre of gravity. Rotors 1 and 2 stand on arms to starboard and port, 3 and 4 ahead and astern.",
+    "Tilts beta turn a rotor about its own arm, right-handed about the arm outward: at none the thrust points down, along z. The "
+    "paper calls them beta; they are no sideslip.",
+    "Rotor speeds are in rpm; thrust and torque follow their sign-free curves. The force of the water is -(linear + quadratic |u|) u "
+    "along each axis; v = p = q = 0 in every motion.",
+    "Attitude: roll phi and pitch theta of the equations of steady motion 51-56, in which weight less buoyancy and the righting "
+    "moment stand on the other side.",
+)
 IN_SAMPLE = (
     "The paper prints neither mass, buoyancy, arm length nor rotor height. They are calibrated: least squares of the "
     "equations over these very rows, so what follows is in-sample."
@@ -28,6 +38,7 @@ def acceptance() -> Acceptance:
     """Everything that the paper's Table 1 lets us judge."""
     fish = read_flyingfish()
     constants = calibrated(fish.rotors, fish.motion, fish.angles, fish.speeds)
+    nearest = _nearest(fish, constants)
     return Acceptance(
         "flyingfish",
         "TJ-FlyingFish, four tilting rotors: ten operating points under water",
@@ -35,7 +46,7 @@ def acceptance() -> Acceptance:
             _constants(fish, constants),
             _residuals(fish, constants),
             _predicted(fish),
-            _nearest(fish, constants),
+            nearest,
             _families(fish, constants),
             _cold(fish, constants),
             _corrected(fish, constants),
@@ -47,6 +58,8 @@ def acceptance() -> Acceptance:
             f"Rotor speeds from 0 to {fish.largest_speed:g} rpm: chosen, the paper prints no limit.",
         ),
         ("tj_flyingfish",),
+        figures(fish, nearest),
+        CONVENTIONS,
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from coeflab.kernels.least_squares import Array
@@ -13,8 +15,10 @@ from coeflab.model.huuv_parameters import parameter_file
 from coeflab.model.steady_motion import steady_motions, wrenches
 from coeflab.model.tuning import Tuning, largest_correlations, moved_in_words
 from coeflab.model.vehicle import vehicle
+from coeflab.presentation.document import Figure
 from coeflab.presentation.tuning_figure import Groups, agreement_figure, curves_figure
 from coeflab.studies.validations.huuv_fit import BASE, ERRORS, TOLD, hidden, tuned
+from coeflab.studies.validations.huuv_forces import forces_figure
 
 ACCEPTED, LASTS, SEED = 1e-3, 120.0, 20251105
 LIMITS = {"u": ("m/s", 0.007), "beta": ("deg", 0.40), "radius": ("m", 0.027)}
@@ -22,6 +26,17 @@ ABOUT = {"u": ("m/s", 0.063), "beta": ("deg", 1.1), "radius": ("m", 0.14)}
 ROUGHLY = 0.1
 INTERCEPT, EITHER_WAY = 2.30, 0.15
 PLATES = ((1.0, 0.579), (2.0, 0.756), (3.0, 0.831), (5.0, 0.896))
+CONVENTIONS = (
+    "Reference point: the centre of buoyancy. Only u, v and r move; heave, roll and pitch are zero.",
+    "Turns to port have r < 0 and v > 0, so beta > 0; the tables of the paper and of this report give sizes.",
+    "The paper's triad, x forward, y port, z down, is left-handed. What it computes fits x forward, y port, z up; port and starboard "
+    "mirror each other, so v, r, Y and N change sign together and no coefficient does.",
+    "Drag, side force and yaw moment of the hull are coefficients times V^2, with beta in rad and the area and density in them: "
+    "N over (m/s)^2, N m over (m/s)^2. C_D points against the velocity, C_S across it.",
+    "The Coriolis terms of the added mass stand beside C_m(beta), as in the paper: what the Munk moment counts twice is among the "
+    "errata.",
+    "Thruster commands are per cent of the largest; a larger right one turns to port.",
+)
 SIGNS = (
     "Computed in FRD, where these turns to port have r < 0 and v > 0; the table has sizes. Only the sign of the thrusters' "
     "moment changes between the two triads."
@@ -49,7 +64,8 @@ def acceptance() -> Acceptance:
         huuv.errata,
         _statements(huuv, halves),
         ("huuv2025",),
-        _figures(huuv, halves),
+        tuple(_figures(huuv, halves)),
+        CONVENTIONS,
     )
 
 
@@ -208,16 +224,12 @@ def _weights() -> str:
     )
 
 
-def _figures(huuv: Huuv, halves: dict[str, Tuning]) -> tuple[tuple[str, str, bytes], ...]:
-    out = []
+def _figures(huuv: Huuv, halves: dict[str, Tuning]) -> Iterator[tuple[str, Figure]]:
     for source, fit in halves.items():
         turns = huuv.turns[source]
         commands = sorted(set(turns.left.tolist()))
         member = np.searchsorted(commands, turns.left)
         groups = Groups(turns.right, "right thruster  [%]", member, tuple(f"left {c:g} %" for c in commands))
-        for kind, figure in (
-            ("turns", curves_figure(fit, groups, f"huuv-{source}-turns")),
-            ("agreement", agreement_figure(fit, f"huuv-{source}-agreement")),
-        ):
-            out.append((f"huuv_{source}_{kind}.svg", figure.caption, figure.svg.encode()))
-    return tuple(out)
+        yield f"huuv_{source}_turns", curves_figure(fit, groups, f"huuv-{source}-turns")
+        yield f"huuv_{source}_agreement", agreement_figure(fit, f"huuv-{source}-agreement")
+    yield "huuv_forces", forces_figure(huuv, halves)

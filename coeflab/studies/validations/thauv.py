@@ -3,22 +3,34 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import cast
 
 import numpy as np
 
 from coeflab.core.files import shipped
+from coeflab.kernels.least_squares import Array
 from coeflab.kernels.pitch_calibration import GlideSpeed, calibrated, speed_of
 from coeflab.kernels.steady_glide import glide
 from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
 from coeflab.model.glide import steady_glides
 from coeflab.model.glider import Glider, GliderPhase
+from coeflab.presentation.document import Figure
+from coeflab.presentation.laws_figure import Plot, Trace, laws_figure
 from coeflab.studies.glide import Flown, fly
 
 SAME, SPEED, BALLAST, GAIN = 1e-4, 0.005, 5e-4, 1.0
 VEHICLE = 66.35
+SHOWN = (-15.0, 15.0)
+CONVENTIONS = (
+    "Motion in the vertical plane: u, w and q. Depth is positive downward, alpha = atan2(w, u), pitch theta is positive bow up.",
+    "Glide angle zeta = theta - alpha, below zero on a dive. Lift and drag are across and along the velocity, lift positive upward on "
+    "a body that moves ahead.",
+    "The paper writes v1, v3 and omega2 for u, w and q, and m1, m3 for mass plus added mass along x and z.",
+    "Net mass is mass less displaced mass: above zero is heavy. Angles of Table 3 are taken in degrees, see the errata.",
+    "The pitch moment of Table 3 is taken to be without the Munk moment, which equation 19 adds; see What to know.",
+)
 ERRATA = (
     "Equation 9: b = R V stands for b_dot = R V.",
     "Equation 18: -m1 v1 omega2 stands for +m1 v1 omega2; with the minus sign kinetic energy is not conserved.",
@@ -46,7 +58,8 @@ def acceptance() -> Acceptance:
         ERRATA,
         (CALIBRATED, _munk(gliders), _damping(gliders), _radians(gliders), *_motion(gliders)),
         ("thauv", "leonard_graver2001"),
-        _figures(flown),
+        tuple(_figures(flown)),
+        CONVENTIONS,
     )
 
 
@@ -211,12 +224,39 @@ def _motion(gliders: dict[str, Flown]) -> tuple[str, ...]:
     return tuple(cast(Sequence[str], said))
 
 
-def _figures(flown: Sequence[Flown]) -> tuple[tuple[str, str, bytes], ...]:
+def _figures(flown: Sequence[Flown]) -> Iterator[tuple[str, Figure]]:
     from coeflab.presentation.glide_figures import motion_figure, polar_figure
 
-    made = [("motion", motion_figure([f.run for f in flown], "thauv-motion"))]
-    made += [(f"polar_{f.run.glider.name}", polar_figure(f.run.glider, f.steady, f.run.glider.name)) for f in flown]
-    return tuple((f"{name}.svg", figure.caption, figure.svg.encode()) for name, figure in made)
+    yield "motion", motion_figure([f.run for f in flown], "thauv-motion")
+    for f in flown:
+        yield f"polar_{f.run.glider.name}", polar_figure(f.run.glider, f.steady, f.run.glider.name)
+    yield "forces", _forces(flown)
+
+
+def _forces(flown: Sequence[Flown]) -> Figure:
+    """Lift, drag and pitch moment of the three wings, over V^2."""
+    alpha = np.linspace(*SHOWN, 57)
+    plots = []
+    for name, unit in (("lift", "N"), ("drag", "N"), ("moment", "N m")):
+        traces = tuple(
+            Trace(f"case {f.run.glider.name.rpartition('_')[2]}", alpha, _over_speed(f, name)(np.radians(alpha)), i)
+            for i, f in enumerate(flown)
+        )
+        label = f"{name} / V^2  [{unit}/(m/s)^2]"
+        plots.append(Plot(label, "angle of attack alpha  [deg]", traces, 104.0, is_scaled=name == "moment"))
+    return laws_figure(
+        "thauv-forces", "Lift, drag and pitch moment of the three wings",
+        "Equations 28 to 30 with Table 3, over the square of the speed, so that one curve holds for every speed. The paper states "
+        "these laws over the angle of attack alone: there are no data for a drag surface over alpha and beta.",
+        "Three panels over the angle of attack: straight lines of lift, parabolas of drag and straight lines of moment, for three "
+        "wings.",
+        plots,
+    )  # fmt: skip
+
+
+def _over_speed(flown: Flown, name: str) -> Callable[[Array], Array]:
+    polar = flown.run.glider.body.polar
+    return {"lift": polar.lift_at, "drag": polar.drag_at, "moment": polar.moment_at}[name]
 
 
 def _case(published: dict[str, str]) -> str:

@@ -1,0 +1,94 @@
+"""What is printed: names from files neither steer a terminal nor are read as markup."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from coeflab.cli import show
+from coeflab.model.table import Table
+from tests.cli.conftest import COEFLAB
+from tests.cli.test_compare import VALUES, made
+
+ACTING = "a\x1b[31mred\x1b[0m\u202eleft\u2066\x07\x9b2J\x7f\r\n\u2028end"
+SHOWN = "aU+001B[31mredU+001B[0mU+202EleftU+2066U+0007U+009B2JU+007F   end"
+HEBREW = "\u05e9\u05dc\u05d5\u05dd"
+
+
+def acting(text: str) -> set[str]:
+    return {ch for ch in text if not ch.isprintable() and ch != "\n"}
+
+
+def test_lines_and_errors_show_what_would_act(capsys) -> None:
+    show.text(ACTING)
+    show.error(ACTING)
+    show.text(HEBREW)
+    seen = capsys.readouterr()
+    assert (seen.out, seen.err) == (f"{SHOWN}\n{HEBREW}\n", f"{SHOWN}\n")
+
+
+def test_many_lines_stay_lines(capsys) -> None:
+    show.lines("one\ntwo\x1b")
+    assert capsys.readouterr().out == "one\ntwoU+001B\n"
+
+
+@pytest.mark.parametrize("terminal", [False, True])
+def test_tables_show_what_would_act(capsys, monkeypatch, terminal: bool) -> None:
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: terminal)
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.setenv("NO_COLOR", "1")
+    name = f"[bold]x[/nothing] {ACTING}"
+    show.table(Table(name, (ACTING, "n"), ((ACTING, "1"),), (name,)))
+    out = capsys.readouterr().out
+    assert acting(out) <= ({"\x1b"} if terminal else set())
+    assert out.count(SHOWN) == 4
+    assert out.count("[bold]x[/nothing]") == 2
+    assert "\x1b[31m" not in out
+
+
+def test_json_keeps_the_text_and_escapes_what_would_act(capsys) -> None:
+    show.json_object({"name": ACTING + HEBREW + "\U000e0041"})
+    out = capsys.readouterr().out
+    assert acting(out) == set()
+    assert HEBREW in out
+    assert json.loads(out) == {"name": ACTING + HEBREW + "\U000e0041"}
+
+
+def test_a_real_command_lets_no_name_act(coeflab, tmp_path) -> None:
+    content = json.loads(made(VALUES).to_json()) | {"name": ACTING.replace("\n", ""), "body": ACTING}
+    (tmp_path / "a.json").write_text(json.dumps(content), encoding="utf-8")
+    (tmp_path / "b.json").write_bytes(made(VALUES).to_json())
+    for more in ((), ("--json",)):
+        done = coeflab("compare", "a.json", "b.json", *more)
+        assert acting(done.stdout + done.stderr) == set()
+    missing = coeflab("compare", "a\x1b[31m\u202e.json", "b.json")
+    assert missing.returncode == 2
+    assert acting(missing.stderr) == set()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminal there")
+def test_a_terminal_gets_no_escape_from_a_name(tmp_path) -> None:
+    import pty
+
+    content = json.loads(made(VALUES).to_json()) | {"name": "x\x1b]0;owned\x07[/red]"}
+    (tmp_path / "a.json").write_text(json.dumps(content), encoding="utf-8")
+    near, far = pty.openpty()
+    command = [str(COEFLAB), "compare", str(tmp_path / "a.json"), str(tmp_path / "a.json")]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=far, stderr=far):
+        os.close(far)
+        heard = b"".join(iter(lambda: _read(near), b""))
+    os.close(near)
+    assert b"owned" in heard
+    assert b"\x1b]0;" not in heard
+
+
+def _read(line: int) -> bytes:
+    """What came; nothing once the other end is closed, which Linux calls an error."""
+    try:
+        return os.read(line, 65536)
+    except OSError:
+        return b""
