@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
-from coeflab.core.machine import physical_memory, stage
+from coeflab.core.machine import compiles, physical_memory, stage
 from coeflab.core.options import bounded, one_of, parse_options
 from coeflab.kernels.panel_added_mass import PanelSolution, memory_needed, panel_added_mass
 from coeflab.kernels.panel_geometry import (
@@ -139,12 +138,11 @@ def _thin(corners: Array) -> float:
 
 
 def _compiled(kernel: str, panels: int) -> bool:
-    installed = importlib.util.find_spec("numba") is not None
-    if kernel == "numba" and not installed:
+    if kernel == "numba" and not compiles():
         raise InputError(
             "the compiled kernel without numba", "numba", advice='Install "coeflab[fast]", or use the kernel numpy.'
         )
-    return installed and (kernel == "numba" or (kernel == "auto" and panels > COMPILE_FROM))
+    return (kernel == "numba" or (kernel == "auto" and panels > COMPILE_FROM)) and compiles()
 
 
 def _fits(panels: int) -> None:

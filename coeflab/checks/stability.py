@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coeflab.model.check import Check, Severity
-from coeflab.model.derived import INDICES, stability
+from coeflab.model.derived import INDICES, sense, stability
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.study import Study
 
@@ -27,12 +27,11 @@ def _indices(parameters: ParameterFile) -> list[Check]:
         else:
             d = given[name]
             half = None if d.result is None else d.result.linear
-            verdict = "stable" if d.value > 0.0 else "unstable"
-            sure = half is not None and abs(d.value) > half
+            verdict = sense(d)
             statistic = f"{name} = {d.value:.3f}{'' if half is None else f' +- {half:.2g}'}: {verdict}"
-            statistic += "" if sure else ", not beyond its uncertainty"
             literature = [c.symbol for c in found if c is not None and c.origin == "literature"]
             comment = f"Directionally {verdict} with controls fixed."
+            comment += " The interval holds zero." if verdict == "not determined" else ""
             comment += " High-speed limit without restoring moment." if name == "G_v" else ""
             comment += f" {', '.join(literature)} from literature (PMM)." if literature else ""
             comment += f" {d.statement}." if half is None else ""

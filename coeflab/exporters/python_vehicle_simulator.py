@@ -36,7 +36,7 @@ holds = frozenset({"hydrostatics"})
 
 not_held = not_written
 
-GRAVITY = 9.81
+GRAVITY = 9.81  # m/s^2, as in the simulator's own vehicles (vehicles/otter.py)
 _PLACES = {"prime": "self.", "rest": "self.rest_", "potential": "self.ideal_"}
 _HEADINGS = {
     "prime": "Primed by rho and L: totals, potential part included",

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.identifiers import identifier, one_line
 from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.core.yaml import parse_yaml
 from coeflab.kernels.composition import definiteness, moved
 from coeflab.kernels.rigid_body import about_another, rigid_body_inertia
@@ -38,7 +39,7 @@ holds = frozenset({"hydrostatics"})
 not_held = not_written
 
 FORCES = "hydrodynamic_forces"
-GRAVITY, VISCOSITY = 9.80665, 1e-6
+VISCOSITY = 1e-6
 STATES = ("x", "y", "z", "u", "v", "w", "p", "q", "r", "qr", "qi", "qj", "qk")
 Array = NDArray[np.float64]
 
@@ -127,7 +128,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# Totals: xdyn adds no C_A(nu) nu. {'Weight, buoyancy and propulsion are' if h is None else 'Propulsion is'} not in here.",
         "rotations convention: [psi, theta', phi'']",
         "environmental constants:",
-        f"    g: {{value: {GRAVITY if h is None else h.gravity!r}, unit: m/s^2}}",
+        f"    g: {{value: {STANDARD_GRAVITY if h is None else h.gravity!r}, unit: m/s^2}}",
         f"    rho: {{value: {parameters.conditions.density!r}, unit: kg/m^3}}",
         f"    nu: {{value: {parameters.conditions.viscosity or VISCOSITY!r}, unit: m^2/s}}",
         "environment models: []",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal, Protocol
 
 Basis = Literal["printed", "derived", "in-sample"]
 BASES: dict[Basis, str] = {
@@ -88,6 +88,34 @@ class ComparedTable:
         return all(r.holds for r in self.rows)
 
 
+class Drawing(Protocol):
+    """A figure as the report knows it; here it is only handed on."""
+
+    @property
+    def anchor(self) -> str:
+        """Unique in the report."""
+
+    @property
+    def svg(self) -> str:
+        """One ``<svg>`` element."""
+
+    @property
+    def title(self) -> str:
+        """A short name."""
+
+    @property
+    def caption(self) -> str:
+        """What it shows."""
+
+    @property
+    def description(self) -> str:
+        """The same for readers who cannot see it."""
+
+    @property
+    def panels(self) -> tuple[Any, ...]:
+        """The numbers behind it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Acceptance:
     """A publication reproduced.
@@ -100,8 +128,10 @@ class Acceptance:
         Errors of the publication, each with what stands in their place.
     statements : tuple of str
     citations : tuple of str
-    figures : tuple of (str, str, bytes)
-        File name, caption, SVG.
+    figures : tuple of (str, Drawing)
+        File name without ending, and the drawing.
+    conventions : tuple of str
+        Axes, signs and units of its own, beside those that hold for every report.
     """
 
     name: str
@@ -110,7 +140,8 @@ class Acceptance:
     errata: tuple[str, ...]
     statements: tuple[str, ...]
     citations: tuple[str, ...]
-    figures: tuple[tuple[str, str, bytes], ...] = ()
+    figures: tuple[tuple[str, Drawing], ...] = ()
+    conventions: tuple[str, ...] = ()
 
     @property
     def holds(self) -> bool:

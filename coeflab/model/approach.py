@@ -13,12 +13,12 @@ from coeflab.core.options import named_numbers
 from coeflab.core.symbols import ANGULAR, CONTROLS, MOTIONS
 from coeflab.kernels.linearisation import linearised, modes
 from coeflab.model.manoeuvre import UPRIGHT, Figure
+from coeflab.model.outside import UNCOVERED
 from coeflab.model.trajectory import Trajectory
 from coeflab.model.vehicle import THRUST, Vehicle
 
 Array = NDArray[np.float64]
-STEP = 1e-4
-UNCOVERED = "no data cover it"
+STEP = 1e-4  # rad: an angle that is small for every law, and far above rounding
 
 
 def along(vehicle: Vehicle, speed: float) -> Array:

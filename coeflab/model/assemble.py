@@ -125,6 +125,15 @@ def assemble(
 
     Parameters
     ----------
+    group : PlannedParameterFile
+    study : str
+        Its name, for the provenance.
+    fits, tables, missing, references : sequence
+        Of the whole study: results, what they were fitted to, coefficients that were asked for and not found, published values.
+    body : Body or None
+    conditions : Conditions
+    inputs : sequence of InputFile
+        Files that were read.
     found : Triangulation, optional
         Added mass; the potential part by the recommended method is booked in every coefficient.
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import Axes, parse_axes
-from coeflab.core.provenance import Source, read_source
+from coeflab.core.provenance import TABLE_KINDS, Source, read_source
 from coeflab.core.toml import Section, read_toml
 from coeflab.model.frozen import locked
 from coeflab.model.input_uncertainty import InputUncertainty, read_input_uncertainty
@@ -165,7 +165,7 @@ def read_campaign(path: Path) -> Campaign:
         conditions=read_conditions(conditions),
         half_model=head.flag("half_model", False),
         inertia=_inertia(root.section("inertia", required=False)),
-        source=read_source(source, ("experiment", "cfd", "literature", "synthetic")),
+        source=read_source(source, TABLE_KINDS, required=True),
         tables=_tables(root),
         uncertainty=read_input_uncertainty(root.section("uncertainty", required=False)),
     )

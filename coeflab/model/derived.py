@@ -46,6 +46,14 @@ class Derived:
     statement: str
 
 
+def sense(index: Derived) -> str:
+    """What a stability index says: not determined where its interval holds zero."""
+    by_value = "stable" if index.value > 0.0 else "unstable"
+    if index.result is None:
+        return f"{by_value} by its value, which has no U95"
+    return by_value if abs(index.value) > index.result.linear else "not determined"
+
+
 def centre_of_pressure(
     among: CoefficientSet, subject: str, draws: int = DRAWS, seed: int = SEED
 ) -> tuple[Derived, ...]:

@@ -16,8 +16,8 @@ from coeflab.model.parameter_file import ParameterFile
 
 Array = NDArray[np.float64]
 CELLS = Sequence[Sequence[float | None]]
-CORRELATED = 0.1
-NEGATIVE = -1e-8
+CORRELATED = 0.1  # a shared variance of 1 %: below it two coefficients are counted as sources of their own
+NEGATIVE = -1e-8  # eigenvalue of a correlation matrix: rounding of what files print
 UNSTATED = "not varied: no uncertainty is stated"
 
 

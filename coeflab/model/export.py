@@ -22,12 +22,15 @@ class Export:
         The loss report among them, where there is a loss to report.
     loss : Loss or None
         None for tables, which hold the parameter file as it is.
+    citations : tuple of str
+        Of the target: where its force law was read.
     """
 
     parameters: str
     target: str
     files: Mapping[str, bytes]
     loss: Loss | None
+    citations: tuple[str, ...] = ()
 
     @property
     def lossless(self) -> bool:

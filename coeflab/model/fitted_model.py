@@ -173,11 +173,11 @@ class FittedModel:
         return float(self.fit.coefficients[i]), float(self.half_width[i])
 
 
-COLLINEAR = 0.98
+COLLINEAR = 0.98  # the half-width is five times that of either term alone: 1 / sqrt(1 - 0.98^2)
 MOST_PAIRS = 3
 MOST_DIRECTIONS, MOST_MIXED = 4, 6
-FEWEST_DIGITS = 7.0
-SEEN = 0.05
+FEWEST_DIGITS = 7.0  # half of a double's
+SEEN = 0.05  # of the largest part: less is not named
 
 
 def _only_together(parts: list[tuple[str, float]]) -> str:

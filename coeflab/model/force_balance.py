@@ -27,8 +27,10 @@ from coeflab.model.motion_series import MotionSeries
 from coeflab.model.vehicle import Vehicle
 
 Array = NDArray[np.float64]
+# Half-widths of a window: neighbours overlap in three quarters, for their weights fade to both ends; what lies within two
+# windows is taken as one stretch.
 APART, STRETCH = 0.5, 4.0
-NOISE = 0.5
+NOISE = 0.5  # share of a motion's power: with less of it told twice alike, noise is most of what is seen
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,8 @@ from coeflab.model.glider import Glider, GliderPhase
 from coeflab.model.trajectory import Ended, Trajectory
 
 Array = NDArray[np.float64]
-SETTLED, ABOVE = 0.01, 0.5
+SETTLED = 0.01  # of the steady speed
+ABOVE = 0.5  # m over the surface, beyond what a motion overshoots by: then it flies in the air
 
 
 @dataclass(frozen=True, slots=True)

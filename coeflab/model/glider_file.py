@@ -9,7 +9,7 @@ from typing import cast
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.toml import Section, read_toml
-from coeflab.core.units import quantity
+from coeflab.core.units import STANDARD_GRAVITY, quantity
 from coeflab.model.glider import (
     SYMBOLS,
     AngleUnit,
@@ -23,7 +23,6 @@ from coeflab.model.glider import (
 
 KINDS = ("printed", "derived", "calibrated", "assumed")
 TABLES = ("glider", "mass", "sliding_mass", "engine", "polar", "phase")
-GRAVITY = 9.81
 LONGEST = 1e7
 
 
@@ -42,7 +41,7 @@ def read_glider(path: Path) -> Glider:
         name=_name(head),
         title=head.text("title"),
         citation=head.text("citation"),
-        gravity=head.positive("gravity", "acceleration") if head.has("gravity") else GRAVITY,
+        gravity=head.positive("gravity", "acceleration") if head.has("gravity") else STANDARD_GRAVITY,
         mass=mass,
         sliding_mass=sliding,
         engine=engine,

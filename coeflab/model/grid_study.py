@@ -12,7 +12,7 @@ from coeflab.kernels.grid_convergence import GridConvergence, cell_sizes, grid_c
 from coeflab.kernels.grid_least_squares import fitted_convergence
 from coeflab.model.force_table import ForceTable
 
-AT_REST = 1e-4
+AT_REST = 1e-4  # of the largest motion in the table: rounding of a printed angle, not a motion
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,8 +7,9 @@ from dataclasses import dataclass, fields
 from coeflab.core.toml import Section
 
 SECTION = "uncertainty"
+# Beyond these an input is a mistyped unit (per cent for a share, degrees for radians) or no measurement.
 LARGEST_RELATIVE = 0.5
-LARGEST_ANGLE = 0.0873
+LARGEST_ANGLE = 0.0873  # 5 deg
 
 
 @dataclass(frozen=True, slots=True)

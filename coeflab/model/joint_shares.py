@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from coeflab.core.wording import finite
 from coeflab.kernels.groups import UNTOLD, poolability
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.linear_model import LinearFit, fit_linear
@@ -48,8 +49,8 @@ def _pooling(part: Component, fit: LinearFit, guess: Array, third: OutOfSample) 
             CampaignShare(
                 campaign=data.campaigns[k],
                 n_points=int(rows.sum()),
-                intercept=intercept if np.isfinite(intercept) else None,
-                half_width=half if np.isfinite(half) else None,
+                intercept=finite(intercept),
+                half_width=finite(half),
                 noise=float(np.sqrt(np.mean(noise**2))),
                 rms=float(np.sqrt(np.mean(fit.residuals[rows] ** 2))),
                 rms_alone=alone[k].rms,

@@ -11,6 +11,7 @@ from coeflab.model.frozen import locked
 from coeflab.model.parameter_model import ParameterModel
 
 Array = NDArray[np.float64]
+# Per axis by the number of axes: about a thousand cells at the most.
 POINTS = {1: 41, 2: 21, 3: 11}
 FEWEST = 5
 

@@ -17,10 +17,11 @@ from coeflab.model.motion_terms import as_arrays, motion_terms, open_products
 from coeflab.model.parameter_file import ParameterFile
 
 Array = NDArray[np.float64]
-SPEEDS = (0.5, 1.0, 1.5)
+SPEEDS = (0.5, 1.0, 1.5)  # of the file's: a law that holds at one speed only shows
+# Values of a motion: zero and both signs at the least, five where there are fewer than MANY motions to combine.
 POINTS, FEW, MANY = 5, 3, 5
-ASSUMED = 0.2
-LOSSLESS = 1e-9
+ASSUMED = 0.2  # prime range of a motion that no campaign covers: 11 deg of incidence
+LOSSLESS = 1e-9  # rounding of coefficients that are written with 17 digits and multiplied a few times
 ANGLES = {"asin(v/U)": "v", "asin(w/U)": "w"}
 
 
@@ -144,8 +145,20 @@ def loss_of(
 
     Parameters
     ----------
+    target : str
+    law : ForceLaw
+        Of the parameter file.
+    parameters : ParameterFile
+    files : mapping of str to bytes
+        What was exported.
     force : callable
         The target's files and (n, 6) velocities -> (n, 6) forces, FRD, about the file's reference point, steady motion.
+    not_held : tuple of str
+        Terms that the target has no place for.
+    lost : tuple of Lost
+        What else of the file it is not given.
+    changes : tuple of str
+        What it is given otherwise, in words.
     """
     nu, words = covered_grid(parameters)
     tables = force_of_tables(parameters, nu)

@@ -13,7 +13,7 @@ from coeflab.model.parameter_added_mass import ParameterAddedMass
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.parameter_model import ParameterModel
 
-SAME = 1e-6
+SAME = 1e-6  # a computed and a stated entry, with the digits that files print
 ROLL = "it stands in its place; write the vehicle's"
 WAYS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 

@@ -18,10 +18,10 @@ from coeflab.model.meshing import FEWEST, meshed
 from coeflab.model.shape import Shape
 
 Array = NDArray[np.float64]
-RATIO = 4
+RATIO = 4  # of panels from rung to rung: panels half as long
 RUNGS, LEAST_STEP = 28, 3
 LOWEST, HIGHEST = 0.6, 1.1
-PRICE = 0.1
+PRICE = 0.1  # of fewer panels at the top, in units of a ratio that is off by one e-fold
 MOST_UNFIT, MOST_SPLIT, CHANGE = 0.2, 40, 0.08
 
 

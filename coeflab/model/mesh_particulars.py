@@ -9,9 +9,9 @@ from coeflab.core.units import factor
 from coeflab.model.body import Configuration
 from coeflab.model.mesh import TriangleMesh
 
-SHORTEST, LONGEST = 0.05, 500.0
+SHORTEST, LONGEST = 0.05, 500.0  # m: from the smallest towed model to the largest ship; beyond, the unit is wrong
 UNITS = ("mm", "m", "cm", "ft", "in")
-NEAR = 0.05
+NEAR = 0.05  # of a stated length: the unit is right
 
 
 def computed(shape: TriangleMesh, statements: tuple[str, ...]) -> Configuration:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,7 @@ WITHIN = 2e-3
 NAMES = ("fore-aft", "port-starboard", "top-bottom")
 
 
+@lru_cache(8)
 def mirrors(shape: Shape) -> tuple[bool, bool, bool]:
     """Whether a shape equals its image in x, in y and in z, each through its centre of volume.
 

@@ -12,8 +12,8 @@ from coeflab.kernels.terms import Term, design
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.manoeuvring_terms import canonical
 
-UNLIKELY = 0.01
-ROUNDING = 1e-10
+UNLIKELY = 0.01  # a false alarm in one of a hundred sound fits
+ROUNDING = 1e-10  # residuals of an exact form, over the largest value
 
 
 def chance(probability: float) -> str:

@@ -22,7 +22,7 @@ from coeflab.model.regression import MOMENT_COEFFICIENTS
 from coeflab.model.scaling import Scaling
 
 Array = NDArray[np.float64]
-DRAWS, SEED = 200, 1
+DRAWS, SEED = 200, 1  # every one is a whole fit: tails of 5 draws, half-widths to about 10 %
 FORM = "model form"
 SELECTED = "declared inputs, as the terms were chosen by looking at the data"
 CHANGES = "it changes which rows or terms the fit can use"

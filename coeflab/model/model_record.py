@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from coeflab.core.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR
+from coeflab.core.wording import finite
 from coeflab.model.fit_result import FitResult
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.parameter_model import (
@@ -30,10 +29,6 @@ def _variable_unit(name: str, unit: str) -> str:
     return "rad" if name in (*ANGLES, *CONTROLS) else "1"
 
 
-def _finite(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
-
-
 def record(model: FittedModel, area: ModelArea | None = None) -> ParameterModel:
     """A fitted model as the parameter file holds it.
 
@@ -53,13 +48,13 @@ def record(model: FittedModel, area: ModelArea | None = None) -> ParameterModel:
                 ModelTerm(
                     symbol=s,
                     factors=tuple(ModelFactor(variable=v, power=n, absolute=a) for v, n, a in t.factors),
-                    value=_finite(c),
-                    half_width_95=_finite(h),
+                    value=finite(c),
+                    half_width_95=finite(h),
                 )
                 for s, t, c, h in zip(model.symbols, model.terms, model.fit.coefficients, model.half_width, strict=True)
             ),
             "holds": ("random", *model.shared),
-            "covariance": tuple(tuple(_finite(x) for x in row) for row in model.covariance),
+            "covariance": tuple(tuple(finite(x) for x in row) for row in model.covariance),
             "domain": ModelDomain(
                 low=tuple(map(float, model.domain.low)),
                 high=tuple(map(float, model.domain.high)),
@@ -68,7 +63,7 @@ def record(model: FittedModel, area: ModelArea | None = None) -> ParameterModel:
             ),
             "n_points": model.n_points,
             "rms": model.fit.rms,
-            "press_rms": _finite(model.fit.press_rms),
+            "press_rms": finite(model.fit.press_rms),
             "table": model.table,
             "campaign": model.campaign,
             "post_selection": model.post_selection,

@@ -16,7 +16,7 @@ from coeflab.model.frozen import locked
 from coeflab.model.vehicle import THRUST, Vehicle
 
 Array = NDArray[np.float64]
-FEWEST = 50
+FEWEST = 50  # rows: fewer hold no motion from which forces could be told
 COMMAND = "command"
 TILT = ".tilt"
 TIME = {"t": "t", "time": "t"}

@@ -10,7 +10,7 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.kernels.least_squares import Array
-from coeflab.kernels.motion_law import BASE, WIND, MotionLaw
+from coeflab.kernels.motion_law import BASE, REVERSAL, WIND, MotionLaw
 from coeflab.kernels.terms import parse_suffix
 from coeflab.model.force_law import force_law
 from coeflab.model.parameter_coefficient import ParameterCoefficient
@@ -20,7 +20,7 @@ from coeflab.model.regression import MOMENT_COEFFICIENTS
 from coeflab.model.scaling import Conditions, Scaling
 
 FREE = (-np.inf, np.inf)
-AHEAD = ("u", 10.0, -1.0, 1.0, False)
+AHEAD = ("u", REVERSAL, -1.0, 1.0, False)
 Variable = tuple[str, float, float, float, bool]
 
 

@@ -17,6 +17,7 @@ from coeflab.model.check import Check, Severity
 from coeflab.model.second_order import products_once
 
 Array = NDArray[np.float64]
+# A product u v over the ideal fluid's; a linear term over it is a speed, m/s.
 SIMILAR = (0.5, 2.0)
 USUAL_SPEEDS = (0.5, 4.0)
 MOMENTS = {"N": (5, 0, 1), "M": (4, 0, 2)}

@@ -15,8 +15,8 @@ from coeflab.kernels.operating_steps import HOLDS
 from coeflab.model.table import Table, number
 
 Array = NDArray[np.float64]
-FAMILY_SHOWN = 0.05
-WORTH_A_WORD = 1e-2
+FAMILY_SHOWN = 0.05  # an unknown that moves less, of the one that moves most, is left out of the words
+WORTH_A_WORD = 1e-2  # an equation violated less, of the worst, is left out of the words
 
 
 class Outcome(Enum):

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.model.schema_types import Finite, Name, Positive, Strict, told
 
 Triple = tuple[Finite, Finite, Finite]
@@ -20,7 +21,7 @@ class ParameterHydrostatics(Strict):
 
     volume: Annotated[Positive, told("displaced volume; the buoyancy is rho g V", "m^3")]
     centre_of_buoyancy: Annotated[Triple, told("from the reference point, x y z, FRD", "m")]
-    gravity: Annotated[Positive, told("g", "m/s^2")] = 9.80665
+    gravity: Annotated[Positive, told("g", "m/s^2")] = STANDARD_GRAVITY
 
 
 class CurveSegment(Strict):

@@ -12,7 +12,7 @@ from coeflab.kernels.attitude import angles
 from coeflab.model.body import Body
 from coeflab.model.shape import Box, Cylinder, Form, Part, Parts, Plate
 
-FIGURES, WIDTH = 12, 118
+FIGURES, WIDTH = 12, 118  # digits that outlast rounding, and a line of an editor
 
 
 def part_file(body: Body, shape: Parts, opening: tuple[str, ...], remarks: Mapping[str, tuple[str, ...]]) -> bytes:

@@ -15,7 +15,7 @@ from coeflab.model.plausible_added_mass import NAME, added_mass_findings, stated
 from coeflab.model.plausible_damping import damping_findings
 from coeflab.model.units_told import displaced, gravity, gyration, water
 
-SMALL = 1e-4
+SMALL = 1e-4  # of the speed: a slope at zero, by central difference
 
 
 def plausibility(parameters: ParameterFile) -> tuple[Check, ...]:

@@ -11,9 +11,9 @@ from coeflab.model.check import Check, Severity
 from coeflab.model.parameter_file import ParameterFile
 
 Array = NDArray[np.float64]
-MISTYPED = 0.05
-HEAVY = 5.0
-SMALLEST_PRIME = 1e-5
+MISTYPED = 0.05  # asymmetry of one wrong digit; more is another convention
+HEAVY = 5.0  # of the mass: a disc or plate in a vehicle's place
+SMALLEST_PRIME = 1e-5  # of 1/2 rho L^3: a cylinder 400 diameters long
 NAME = "plausibility"
 
 

@@ -11,7 +11,7 @@ from coeflab.model.misfit import UNLIKELY, chance
 from coeflab.model.out_of_sample import OutOfSample
 from coeflab.model.table import coefficient
 
-DOUBTFUL = 0.1
+DOUBTFUL = 0.1  # not rejected, but one in ten: worth a sentence
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,8 +21,8 @@ from coeflab.model.vehicle import Vehicle, vehicle
 
 Array = NDArray[np.float64]
 PLANES = {"G_h": ("v", "r"), "G_v": ("w", "q")}
-SLOWEST, FASTEST, SPEEDS = 0.1, 2.0, 39
-CLOSE = 1e-6
+SLOWEST, FASTEST, SPEEDS = 0.1, 2.0, 39  # of the file's speed, in steps of 0.05
+CLOSE = 1e-6  # bisection of a speed at which stability changes
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -18,7 +18,7 @@ from coeflab.model.fitted_model import FittedModel
 from coeflab.model.manoeuvring_terms import canonical
 from coeflab.model.table import coefficient
 
-FARTHEST = 3.0
+FARTHEST = 3.0  # reaches: beyond, a slope from rest speaks of other motions than those measured
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,8 @@ from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.model.force_table import ForceTable
 from coeflab.model.scaling import Scaling
 
-ALIKE = 0.02
-ROUNDED = 1e-6
+ALIKE = 0.02  # Reynolds numbers: temperatures of one tank within a degree, and rounding in reports
+ROUNDED = 1e-6  # lengths in feet that were converted with different digits
 
 
 def about_one_point(tables: Sequence[ForceTable]) -> tuple[ForceTable, ...]:

@@ -13,7 +13,7 @@ from coeflab.model.frozen import locked
 from coeflab.model.mesh import TriangleMesh
 
 Array = NDArray[np.float64]
-STATIONS = 64
+STATIONS = 64  # graded to both ends, where radii change most
 SMALLEST, LARGEST = 1e-6, 1e4
 
 

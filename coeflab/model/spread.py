@@ -14,6 +14,8 @@ from coeflab.kernels.sobol import SobolIndices
 from coeflab.model.manoeuvre import Figure
 
 Array = NDArray[np.float64]
+# With more than 5 % of the members without the figure a 95 % interval of the others would speak of a part only; its ends
+# lie between the two outermost of 20 members.
 MOST_LACKING = 0.05
 FEWEST = 20
 EXTRAPOLATED = "extrapolated"

@@ -35,6 +35,9 @@ def stated_coefficients(
         Quadratics that its simulator adds itself, symmetric in the last two axes.
     matrix : (6, 6) array
         Its added mass. Where that is no kinetic energy its entries become acceleration derivatives.
+    scaling : Scaling
+    conditions : Conditions
+        What the values are primed by.
 
     Notes
     -----

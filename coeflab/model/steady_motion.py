@@ -12,8 +12,8 @@ from coeflab.kernels.settling import settled
 from coeflab.model.vehicle import PLANES, Vehicle
 
 Array = NDArray[np.float64]
-SLOW = 0.1
-TINY = 1e-9
+SLOW = 0.1  # of the file's speed: a course to start from, ahead and not at rest, where damping has no slope
+TINY = 1e-9  # N, the size of a force where no thruster pushes
 
 
 def wrenches(moved: Vehicle, commands: Sequence[Mapping[str, float]]) -> Array:

@@ -11,6 +11,7 @@ from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.model.force_law import LawTerm
 
 Array = NDArray[np.float64]
+# Of the speed; products such as v|v| err by the first power of a step, which two steps take off.
 TOLERANCE, STEP = 1e-6, 1e-5
 
 

@@ -15,7 +15,7 @@ from coeflab.model.force_table import AT_REST, ForceTable
 Array = NDArray[np.float64]
 INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
 ASTERN = "does not run ahead (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
-NEAR_ZERO = np.sin(np.radians(0.3))
+NEAR_ZERO = np.sin(np.radians(0.3))  # what is left of a setting of zero when a model is aligned
 
 
 @dataclass(frozen=True, slots=True, eq=False)

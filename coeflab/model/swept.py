@@ -29,6 +29,8 @@ def area_of(value: float, name: str, scaling: Scaling) -> Area:
         m^2, or 0.
     name : str
         One of `AREAS`.
+    scaling : Scaling
+        Whose length the primes have.
 
     Raises
     ------

@@ -23,7 +23,8 @@ RULE = (
 )
 ORDER = ("panel", "primitives", "strip:lamb", "ellipsoid", "primitives:huuv", "strip")
 ROUNDING = 1e-12
-SILENT, NOISE = 1e-6, 2e-3
+SILENT = 1e-6  # of the largest diagonal entry: a motion that moves no water
+NOISE = 2e-3  # what a triangulated surface leaves of entries that symmetry makes vanish
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,10 @@ from coeflab.model.vehicle import THRUST, Vehicle
 Array = NDArray[np.float64]
 MOTION = {"u": "m/s", "v": "m/s", "w": "m/s", "yaw_rate": "rad/s", "roll": "rad", "pitch": "rad"}
 FOUND_WITH = {"u": "u", "v": "v", "w": "w", "yaw_rate": "r", "roll": "p", "pitch": "q"}
-FASTEST, TURNS, TILTED, STEEP = 3.0, 6.0, 0.1, np.radians(85.0)
-UNSTATED_LIMIT = float(np.radians(30.0))
+# Bounds of the search: three times the speed, a turn on a sixth of a length, and short of 90 deg, where heading has no sense.
+FASTEST, TURNS, STEEP = 3.0, 6.0, np.radians(85.0)
+TILTED = 0.1  # rad, what counts as one unit of lean among the scaled unknowns
+UNSTATED_LIMIT = float(np.radians(30.0))  # taken where the file states none, and said; few control surfaces go further
 NAMES = {
     "X": "surge force X", "Y": "sway force Y", "Z": "heave force Z", "K": "roll moment K", "M": "pitch moment M",
     "N": "yaw moment N",

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from coeflab.core.provenance import sha256_of
 from coeflab.core.version import VERSION
+from coeflab.core.wording import finite
 from coeflab.model.parameter_coefficient import ParameterCovariance, UncertaintyParts
 from coeflab.model.parameter_file import InputRecord, ParameterFile
 from coeflab.model.parameter_model import ParameterModel
@@ -63,8 +62,7 @@ def _half_width(tuning: Tuning, i: int) -> float | None:
 
 def _entry(tuning: Tuning, a: Numbered, b: Numbered) -> float | None:
     """Covariance of what stands at two places."""
-    found = float(tuning.covariance[a[1], b[1]]) * a[0].sign * b[0].sign
-    return found if np.isfinite(found) else None
+    return finite(float(tuning.covariance[a[1], b[1]]) * a[0].sign * b[0].sign)
 
 
 def _merged(

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.wording import listed
 from coeflab.kernels.output_error import Estimate
 from coeflab.kernels.output_problem import Problem
 from coeflab.model.frozen import locked
@@ -21,9 +22,9 @@ STATUSES = {
     BOUND: "it ended at a bound, so there is no interval",
     OPEN: "the data do not determine it: its 95 % half-width would exceed its own size; no interval",
 }
-MOSTLY = 0.9
-SAME_RATIO = 0.25
-TAKES_PART = 0.05
+MOSTLY = 0.9  # of the variance from the prior: the data hardly add to it
+SAME_RATIO = 0.25  # changes alike within a quarter read as a ratio
+TAKES_PART = 0.05  # of the largest change: less is not named
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,16 +189,12 @@ def together_in_words(names: Sequence[str], change: Array, values: Array) -> str
     parts = [(n, float(c)) for n, c in zip(names, away, strict=True) if abs(c) >= TAKES_PART]
     if len(parts) == 1:
         return f"{parts[0][0]}: the data hardly show it at all."
-    listed = _listed([n for n, _ in parts])
+    together = listed([n for n, _ in parts])
     if all(abs(c - 1.0) <= SAME_RATIO for _, c in parts):
         only = "as a ratio" if len(parts) == 2 else "as ratios to each other"
-        return f"{listed}: only {only}; the data do not show all of them rise alike."
-    shown = _listed([f"{n} {100.0 * c:+.0f} %" for n, c in parts])
-    return f"{listed}: only together; the data do not show a change of {shown}."
-
-
-def _listed(texts: Sequence[str]) -> str:
-    return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} and {texts[-1]}"
+        return f"{together}: only {only}; the data do not show all of them rise alike."
+    shown = listed([f"{n} {100.0 * c:+.0f} %" for n, c in parts])
+    return f"{together}: only together; the data do not show a change of {shown}."
 
 
 def largest_correlations(tuning: Tuning, above: float = 0.7) -> tuple[tuple[str, str, float], ...]:

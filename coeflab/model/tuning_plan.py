@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 QUANTITIES = {"u": "speed", "v": "speed", "V": "speed", "r": "rate", "beta": "angle", "radius": "length"}
 SIGNED = ("v", "r", "beta")
 FROM_RESIDUALS = "from residuals"
-FIRST_GUESS = 0.1
+FIRST_GUESS = 0.1  # of the spread of what was measured: the rounds replace it
 
 
 @dataclass(frozen=True, slots=True)

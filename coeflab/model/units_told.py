@@ -10,9 +10,9 @@ POUND, SLUG, FOOT = 0.45359237, 14.593902937206, 0.3048
 WATER = (950.0, 1100.0)
 SLUGS, POUNDS, TONNES = (1.9, 2.1), (60.0, 66.0), (0.95, 1.1)
 FEET_PER_SECOND = (32.0, 32.4)
-BUOYANCY = (0.8, 1.25)
-NEAR = 0.15
-SLENDER = (0.05, 3.0)
+BUOYANCY = (0.8, 1.25)  # rho V / m of what swims under water, with room for flooded spaces that were left out
+NEAR = 0.15  # of a factor between units, for rho V / m is not just one
+SLENDER = (0.05, 3.0)  # radius of gyration of the water over the cube root of the volume, from a sphere to a rod
 SIZES = "units of mass, Yvdot, Nrdot"
 MIXED = {
     SLUG / FOOT**3: "the mass in slug and the volume in cubic feet",
@@ -60,8 +60,12 @@ def displaced(kind: str, mass: float, volume: float, density: float, key: str) -
 
     Parameters
     ----------
+    kind : str
+        Name of the check.
     mass, volume, density : float
         As in the file, kg, m^3 and kg/m^3.
+    key : str
+        What the finding is about.
     """
     ratio = density * volume / mass
     statistic, rule = f"rho V / m = {ratio:.4g}", f"{BUOYANCY[0]:g} to {BUOYANCY[1]:g}"

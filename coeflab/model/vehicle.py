@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS
+from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.kernels.motion_law import MotionLaw
 from coeflab.kernels.rigid_body import rigid_body_inertia
 from coeflab.kernels.transforms import rigid_body_force
@@ -22,7 +23,6 @@ from coeflab.model.parameter_vehicle import ParameterHydrostatics, ParameterSurf
 
 Array = NDArray[np.float64]
 PLANES = {"horizontal": ("u", "v", "r"), "vertical": ("u", "w", "q")}
-GRAVITY = 9.80665
 THRUST = "thrust"
 
 
@@ -188,7 +188,7 @@ def vehicle(
     Raises
     ------
     InputError
-        No mass, no inertia of a free rotation, an effective mass that is not positive definite, a motion of no such name.
+        No mass or none above zero, no inertia of a free rotation, an effective mass that is not positive definite, a motion of no such name.
     """
     mass = parameters.mass
     if mass is None:
@@ -196,6 +196,8 @@ def vehicle(
             "a parameter file without mass", "mass, centre and inertia", column="mass",
             advice="Write them into the plan's body.toml, or into the parameter file.",
         )  # fmt: skip
+    if not mass.mass > 0.0:  # a fit may come here with values that no file has
+        raise InputError(f"a mass of {mass.mass:g} kg", "above zero", column="mass")
     strange = [f for f in free if f not in MOTIONS]
     if strange or plane not in ("", *PLANES):
         raise InputError(
@@ -219,7 +221,7 @@ def vehicle(
         hydrostatics = ParameterHydrostatics(
             volume=mass.mass / parameters.conditions.density,
             centre_of_buoyancy=tuple(map(float, centre)),
-            gravity=GRAVITY,
+            gravity=STANDARD_GRAVITY,
         )
         if set(moves) & set("wpq"):
             said.append("no hydrostatics in the file: neutrally buoyant, centre of buoyancy at that of gravity")

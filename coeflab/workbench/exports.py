@@ -34,14 +34,14 @@ def export(parameters: ParameterFile, target: str) -> Export:
     files = dict(plugin.render(parameters))
     _refuse_places(files, parameters, target)
     if not isinstance(plugin, SimulatorExporter):
-        return Export(parameters.name, target, files, None)
+        return Export(parameters.name, target, files, None, plugin.citations)
     lost = (*(Lost(Kind.MISSING, said) for said in plugin.missing(parameters)), *lost_by_all(parameters, plugin.holds))
     changes = (*plugin.changes(parameters), *converted(parameters), *_renamed(files, parameters))
     found = loss_of(
         target, force_law(parameters), parameters, files, plugin.force, plugin.not_held(parameters), lost, changes
     )
     files[f"{file_stem(parameters.name)}.{target}.loss.txt"] = as_text(found, parameters).encode()
-    return Export(parameters.name, target, files, found)
+    return Export(parameters.name, target, files, found, plugin.citations)
 
 
 def _refuse_places(files: Mapping[str, bytes], parameters: ParameterFile, target: str) -> None:
@@ -85,6 +85,13 @@ def exports_of(
     planned: Sequence[PlannedExport], files: Iterable[ParameterFile], progress: Callable[[str], None]
 ) -> tuple[Export, ...]:
     """Every parameter file of a study for every target of its plan.
+
+    Parameters
+    ----------
+    planned : sequence of PlannedExport
+    files : iterable of ParameterFile
+    progress : callable
+        Takes what is being done, in words.
 
     Raises
     ------

@@ -29,7 +29,16 @@ def methods() -> tuple[str, ...]:
 def hulls_of(
     groups: Sequence[PlannedParameterFile], density: float, progress: Callable[[str], None]
 ) -> dict[str, Triangulation]:
-    """Added mass of the parameter files that name a hull, by file; a hull that several name is computed once."""
+    """Added mass of the parameter files that name a hull, by file; a hull that several name is computed once.
+
+    Parameters
+    ----------
+    groups : sequence of PlannedParameterFile
+    density : float
+        kg/m^3.
+    progress : callable
+        Takes what is being done, in words.
+    """
     known: dict[tuple[Path, str], Triangulation] = {}
     out = {}
     for group in groups:

@@ -9,7 +9,8 @@ from typing import Any
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import MOTIONS
 from coeflab.manoeuvres import MANOEUVRES
-from coeflab.model.approach import UNCOVERED, unlimited
+from coeflab.model.approach import unlimited
+from coeflab.model.outside import UNCOVERED
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.simulation import Simulation
 from coeflab.model.study import PlannedManoeuvre
@@ -22,6 +23,14 @@ def manoeuvres_of(
     planned: Iterable[PlannedManoeuvre], files: Mapping[str, ParameterFile], progress: Callable[[str], None]
 ) -> tuple[Simulation, ...]:
     """Every manoeuvre of a plan.
+
+    Parameters
+    ----------
+    planned : iterable of PlannedManoeuvre
+    files : mapping of str to ParameterFile
+        By name.
+    progress : callable
+        Takes what is being done, in words.
 
     Raises
     ------

@@ -91,6 +91,11 @@ def test_dimensional_mass(tmp_path: Path) -> None:
         ("[-1.0, 0.0, 0.0]", "[-1.0]", ['"body.reference_point"', "a point [x, y, z]"]),
         ("inertia = 12.0", "mass_prime = 0.02", ['"prime.length"', "found nothing"]),
         ("[source]", "[sauce]", ['"source"', "found nothing"]),
+        (
+            'citation = "synthetic"',
+            'citation = "c"\nkind = "drawn"',
+            ['"source.kind"', 'found "drawn"', '"cfd" or', '"computed"'],
+        ),
     ],
 )
 def test_bodies_that_cannot_be(tmp_path: Path, old: str, new: str, said: list[str]) -> None:

@@ -183,5 +183,5 @@ def test_a_force_that_is_worse_than_none_is_said() -> None:
     assert list(loss.worse_than_nothing) == worse
     assert worse == ["X"]
     text = export(torpedo(), "holoocean").files["file.holoocean.loss.txt"].decode()
-    assert text.count("WORSE THAN NO FORCE: ") == len(worse)
+    assert text.count("worse than no force at all: ") == len(worse)
     assert export(torpedo(), "xdyn").loss.worse_than_nothing == ()

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.kernels.steady_glide import Polar, balanced, glide, incidence, needed, pitch_moment, shallowest
+from coeflab.kernels.steady_glide import Polar, balanced, glide, pitch_moment, shallowest
 
 DEGREE = float(np.degrees(1.0))
 CASE_01 = Polar((-1.9169, 9.5281 * DEGREE), (11.1159, 0.215 * DEGREE**2), (1.1025, -1.4179 * DEGREE), 60.0)
@@ -36,29 +36,20 @@ def test_buoyancy_feeds_the_drag(polar: Polar, reach: float, weight: float) -> N
     assert weight * np.cos(zeta) == pytest.approx(polar.lift_at(alpha) * speed**2, rel=1e-12)
 
 
-@pytest.mark.parametrize("degrees", [-60.0, -25.0, -8.0, 25.0, 45.0])
-def test_incidence_is_leonard_and_gravers(degrees: float) -> None:
-    xi = np.radians(degrees)
-    (kl0, kl), (kd0, kd) = GRAVER.lift, GRAVER.drag
-    inside = 1.0 - 4.0 * kd / kl**2 / np.tan(xi) * (kd0 / np.tan(xi) + kl0)
-    graver = 0.5 * kl / kd * np.tan(xi) * (-1.0 + np.sqrt(inside))
-    assert incidence(GRAVER, np.array(xi)) == pytest.approx(graver, rel=1e-12)
+@given(POLARS)
+def test_no_glide_is_shallower_than_the_shallowest(polar: Polar) -> None:
+    alpha = np.linspace(*WIDE, 2001)
+    lift = polar.lift_at(alpha)
+    dive, climb = shallowest(polar)
+    assert np.all(glide(polar, 1.0, alpha[lift > 0.0])[1] <= dive + 1e-12)
+    assert np.all(glide(polar, -1.0, alpha[lift < 0.0])[1] >= climb - 1e-12)
 
 
-@given(POLARS, st.floats(0.05, 1.3), st.sampled_from([-1.0, 1.0]))
-def test_incidence_inverts_the_glide_angle(polar: Polar, steeper: float, way: float) -> None:
-    limit = shallowest(polar)[0 if way < 0 else 1]
-    zeta = limit + way * steeper * (np.pi / 2 - 0.05 - abs(limit)) / 1.4
-    alpha = incidence(polar, np.array(zeta))
-    assert glide(polar, -way, alpha)[1] == pytest.approx(zeta, abs=1e-9)
-
-
-def test_shallower_than_the_shallowest_there_is_no_glide() -> None:
+def test_the_shallowest_glide_of_a_symmetric_polar_by_hand() -> None:
+    """tan(zeta) = -2 sqrt(D0 D2) / L1."""
     dive, climb = shallowest(GRAVER)
-    assert np.degrees(dive) == pytest.approx(-6.3148, abs=1e-4)
+    assert np.tan(dive) == pytest.approx(-2.0 * np.sqrt(2.15 * 25.0) / 132.5, rel=1e-12)
     assert climb == -dive
-    assert np.isnan(incidence(GRAVER, np.array(0.99 * dive)))
-    assert np.isfinite(incidence(GRAVER, np.array(1.001 * dive)))
 
 
 def test_shallowest_is_the_best_ratio_of_lift_to_drag() -> None:
@@ -68,24 +59,19 @@ def test_shallowest_is_the_best_ratio_of_lift_to_drag() -> None:
     assert shallowest(CASE_01)[1] == pytest.approx(np.arctan(-1.0 / ratio.min()), abs=1e-8)
 
 
-def test_needed_is_leonard_and_gravers_design() -> None:
-    """Ballast and position of the sliding mass for 25 degrees at 0.3 m/s, by the formulas of the source."""
-    xi, speed, g, mass, below = np.radians(-25.0), 0.3, 9.816, 9.0, 0.05
-    alpha, weight, ahead = needed(GRAVER, xi, speed, 65.0, mass * g * below)
+@pytest.mark.parametrize("degrees", [-60.0, -25.0, -8.0, 25.0, 45.0])
+def test_leonard_and_gravers_design_is_what_balances(degrees: float) -> None:
+    """Angle of attack, ballast and position of the sliding mass for a glide at 0.3 m/s, by the formulas of the source."""
+    xi, speed, g, mass, below = np.radians(degrees), 0.3, 9.816, 9.0, 0.05
+    (kl0, kl), (kd0, kd) = GRAVER.lift, GRAVER.drag
+    inside = 1.0 - 4.0 * kd / kl**2 / np.tan(xi) * (kd0 / np.tan(xi) + kl0)
+    alpha = 0.5 * kl / kd * np.tan(xi) * (-1.0 + np.sqrt(inside))
     theta, v1, v3 = xi + alpha, speed * np.cos(alpha), speed * np.sin(alpha)
-    ballast = (-np.sin(xi) * (2.15 + 25.0 * alpha**2) + np.cos(xi) * 132.5 * alpha) * speed**2 / g
+    ballast = (-np.sin(xi) * (kd0 + kd * alpha**2) + np.cos(xi) * kl * alpha) * speed**2 / g
     position = -np.tan(theta) * below + (65.0 * v1 * v3 - 100.0 * alpha * speed**2) / (mass * g * np.cos(theta))
-    assert weight / g == pytest.approx(ballast, rel=1e-12)
-    assert ahead / (mass * g) == pytest.approx(position, rel=1e-12)
-
-
-def test_what_is_needed_is_what_balances() -> None:
-    below = 9.0 * 9.816 * 0.05
-    alpha, weight, ahead = needed(GRAVER, np.radians(-25.0), 0.3, 65.0, below)
-    found = balanced(GRAVER, weight, 65.0, ahead, below, WIDE)
-    assert found == pytest.approx([alpha], abs=1e-12)
-    speed, zeta = glide(GRAVER, weight, found[0])
-    assert (speed, np.degrees(zeta)) == pytest.approx((0.3, -25.0), abs=1e-10)
+    assert glide(GRAVER, ballast * g, np.array(alpha)) == pytest.approx((speed, xi), rel=1e-9)
+    found = balanced(GRAVER, ballast * g, 65.0, mass * g * position, mass * g * below, WIDE)
+    assert np.min(np.abs(found - alpha)) < 1e-9
 
 
 @given(st.floats(0.1, 2.0), st.floats(-1.0, 4.0), st.floats(1.0, 8.0), st.floats(0.0, 250.0))

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.steady_turn import (
     COEFFICIENTS,
-    coefficients,
     coriolis,
     features,
     inertia,
@@ -20,10 +19,11 @@ from coeflab.kernels.steady_turn import (
     turn_figures,
 )
 
-THETA = coefficients({
+VALUES = {
     "m": 19.0, "mx": 5.0, "my": 17.0, "myr": 0.95, "inertia": 1.6, "d0": 20.80, "d2": 18.76, "s1": 64.71, "s3": 146.8,
     "n1": 11.83, "n3": -30.86, "nr": 0.1, "nrr": 1.0,
-})  # fmt: skip
+}  # fmt: skip
+THETA = np.array([VALUES[name] for name in COEFFICIENTS])
 STATES = np.random.default_rng(11).normal(size=(50, 3))
 component = st.floats(-2.0, 2.0)
 THRUST = np.array([[7.586, 0.0, -0.7586], [8.65, 0.0, -0.3], [10.0, 0.0, 0.0]])
