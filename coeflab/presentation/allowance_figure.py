@@ -110,7 +110,7 @@ def _strip(figure: Drawing, bottom: float, height: float, t: ComparedTable) -> P
         axes.axvline(x, color=COLOURS["muted"], linewidth=width, zorder=0.5)
     at = np.array([share(r) for r in t.rows])
     # Two decimals: further ones differ from one linear algebra to the next, and a page must not.
-    seen = np.round(np.where(np.isnan(at), BEYOND, np.clip(at, -BEYOND, BEYOND)), 2) + 0.0
+    seen = np.asarray(np.where(np.isnan(at), BEYOND, np.clip(at, -BEYOND, BEYOND)).round(2) + 0.0, dtype=np.float64)
     order = np.arange(1.0, count + 1.0)
     series = []
     for basis, look in MARKS.items():

@@ -85,9 +85,7 @@ def curves_figure(tuning: Tuning, groups: Groups, anchor: str) -> Figure:
     caption = f"Points: data. Dashed: model before, solid: after. {_scatter(tuning)}"
     description = f"{_named(tuning)} over {groups.name_x.partition('  ')[0]} in curves of {', '.join(groups.names)}."
     marks = [
-        Line2D(
-            [], [], label=f"data, {name}", color=style.colour, linestyle="none", marker=style.marker, markersize=3.8
-        )
+        Line2D([], [], label=f"data, {name}", color=style.colour, linestyle="none", marker=style.marker, markersize=3.8)
         for name, style in zip(groups.names, STYLES, strict=False)
     ]
     marks += [
