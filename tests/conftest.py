@@ -8,12 +8,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import settings
 
 from coeflab.core.files import shipped
 from coeflab.model.force_table import ForceTable
 from coeflab.model.plan import read_plan
 from coeflab.model.study import PlannedTable, Study
 from coeflab.workbench import read_tables, run
+
+# How long an example takes says how busy the machine is, not whether it is right.
+settings.register_profile("unhurried", deadline=None)
+settings.load_profile("unhurried")
 
 SECTIONS = {
     "campaign": 'title = "Synthetic"\nbody = "synthetic_body"',

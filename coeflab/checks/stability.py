@@ -30,7 +30,8 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             verdict = sense(d)
             statistic = f"{name} = {d.value:.3f}{'' if half is None else f' +- {half:.2g}'}: {verdict}"
             literature = [c.symbol for c in found if c is not None and c.origin == "literature"]
-            comment = f"Directionally {verdict} with controls fixed."
+            whether = "Directional stability with controls fixed is" if verdict == "not determined" else "Directionally"
+            comment = f"{whether} {verdict}{'.' if whether[-2:] == 'is' else ' with controls fixed.'}"
             comment += " The interval holds zero." if verdict == "not determined" else ""
             comment += " High-speed limit without restoring moment." if name == "G_v" else ""
             comment += f" {', '.join(literature)} from literature (PMM)." if literature else ""

@@ -56,7 +56,7 @@ def located(name: str | Path, kind: str, base: Path | None = None) -> Path:
 def write_all(folder: Path, contents: Mapping[str, bytes]) -> dict[str, bool]:
     """Write files so that all of them change or none: every content first goes to a temporary neighbour, then into place.
 
-    A fault while a content is written, such as a full disk, leaves the folder as it was. Only a stop between the
+    A fault while a content is written, such as a full disk, leaves all files as they were. Only a stop between the
     replacements at the end, which need no space, leaves old and new files side by side, each of them whole.
 
     Parameters

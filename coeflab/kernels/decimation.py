@@ -117,7 +117,8 @@ def _rounded(cost: Array) -> Array:
 
 def _names(vertices: Array) -> Lots:
     """A number for each vertex by its place alone, whatever the order of the list."""
-    place = np.round(vertices / (PLACE * np.max(np.abs(vertices)))).astype(np.int64).astype(np.uint64)
+    size = max(float(np.max(np.abs(vertices))), np.finfo(float).tiny)
+    place = np.round(vertices / size / PLACE).astype(np.int64).astype(np.uint64)
     out = np.zeros(len(vertices), dtype=np.uint64)
     for along in place.T:
         out = _mixed(out + along)

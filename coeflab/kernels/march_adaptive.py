@@ -56,7 +56,7 @@ def march_adaptive(
     out.records[0, 0] = start
     at, begin = _At(0.0, start.copy()), orders.begin.copy()
     # A motion that runs away overflows in the solver, and LSODA warns that it gives up: both end as a status of the motion.
-    with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore"):
+    with warnings.catch_warnings(), np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         warnings.filterwarnings("ignore", message="lsoda: ", category=UserWarning)
         for k in range(orders.count):
             phase = _Phase(dynamics, orders, k, begin, at.time, fastest)

@@ -47,10 +47,10 @@ class Derived:
 
 
 def sense(index: Derived) -> str:
-    """What a stability index says: not determined where its interval holds zero."""
+    """What a stability index says: not determined where its interval holds zero, by its value alone where there is none."""
     by_value = "stable" if index.value > 0.0 else "unstable"
     if index.result is None:
-        return f"{by_value} by its value, which has no U95"
+        return f"{by_value} by its value alone"
     return by_value if abs(index.value) > index.result.linear else "not determined"
 
 

@@ -15,7 +15,7 @@ WITHIN = 2e-3
 NAMES = ("fore-aft", "port-starboard", "top-bottom")
 
 
-@lru_cache(8)
+@lru_cache(2)
 def mirrors(shape: Shape) -> tuple[bool, bool, bool]:
     """Whether a shape equals its image in x, in y and in z, each through its centre of volume.
 

@@ -71,7 +71,7 @@ def share(r: Compared) -> float:
         return float("nan")
     if r.at_most:
         limit = r.published + r.tolerance * (abs(r.published) if r.relative else 1.0)
-        return r.found / limit if limit > 0.0 else (0.0 if r.holds else float("inf"))
+        return max(r.found, 0.0) / limit if limit > 0.0 else (0.0 if r.holds else float("inf"))
     if r.tolerance == 0.0:
         return 0.0 if r.holds else float(np.copysign(np.inf, r.difference))
     return r.difference / r.tolerance
@@ -108,26 +108,26 @@ def _strip(figure: Drawing, bottom: float, height: float, t: ComparedTable) -> P
     axes.axvspan(-1.0, 1.0, color=COLOURS["band"], alpha=0.22, linewidth=0, zorder=0)
     for x, width in ((-1.0, 0.9), (0.0, 0.6), (1.0, 0.9)):
         axes.axvline(x, color=COLOURS["muted"], linewidth=width, zorder=0.5)
-    at = np.array([share(r) for r in t.rows])
     # Two decimals: further ones differ from one linear algebra to the next, and a page must not.
-    seen = np.asarray(np.where(np.isnan(at), BEYOND, np.clip(at, -BEYOND, BEYOND)).round(2) + 0.0, dtype=np.float64)
+    at = np.array([round(share(r), 2) + 0.0 for r in t.rows])
     order = np.arange(1.0, count + 1.0)
     series = []
     for basis, look in MARKS.items():
         mine = np.array([r.basis == basis and r.holds for r in t.rows])
-        series.append(_drawn(axes, basis, basis, seen, order, mine, look, t.rows))
-    series.append(
-        _drawn(axes, "outside", "outside", seen, order, ~np.array([r.holds for r in t.rows]), OUTSIDE, t.rows)
-    )
+        series.append(_drawn(axes, basis, basis, at, order, mine, look, t.rows))
+    series.append(_drawn(axes, "outside", "outside", at, order, ~np.array([r.holds for r in t.rows]), OUTSIDE, t.rows))
     return numbers(axes, series, ACROSS, "row of the table")
 
 
 def _drawn(
     axes: Axes, key: str, name: str, x: Array, y: Array, mine: Any, look: dict[str, Any], rows: Sequence[Compared]
 ) -> Any:
+    """The marks of one kind, beyond the frame at its edge; values are told of those inside, where they are what is seen."""
     if np.any(mine):
-        tagged(axes.plot(x[mine], y[mine], linestyle="none", clip_on=False, zorder=3, **look), key)
-    return points(key, name, x[mine], y[mine], [_told(r) for r, yes in zip(rows, mine, strict=True) if yes])
+        seen = np.where(np.isnan(x), BEYOND, np.clip(x, -BEYOND, BEYOND))
+        tagged(axes.plot(seen[mine], y[mine], linestyle="none", clip_on=False, zorder=3, **look), key)
+    told = mine & (np.abs(x) <= BEYOND)
+    return points(key, name, x[told], y[told], [_told(r) for r, yes in zip(rows, told, strict=True) if yes])
 
 
 def _told(r: Compared) -> str:

@@ -1,7 +1,8 @@
 """Texts with their symbols and exponents as HTML, as parts of an SVG text, and as plain letters.
 
 What HTML shows is also what it says: the text of its elements is that which was written (``Yvdot'``, ``U^2``), so that
-it is found, heard and copied; only minus signs, Greek letters and powers of ten are the proper characters.
+it is found, heard and copied; only minus signs, Greek letters, powers of ten and the names of fitted models
+(``C_D_alpha^2``) are the proper characters.
 """
 
 from __future__ import annotations

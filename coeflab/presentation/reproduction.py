@@ -14,12 +14,12 @@ from coeflab.presentation.document import Section
 
 PLAN = "plan.toml"
 VERSION_TEXT = (
-    f"This report was made by coeflab {VERSION}: coeflab --version tells which one is installed. To get this one, take the sources "
-    f"whose coeflab/core/version.py says {VERSION} and install them with pip install . -c constraints.txt, which also takes the "
-    "libraries in the versions that the tests run with."
+    f"This report was made by coeflab {VERSION}: coeflab --version tells which one is installed. Nothing is released yet, so many "
+    "states of the sources carry that number: note the commit beside a report that has to be made again, and install it with "
+    "pip install . -c constraints.txt, which also takes the libraries in the versions that the tests run with."
 )
 SAME = (
-    "Equal inputs and versions give this report byte for byte, whatever the folder that --out names; every format is made from the "
+    "Equal inputs, sources and libraries give this report byte for byte, whatever the folder that --out names; every format is made from the "
     "same content, so it may be asked for alone."
 )
 

@@ -32,7 +32,8 @@ def in_words(study: Study) -> list[str]:
     out = []
     for verdict, places in sorted(said.items(), key=lambda item: ("unstable" not in item[0], item[0])):
         each = ", ".join(f"{name} ({', '.join(values)})" for name, values in places.items())
-        out.append(f"{verdict[0].upper()}{verdict[1:]} on a straight course with controls fixed: {each}.")
+        alone = "; there is no U95" if "alone" in verdict else ""
+        out.append(f"On a straight course with controls fixed {verdict}: {each}{alone}.")
     return out
 
 

@@ -174,8 +174,8 @@ def test_needles_of_cad_do_not_fold(facets: int) -> None:
 def test_with_edges_the_estimate_falls_as_theory_says() -> None:
     """Order 4/3: four times as many panels leave 4^(-2/3) = 0.40 of the error, and the facets' own share stays.
 
-    Estimates of one kind scatter by some 40 % about their mean; of two means of five, the ratio then lies below 1.8
-    times what theory says, at two standard deviations.
+    Estimates scatter by some 40 % from body to body; the ratio of means of two and of three then lies below 1.8 times
+    what theory says, at two standard deviations.
     """
     rods = [rod(facets, 5.0) for facets in (240, 256, 272)]
     coarse, fine = (

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
-from coeflab.presentation.allowance_figure import BEYOND, allowance_figure, share
+from coeflab.presentation.allowance_figure import allowance_figure, share
 
 
 def shown(*rows: Compared):
@@ -34,14 +34,16 @@ def test_what_holds_lies_within_and_what_does_not_is_marked_outside() -> None:
     figure = shown(
         Compared("1", "u", "m/s", 2.0, 2.05, 0.1), Compared("2", "u", "m/s", 2.0, 3.0, 0.1),
         Compared("3", "u", "m/s", 2.0, None, 0.1), Compared("4", "u", "m/s", 2.0, 2.02, 0.1, "in-sample"),
+        Compared("5", "u", "m/s", 2.0, 2.11, 0.1),
     )  # fmt: skip
     series = {s.name: s for s in figure.panels[0].series}
-    assert figure.title == "2 of 4 numbers within what is allowed"
+    assert figure.title == "2 of 5 numbers within what is allowed"
     assert series["printed"].x == pytest.approx((0.5,))
     assert series["in-sample"].x == pytest.approx((0.2,))
-    assert series["outside"].x == pytest.approx((BEYOND, BEYOND))
-    assert series["outside"].y == (2.0, 3.0)
-    assert "no number" in series["outside"].notes[1]
+    # Ten times the allowance and no number at all stand at the edge, where their places are no values to tell.
+    assert series["outside"].x == pytest.approx((1.1,))
+    assert series["outside"].y == (5.0,)
+    assert "found 2.11" in series["outside"].notes[0]
     assert 'data-series="outside"' in figure.svg
 
 

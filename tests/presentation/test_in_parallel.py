@@ -3,12 +3,15 @@ from __future__ import annotations
 import os
 import threading
 from functools import partial
+from multiprocessing import get_all_start_methods
 
 import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.presentation import in_parallel
 from coeflab.presentation.in_parallel import begun
+
+copying = pytest.mark.skipif("fork" not in get_all_start_methods(), reason="this system has no fork")
 
 
 def square(x):
@@ -20,6 +23,7 @@ def test_results_come_in_the_order_of_the_jobs():
         assert [y for y, _ in results()] == [x * x for x in range(7)]
 
 
+@copying
 def test_other_processes_do_the_work(monkeypatch):
     monkeypatch.setattr(in_parallel, "_safe", lambda: True)
     monkeypatch.setattr(in_parallel, "cores", lambda: 2)
@@ -53,6 +57,7 @@ def test_an_error_in_a_job_is_the_same_error_here():
         results()
 
 
+@copying
 def test_sizes_do_not_change_the_order_of_results(monkeypatch):
     monkeypatch.setattr(in_parallel, "_safe", lambda: True)
     monkeypatch.setattr(in_parallel, "cores", lambda: 2)
