@@ -95,6 +95,8 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     found = refined([s.matrix for s in solutions], [s.count for s in solutions], edges)
     gap = volume_gap(body, gated, meshes)
     found = replace(found, error=found.error + gap.cost(found.matrix))
+    if edges and isinstance(shape, TriangleMesh) and shape.remade is None:
+        found = replace(found, error=found.error + gap.hidden(found.matrix, found.used))
     judged = _judged(found, len(meshes), chosen.extrapolate == "yes")
     statements = (*_said(solutions, compiled[0], thin), gap.said, *judged)
     error = None if len(meshes) == 1 else density * found.error

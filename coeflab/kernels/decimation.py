@@ -19,7 +19,8 @@ Index = NDArray[np.int64]
 Lots = NDArray[np.uint64]
 LENGTH, PULL = 1e-2, 1e-3
 SHARE, FEWEST = 0.12, 512
-TURN, SHAPE, NEEDLE = 0.5, 0.3, 1e-6
+TURN, NEEDLE = 0.5, 1e-6
+SHAPE, STRETCHED, YIELD, SLIVER = 0.3, 0.6, 0.5, 0.05
 SIX, DIAGONAL = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)), [0, 3, 5]
 THOUSAND, NEAR = 2.0**10, 1.0 + 1e-9
 # No round number: coordinates of CAD must not lie midway between two places.
@@ -182,6 +183,18 @@ def _shape(corner: Array) -> tuple[Array, Array]:
     return normal, 2.0 * np.sqrt(3.0) * length / np.maximum(sides, np.finfo(float).tiny)
 
 
+def _least_shape(was: Array, start: Index, group: Index) -> Array:
+    """What a collapse may leave of shapes that were like this: no sliver, nor worse than the worst of its ring was.
+
+    Where a whole ring is stretched, as on a scaled sphere, nothing could go unless some get worse for a while: there down
+    to half of the worst.
+    """
+    worst = np.minimum.reduceat(was, start)
+    stretched = np.maximum.reduceat(was, start) < STRETCHED
+    eased = np.maximum(YIELD * worst, np.minimum(SLIVER, worst))
+    return np.asarray(np.minimum(SHAPE, np.where(stretched, eased, worst))[group])
+
+
 def _sound(edges: tuple[Index, Array, Lots], vertices: Array, faces: Faces) -> _Edges:
     """Those edges whose collapse leaves a surface: no hole, no fold, and no sliver worse than there was."""
     ends, to, lot = edges
@@ -203,9 +216,8 @@ def _sound(edges: tuple[Index, Array, Lots], vertices: Array, faces: Faces) -> _
     after[np.arange(len(face)), turn] = to[group]
     (old, was), (new, now) = _shape(before), _shape(after)
     start = np.concatenate([[0], np.flatnonzero(np.diff(group)) + 1])
-    worst = np.minimum.reduceat(was, start)[group]
     folded = _dot(old, new) * NEAR < TURN * np.sqrt(_dot(old, old) * _dot(new, new))
-    bad = stays & ((folded & (was > NEEDLE)) | (now * NEAR < np.minimum(SHAPE, worst)))
+    bad = stays & ((folded & (was > NEEDLE)) | (now * NEAR < _least_shape(was, start, group)))
     fine = (shared == 2) & (valence[ends].sum(axis=1) > 6) & ~np.logical_or.reduceat(bad, start)
     kept = fine[group]
     lengths = np.bincount(group, minlength=len(ends))[fine]

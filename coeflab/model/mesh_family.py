@@ -13,6 +13,7 @@ from coeflab.kernels.decimation import decimated
 from coeflab.kernels.panel_geometry import bisected, side_of, slivers, split_in_four, unfit_share
 from coeflab.kernels.solids import divided, solid, surface
 from coeflab.kernels.surface_mesh import mesh_integrals
+from coeflab.kernels.triangle_pairs import crossing_faces
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.meshing import FEWEST, meshed
 from coeflab.model.shape import Shape
@@ -112,12 +113,14 @@ def _split(mesh: TriangleMesh, panels: int) -> TriangleMesh:
 
 
 def _coarser(mesh: TriangleMesh, most: int) -> list[Array]:
-    """Decimations to a quarter and a sixteenth; fewer where the body does not bear it."""
+    """Decimations to a quarter and a sixteenth; fewer where the body does not bear it, or parts would come to cross."""
     vertices, faces, out = mesh.vertices, mesh.faces, list[Array]()
     while len(out) < most:
         before = len(faces)
         vertices, faces = decimated(vertices, faces, max(before // RATIO, FEWEST))
         if LEAST_STEP * len(faces) > before or abs(mesh_integrals(vertices, faces).volume / mesh.volume - 1.0) > CHANGE:
+            break
+        if crossing_faces(vertices, faces):
             break
         corners = vertices[faces]
         out.append(np.asarray(corners[~slivers(corners)]))

@@ -13,7 +13,7 @@ from coeflab.model.body import Body
 from coeflab.model.mesh import TriangleMesh
 
 Array = NDArray[np.float64]
-NEGLIGIBLE, STRONGEST, SAME_BODY = 1e-3, 2.0, 0.05
+STRONGEST, SAME_BODY = 2.0, 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,17 +30,18 @@ class VolumeGap:
         Whose volume that is, in words.
     meshes : int
         How many there were; one alone has no error estimate.
+    step : float
+        Of the second mesh, less that of the finest; 0 where there is one.
+    ratio : float
+        Of the panels' sizes in these two.
     """
 
     finest: float
     left: float
     body: str
     meshes: int
-
-    @property
-    def matters(self) -> bool:
-        """Whether what is left is more than 0.1 %."""
-        return abs(self.left) > NEGLIGIBLE
+    step: float
+    ratio: float
 
     def cost(self, matrix: Array) -> Array:
         """(6, 6) what may be missing from an added mass: twice what is left of the volume, of the size of each entry.
@@ -49,7 +50,24 @@ class VolumeGap:
         with the volume itself; of one that is too small all over, the moments with its power 5/3.
         """
         root = np.sqrt(np.abs(np.diag(matrix)))
-        return np.asarray(STRONGEST * abs(self.left) * np.outer(root, root)) * self.matters
+        return np.asarray(STRONGEST * abs(self.left) * np.outer(root, root))
+
+    def hidden(self, matrix: Array, order: float | None) -> Array:
+        """(6, 6) what thinning may hide: with its edges a coarse mesh loses volume, against what its large panels add.
+
+        As `cost`, of the step in volume, and carried on as the extrapolation of this order carries differences.
+
+        Parameters
+        ----------
+        matrix : (6, 6) array
+        order : float or None
+            None where there is no extrapolation; 1 is taken then.
+        """
+        if self.meshes == 1:
+            return np.zeros((6, 6))
+        root = np.sqrt(np.abs(np.diag(matrix)))
+        carried = self.ratio ** (order or 1.0) - 1.0
+        return np.asarray(STRONGEST * abs(self.step) / carried * np.outer(root, root))
 
     @property
     def said(self) -> str:
@@ -57,8 +75,7 @@ class VolumeGap:
         out = f"volume of the finest panels {self.finest:+.2%} from {self.body}"
         if self.meshes == 1:
             return out
-        out += f", {self.left:+.2%} once extrapolated"
-        return f"{out}: carried in the error estimate" if self.matters else out
+        return f"{out}, {self.left:+.2%} once extrapolated: carried in the error estimate"
 
 
 def volume_gap(body: Body, mesh: TriangleMesh, meshes: Sequence[Array]) -> VolumeGap:
@@ -73,11 +90,13 @@ def volume_gap(body: Body, mesh: TriangleMesh, meshes: Sequence[Array]) -> Volum
         Panel, corner, component, m; the finest first.
     """
     volumes = [enclosed(corners) for corners in meshes]
-    limit = volumes[0]
-    if len(meshes) > 1:
-        limit += (volumes[0] - volumes[1]) / (len(meshes[0]) / len(meshes[1]) - 1.0)
     whole, name = _whole(body, mesh)
-    return VolumeGap(volumes[0] / whole - 1.0, limit / whole - 1.0, name, len(meshes))
+    step, ratio = 0.0, 1.0
+    if len(meshes) > 1:
+        step, ratio = (volumes[1] - volumes[0]) / whole, float(np.sqrt(len(meshes[0]) / len(meshes[1])))
+    finest = volumes[0] / whole - 1.0
+    left = finest - step / (ratio**2 - 1.0) if len(meshes) > 1 else finest
+    return VolumeGap(finest, left, name, len(meshes), step, ratio)
 
 
 def _whole(body: Body, mesh: TriangleMesh) -> tuple[float, str]:

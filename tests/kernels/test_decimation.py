@@ -56,6 +56,26 @@ def test_sphere(target: int) -> None:
     assert abs(mesh_integrals(vertices, faces).volume - 4.0 / 3.0 * np.pi) < 4.0 / 3.0 * np.pi - inscribed
 
 
+@pytest.mark.parametrize(("long", "target"), [(6.0, 1500), (6.0, 375), (12.0, 1500)])
+def test_a_scaled_sphere_is_thinned_like_a_sphere(long: float, target: int) -> None:
+    """All triangles are stretched alike; no more volume goes than equilateral facets with corners on the surface would lack.
+
+    Such a triangle of area A lacks A^2 k / (2 sqrt 3) where the surface has the normal curvature k in the mean.
+    """
+    vertices, faces = sphere(20_000)
+    stretched = vertices * np.array([long, 1.0, 1.0])
+    whole = mesh_integrals(stretched, faces).volume
+    found = decimated(stretched, faces, target)
+    assert target - 2 <= len(found[1]) <= target
+    assert is_closed(found[1])
+    corner = found[0][found[1]]
+    area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1) / 2.0
+    middle = corner.mean(axis=1) / np.array([long**2, 1.0, 1.0])
+    curvature = 1.0 / (long**2 * np.sum(middle**2, axis=1) ** 2)
+    inscribed = float(np.sum(area**2 * np.sqrt(curvature))) / (2.0 * np.sqrt(3.0))
+    assert abs(whole - mesh_integrals(*found).volume) < inscribed
+
+
 def test_box_keeps_its_edges() -> None:
     sides = np.array([2.0, 1.0, 0.1])
     vertices, faces = decimated(*box_surface(sides, 3000), 400)
