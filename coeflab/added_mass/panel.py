@@ -100,7 +100,8 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     judged = _judged(found, len(meshes), chosen.extrapolate == "yes")
     statements = (*_said(solutions, compiled[0], thin), gap.said, *judged)
     error = None if len(meshes) == 1 else density * found.error
-    own = AddedMass(density * found.settled, centre, body.datum, body.name, "panel", statements, error)
+    lost = any(not s.converged for s in solutions)
+    own = AddedMass(density * found.settled, centre, body.datum, body.name, "panel", statements, error, rough=lost)
     there = own.about(body.reference_point)
     return replace(there, matrix=(there.matrix + there.matrix.T) / 2.0)
 

@@ -232,6 +232,14 @@ def test_one_mesh_has_no_error_estimate() -> None:
     assert found.statements[2] == "one mesh: its error is unknown"
 
 
+def test_what_did_not_converge_is_a_rough_guide(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = panel.panel_added_mass
+    monkeypatch.setattr(panel, "panel_added_mass", lambda *given: replace(whole(*given), converged=False))
+    found = solved(Ellipsoid(2.0, 1.0, 1.0), panels=1000, extrapolate="no")
+    assert found.rough
+    assert any("NOT CONVERGED" in said for said in found.statements)
+
+
 def test_errors_grow_with_the_distance_of_the_point() -> None:
     found = solved(Ellipsoid(2.0, 1.0, 1.0), panels=2000)
     away = found.about(np.array([10.0, 0.0, 0.0]))
