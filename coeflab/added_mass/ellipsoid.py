@@ -10,10 +10,13 @@ from coeflab.kernels.composition import composed
 from coeflab.kernels.ellipsoid import ellipsoid_added_mass
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
+from coeflab.model.ellipsoid_misfit import BOUND, ellipsoid_misfit
 from coeflab.model.shape import Ellipsoid, Parts, Shape
 
 summary = "Lamb's exact values for the ellipsoid of the body's length, volume and breadth-to-depth ratio"
 citations = ("lamb1932", "carlson1995")
+
+EQUIVALENT = "equivalent ellipsoid: the body's length and volume, breadth over depth by its second moments"
 
 
 def _axes(shape: Shape) -> NDArray[np.float64]:
@@ -41,6 +44,7 @@ def added_mass(body: Body, density: float) -> AddedMass:
     -----
     Length (of the parts that displace water) and volume are the body's; breadth over depth is the root of the ratio of
     its second moments of volume along y and z, and the centre is its centre of volume. A body that is a single ellipsoid is taken as it is, in its own pose, and the result is exact.
+    Of any other the misfit is told (`coeflab.model.ellipsoid_misfit`); where it is over a tenth the result is rough.
     Lamb, Hydrodynamics (1932), sections 114-115 and 121 a.
     """
     shape = body.require_shape()
@@ -48,15 +52,15 @@ def added_mass(body: Body, density: float) -> AddedMass:
         raise InputError(
             f"{body.name}, whose parts displace nothing", "a body with a volume", advice="Use the method primitives."
         )
-    axes, centre, turn = _axes(shape), shape.centre_of_volume, np.eye(3)
-    statement = "equivalent ellipsoid: the body's length and volume, breadth over depth by its second moments"
-    if isinstance(shape, Parts) and len(shape.parts) == 1:
-        only = shape.parts[0]
-        if isinstance(only.form, Ellipsoid):
-            axes, turn = only.form.axes, only.rotation
-            statement = "the body is an ellipsoid: exact"
+    axes, centre, turn, rough = _axes(shape), shape.centre_of_volume, np.eye(3), False
+    if isinstance(shape, Parts) and len(shape.parts) == 1 and isinstance(shape.parts[0].form, Ellipsoid):
+        axes, turn = shape.parts[0].form.axes, shape.parts[0].rotation
+        said = ["the body is an ellipsoid: exact"]
+    else:
+        misfit = ellipsoid_misfit(shape, axes)
+        rough = misfit.rough
+        said = [EQUIVALENT, str(misfit) + (f"; over {BOUND:.0%}: a rough guide" if rough else "")]
     matrix = composed([ellipsoid_added_mass(axes, density)], [turn], [centre], body.reference_point)
     size = " x ".join(f"{a:.5g}" for a in axes)
-    return AddedMass(
-        matrix, body.reference_point, body.datum, body.name, "ellipsoid", (f"{statement}; semi-axes {size} m",)
-    )
+    said[0] += f"; semi-axes {size} m"
+    return AddedMass(matrix, body.reference_point, body.datum, body.name, "ellipsoid", tuple(said), rough=rough)

@@ -21,7 +21,9 @@ from coeflab.kernels.parts import (
 )
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
-from coeflab.model.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate
+from coeflab.model.mesh import TriangleMesh
+from coeflab.model.plate_likeness import like_one_plate
+from coeflab.model.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, Shape
 
 summary = "closed forms of cylinders, plates, ellipsoids and boxes, composed by the 6 x 6 transform"
 citations = ("huuv2025", "coeflab_plates", "lamb1932", "fossen2011")
@@ -35,6 +37,10 @@ CYLINDERS = {
 PLATES = (
     "plates: k(aspect) pi/4 rho c^2 b along the normal, k by doublet lattice from aspect 1 to 10; own turning terms "
     "of the elliptic disc of equal area and aspect, an estimate"
+)
+MESH = (
+    "the mesh is taken as the one plate that it is like, chord {:.4g} m, span {:.4g} m, of mean thickness {:.2g} of the shorter; "
+    "formulas for no thickness and a rectangle, so nothing along the plate or about its normal: a rough guide"
 )
 BOXES = "boxes: Lamb's ellipsoid of equal volume and proportions, an estimate"
 
@@ -83,13 +89,23 @@ def _statements(parts: tuple[Part, ...], ends: str) -> tuple[str, ...]:
     return tuple(out)
 
 
+def _as_plate(mesh: TriangleMesh) -> tuple[Shape, tuple[str, ...]]:
+    """The one plate that a mesh is like and what is said of it, or the mesh itself."""
+    plate = like_one_plate(mesh)
+    if plate is None or not isinstance(plate.form, Plate):
+        return mesh, ()
+    chord, span = plate.form.chord, plate.form.span
+    thickness = mesh.volume / (chord * span * min(chord, span))
+    return Parts((plate,)), (MESH.format(chord, span, thickness),)
+
+
 def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = None) -> AddedMass:
     """Added mass of a body of parts, about its reference point.
 
     Parameters
     ----------
     body : Body
-        With parts.
+        With parts, or a mesh that `coeflab simplify` would call one plate; that is a rough guide.
     density : float
         kg/m^3.
     options : mapping, optional
@@ -98,15 +114,20 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     Raises
     ------
     InputError
-        No shape, or a body that is not made of parts.
+        No shape, or a body that is not made of parts and not like one plate.
     """
     chosen = parse_options(Options, options or {}, "primitives")
     shape = body.require_shape()
+    ends = chosen.cylinder_ends
+    said: tuple[str, ...] = ()
+    if isinstance(shape, TriangleMesh) and ends == "lamb":
+        shape, said = _as_plate(shape)
     if not isinstance(shape, Parts):
         raise InputError(
-            f"{body.name}, which is not made of parts", "a body of parts", advice="Use the method ellipsoid or strip."
+            f"{body.name}, which is not made of parts",
+            "a body of parts, or a mesh like one plate",
+            advice="Use the method ellipsoid or strip, or make parts of a mesh with coeflab simplify.",
         )
-    ends = chosen.cylinder_ends
     matrix = composed(
         [_own(p.form, density, ends) for p in shape.parts],
         [p.rotation for p in shape.parts],
@@ -114,5 +135,5 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
         body.reference_point,
     )
     method = "primitives" if ends == "lamb" else f"primitives:{ends}"
-    statements = _statements(shape.parts, ends)
-    return AddedMass(matrix, body.reference_point, body.datum, body.name, method, statements)
+    statements = (*said, *_statements(shape.parts, ends))
+    return AddedMass(matrix, body.reference_point, body.datum, body.name, method, statements, rough=bool(said))

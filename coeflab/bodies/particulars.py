@@ -4,80 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from coeflab.core.errors import shown
 from coeflab.core.provenance import InputFile, read_source, sha256_of
-from coeflab.core.toml import Section, read_toml
-from coeflab.core.units import quantity
-from coeflab.kernels.rigid_body import about_another, inertia_doubt
-from coeflab.model.body import Body, Configuration, MassProperties, mass_from_primes
-from coeflab.model.scaling import read_scaling
+from coeflab.core.toml import read_toml
+from coeflab.model.body import Body
+from coeflab.model.configuration_file import read_configuration
 
 summary = "principal dimensions, volume, centres and mass from a body.toml"
 citations = ("sname1950",)
-
-
-def _inertia_matrix(section: Section) -> NDArray[np.float64] | None:
-    """(3, 3) about the centre of gravity, kg m^2, if given."""
-    if not section.has("inertia_matrix"):
-        return None
-    rows = section.raw("inertia_matrix")
-    if not isinstance(rows, list) or [isinstance(r, list) and len(r) for r in rows] != [3, 3, 3]:
-        raise section.fail("inertia_matrix", shown(rows), "three rows of three moments of inertia")
-    key = section.key("inertia_matrix")
-    return np.array([[quantity(v, "inertia", file=section.file, key=key) for v in row] for row in rows])
-
-
-def _full_mass(section: Section, mass: float, reference: NDArray[np.float64]) -> MassProperties:
-    """Mass properties from the place of the centre of gravity and the inertia about it."""
-    for other in ("centre_of_gravity_forward", "inertia"):
-        if section.has(other):
-            raise section.fail(other, "both", f"centre_of_gravity and inertia_matrix, or {other}")
-    centre = section.point("centre_of_gravity") - reference
-    own = _inertia_matrix(section)
-    if own is None:
-        return MassProperties(mass, mass * float(centre[0]), None, centre)
-    doubt = inertia_doubt(mass, np.zeros(3), own)
-    if doubt:
-        raise section.fail("inertia_matrix", doubt, "the inertia of a body about its centre of gravity")
-    about = about_another(own, mass, np.zeros(3), centre)
-    transverse = float(about[1, 1]) if np.isclose(about[1, 1], about[2, 2], rtol=1e-9) else None
-    return MassProperties(mass, mass * float(centre[0]), transverse, centre, about)
-
-
-def _mass(section: Section, prime: Section, reference: NDArray[np.float64]) -> MassProperties | None:
-    if section.has("mass_prime"):
-        by = read_scaling(prime)
-        inertia = section.optional_positive("inertia_prime", "none")
-        return mass_from_primes(
-            section.positive("mass_prime", "none"),
-            section.quantity("mass_moment_prime", "none"),
-            inertia,
-            by,
-            prime.positive("density", "density"),
-        )
-    if not section.has("mass"):
-        return None
-    mass = section.positive("mass", "mass")
-    if section.has("centre_of_gravity"):
-        return _full_mass(section, mass, reference)
-    forward = section.optional_quantity("centre_of_gravity_forward", "length") or 0.0
-    return MassProperties(mass, mass * forward, section.optional_positive("inertia", "inertia"))
-
-
-def _configuration(section: Section, prime: Section, reference: NDArray[np.float64]) -> Configuration:
-    out = Configuration(
-        name=section.text("name"),
-        title=section.text("title", ""),
-        volume=section.optional_positive("volume", "volume"),
-        wetted_surface=section.optional_positive("wetted_surface", "area"),
-        centre_of_buoyancy=section.point("centre_of_buoyancy") if section.has("centre_of_buoyancy") else None,
-        mass=_mass(section, prime, reference),
-    )
-    section.finish()
-    return out
 
 
 def read(path: Path) -> Body:
@@ -98,7 +31,7 @@ def read(path: Path) -> Body:
         datum=head.text("datum"),
         reference_point=reference,
         lengths={k: lengths.positive(k, "length") for k in lengths.content},
-        configurations=tuple(_configuration(s, prime, reference) for s in root.sections("configuration")),
+        configurations=tuple(read_configuration(s, prime, reference) for s in root.sections("configuration")),
         source=read_source(source),
         files=(InputFile(f"{head.text('name')}/{path.name}", sha256_of(path)),),
     )

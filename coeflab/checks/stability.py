@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from coeflab.model.check import Check, Severity
-from coeflab.model.derived import INDICES, sense, stability
+from coeflab.model.derived import INDICES, sense, stability, without_restoring
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.study import Study
 
@@ -33,9 +33,9 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             whether = "Directional stability with controls fixed is" if verdict == "not determined" else "Directionally"
             comment = f"{whether} {verdict}{'.' if whether[-2:] == 'is' else ' with controls fixed.'}"
             comment += " The interval holds zero." if verdict == "not determined" else ""
-            comment += " High-speed limit without restoring moment." if name == "G_v" else ""
+            comment += f" {without_restoring(parameters)}" if name == "G_v" else ""
             comment += f" {', '.join(literature)} from literature (PMM)." if literature else ""
-            comment += f" {d.statement}." if half is None else ""
+            comment += f" {d.statement}." if half is None else " Mass is not assessed in U95."
         subject = f"{parameters.name} {name}"
         out.append(Check("stability", subject, Severity.NOTE, statistic, "above zero is stable", comment))
     return out

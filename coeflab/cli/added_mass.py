@@ -22,7 +22,7 @@ def command(
     axes: str = typer.Option("", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
     density: float = typer.Option(1000.0, "--density", help="Of the water, kg/m^3."),
-    json: bool = typer.Option(False, "--json", help="Print {method: 6 x 6 in SI}."),
+    json: bool = typer.Option(False, "--json", help="Print {method: 6 x 6 in SI}; remarks go to standard error."),
 ) -> None:
     """Show a body's added mass by several methods, about its reference point in FRD.
 
@@ -38,6 +38,8 @@ def command(
     with show.narrated():
         found = added_masses(mesh_body(body, unit, axes, repair), density, method, further(ctx.args))
     if json:
+        for line in (*(f"{c.name}: {c.title}" for c in found.body.configurations), *tables.remarks(found)):
+            show.error(line)
         show.json_object({r.method: r.matrix.tolist() for r in found.results})
         return
     show.table(tables.particulars(found.body))

@@ -194,7 +194,7 @@ def acceptance(found: Acceptance) -> dict[str, Any]:
                 "passed": t.holds,
                 "rows": [
                     {
-                        "case": r.case, "quantity": r.quantity, "unit": r.unit, "published": r.published, "found": r.found,
+                        "case": r.case, "quantity": r.quantity, "unit": r.unit, "held_against": r.against, "found": r.found,
                         "difference": r.difference, "relative": r.relative, "tolerance": r.tolerance, "basis": r.basis, "at_most": r.at_most,
                         "passed": r.holds,
                     }

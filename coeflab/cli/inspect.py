@@ -1,19 +1,62 @@
-"""``coeflab inspect``: what a table says once units, axes and signs are settled."""
+"""``coeflab inspect``: what a table or a body says once units, axes and signs are settled."""
 
 from __future__ import annotations
 
 import typer
 
 from coeflab.cli import show
+from coeflab.core.errors import InputError
 
 EXAMPLE = "coeflab inspect suboff_cfd_barehull"
 
 
 def command(
-    table: str = typer.Argument(..., help="A campaign folder, one CSV of it, or a shipped campaign's name."),
+    table: str = typer.Argument(
+        ..., help="A campaign folder, one CSV of it, or a shipped campaign's name; or a body.toml, or a mesh file."
+    ),
+    unit: str = typer.Option("", help="Unit of a mesh file: m, mm, in ..."),
+    axes: str = typer.Option("", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."),
+    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
+    density: float = typer.Option(1000.0, "--density", help="Of the water that a body displaces, kg/m^3."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Show a force table in SI and FRD with its declarations and excluded cells."""
+    """Show a force table in SI and FRD with its declarations and excluded cells.
+
+    Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
+    """
+    from coeflab.studies.simplify_source import names_body
+
+    if names_body(table):
+        _body(table, unit, axes, repair, density, json)
+        return
+    if unit or axes or repair:
+        raise InputError(
+            "--unit, --axes or --repair", "a mesh file with them", advice="A campaign.toml says these itself."
+        )
+    _tables(table, json)
+
+
+def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: bool) -> None:
+    from coeflab.model.mesh import TriangleMesh
+    from coeflab.presentation import added_mass_tables
+    from coeflab.presentation.body_json import body_json
+    from coeflab.studies.simplify_source import mesh_body
+
+    if not 0.0 < density < float("inf"):
+        raise InputError(f"a density of {density:g} kg/m^3", "a value above zero", column="--density")
+    with show.narrated():
+        body = mesh_body(name, unit, axes, repair)
+    if json:
+        show.json_object(body_json(body, density))
+        return
+    show.table(added_mass_tables.particulars(body))
+    show.table(added_mass_tables.displaced(body, density))
+    if isinstance(body.shape, TriangleMesh) and body.shape.remade is None:
+        show.text(f"  {added_mass_tables.sound(body.shape)}")
+    show.text("  next: coeflab added-mass for the 6 x 6 matrix, coeflab simplify for cylinders and plates")
+
+
+def _tables(table: str, json: bool) -> None:
     from coeflab.core.citations import work
     from coeflab.core.files import located
     from coeflab.model.study import PlannedTable

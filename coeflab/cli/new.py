@@ -17,8 +17,9 @@ def command(folder: Path = typer.Argument(..., help="A folder that does not exis
     from importlib.resources import files
 
     from coeflab.core.errors import OutputError
-    from coeflab.core.files import write_all
+    from coeflab.core.files import typed, write_all
 
+    folder = typed(folder)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise OutputError(f"{folder} exists and is not empty. Name a new folder.")
     template = files("coeflab.cli") / "template"

@@ -16,6 +16,8 @@ def command(
 ) -> None:
     """Carry out a plan: fit its tables, check them, write report, parameter files and tables."""
     from coeflab.cli.carry_out import carry_out
+    from coeflab.core.files import typed
     from coeflab.model.plan import read_plan
 
+    plan = typed(plan)
     carry_out(read_plan(plan / "plan.toml" if plan.is_dir() else plan), out, json)

@@ -28,7 +28,7 @@ def command(
 
     # A shell that starts a command in the background has it ignore Ctrl-C.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    with GalleryServer(folder.expanduser(), port) as server:
+    with GalleryServer(folder, port) as server:
         try:
             show.text(f"Gallery of {folder} on {server.address}; Ctrl-C ends it.")
             if open_:

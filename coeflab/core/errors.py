@@ -15,13 +15,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
-SHOWN = 60
+SHOWN, LONGEST = 60, 400
 
 
 def shown(text: object, longest: int = SHOWN) -> str:
     """Quote a found value, on one line and cut to a readable length."""
     flat = str(text).encode("unicode_escape").decode("ascii") if not str(text).isprintable() else str(text)
     return f'"{flat if len(flat) <= longest else flat[:longest] + "..."}"'
+
+
+def clipped(text: object) -> str:
+    """A path or the like as it stands, the middle of a very long one left out."""
+    whole = str(text)
+    return whole if len(whole) <= LONGEST else f"{whole[: LONGEST // 2]}...{whole[-LONGEST // 4 :]}"
 
 
 class CoeflabError(Exception):
@@ -60,7 +66,7 @@ class InputError(CoeflabError):
         super().__init__(str(self))
 
     def __str__(self) -> str:
-        place = [str(self.file)] if self.file is not None else []
+        place = [clipped(self.file)] if self.file is not None else []
         if self.line is not None:
             place.append(f"line {self.line}")
         if self.column is not None:

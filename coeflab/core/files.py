@@ -9,7 +9,7 @@ from errno import EISDIR
 from importlib.resources import files
 from pathlib import Path
 
-from coeflab.core.errors import InputError, OutputError, shown
+from coeflab.core.errors import InputError, OutputError, clipped, shown
 
 _CHECKOUT = Path(__file__).resolve().parents[2]
 
@@ -18,6 +18,23 @@ def shipped(kind: str) -> Path:
     """Folder of shipped data, ``cfd_data`` or ``geometry``: inside the wheel, else in the checkout."""
     inside = Path(str(files("coeflab"))) / "_data" / kind
     return inside if inside.is_dir() else _CHECKOUT / kind
+
+
+def typed(name: str | Path) -> Path:
+    """The path that a person typed, its ``~`` written out.
+
+    Raises
+    ------
+    InputError
+        No file or folder can have that name: 5,000 characters, the home of nobody; or it is shut.
+    """
+    try:
+        path = Path(name).expanduser()
+        path.exists()
+    except (OSError, RuntimeError) as why:
+        reason = getattr(why, "strerror", None) or why
+        raise InputError(f"{shown(name)}, which is no usable path ({reason})", "the path of a file or folder") from None
+    return path
 
 
 def located(name: str | Path, kind: str, base: Path | None = None) -> Path:
@@ -36,19 +53,15 @@ def located(name: str | Path, kind: str, base: Path | None = None) -> Path:
     InputError
         Nothing is there.
     """
-    path = Path(name).expanduser()
-    candidates = [path] if path.is_absolute() or base is None else [base / path]
-    try:
-        for candidate in candidates:
-            if candidate.exists():
-                return candidate
-        if len(path.parts) == 1 and (shipped(kind) / path).is_dir():
-            return shipped(kind) / path
-    except (OSError, ValueError):
-        raise InputError(f"{shown(name)}, which is no usable path", "the path of a file or folder") from None
+    path = typed(name)
+    candidate = path if path.is_absolute() or base is None else typed(base / path)
+    if candidate.exists():
+        return candidate
+    if len(path.parts) == 1 and (shipped(kind) / path).is_dir():
+        return shipped(kind) / path
     known = ", ".join(sorted(p.name for p in shipped(kind).iterdir() if p.is_dir())) if shipped(kind).is_dir() else ""
     raise InputError(
-        f"no file or folder {shown(candidates[0], 300)}",
+        f"no file or folder {shown(candidate, 300)}",
         "a path that exists" + (f", or a shipped name ({known})" if known else ""),
     )
 
@@ -91,7 +104,7 @@ def write_all(folder: Path, contents: Mapping[str, bytes]) -> dict[str, bool]:
             for temporary in staged.values():
                 temporary.unlink(missing_ok=True)
     except OSError as why:
-        raise OutputError(f"cannot write {path}: {why.strerror or why}. Choose another folder.") from None
+        raise OutputError(f"cannot write {clipped(path)}: {why.strerror or why}. Choose another folder.") from None
     return changed
 
 

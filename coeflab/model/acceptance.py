@@ -1,4 +1,4 @@
-"""Published results beside what we find: what was printed, what comes out, and whether it holds."""
+"""A publication beside what we find: what a number is held against, what comes out, and whether it holds."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any, Literal, Protocol
 Basis = Literal["printed", "derived", "in-sample"]
 BASES: dict[Basis, str] = {
     "printed": "a number that the paper prints",
-    "derived": "worked out independently from what the paper prints",
-    "in-sample": "the model was calibrated on this very number",
+    "derived": "worked out independently from what the paper prints, or by theory; the paper does not print it",
+    "in-sample": "the model was calibrated on this very number, so that meeting it proves nothing new",
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """One number of a publication and ours.
+    """One number of ours and what it is held against.
 
     Attributes
     ----------
@@ -23,7 +23,8 @@ class Compared:
         Row and column of the table, for example ``0, 60 %`` and ``u``.
     unit : str
         ``1`` for numbers without one.
-    published : float
+    against : float
+        What it is held against; ``basis`` says where that comes from.
     found : float or None
         None where the computation gave no number.
     tolerance : float
@@ -31,13 +32,13 @@ class Compared:
     basis : {"printed", "derived", "in-sample"}
     relative : bool
     at_most : bool
-        Whether ``published`` is a limit that ``found`` must not exceed.
+        Whether ``against`` is a limit that ``found`` must not exceed.
     """
 
     case: str
     quantity: str
     unit: str
-    published: float
+    against: float
     found: float | None
     tolerance: float
     basis: Basis = "printed"
@@ -46,11 +47,11 @@ class Compared:
 
     @property
     def difference(self) -> float | None:
-        """Found minus published; over the published one where ``relative``."""
+        """Found less what it is held against; over that where ``relative``."""
         if self.found is None:
             return None
-        apart = self.found - self.published
-        return apart / abs(self.published) if self.relative and self.published else apart
+        apart = self.found - self.against
+        return apart / abs(self.against) if self.relative and self.against else apart
 
     @property
     def holds(self) -> bool:

@@ -11,13 +11,15 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.options import named_numbers
 from coeflab.core.symbols import ANGULAR, CONTROLS, MOTIONS
+from coeflab.core.wording import listed
 from coeflab.kernels.linearisation import linearised, modes
-from coeflab.model.manoeuvre import UPRIGHT, Figure
+from coeflab.model.manoeuvre import UPRIGHT, Figure, Phase
 from coeflab.model.outside import UNCOVERED
 from coeflab.model.trajectory import Trajectory
 from coeflab.model.vehicle import THRUST, Vehicle
 
 Array = NDArray[np.float64]
+SURFACES = {"dr": "rudder", "ds": "stern planes", "db": "bow planes"}
 STEP = 1e-4  # rad: an angle that is small for every law, and far above rounding
 
 
@@ -96,6 +98,19 @@ def within_limit(vehicle: Vehicle, control: str, angle: float, key: str) -> floa
             column=key,
         )
     return angle
+
+
+def at_once(vehicle: Vehicle, phases: Sequence[Phase]) -> tuple[str, ...]:
+    """Which control surfaces follow their orders at infinite rate, in words: those ordered whose rate the file does not state."""
+    ordered = {c for p in phases for c in p.orders}
+    rated = {s.control for s in vehicle.surfaces if s.rate is not None}
+    at = [f"{SURFACES[c]} ({c})" for c in CONTROLS if c in ordered and c not in rated]
+    if not at:
+        return ()
+    return (
+        f"{listed(at)} at the ordered angle at once, as the file states no rate: times, distances and overshoots are those of "
+        "infinite rate",
+    )
 
 
 def thruster_orders(vehicle: Vehicle, commands: Sequence[str]) -> dict[str, float]:

@@ -9,6 +9,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.provenance import InputFile, read_source, sha256_of
 from coeflab.core.toml import Section, read_toml
 from coeflab.model.body import Body, Configuration, Measured
+from coeflab.model.configuration_file import read_configuration
 from coeflab.model.scaling import Scaling, read_scaling
 from coeflab.model.shape import Shape
 
@@ -25,14 +26,15 @@ class BodyFile:
         """Finish reading; printed configurations follow the one that was computed from the shape."""
         root, head = self.root, self.head
         source, lengths = root.section("source"), root.section("particulars", required=False)
-        prime = root.section("prime", required=False)
+        prime, reference = root.section("prime", required=False), head.point("reference_point")
+        printed = tuple(read_configuration(s, prime, reference) for s in root.sections("configuration"))
         out = Body(
             name=head.text("name"),
             title=head.text("title", ""),
             datum=head.text("datum"),
-            reference_point=head.point("reference_point"),
+            reference_point=reference,
             lengths={k: lengths.positive(k, "length") for k in lengths.content},
-            configurations=(computed, *(_printed(s) for s in root.sections("configuration"))),
+            configurations=(computed, *printed),
             source=read_source(source),
             files=(InputFile(f"{head.text('name')}/{self.path.name}", sha256_of(self.path)),),
             shape=shape,
@@ -64,19 +66,6 @@ def open_body_file(path: Path, reader: str) -> BodyFile:
 
 def _scaling(prime: Section) -> Scaling | None:
     return read_scaling(prime) if prime.content else None
-
-
-def _printed(section: Section) -> Configuration:
-    out = Configuration(
-        name=section.text("name"),
-        title=section.text("title", ""),
-        volume=section.optional_positive("volume", "volume"),
-        wetted_surface=section.optional_positive("wetted_surface", "area"),
-        centre_of_buoyancy=section.point("centre_of_buoyancy") if section.has("centre_of_buoyancy") else None,
-        mass=None,
-    )
-    section.finish()
-    return out
 
 
 def _measured(section: Section) -> list[Measured]:

@@ -17,10 +17,12 @@ from coeflab.kernels.propagation import Propagated, propagate, reaches_zero
 from coeflab.kernels.stability import index_gradient, stability_index
 from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.table import number
 
 Array = NDArray[np.float64]
 CENTRES = {"Nv'/Yv'": ("Nv", "Yv", 1.0), "-Mw'/Zw'": ("Mw", "Zw", -1.0)}
 INDICES = {"G_h": ("Yv'", "Nv'", "Yr'", "Nr'", 1.0), "G_v": ("Zw'", "Mw'", "Zq'", "Mq'", -1.0)}
+FAST = "at high speed"
 DRAWS, SEED = 20_000, 1
 
 
@@ -47,11 +49,36 @@ class Derived:
 
 
 def sense(index: Derived) -> str:
-    """What a stability index says: not determined where its interval holds zero, by its value alone where there is none."""
+    """What a stability index says: not determined where its interval holds zero, by its value alone where there is none.
+
+    G_v leaves out the restoring moment, so that it speaks of high speed only.
+    """
     by_value = "stable" if index.value > 0.0 else "unstable"
+    by_value += f" {FAST}" if index.name == "G_v" else ""
     if index.result is None:
         return f"{by_value} by its value alone"
     return by_value if abs(index.value) > index.result.linear else "not determined"
+
+
+def without_restoring(parameters: ParameterFile) -> str:
+    """What G_v leaves out, a sentence."""
+    said = "G_v is the limit of high speed, without the restoring moment of weight and buoyancy"
+    if parameters.hydrostatics is None:
+        speed = number(parameters.conditions.speed, 3)
+        said += f"; at {speed} m/s the vertical plane is not determined, as BG is not known"
+    return f"{said}."
+
+
+def by_mass(parameters: ParameterFile, index: Derived, share: float = 0.01) -> float:
+    """How much an index of `stability` changes where the mass is larger by a share, about the same centre of gravity."""
+    *symbols, sign = INDICES[index.name]
+    chosen = [c for s in symbols if (c := parameters.coefficient(str(s)))]
+    if parameters.mass is None:
+        return 0.0
+    slope, lever, rate, moment_rate = (np.array(float(c.value or 0.0)) for c in chosen)
+    mass, moment = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
+    more = stability_index(slope, lever, rate, moment_rate, mass * (1.0 + share), moment * (1.0 + share))
+    return float(more) - index.value
 
 
 def centre_of_pressure(

@@ -34,6 +34,10 @@ def _text(path: Path) -> bytes:
     return path.read_bytes()
 
 
+def _is_text(head: bytes) -> bool:
+    return bool(head) and head.isascii() and all(c >= 32 or c in b"\t\r\n\f" for c in head)
+
+
 def stl_faces(path: Path) -> int:
     """Triangles of an STL, binary or text."""
     size = path.stat().st_size
@@ -43,6 +47,13 @@ def stl_faces(path: Path) -> int:
     if len(head) >= 84 and size == 84 + 50 * claimed:
         return claimed
     if not (head.lstrip()[:5].lower() == b"solid" and b"facet" in head.lower()):
+        if _is_text(head):
+            raise InputError(
+                f"a text file that begins {shown(head.decode('ascii')[:40].strip())}",
+                "an STL: binary, or text that begins with solid and holds facets",
+                file=path,
+                advice="It is no STL: export the body again, or give the file its own suffix.",
+            )
         raise InputError(
             f"{size} bytes" + (f" behind a header that counts {claimed} triangles" if len(head) >= 84 else ""),
             f"an STL: text, or binary of {84 + 50 * claimed} bytes" if len(head) >= 84 else "an STL, text or binary",

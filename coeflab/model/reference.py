@@ -18,6 +18,8 @@ from coeflab.model.coefficient import Coefficient, CoefficientSet
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Scaling, read_scaling
 
+STABILITY = ("G_h", "G_v")
+
 
 class Relation(StrEnum):
     """What a published value is to ours."""
@@ -58,7 +60,7 @@ class Literature:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reference:
-    """One column of published derivatives."""
+    """One column of published derivatives, and the stability indices G_h and G_v that its source prints."""
 
     name: str
     citation: str
@@ -73,6 +75,7 @@ class Reference:
     literature: tuple[Literature, ...]
     uncertainties: Mapping[str, float]
     reference_point: NDArray[np.float64] | None
+    indices: tuple[PublishedValue, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "uncertainties", MappingProxyType(dict(self.uncertainties)))
@@ -180,11 +183,15 @@ def _beside(c: Coefficient, r: Reference, references: tuple[Reference, ...]) -> 
     return c.body in quoted
 
 
-def _values(section: Section) -> tuple[PublishedValue, ...]:
+def _values(section: Section, named: tuple[str, ...] = ()) -> tuple[PublishedValue, ...]:
+    """Of derivatives, or of these names."""
     out = []
     for symbol in section.content:
         printed = section.text(symbol)
-        section.symbol(symbol, symbol)
+        if not named:
+            section.symbol(symbol, symbol)
+        elif symbol not in named:
+            raise section.fail(symbol, shown(symbol), f"one of {', '.join(named)}")
         try:
             value: float | None = quantity(printed, "none")
         except InputError:
@@ -233,6 +240,7 @@ def read_references(path: Path) -> tuple[Reference, ...]:
                 literature=tuple(literature),
                 uncertainties=_uncertainties(s.section("uncertainties", required=False)),
                 reference_point=s.point("reference_point") if s.has("reference_point") else None,
+                indices=_values(s.section("indices", required=False), STABILITY),
             )
         )
         s.finish()

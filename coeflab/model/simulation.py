@@ -24,6 +24,8 @@ class Simulation:
         Assumptions of vehicle, manoeuvre and motion.
     determined : float
         Time from which on the motion leans on terms that no data give, s; infinite where it never does.
+    citations : tuple of str
+        Works that the manoeuvre and the simulator rest on.
     """
 
     vehicle: Vehicle
@@ -32,3 +34,4 @@ class Simulation:
     figures: tuple[Figure, ...]
     statements: tuple[str, ...]
     determined: float = inf
+    citations: tuple[str, ...] = ()

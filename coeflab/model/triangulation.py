@@ -13,17 +13,24 @@ from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.mirror_planes import NAMES, mirrors, must_vanish
-from coeflab.model.shape import Ellipsoid, Parts, Shape
+from coeflab.model.shape import Ellipsoid, Part, Parts, Shape
 
 Array = NDArray[np.float64]
 RULE = (
-    "an ellipsoid by Lamb's closed form; else the panel method; else, for parts among which are plates or none that "
-    "touch, their closed forms with corrected ends; else strips with Lamb's end correction, unless the body is too short for "
-    "strips; else the ellipsoid of equal volume and proportions"
+    "ellipsoids, one alone or so far apart that they hardly feel each other, by Lamb's closed form, which is exact; else the "
+    "panel method; else, for parts among which are plates or none that touch, and for a mesh like one plate, their closed "
+    "forms with corrected ends; else strips with Lamb's end correction; else the ellipsoid of equal volume and proportions; "
+    "what calls itself a rough guide comes last: strips of a short body, an ellipsoid whose projected areas or second moments "
+    "of volume are off by over 10 %, a mesh as one plate"
+)
+CAUTION = (
+    "NONE OF THE METHODS SHOWN IS GOOD FOR THIS BODY: {} is a rough guide; compare them all, or describe the body by parts, thin ones "
+    "as plates (coeflab simplify, or a body.toml of reader primitives), for the method primitives"
 )
 ORDER = ("panel", "primitives", "strip:lamb", "ellipsoid", "primitives:huuv", "strip")
 ROUNDING = 1e-12
 SILENT = 1e-6  # of the largest diagonal entry: a motion that moves no water
+APART = 1e-3  # of a sphere's added mass, by what the others induce: as exact as the panel method gets
 NOISE = 2e-3  # what a triangulated surface leaves of entries that symmetry makes vanish
 
 
@@ -51,14 +58,17 @@ class Triangulation:
 
     @property
     def recommended(self) -> AddedMass:
-        """The first by `RULE` that is a kinetic energy.
+        """The first by `RULE` that is a kinetic energy; a rough guide says so first.
 
         Raises
         ------
         InputError
             None of them is.
         """
-        order = ("ellipsoid", *ORDER) if _is_ellipsoid(self.body.require_shape()) else ORDER
+        alone, order = _ellipsoids(self.body.require_shape()), ORDER
+        if alone and _felt(alone) < APART:
+            exact = ("ellipsoid", "primitives") if len(alone) == 1 else ("primitives",)
+            order = (*exact, *(m for m in ORDER if m not in exact))
         ranked = sorted(
             self.results, key=lambda r: (r.rough, order.index(r.method) if r.method in order else len(order))
         )
@@ -67,6 +77,8 @@ class Triangulation:
             raise InputError(
                 f"no added mass of {shown(self.body.name)} that is a kinetic energy", "a symmetric, positive matrix"
             )
+        if found.rough:
+            found = replace(found, statements=(CAUTION.format(found.method), *found.statements))
         return self._symmetric(found)
 
     def _symmetric(self, found: AddedMass) -> AddedMass:
@@ -77,6 +89,12 @@ class Triangulation:
             return found
         said = f"entries up to {NOISE:.1%} that symmetry makes vanish were left by the mesh and are set to zero"
         return replace(found, matrix=np.where(noise, 0.0, found.matrix), statements=(*found.statements, said))
+
+    @property
+    def caution(self) -> str:
+        """What must be said of the recommended one where it is only a rough guide; else nothing."""
+        found = self.recommended
+        return CAUTION.format(found.method) if found.rough else ""
 
     @property
     def ordered(self) -> tuple[AddedMass, ...]:
@@ -130,5 +148,23 @@ class Triangulation:
         return tuple(f"{COMPONENTS[i]}{MOTIONS[j]}dot" for i in range(6) for j in range(i + 1, 6) if zero[i, j])
 
 
-def _is_ellipsoid(shape: Shape) -> bool:
-    return isinstance(shape, Parts) and len(shape.parts) == 1 and isinstance(shape.parts[0].form, Ellipsoid)
+def _ellipsoids(shape: Shape) -> tuple[Part, ...]:
+    """The parts, where all are ellipsoids."""
+    alike = isinstance(shape, Parts) and all(isinstance(p.form, Ellipsoid) for p in shape.parts)
+    return shape.parts if isinstance(shape, Parts) and alike else ()
+
+
+def _felt(parts: tuple[Part, ...]) -> float:
+    """Change of a part's added mass by the flow about the others, the largest, over it; 0 for one part.
+
+    Notes
+    -----
+    Each is taken as the sphere of radius R around it: a dipole of moment R^3 U / 2, which at a distance d makes a velocity of
+    (R/d)^3 U at most, in which a sphere feels 3/2 of the displaced mass, three times its added mass (Lamb, 92, 137 and 138).
+    """
+    centres = np.array([p.centre for p in parts])
+    radii = np.array([float(np.max(p.form.axes)) for p in parts if isinstance(p.form, Ellipsoid)])
+    away = np.linalg.norm(centres[:, None] - centres, axis=2)
+    away[np.diag_indices(len(parts))] = np.inf
+    with np.errstate(divide="ignore"):
+        return float(np.max(3.0 * np.sum((radii / away) ** 3, axis=1)))

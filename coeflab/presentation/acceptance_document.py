@@ -1,4 +1,4 @@
-"""A publication reproduced, as a report: verdict, figures, every compared table, errata."""
+"""A publication reproduced, as a report: verdict, figures, every number and what it is held against, errata."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
     sections = (
         verdict(found),
         *_section("figures", "Figures", figures=figures(found)),
-        Section("compared", "Compared with the publication", (DIFFERENCES,), subsections=tables),
+        Section("compared", "Every number and what it is held against", (DIFFERENCES,), subsections=tables),
         *_section("statements", "What to know", found.statements),
         *_errata(found),
         published_conventions(found.conventions),
@@ -40,10 +40,11 @@ def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
     return Document(found.title, SUBTITLE, sections, found.name, digest_of(inputs), works)
 
 
-SUBTITLE = "A publication reproduced, number by number"
+SUBTITLE = "A publication reproduced: every number and what it is held against"
 DIFFERENCES = (
-    "Difference: found less published, as a share of the published number where a per cent sign stands. A number passes when "
-    "the difference is no larger than what is allowed."
+    "Held against: a number that the paper prints only where the basis beside it says printed. Difference: found less what it is "
+    "held against, as a share of the latter where a per cent sign stands. A number passes when the difference is no larger than "
+    "what is allowed."
 )
 PROVENANCE = "The files below are known by the sha256 of their bytes."
 
@@ -62,7 +63,9 @@ def verdict(found: Acceptance) -> Section:
         if failed:
             text.append(f"Outside, {t.title}: {', '.join(failed)}.")
     kinds = [f"{sum(r.basis == b for r in rows)} {b} ({meaning})" for b, meaning in BASES.items()]
-    text.append(f"What they are held against: {'; '.join(kinds)}. A number met in-sample proves nothing new.")
+    text.append(f"What they are held against: {'; '.join(kinds)}.")
+    if rows and not any(r.basis == "printed" for r in rows):
+        text.append("No number that the paper itself prints is among them.")
     drawn = (allowance_figure(found, "allowances"),) if rows else ()
     return Section("verdict", "Verdict", tuple(text), (overview(found),), drawn)
 

@@ -1,4 +1,4 @@
-"""Published results beside ours, as tables."""
+"""Numbers beside what they are held against, as tables."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ def tables(acceptance: Acceptance) -> tuple[Table, ...]:
 def _table(t: ComparedTable) -> Table:
     bases = dict.fromkeys(r.basis for r in t.rows)
     notes = (f"{t.source}. {'; '.join(f'{b}: {BASES[b]}' for b in bases)}.", *t.statements)
-    return Table(t.title, HEADERS, tuple(_row(r) for r in t.rows), notes, frozenset({0, 1, 4, 7, 8}))
+    return Table(t.title, HEADERS, tuple(_row(r) for r in t.rows), notes, frozenset({0, 1, 3, 5, 8}))
 
 
-HEADERS = ("case", "quantity", "paper", "found", "unit", "difference", "allowed", "basis", "verdict")
+HEADERS = ("case", "quantity", "held against", "basis", "found", "unit", "difference", "allowed", "verdict")
 
 
 def _row(r: Compared) -> tuple[str, ...]:
@@ -28,12 +28,12 @@ def _row(r: Compared) -> tuple[str, ...]:
     return (
         r.case,
         r.quantity,
-        f"{'at most ' if r.at_most else ''}{r.published:.6g}",
+        f"{'at most ' if r.at_most else ''}{r.against:.6g}",
+        r.basis,
         ABSENT if r.found is None else f"{r.found:.6g}",
         "" if r.unit == "1" else r.unit,
         difference,
         f"{factor * r.tolerance:.2g}{sign}",
-        r.basis,
         "pass" if r.holds else "fail",
     )
 
@@ -62,7 +62,7 @@ def acceptance_csv(acceptance: Acceptance) -> bytes:
             "case",
             "quantity",
             "unit",
-            "published",
+            "held_against",
             "found",
             "difference",
             "relative",
@@ -73,7 +73,7 @@ def acceptance_csv(acceptance: Acceptance) -> bytes:
     )
     for t in acceptance.tables:
         for r in t.rows:
-            numbers = (r.published, r.found, r.difference)
+            numbers = (r.against, r.found, r.difference)
             shown = ["" if n is None else repr(float(n)) for n in numbers]
             out.writerow((t.key, r.case, r.quantity, r.unit, *shown, r.relative, r.tolerance, r.basis, r.holds))
     return buffer.getvalue().encode()

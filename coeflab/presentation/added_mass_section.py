@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from coeflab.model import noun_tables
-from coeflab.model.body import Body
-from coeflab.model.shape import Parts
 from coeflab.model.study import Study
 from coeflab.model.triangulation import RULE, Triangulation
 from coeflab.presentation import added_mass_tables as tables
 from coeflab.presentation import loss_tables
-from coeflab.presentation.body_figure import body_figure
+from coeflab.presentation.body_section import drawn_body
 from coeflab.presentation.campaign_sections import filled
-from coeflab.presentation.document import Figure, Section
-from coeflab.presentation.hull_figure import hull_figure
-from coeflab.presentation.hull_marks import hull_marks
-from coeflab.presentation.hull_scene import hull_scene
+from coeflab.presentation.document import Section
 
 
 def added_mass_sections(study: Study) -> tuple[Section, ...]:
@@ -60,15 +53,5 @@ def _body(study: Study, found: Triangulation, files: tuple[str, ...], anchor: st
             noun_tables.matrix(found.recommended),
             tables.symmetry(found),
         ),
-        figures=(_figure(study, found.body, files, anchor),),
+        figures=(drawn_body(study, found.body, files, anchor),),
     )
-
-
-def _figure(study: Study, body: Body, files: tuple[str, ...], anchor: str) -> Figure:
-    """The drawing with the body in space."""
-    shape = body.require_shape()
-    if isinstance(shape, Parts):
-        drawn = body_figure(body.name, shape, None, f"{anchor}-parts")
-    else:
-        drawn = hull_figure(body, f"{anchor}-outline")
-    return replace(drawn, scene=hull_scene(body.name, shape, *hull_marks(study, body, files)))

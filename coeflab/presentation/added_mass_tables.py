@@ -8,6 +8,7 @@ from coeflab.core.citations import work
 from coeflab.core.symbols import COMPONENTS
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
+from coeflab.model.mesh import TriangleMesh
 from coeflab.model.table import ABSENT, Table, coefficient, number
 from coeflab.model.triangulation import RULE, Triangulation
 
@@ -51,6 +52,15 @@ def displaced(body: Body, density: float) -> Table:
     return Table(f"{body.name}: projected areas and inertia of the displaced water", headers, tuple(rows), notes)
 
 
+def sound(mesh: TriangleMesh) -> str:
+    """What the gates of a mesh let through, and its size."""
+    size = " x ".join(f"{v:.5g}" for v in mesh.extents)
+    return (
+        f"the mesh of {len(mesh.faces)} faces is closed, wound outward, without faces of no area or faces twice; "
+        f"{size} m along x forward, y starboard, z down: look whether unit and axes are right"
+    )
+
+
 def derivatives(found: Triangulation) -> Table:
     """Acceleration derivatives in SI, over the displaced mass, and their spread over the methods."""
     mass = found.density * found.body.require_shape().volume
@@ -64,15 +74,21 @@ def derivatives(found: Triangulation) -> Table:
             (symbol, *(c for pair in zip([number(v) for v in values], ratios) for c in pair), _apart(spread[i, j]))
         )
     headers = ("SI", *(cell for r in found.results for cell in (_marked(r, found), "/m")), "spread")
-    notes = [
+    note = (
         f"/m: added mass over the displaced mass, {mass:.5g} kg at {found.density:g} kg/m^3; spread: range over the methods "
-        "that speak of the entry, over the recommended one; off the diagonal over the root of both diagonal entries",
-        f"{MARK} recommended: {found.recommended.method}, by the rule: {RULE}",
-        *_verdicts(found),
-    ]
+        "that speak of the entry, over the recommended one; off the diagonal over the root of both diagonal entries"
+    )
+    return Table("Acceleration derivatives", headers, tuple(rows), (note, *remarks(found)))
+
+
+def remarks(found: Triangulation) -> tuple[str, ...]:
+    """Which method is recommended and why, how far it can be trusted, and what each assumed."""
+    notes = [f"{MARK} recommended: {found.recommended.method}, by the rule: {RULE}"]
+    notes += [found.caution] if found.caution else []
+    notes += _verdicts(found)
     notes += [f"{r.method}: {'; '.join(r.statements)}" for r in found.results if r.statements]
     notes += [f"{name}: not used: {why}" for name, why in found.refused.items()]
-    return Table("Acceleration derivatives", headers, tuple(rows), tuple(notes))
+    return tuple(notes)
 
 
 def _apart(spread: float) -> str:

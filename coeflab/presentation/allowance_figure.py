@@ -29,7 +29,7 @@ MARKS: dict[Basis, dict[str, Any]] = {
 }  # fmt: skip
 OUTSIDE: dict[str, Any] = {"marker": "x", "markersize": 5.0, "markeredgecolor": COLOURS["ink"], "markeredgewidth": 1.3}
 CAPTION = (
-    "One mark a number, in the order of its table. At 0 ours is the published one, at -1 and 1 the whole allowance is used. A "
+    "One mark a number, in the order of its table. At 0 ours is what it is held against, at -1 and 1 the whole allowance is used. A "
     "number that may be at most some limit stands at its share of the limit."
 )
 
@@ -70,7 +70,7 @@ def share(r: Compared) -> float:
     if r.found is None or r.difference is None:
         return float("nan")
     if r.at_most:
-        limit = r.published + r.tolerance * (abs(r.published) if r.relative else 1.0)
+        limit = r.against + r.tolerance * (abs(r.against) if r.relative else 1.0)
         return max(r.found, 0.0) / limit if limit > 0.0 else (0.0 if r.holds else float("inf"))
     if r.tolerance == 0.0:
         return 0.0 if r.holds else float(np.copysign(np.inf, r.difference))
@@ -133,7 +133,8 @@ def _drawn(
 def _told(r: Compared) -> str:
     unit = "" if r.unit == "1" else f" {r.unit}"
     found = "no number" if r.found is None else f"{r.found:.6g}{unit}"
-    return f"{r.case}, {r.quantity}: paper {'at most ' if r.at_most else ''}{r.published:.6g}{unit}, found {found}"
+    against = f"{'at most ' if r.at_most else ''}{r.against:.6g}{unit}"
+    return f"{r.case}, {r.quantity}: held against {against} ({r.basis}), found {found}"
 
 
 def _scale(figure: Drawing) -> None:

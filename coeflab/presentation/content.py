@@ -14,6 +14,7 @@ from coeflab.model.reference import Comparison, Relation
 from coeflab.model.study import Study
 from coeflab.presentation import model_tables, tables
 from coeflab.presentation.added_mass_section import added_mass_sections
+from coeflab.presentation.body_section import body_sections
 from coeflab.presentation.budget_section import budget_sections
 from coeflab.presentation.campaign_sections import anchor, campaign_section, filled
 from coeflab.presentation.conventions_section import conventions_section
@@ -38,6 +39,7 @@ def document(study: Study) -> Document:
     with settings(), begun(alone if sum(sizes) > FEW else (), sizes) as drawn:
         about = [
             *budget_sections(study),
+            *body_sections(study),
             *added_mass_sections(study),
             *stability_sections(study),
             *manoeuvre_sections(study),

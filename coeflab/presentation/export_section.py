@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from coeflab.model.export import Export
-from coeflab.model.loss import LOSSLESS
+from coeflab.model.loss import ASSUMED, LOSSLESS
 from coeflab.model.study import Study
 from coeflab.model.table import ABSENT, Table
 from coeflab.presentation import loss_tables
@@ -34,7 +34,10 @@ def summary(exports: tuple[Export, ...]) -> Table:
     """One row an export."""
     rows = tuple((made.parameters, made.target, _verdict(made), _worst(made), _place(made)) for made in exports)
     headers = ("parameter file", "target", "loss", "worst of largest", "files")
-    notes = ("worst of largest: largest difference of a force component over its largest value in the covered range",)
+    notes = (
+        "worst of largest: largest difference of a force component over its largest value, both over the states that the loss of "
+        f"each export names: what campaigns cover, and primes to {ASSUMED:g} either way of a motion that none covers",
+    )
     return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4}))
 
 

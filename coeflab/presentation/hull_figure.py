@@ -58,7 +58,7 @@ def hull_figure(body: Body, anchor: str) -> Figure:
             )
             axes.text(at + 10.0, MARGIN - 3.0, name, fontsize=8.75)
         svg = svg_text(figure, anchor, title, said)
-    caption = "Outlines of the surface that the added mass is computed from, at one scale; the bow points to the right."
+    caption = f"Outlines of {body.name} at one scale; the bow points to the right."
     return Figure(anchor, svg, title, caption, said)
 
 

@@ -68,7 +68,7 @@ def hull_scene(name: str, shape: Shape, marks: tuple[Mark, ...], unknown: tuple[
         for axis, low, high in zip("xyz", everything.min(axis=0), everything.max(axis=0), strict=True)
     )
     each = " ".join(f"{m.label}: {m.name}, {m.note or _at(m.place)}." for m in marks)
-    caption = " ".join([f"{name} in space. {each}", *unknown, "Drag to turn it."])
+    caption = " ".join([each, *unknown, "Drag to turn it."])
     said = f"{'Solid parts' if isinstance(shape, Parts) else 'A translucent skin'} of {name} with {len(marks)} marked points."
     return Scene(
         f"{name} in space",

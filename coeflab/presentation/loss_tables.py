@@ -31,7 +31,8 @@ def forces(loss: Loss) -> Table:
         for c, a, b, r, x in zip(COMPONENTS, loss.largest, loss.worst, loss.rms, shares, strict=True)
     )
     notes = [
-        f"over {loss.grid}; steady motion, FRD, about the file's reference point; 0 is less than {LOSSLESS:g} of the largest"
+        f"over {loss.grid}; steady motion, FRD, about the file's reference point; 0 is less than {LOSSLESS:g} of the largest; worst of "
+        "largest: both over these states"
     ]
     notes += [
         f"worse than no force at all: {c}, whose rms difference is {number(loss.rms[i], 3)} where the file's own rms is {number(loss.size[i], 3)}"

@@ -34,5 +34,5 @@ def _manoeuvre(made: Simulation, anchor: str) -> Section:
         title,
         tuple(text),
         (figure_table(made.figures, title, length),),
-        motion_figures(made.trajectory.until(made.determined), anchor, length),
+        motion_figures(made.trajectory.until(made.determined), anchor, length, title),
     )

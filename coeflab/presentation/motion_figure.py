@@ -26,17 +26,17 @@ MOST_TOLD = 150
 BEYOND: dict[str, Any] = {"color": COLOURS["muted"], "linewidth": 1.4, "linestyle": (0, (3, 2))}
 
 
-def track_figures(trajectory: Trajectory, anchor: str, length: float) -> tuple[Figure, ...]:
+def track_figures(trajectory: Trajectory, anchor: str, length: float, after: str = "") -> tuple[Figure, ...]:
     """The track in the plane in which it leaves its course the more; in both where the other holds half a length too."""
     aside, down = np.ptp(trajectory.position[:, 1]), np.ptp(trajectory.position[:, 2])
     planes = [v for v, one, other in ((False, aside, down), (True, down, aside)) if one > other or one > 0.5 * length]
     return tuple(
-        track_figure(trajectory, f"{anchor}-{'profile' if i else 'track'}", length, vertical)
+        track_figure(trajectory, f"{anchor}-{'profile' if i else 'track'}", length, vertical, after)
         for i, vertical in enumerate(planes or [False])
     )
 
 
-def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: bool) -> Figure:
+def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: bool, after: str = "") -> Figure:
     """The track in a plane, with the body drawn at equal distances; grey where the motion leaves what data cover."""
     x = np.asarray(trajectory.position)
     across, up = (x[:, 0], x[:, 2]) if vertical else (x[:, 1], x[:, 0])
@@ -44,7 +44,7 @@ def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: b
     top = TOP + 24.0
     wide, tall = _equal(across, up, (WIDTH - LEFT - RIGHT) / (top - BOTTOM), length)
     beyond = _outside(trajectory)
-    title = f"Track in the {'vertical' if vertical else 'horizontal'} plane"
+    title = f"Track in the {'vertical' if vertical else 'horizontal'} plane{after}"
     description = (
         f"{names[1].split()[0]} against {names[0].split()[0]} of the reference point, {trajectory.time[-1]:g} s."
     )
@@ -64,9 +64,7 @@ def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: b
         legend(figure, [tagged(mark, key) for key, mark in marks.items()], top)
         shown = numbers(axes, _places(trajectory, across, up, beyond), names[0], names[1])
         svg = svg_text(figure, anchor, title, description)
-    return Figure(
-        anchor, svg, title, f"{title}; the dot is the start, the strokes are the body.", description, (shown,)
-    )
+    return Figure(anchor, svg, title, "The dot is the start, the strokes are the body.", description, (shown,))
 
 
 def _places(trajectory: Trajectory, across: Array, up: Array, beyond: NDArray[np.bool_]) -> list[Series]:
@@ -114,7 +112,7 @@ def _outside(trajectory: Trajectory) -> NDArray[np.bool_]:
     return out
 
 
-def history_figures(trajectory: Trajectory, anchor: str) -> tuple[Figure, ...]:
+def history_figures(trajectory: Trajectory, anchor: str, after: str = "") -> tuple[Figure, ...]:
     """Speeds, angles and rates that change, and the controls, each over time."""
     nu, angles = trajectory.velocity, np.degrees(trajectory.angles)
     speeds = {"u": nu[:, 0], "v": nu[:, 1], "w": nu[:, 2], "V": trajectory.speed}
@@ -132,7 +130,7 @@ def history_figures(trajectory: Trajectory, anchor: str) -> tuple[Figure, ...]:
     for key, name_up, series, title in groups:
         moving = {n: v for n, v in series.items() if np.ptp(v) > STILL or np.any(np.abs(v) > STILL)}
         if moving:
-            out.append(_history(trajectory.time, moving, f"{anchor}-{key}", name_up, title))
+            out.append(_history(trajectory.time, moving, f"{anchor}-{key}", name_up, f"{title}{after}"))
     return tuple(out)
 
 
@@ -154,9 +152,21 @@ def _history(time: Array, series: Mapping[str, Array], anchor: str, name_up: str
         found = [curve(f"s{i}", name, time, values) for i, (name, values) in enumerate(series.items())]
         shown = numbers(axes, found, "time  [s]", name_up)
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, f"{title}.", description, (shown,))
+    return Figure(anchor, svg, title, f"{', '.join(series)} over time.", description, (shown,))
 
 
-def motion_figures(trajectory: Trajectory, anchor: str, length: float) -> tuple[Figure, ...]:
-    """Tracks and all histories."""
-    return *track_figures(trajectory, anchor, length), *history_figures(trajectory, anchor)
+def motion_figures(trajectory: Trajectory, anchor: str, length: float, what: str = "") -> tuple[Figure, ...]:
+    """Tracks and all histories.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    anchor : str
+        Unique in the document.
+    length : float
+        Of the body, m.
+    what : str
+        The motion, for the titles of a document that holds several.
+    """
+    after = f", {what}" if what else ""
+    return *track_figures(trajectory, anchor, length, after), *history_figures(trajectory, anchor, after)

@@ -18,6 +18,10 @@ TEXT = (
     "Repeats are usable points of one table at one setting. Their scatter is what the measurement itself gives, and no fit can be "
     "better than it.",
 )
+AT_REST = (
+    "median of the curves: over all members at no angle; of largest: its size over the largest force of the sweep. The check of "
+    "symmetry takes one member instead, that with the most points, whose value at rest has an interval: the two may differ.",
+)
 SAME_SETTING = 1e-6
 
 
@@ -56,13 +60,13 @@ def _at_rest(study: Study) -> Table:
         "campaign",
         "force",
         "over",
-        "of the curve",
+        "median of the curves",
         "measured",
         "of largest",
         "as angle deg",
         "U95 of the slope",
     )
-    return Table("Forces at rest", headers, tuple(rows), (), frozenset({0, 1, 2}))
+    return Table("Forces at rest", headers, tuple(rows), AT_REST, frozenset({0, 1, 2}))
 
 
 def _rest(sweep: Sweep) -> float:

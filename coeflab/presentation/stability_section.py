@@ -6,35 +6,42 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import CoeflabError
-from coeflab.model.derived import INDICES, Derived, sense, stability
+from coeflab.core.wording import listed
+from coeflab.model.derived import FAST, INDICES, Derived, by_mass, sense, stability
 from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.reference import Relation
 from coeflab.model.root_locus import RootLocus, root_locus
 from coeflab.model.study import Study
 from coeflab.model.table import ABSENT, Table, number
 from coeflab.presentation.document import Figure, Section
+from coeflab.presentation.mass_table import mass_table
 from coeflab.presentation.root_locus_figure import IN_PLANE, root_locus_figure
 
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')]: positive is "
-    "directionally stable with controls fixed, negative is unstable; where U95 holds zero it is not determined which. G_v is the limit of high speed, without the restoring moment of weight and "
+    "directionally stable with controls fixed, negative is unstable; where U95 holds zero it is not determined which. U95 holds the derivatives; mass and centre of gravity are not in it. G_v is the limit of high speed, without the restoring moment of weight and "
     "buoyancy.",
     "The roots are the eigenvalues of small motions about a straight course with the speed held, by the force law and the added "
     "mass of the parameter file; its derivatives are taken to hold at every speed shown.",
 )
 
 
-def in_words(study: Study) -> list[str]:
-    """Which parameter files are unstable, and which are not, a sentence each; none where no index can be given."""
+def in_words(study: Study, *, with_values: bool = True) -> list[str]:
+    """Which parameter files are unstable, and which are not, in one sentence; none where no index can be given."""
     said: dict[str, dict[str, list[str]]] = {}
     for parameters in study.parameter_files.values():
         for d in stability(parameters):
             said.setdefault(sense(d), {}).setdefault(parameters.name, []).append(_value(d))
     out = []
+    lacking = {p.name: p.conditions.speed for p in study.parameter_files.values() if p.hydrostatics is None}
     for verdict, places in sorted(said.items(), key=lambda item: ("unstable" not in item[0], item[0])):
-        each = ", ".join(f"{name} ({', '.join(values)})" for name, values in places.items())
-        alone = "; there is no U95" if "alone" in verdict else ""
-        out.append(f"On a straight course with controls fixed {verdict}: {each}{alone}.")
-    return out
+        each = ", ".join(f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items())
+        each += ", there is no U95" if "alone" in verdict else ""
+        if FAST in verdict:
+            speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
+            each += f", at {speeds} m/s not determined, as BG is not known" if speeds else ""
+        out.append(f"{verdict.replace(FAST, f'{FAST} (no restoring moment)')}: {each}")
+    return [f"On a straight course with controls fixed {'; '.join(out)}."] if out else []
 
 
 def _value(d: Derived) -> str:
@@ -60,11 +67,11 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
             figures.append(root_locus_figure(locus, name, f"roots-{i}-{index[-1]}"))
     if not rows:
         return ()
-    headers = ("parameter file", "index", "value", "U95", "verdict", "remark")
-    tables = [Table("Stability indices", headers, tuple(rows), (), frozenset({0, 1, 4, 5}))]
+    tables = [_shown(rows, study)]
     if roots:
         heads = ("parameter file", "plane", "roots 1/s", "time to double or halve s", "critical speed m/s")
         tables.append(Table("Roots at the speed of the file", heads, tuple(roots), (), frozenset({0, 1, 2, 4})))
+    tables += mass_table(study)
     return (Section("stability", "Stability", (*TEXT, *refused), tuple(tables), tuple(figures)),)
 
 
@@ -87,8 +94,35 @@ def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
         stated = [c.symbol for c in found if c is not None and c.origin == "literature"]
         remarks = [f"{', '.join(stated)} from literature"] if stated else []
         remarks += [d.statement] if half is None else []
+        remarks.append(f"m' and xG' are not assessed: 1 % of m' moves it by {number(by_mass(parameters, d), 2)}")
         out.append((parameters.name, index, number(d.value), number(half, 2), sense(d), "; ".join(remarks)))
     return out
+
+
+def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
+    """The indices, and beside them those that the source of the same data prints."""
+    headers = ("parameter file", "index", "value", "U95", "verdict", "remark")
+    printed = [_printed(study, name, index) for name, index, *_ in rows]
+    if not any(value for value, _ in printed):
+        return Table("Stability indices", headers, tuple(rows), (), frozenset({0, 1, 4, 5}))
+    notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
+    beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
+    told = ("published indices are made of the source's own derivatives and mass; no verdict", *notes)
+    return Table(
+        "Stability indices", (*headers[:4], "published", *headers[4:]), tuple(beside), told, frozenset({0, 1, 5, 6})
+    )
+
+
+def _printed(study: Study, name: str, index: str) -> tuple[str, str]:
+    """An index as the authors of the data of a parameter file print it, and where; empty where none does."""
+    parameters = next(p for p in study.parameter_files.values() if p.name == name)
+    campaigns = {c.campaign for c in parameters.coefficients}
+    for r in study.references:
+        if r.relation is Relation.RE_ANALYSIS and r.body == parameters.body and campaigns & set(r.campaigns):
+            for value in r.indices:
+                if value.symbol == index:
+                    return value.printed, f"{index} of {name}: {r.citation}, {r.place}"
+    return "", ""
 
 
 def _roots(name: str, locus: RootLocus) -> tuple[str, ...]:

@@ -24,7 +24,7 @@ MOST_ROWS, MOST_PARAGRAPHS, MOST_NOTES, LONGEST_NOTE, LONGEST_CAPTION = 12, 3, 4
 def study_summary(study: Study) -> Document:
     """One page on a study."""
     sections = (
-        _first(content.verdict(study), in_words(study)),
+        _first(content.verdict(study), in_words(study, with_values=False)),
         *_coefficients(study),
         *_main(study),
         *_stability(study),

@@ -230,6 +230,7 @@ def works(study: Study) -> tuple[tuple[str, str], ...]:
     keys += [k for found in study.hulls.values() for k in found.citations]
     keys += ["feldman1979"] if study.parameter_files else []
     keys += [k for made in study.exports for k in made.citations]
+    keys += [k for made in study.manoeuvres for k in made.citations]
     keys += ["sname1950", "roddy1990"]  # axes, symbols and the sense of control angles, under Conventions
     return tuple((k, work(k)) for k in dict.fromkeys(keys))
 

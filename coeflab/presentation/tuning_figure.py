@@ -53,8 +53,8 @@ class Groups:
 
 
 def agreement_figure(tuning: Tuning, anchor: str) -> Figure:
-    """Model against measurement, one panel a quantity: on the line they agree."""
-    title = f"{tuning.name}: model against measurement, before and after"
+    """Model against data, one panel a quantity: on the line they agree."""
+    title = f"{tuning.name}: model against data, before and after"
     caption = f"Every case of {_named(tuning)}. {_scatter(tuning)} On the line the model gives the data."
     description = f"Points of {_named(tuning)}, model over measurement, before (hollow) and after (filled) the fit."
     marks = [tagged(Line2D([], [], label=key, **style), key) for key, style in (("before", BEFORE), ("after", AFTER))]

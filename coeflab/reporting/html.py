@@ -16,7 +16,7 @@ from markupsafe import Markup
 from coeflab.presentation.document import Document
 from coeflab.presentation.embedded import panels_json, scene_json
 from coeflab.presentation.lettering import cell_html, html, unit_html
-from coeflab.presentation.printable import visible
+from coeflab.presentation.printable import shortened, visible
 
 summary = "one HTML file with tables and figures, for browser and printer"
 STYLES = ("style.css", "symbols.css", "contents.css")
@@ -41,7 +41,12 @@ def render(document: Document) -> Mapping[str, bytes]:
         loader=BaseLoader(), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
     environment.globals |= {"panels_json": panels_json, "scene_json": scene_json}
-    environment.filters |= {"spelled": spelled, "spelled_cell": spelled_cell, "visible": visible}
+    environment.filters |= {
+        "spelled": spelled,
+        "spelled_cell": spelled_cell,
+        "visible": visible,
+        "shortened": shortened,
+    }
     template = environment.from_string((folder / "report.html.j2").read_text(encoding="utf-8"))
     style = "\n".join((folder / name).read_text(encoding="utf-8") for name in STYLES)
     script = "\n" + "\n".join((folder / name).read_text(encoding="utf-8") for name in SCRIPTS)

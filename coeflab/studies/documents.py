@@ -5,10 +5,9 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.files import shipped
+from coeflab.core.files import shipped, typed
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.model.acceptance import Acceptance
 from coeflab.model.plan import read_plan
@@ -115,7 +114,10 @@ def written(document: Document, formats: Sequence[str]) -> Mapping[str, bytes]:
 
 def _meant(study: str) -> Plan | str:
     """The plan at a path, else the plan of a validation, else the name of a publication."""
-    path = Path(study).expanduser()
+    try:
+        path = typed(study)
+    except InputError as why:
+        raise _unknown(study, why.found) from None
     if path.is_file():
         return read_plan(path)
     if (path / PLAN).is_file():
@@ -125,14 +127,18 @@ def _meant(study: str) -> Plan | str:
             f"{shown(study, 300)}, a folder without {PLAN}", f"a {PLAN}, a folder with one, or a validation"
         )
     if study not in validations():
-        near = difflib.get_close_matches(study, validations(), n=1)
-        raise InputError(
-            f"the study {shown(study, 300)}",
-            f"a {PLAN}, a folder with one, or a shipped validation ({', '.join(validations())})",
-            advice=f"Did you mean {near[0]}?" if near else "",
-        )
+        raise _unknown(study, shown(study, 300))
     plan = shipped("cfd_data") / study / PLAN
     return read_plan(plan) if plan.is_file() else study
+
+
+def _unknown(study: str, found: str) -> InputError:
+    near = difflib.get_close_matches(study, validations(), n=1)
+    return InputError(
+        f"the study {found}",
+        f"a {PLAN}, a folder with one, or a shipped validation ({', '.join(validations())})",
+        advice=f"Did you mean {near[0]}?" if near else "",
+    )
 
 
 def _inputs(name: str) -> tuple[InputFile, ...]:

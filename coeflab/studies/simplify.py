@@ -86,7 +86,10 @@ def simplify(
         statements += said
     unassigned = unassigned if abs(unassigned) > ROUNDING * mesh.volume else 0.0
     if all(like.form == "plate" for like in likes):
-        raise InputError("nothing but plates", "at least one part that displaces water")
+        raise InputError(
+            "nothing but plates", "at least one part that displaces water",
+            advice="Describe them in a body.toml of reader primitives; of one alone coeflab added-mass takes the mesh itself.",
+        )  # fmt: skip
     if expected is not None and len(found) != expected:
         raise InputError(
             f"{len(found)} parts ({', '.join(_counted(likes))})", f"{expected} parts, as --parts says",

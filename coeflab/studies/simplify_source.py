@@ -9,18 +9,19 @@ import numpy as np
 
 from coeflab.core.axes import parse_axes
 from coeflab.core.errors import InputError, UnitsError
-from coeflab.core.files import located
+from coeflab.core.files import located, shipped
 from coeflab.core.provenance import InputFile, Source, sha256_of
 from coeflab.core.units import factor
 from coeflab.model.body import Body
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.mesh_file import load
 from coeflab.model.mesh_gates import examined
+from coeflab.model.mesh_headers import FORMATS
 from coeflab.model.mesh_particulars import computed, require_plausible
 from coeflab.model.mesh_repair import repaired
 from coeflab.workbench import read_body
 
-BODY = "body.toml"
+BODY, CAMPAIGN = "body.toml", "campaign.toml"
 
 
 def mesh_body(name: str, unit: str = "", axes: str = "", repair: bool = False) -> Body:
@@ -52,6 +53,20 @@ def mesh_body(name: str, unit: str = "", axes: str = "", repair: bool = False) -
             )
         return read_body(path)
     return _bare(path, _factor(unit, path), parse_axes(_declared(axes), file=path, key="--axes").rotation, repair)
+
+
+def names_body(name: str) -> bool:
+    """Whether a mesh file, a body.toml, a folder of one or a shipped body is meant, and no campaign.
+
+    A name that both a shipped campaign and a shipped body bear is the campaign's.
+    """
+    try:
+        path = located(name, "cfd_data")
+    except InputError:
+        return name in {found.parent.name for found in shipped("geometry").glob(f"*/{BODY}")}
+    if path.is_dir():
+        return (path / BODY).is_file() and not (path / CAMPAIGN).exists()
+    return path.name == BODY or path.suffix.lower().lstrip(".") in FORMATS
 
 
 def _factor(unit: str, path: Path) -> float:

@@ -9,7 +9,7 @@ from typing import Any
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import MOTIONS
 from coeflab.manoeuvres import MANOEUVRES
-from coeflab.model.approach import unlimited
+from coeflab.model.approach import at_once, unlimited
 from coeflab.model.outside import UNCOVERED
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.simulation import Simulation
@@ -115,11 +115,15 @@ def simulate(
     plugin = MANOEUVRES.load(manoeuvre)
     body = moved(parameters, manoeuvre, free, hold, **how)
     plan = plugin.plan(body, options)
-    trajectory = SIMULATORS.load("rigid_body").simulate(body, plan, simulator or {})
-    statements = tuple(dict.fromkeys((*body.statements, *plan.statements, *trajectory.statements)))
+    mover = SIMULATORS.load("rigid_body")
+    trajectory = mover.simulate(body, plan, simulator or {})
+    statements = tuple(
+        dict.fromkeys((*body.statements, *plan.statements, *at_once(body, plan.phases), *trajectory.statements))
+    )
     until, why = determined_until(trajectory, body)
     figures = plugin.figures(trajectory, body, options)
-    return Simulation(body, plan, trajectory, figures, (*statements, *([why] if why else [])), until)
+    works = tuple(dict.fromkeys((*plugin.citations, *mover.citations)))
+    return Simulation(body, plan, trajectory, figures, (*statements, *([why] if why else [])), until, works)
 
 
 def determined_until(trajectory: Trajectory, vehicle: Vehicle) -> tuple[float, str]:

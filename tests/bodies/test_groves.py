@@ -12,6 +12,7 @@ from scipy.integrate import quad
 from coeflab.bodies.groves import CAP_END, FOOT, meridian, radius
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
+from coeflab.model.reference import read_references
 from coeflab.model.shape import Revolution
 from coeflab.workbench import read_body
 
@@ -98,6 +99,15 @@ def test_measured_values_keep_their_illegible_digit() -> None:
     found = {m.symbol: m for m in read_body(BODY).measured}
     assert found["Yvdot"].bounds == (-0.013270, -0.013279)
     assert found["Nrdot"].bounds == (-0.000676, -0.000676)
+    published = read_references(shipped("cfd_data") / "suboff" / "published.toml")
+    (rows,) = [
+        k.values
+        for r in published
+        if r.name == "Roddy configuration 3"
+        for k in r.literature
+        if k.kind == "acceleration"
+    ]
+    assert {m.symbol: m.printed for m in found.values()} == {v.symbol: v.printed for v in rows}
 
 
 @pytest.mark.parametrize(

@@ -58,6 +58,35 @@ def test_the_marked_entry_stays_in_sight_in_a_low_window(plain):
     )
 
 
+def test_the_list_beside_the_report_is_open_and_can_be_scrolled_by_keyboard(plain):
+    page = plain()
+    assert page.evaluate("document.querySelector('details.contents').open")
+    page.set_viewport_size({"width": WIDE, "height": 320})
+    page.locator("details.contents nav").focus()
+    page.keyboard.press("End")
+    page.wait_for_function("() => document.querySelector('details.contents nav').scrollTop > 20")
+
+
+def test_the_fold_keeps_what_its_reader_chose(plain):
+    page = plain(NARROW)
+    open_ = "document.querySelector('details.contents').open"
+    assert not page.evaluate(open_)
+    for width, wanted in ((WIDE, True), (NARROW, False)):
+        page.set_viewport_size({"width": width, "height": 900})
+        page.wait_for_function(f"() => {open_} === {str(wanted).lower()}")
+    page.locator("details.contents summary").click()
+    for width in (WIDE, NARROW):
+        page.set_viewport_size({"width": width, "height": 900})
+        page.wait_for_function(f"() => {open_} && innerWidth === {width}")
+        assert page.locator("details.contents summary").is_visible() == (width == NARROW)
+
+
+def test_without_scripts_the_contents_are_open_on_a_phone_too(plain):
+    page = plain(NARROW, java_script_enabled=False)
+    assert page.get_by_role("link", name="Verdict").is_visible()
+    assert page.locator("details.contents summary").is_visible()
+
+
 def test_on_a_phone_the_contents_are_a_fold(plain):
     page = plain(NARROW)
     assert page.get_by_role("link", name="Verdict").count() == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from importlib.resources import files
 
 import pytest
 
@@ -177,6 +178,56 @@ def test_axe_finds_no_serious_violation(visit, written, kind, scheme):
     page.evaluate("document.querySelectorAll('details').forEach(d => { d.open = true; })")
     found = Axe().run(page).response["violations"]
     assert [(v["id"], v["nodes"][0]["html"][:200]) for v in found if v["impact"] in SERIOUS] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("kind", "width", "scheme"),
+    [("suboff", 1440, "light"), ("suboff", 1440, "dark"), ("suboff", 1280, "light"), ("plain", 390, "light")],
+)
+def test_axe_finds_no_serious_violation_in_a_page_as_it_loads(visit, written, kind, width, scheme):
+    from axe_playwright_python.sync_playwright import Axe
+
+    page = visit(written(kind), width, scheme)
+    found = Axe().run(page).response["violations"]
+    assert [(v["id"], v["nodes"][0]["html"][:200]) for v in found if v["impact"] in SERIOUS] == []
+
+
+def test_legends_keep_their_italics_and_indices(visit, written):
+    drawn = visit(written("plain"), java_script_enabled=False)
+    words = "t => [t.textContent, ...[...t.querySelectorAll('[font-style]')].map(s => s.textContent)]"
+    labels = "[data-legend] [data-label]"
+    before = drawn.eval_on_selector_all(labels, f"all => all.map({words})")
+    page = visit(written("plain"))
+    slanted = "t => [t.textContent, ...[...t.querySelectorAll('i')].map(s => s.textContent)]"
+    entries = ".plot ~ .switches:not(.groups) > :is(.switch, .entry), .switches:has(+ .plot) > :is(.switch, .entry)"
+    after = page.eval_on_selector_all(entries, f"all => all.map({slanted})")
+    assert [[t.strip() for t in b] for b in before] == [[t.strip() for t in a] for a in after]
+    assert any(len(a) > 1 for a in after)
+
+
+def test_an_index_of_a_legend_stands_below_and_a_power_above(plain):
+    """Without the page around them: the words that the drawings of this study have are never raised."""
+    source = (files("coeflab.reporting") / "_html" / "figures.js").read_text().partition("class Plot")[0]
+    made = plain.evaluate(
+        f"""() => {{ {source}
+          const text = document.createElementNS(SVG, 'text'), place = document.createElement('p');
+          text.innerHTML = '<tspan font-style="italic">C</tspan><tspan font-size="0.72em" dy="0.306em">D</tspan>'
+            + '<tspan dy="-0.22em"> of U</tspan><tspan font-size="0.72em" dy="-0.472em">n</tspan>';
+          lettered(text, place);
+          return [...place.children].map(c => c.outerHTML.replaceAll(' class=""', '')).join() + place.textContent;
+        }}"""
+    )
+    assert made == "<i>C</i>,<sub>D</sub>,<sup>n</sup>CD of Un"
+
+
+def test_figures_have_titles_of_their_own(visit, written):
+    page = visit(written("models"))
+    titles = page.locator("figcaption > strong:first-child").all_inner_texts()
+    assert len(titles) == page.locator("figure").count() > 5
+    assert len(titles) == len(set(titles))
+    weight = "e => getComputedStyle(e).fontWeight"
+    assert int(page.locator("figcaption > strong").first.evaluate(weight)) >= 600
 
 
 def test_every_picture_has_a_text(visit, written):

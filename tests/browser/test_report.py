@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import io
+
+import matplotlib.pyplot as plt
+import numpy as np
 import pytest
 
 WIDTHS = [1440, 390]
@@ -75,6 +79,36 @@ def test_no_drawing_is_cut_off_and_no_text_lies_on_another(opened, width):
 def test_text_of_drawings_is_readable_on_a_phone(opened):
     page = opened(390)
     assert page.evaluate(SMALLEST) >= 10.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("width", [1280, 1440])
+def test_tables_of_the_text_show_their_last_column(visit, written, width):
+    page = visit(written("suboff"), width)
+    hidden = page.evaluate(
+        """() => [...document.querySelectorAll('.scroll:has(> table)')].filter(s => !s.closest('.fold') &&
+        s.scrollWidth > s.clientWidth + 1).map(s => s.querySelector('caption').textContent)"""
+    )
+    assert [name for name in hidden if width == 1440 or not name.startswith("Primes")] == []
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_table_that_scrolls_has_a_shadow_at_the_edge_that_hides_something(visit, written, scheme):
+    page = visit(written("plain"), 390, scheme)
+    box = page.locator(".scroll:has(> table)").first
+    assert box.evaluate("s => s.scrollWidth > s.clientWidth + 20")
+
+    def edges() -> list[float]:
+        image = plt.imread(io.BytesIO(box.screenshot(animations="disabled")))[:, :, :3]
+        top = image[2:-4, :, :].reshape(-1, image.shape[1], 3)
+        ground = np.median(top, axis=(0, 1))
+        return [float(np.median(np.abs(top[:, x] - ground).sum(axis=1))) for x in (1, -2)]
+
+    left, right = edges()
+    assert left < 0.02 < right
+    box.evaluate("s => { s.scrollLeft = s.scrollWidth; }")
+    left, right = edges()
+    assert right < 0.02 < left
 
 
 def test_dark_and_light_differ_in_paper_and_ink(opened):

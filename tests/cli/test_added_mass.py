@@ -36,6 +36,32 @@ def test_json_holds_matrices(coeflab: Run) -> None:
     assert matrix[1, 1] == pytest.approx(1025.0 * np.pi * (0.07**2 * 1.2 + 0.02**2 * 0.3), rel=1e-12)
 
 
+def test_json_leaves_remarks_on_standard_error(coeflab: Run, tmp_path: Path) -> None:
+    """What was mended and which method to use are said, but never within the object."""
+    bar = trimesh.creation.box(extents=(1.0, 0.2, 0.2))
+    bar.invert()
+    bar.export(tmp_path / "bar.stl")
+    asked = ("added-mass", tmp_path / "bar.stl", "--unit", "m", "--axes", "FRD", "--method", "strip", "--json")
+    assert coeflab(*asked).returncode == 2
+    done = coeflab(*asked, "--repair")
+    assert list(json.loads(done.stdout)) == ["strip"]
+    for words in ("by_mesh: integrals over 12 faces; ", "* recommended: strip, by the rule", "strip: sections only"):
+        assert words in done.stderr
+
+
+def test_a_thin_box_gets_no_ellipsoid_without_a_caveat(coeflab: Run, tmp_path: Path) -> None:
+    trimesh.creation.box(extents=(1.0, 0.5, 0.02)).export(tmp_path / "thin.stl")
+    said = coeflab("added-mass", tmp_path / "thin.stl", "--unit", "m", "--axes", "FRD").stdout
+    for words in (
+        "* recommended: primitives, by the rule",
+        "NONE OF THE METHODS SHOWN IS GOOD FOR THIS BODY: primitives is a rough guide",
+        "projected areas +50, +9, +9 %, second moments of volume -40, +15, +15 % along x, y, z; over 10%: a rough guide",
+        "chord 1 m, span 0.5 m, of mean thickness 0.04 of the shorter",
+        "panel: not used: a body whose smallest side is 0.04 of the next",
+    ):
+        assert words in said
+
+
 def test_one_method(coeflab: Run) -> None:
     done = coeflab("added-mass", "spheroid_example", "--method", "strip:lamb", "--json")
     assert list(json.loads(done.stdout)) == ["strip:lamb"]

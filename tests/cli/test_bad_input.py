@@ -129,3 +129,26 @@ def test_output_to_a_full_device_is_one_message(study: Path) -> None:
     done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("name", ["n" * 5000, "~nobody-of-this-name"])
+@pytest.mark.parametrize(
+    "command", [("report",), ("run",), ("validate",), ("serve",), ("new",), ("inspect",), ("fit",), ("trim",)]
+)
+def test_a_name_that_no_path_can_have(coeflab: Run, tmp_path: Path, command: tuple[str, ...], name: str) -> None:
+    if command == ("new",) and name[0] == "~":
+        name += "/deep"
+    done = coeflab(*command, name)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.count("error: ") == 1
+    assert "Traceback" not in done.stderr
+    assert "output" not in done.stderr
+    assert len(done.stderr) < 1000
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_long_name_is_an_unknown_study(coeflab: Run) -> None:
+    done = coeflab("report", "n" * 5000)
+    assert 'found the study "nnn' in done.stderr
+    assert "a shipped validation (flyingfish, huuv, suboff, thauv)" in done.stderr

@@ -9,6 +9,7 @@ from pathlib import Path
 from subprocess import CompletedProcess
 
 import pytest
+import trimesh
 
 from tests.cli.conftest import COEFLAB, Run
 
@@ -129,6 +130,48 @@ def test_inspect_and_formats(coeflab: Run) -> None:
     assert "slope_at_origin" in coeflab("formats").stdout
     assert json.loads(coeflab("formats", "--json").stdout)["plugins"]
     assert json.loads(coeflab("inspect", "suboff_roddy_1", "--json").stdout)["tables"][0]["rows"] == 64
+
+
+def test_inspect_of_a_mesh_shows_its_checks(coeflab: Run, tmp_path: Path) -> None:
+    """A bar of 2000 x 200 x 100 mm, off its origin: volume, centre in FRD, areas, inertia, and that it is sound."""
+    bar = trimesh.creation.box(extents=(2000.0, 200.0, 100.0))
+    bar.apply_translation([100.0, 20.0, 30.0])
+    bar.export(tmp_path / "bar.stl")
+    asked = ("inspect", tmp_path / "bar.stl", "--unit", "mm", "--axes", "FLU")
+    done = coeflab(*asked)
+    assert (done.returncode, done.stderr) == (0, "")
+    for words in ("0.0400000", "0.1000  -0.0200  -0.0300", "1.2400", "the mesh of 12 faces is closed, wound outward"):
+        assert words in done.stdout
+    assert "2 x 0.2 x 0.1 m along x forward" in done.stdout
+    (found,) = json.loads(coeflab(*asked, "--density", "500", "--json").stdout)["configurations"]
+    assert found["projected_areas"] == pytest.approx([0.02, 0.2, 0.4], rel=1e-6)
+    assert found["displaced_inertia"][0][0] == pytest.approx(20.0 * (0.04 + 0.01) / 12.0, rel=1e-6)
+    bare = coeflab("inspect", tmp_path / "bar.stl")
+    assert bare.returncode == 2
+    assert "--unit" in bare.stderr
+
+
+def test_inspect_of_a_mesh_that_is_not_closed(coeflab: Run, tmp_path: Path) -> None:
+    bar = trimesh.creation.box(extents=(2.0, 0.2, 0.1))
+    trimesh.Trimesh(bar.vertices, bar.faces[1:]).export(tmp_path / "open.stl")
+    done = coeflab("inspect", tmp_path / "open.stl", "--unit", "m", "--axes", "FLU")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "open.stl" in done.stderr
+    assert "campaign.toml" not in done.stderr
+    bar.invert()
+    bar.export(tmp_path / "inward.stl")
+    asked = ("inspect", tmp_path / "inward.stl", "--unit", "m", "--axes", "FLU")
+    assert coeflab(*asked).returncode == 2
+    assert "by_mesh" in coeflab(*asked, "--repair").stdout
+
+
+def test_inspect_of_a_body_and_options_for_a_table(coeflab: Run) -> None:
+    shown = coeflab("inspect", "remus100")
+    assert "0.0316552" in shown.stdout
+    assert "is closed" not in shown.stdout
+    done = coeflab("inspect", "suboff_roddy_1", "--unit", "m")
+    assert done.returncode == 2
+    assert "a mesh file with them" in done.stderr
 
 
 def test_completion_is_offered(coeflab: Run) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.errors import InputError, OutputError
-from coeflab.core.files import located, shipped, write_all, write_atomically
+from coeflab.core.files import located, shipped, typed, write_all, write_atomically
 from coeflab.core.provenance import sha256_of
 
 
@@ -107,6 +107,21 @@ def test_paths_to_nothing(tmp_path: Path, name: str) -> None:
         return
     with pytest.raises(InputError, match=r"no file or folder|no usable path"):
         located(name, "cfd_data", tmp_path)
+
+
+@pytest.mark.parametrize("name", ["n" * 5000, "~nobody-of-this-name/x"])
+def test_text_that_no_path_can_be(name: str) -> None:
+    with pytest.raises(InputError, match="no usable path") as why:
+        typed(name)
+    assert len(str(why.value)) < 300
+    assert typed("nowhere") == Path("nowhere")
+
+
+def test_a_long_name_is_cut_in_the_middle() -> None:
+    told = str(InputError("no such file", "a file", file="a" + "n" * 5000 + "z"))
+    assert len(told) < 500
+    assert told.startswith("annn")
+    assert "nnnz: found" in told
 
 
 def test_sha256(tmp_path: Path) -> None:

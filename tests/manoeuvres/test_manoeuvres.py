@@ -120,6 +120,31 @@ def test_a_slow_rudder_overshoots_more() -> None:
     assert slow > quick + np.radians(0.5)
 
 
+@pytest.mark.parametrize(
+    ("manoeuvre", "control"),
+    [
+        ("zigzag", "rudder (dr)"), ("turning_circle", "rudder (dr)"), ("pull_out", "rudder (dr)"), ("spiral", "rudder (dr)"),
+        ("depth_change", "stern planes (ds)"), ("straight_run", ""),
+    ],
+)  # fmt: skip
+def test_a_surface_of_infinite_rate_is_said(manoeuvre: str, control: str) -> None:
+    free = ("u", "w", "q") if "ds" in control else HORIZONTAL
+    said = [s for s in run(made(metacentric=0.02), manoeuvre, free).statements if "infinite rate" in s]
+    assert len(said) == (1 if control else 0)
+    assert all(s.startswith(f"{control} at the ordered angle at once, as the file states no rate") for s in said)
+
+
+def test_a_stated_rate_is_no_assumption_and_a_limit_alone_is_none() -> None:
+    rated, limited = (run(with_limits(made(), 0.5, rate), "zigzag").statements for rate in (0.1, None))
+    assert not any("infinite rate" in s for s in rated)
+    assert any("infinite rate" in s for s in limited)
+
+
+def test_works_of_manoeuvre_and_simulator_go_with_the_simulation() -> None:
+    found = run(made(), "zigzag")
+    assert {"imo_msc137", "ittc_free_running", "fossen2011", "hindmarsh1983"} <= set(found.citations)
+
+
 def test_a_stable_vehicle_has_no_loop_and_no_residual_rate() -> None:
     spiral = run(made(), "spiral", steps=1, hold=25.0)
     assert value(spiral, "loop height") == pytest.approx(0.0, abs=1e-5)

@@ -70,6 +70,15 @@ def test_a_header_that_claims_four_thousand_million_triangles(tmp_path: Path) ->
     refused(written(tmp_path, "bomb.stl", data), "counts 4000000000 triangles", "200000000084 bytes", "cut short")
 
 
+@pytest.mark.parametrize("text", [b"no mesh\n", b"x,y,z\r\n1,2,3\r\n" * 20, b"solid fuel and other words\n" * 9])
+def test_a_text_file_named_stl(tmp_path: Path, text: bytes) -> None:
+    """It says what it is, and counts no triangles."""
+    with pytest.raises(InputError, match="a text file that begins") as why:
+        faces_of(written(tmp_path, "t.stl", text))
+    assert "triangles" not in str(why.value)
+    assert "It is no STL" in str(why.value)
+
+
 def test_a_binary_stl_whose_header_says_solid(tmp_path: Path) -> None:
     data = content("stl")
     path = written(tmp_path, "s.stl", b"solid facet".ljust(80) + data[80:])

@@ -67,9 +67,27 @@ def test_stated_uncertainties(published: dict[str, Reference]) -> None:
     assert roddy.relation is Relation.RE_ANALYSIS
 
 
+def test_printed_stability_indices_follow_from_the_printed_rows(published: dict[str, Reference]) -> None:
+    """Table 4 by G = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] with Roddy's m' and xG' m' of Table 1."""
+    for number, index, sign, m, moment, names in (
+        (1, "G_v", -1.0, 0.018296, -0.127467e-4, ("Zw", "Mw", "Zq", "Mq")),
+        (2, "G_h", 1.0, 0.018296, -0.127467e-4, ("Yv", "Nv", "Yr", "Nr")),
+        (3, "G_h", 1.0, 0.018078, 0.388697e-4, ("Yv", "Nv", "Yr", "Nr")),
+    ):
+        r = published[f"Roddy configuration {number}"]
+        values = {v.symbol: v.value for v in (*r.values, *(v for kind in r.literature for v in kind.values))}
+        force, lever, force_rate, lever_rate = (values[n] or 0.0 for n in names)
+        found = 1.0 - lever * (force_rate - sign * m) / (force * (lever_rate - moment))
+        (printed,) = r.indices
+        assert printed.symbol == index
+        assert printed.value == pytest.approx(found, rel=5e-4)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
+        ('body = "b"', 'body = "b"\nindices = { G_x = "1.0" }', ['"reference[0].indices.G_x"', "G_h, G_v"]),
+        ('body = "b"', 'body = "b"\nindices = { G_h = "much" }', ['"reference[0].indices.G_h"', 'found "much"']),
         ('"-0.03"', '"about 0.03"', ['"reference[0].values.Yv"', 'found "about 0.03"', 'ends in "?"']),
         ('"-0.03"', '"nan"', ['"reference[0].values.Yv"', 'found "nan"']),
         ('"-0.03"', "-0.03", ['"reference[0].values.Yv"', "a text"]),

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from coeflab.core.provenance import InputFile
 from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
-from coeflab.presentation import acceptance_document
+from coeflab.presentation import acceptance_document, acceptance_tables
 from coeflab.presentation.document import Figure
 from coeflab.presentation.summary import acceptance_summary
 
@@ -62,6 +62,24 @@ def test_the_verdict_counts_and_names_what_fails():
     assert failed.paragraphs[0] == "2 of 3 numbers lie within what is allowed."
     assert failed.paragraphs[1] == "Outside, Turns: u of case 2."
     assert "1 in-sample" in failed.paragraphs[2]
+
+
+def test_a_number_is_called_printed_only_where_it_is():
+    """Basis beside every number; no column says paper, and a report without printed numbers says so."""
+    (shown,) = acceptance_tables.tables(found(2.05))
+    assert shown.headers[2:5] == ("held against", "basis", "found")
+    assert [row[2:4] for row in shown.rows] == [("1", "printed"), ("2", "in-sample"), ("at most 0.5", "printed")]
+    assert b"held_against" in acceptance_tables.acceptance_csv(found(2.05)).splitlines()[0]
+    none = "No number that the paper itself prints is among them."
+    assert none not in acceptance_document.verdict(found(2.05)).paragraphs
+    rows = (Compared("case", "mass", "kg", 2.2297, 2.2297, 5e-5, "derived"),)
+    made = Acceptance("boat", "Boat", (ComparedTable("t", "T", rows, "Table 1"),), (), (), ())
+    said = acceptance_document.verdict(made)
+    assert none in said.paragraphs
+    assert said.figures[0].panels[0].series[0].notes == (
+        "case, mass: held against 2.2297 kg (derived), found 2.2297 kg",
+    )
+    assert all("paper " not in note for p in said.figures[0].panels for s in p.series for note in s.notes)
 
 
 def test_the_overview_shows_how_much_of_the_allowance_is_used():

@@ -8,6 +8,9 @@ import pytest
 from coeflab.model.check import Check, Severity
 from coeflab.model.export import Export
 from coeflab.presentation.content import document
+from coeflab.presentation.tables import works
+from coeflab.workbench.manoeuvres import simulate
+from tests.manoeuvres.vehicles import made as vehicle_file
 from tests.presentation.studies import FEW, FULL, HALF, HOSTILE, small_study
 
 
@@ -96,6 +99,13 @@ def test_works_of_exports_and_of_the_conventions_are_listed():
     assert {"mss", "fossen2011", "sname1950", "roddy1990"} <= set(keys)
     assert len(keys) == len(set(keys))
     assert "mss" not in [k for k, _ in document(small_study(FULL)).works]
+
+
+def test_works_of_manoeuvres_and_their_simulator_are_listed():
+    study = replace(small_study(FULL), manoeuvres=(simulate(vehicle_file(), "zigzag", {}, free=("u", "v", "r")),))
+    keys = [k for k, _ in works(study)]
+    assert {"imo_msc137", "ittc_free_running", "hindmarsh1983"} <= set(keys)
+    assert len(keys) == len(set(keys))
 
 
 def test_a_plan_without_a_file_gets_no_command():

@@ -1,4 +1,4 @@
-"""Sections for the expert reader, and scenes: stability, data quality, axes, bodies and surfaces in space."""
+"""Sections for the expert reader, and scenes: data quality, axes, bodies and surfaces in space."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from coeflab.checks.symmetry import check as symmetry_check
 from coeflab.core.files import shipped
 from coeflab.core.provenance import Source
 from coeflab.fits import FITS
@@ -17,69 +18,19 @@ from coeflab.model.body import Body
 from coeflab.model.shape import Box, Cylinder, Part, Parts
 from coeflab.model.study import PlannedTable
 from coeflab.presentation.axes_figure import AXES, axes_figures
-from coeflab.presentation.content import document
 from coeflab.presentation.embedded import panels_json, scene_json
 from coeflab.presentation.figures import sweep_figure
 from coeflab.presentation.hull_marks import hull_marks
 from coeflab.presentation.hull_scene import FACES, Mark, hull_scene
 from coeflab.presentation.quality_section import quality_sections
-from coeflab.presentation.stability_section import in_words, stability_sections
-from coeflab.presentation.summary import study_summary
 from coeflab.presentation.surface_scene import surface_scene
 from coeflab.workbench import read_body, read_tables
-from tests.manoeuvres.vehicles import STABLE, UNSTABLE, made
-from tests.presentation.studies import FULL, HOSTILE, LENGTH, small_study
-
-M = 60.0 / (0.5 * 1000.0 * 2.0**3)
-NEARLY = {**STABLE, "Nv": -4e-2 * -1e-2 / (4e-3 - M) * 1.01}  # G_h = 1 - 1.01: next to nothing, below zero
+from tests.manoeuvres.vehicles import made
+from tests.presentation.studies import FULL, HOSTILE, LENGTH, small_study, small_table
 
 
 def with_files(*files):
     return replace(small_study(FULL), parameter_files={f.name: f for f in files})
-
-
-def test_stability_has_indices_roots_and_figures():
-    (section,) = stability_sections(with_files(made()))
-    indices, roots = section.tables
-    assert [row[1] for row in indices.rows] == ["G_h", "G_v"]
-    assert all(row[4] == "stable by its value alone" for row in indices.rows)
-    assert all("no U95" in row[5] for row in indices.rows)
-    assert [row[-1] for row in roots.rows] == ["none", "none"]
-    assert len(section.figures) == 2
-    assert all(f.panels for f in section.figures)
-
-
-def test_stability_without_hydrostatics_says_what_is_missing():
-    (section,) = stability_sections(with_files(made().model_copy(update={"hydrostatics": None})))
-    assert section.tables[1].rows[1][-1] == "not determined, no BG"
-    assert "no hydrostatics" in section.figures[1].caption
-
-
-def with_u95(values, half):
-    """A file whose derivatives of sway and yaw are independent, with such half-widths as shares of their sizes."""
-    file = made(values)
-    deviations = [half * values[s] / 2.0 for s in ("Yv", "Nv", "Yr", "Nr")]
-    symbols = tuple(file.coefficient(s).symbol for s in ("Yv'", "Nv'", "Yr'", "Nr'"))
-    matrix = tuple(map(tuple, np.diag(np.square(deviations)).tolist()))
-    covariance = file.covariance.model_copy(update={"symbols": symbols, "matrix": matrix})
-    return file.model_copy(update={"covariance": covariance})
-
-
-@pytest.mark.parametrize(
-    ("values", "half", "said"),
-    [(STABLE, 0.05, "stable"), (UNSTABLE, 0.05, "unstable"), (NEARLY, 0.05, "not determined")],
-)
-def test_an_index_is_stable_unstable_or_not_determined_by_its_interval(values, half, said):
-    study = with_files(with_u95(values, half))
-    (section,) = stability_sections(study)
-    by_index = {row[1]: row for row in section.tables[0].rows}
-    assert by_index["G_h"][4] == said
-    (sentence,) = [text for text in in_words(study) if "G_h" in text]
-    assert sentence.startswith(f"On a straight course with controls fixed {said}: synthetic (G_h")
-    assert sentence in document(study).sections[0].paragraphs
-    summary = study_summary(study).sections
-    assert sentence in summary[0].paragraphs
-    assert said in next(s for s in summary if s.anchor == "stability").tables[0].rows[0]
 
 
 def test_the_sketch_states_a_sense_of_control_angles_only_with_its_source():
@@ -90,15 +41,37 @@ def test_the_sketch_states_a_sense_of_control_angles_only_with_its_source():
     assert with_controls[2] == without[2]
 
 
-def test_a_missing_rate_derivative_is_named():
-    few = {s: v for s, v in STABLE.items() if s not in ("Nr", "Zq", "Mq", "Zw", "Mw")}
-    (section,) = stability_sections(with_files(made(few)))
-    assert len(section.tables) == 1
-    assert section.tables[0].rows == (("synthetic", "G_h", "-", "-", "not determined", "missing: Nr'"),)
+def test_forces_at_rest_and_the_check_of_symmetry_name_their_curves():
+    """One is the median of all members, the other the member with the most points: two values of one quantity."""
+    study = small_study(FULL)
+    (section,) = quality_sections(study)
+    rest = next(t for t in section.tables if t.title == "Forces at rest")
+    assert "median of the curves" in rest.headers
+    assert "check of symmetry takes one member" in rest.notes[0]
+    found = symmetry_check(study)
+    assert all("member with the most points" in c.comment for c in found)
 
 
-def test_no_parameter_file_no_stability():
-    assert stability_sections(small_study(FULL)) == ()
+@pytest.mark.parametrize(
+    ("offset", "noise", "severity"),
+    [(0.0, 1.0, "pass"), (0.0005, 1e-3, "pass"), (0.02, 1e-3, "note"), (0.2, 1e-3, "warn")],
+)
+def test_the_check_of_symmetry_does_as_its_rule_says(offset, noise, severity):
+    """An offset as a share of the largest force: within its interval or below 0.1 % passes, 5 % and more is a warning."""
+    v = np.sin(np.radians(np.linspace(-10.0, 10.0, 21)))
+    table = small_study(FULL).tables[0]
+    ripple = noise * 1e-3 * np.cos(7.0 * np.arange(len(v)))
+    y = -v / v[-1] * (1.0 - offset) + offset + ripple
+    made_table = small_table(list(np.degrees(np.arcsin(v))))
+    size = 0.03 * 0.5 * 1000.0 * 1.5**2 * 4.0
+    usable = {c: np.ones(len(v), dtype=bool) for c in made_table.usable}
+    planted = replace(made_table, forces={**made_table.forces, "Y": size * y}, usable=usable, exclusions=())
+    fit = FITS.load("slope_at_origin").fit([planted], LENGTH, {"replicates": 100})
+    (found,) = [
+        c for c in symmetry_check(replace(small_study(FULL), tables=(table,), fits=(fit,))) if "Yv" in c.subject
+    ]
+    assert found.severity.value == severity
+    assert found.rule.startswith("passes where its 95 % interval holds zero or it is below 0.1 % of the largest")
 
 
 def test_data_quality_finds_the_planted_offset_and_names_the_doubtful_cell():

@@ -34,6 +34,7 @@ def tuning() -> Tuning:
 
 def test_agreement_has_every_measured_case_before_and_after(tuning: Tuning) -> None:
     figure = agreement_figure(tuning, "agreement")
+    assert "model against data" in figure.title  # data may be another simulation
     ET.fromstring(figure.svg)
     # Eleven measured of twelve, before and after, and two marks of the legend.
     assert len(re.findall(r"<use [^>]*(?:0067a8|c04f00)|<use ", figure.svg)) >= 2 * 11 + 2

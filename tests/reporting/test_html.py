@@ -150,6 +150,21 @@ def test_every_figure_is_described():
         assert re.search(r"<figcaption[^>]*>.+</figcaption>", figure)
 
 
+def test_every_figure_shows_its_title_before_its_caption():
+    made = document(small_study(FULL))
+    text = REPORTERS.load("html").render(made)["report.html"].decode()
+    shown = re.findall(r"<figcaption><strong>(.*?)\.</strong> .+?</figcaption>", text)
+    assert len(shown) == text.count("<figure") == len(set(shown))
+    assert "<i>Y</i><sub><i>v</i></sub><u><b>'</b></u>, tow: data, curves and residuals" in shown
+
+
+def test_the_contents_are_open_and_their_list_takes_the_keyboard():
+    page = Page(text_of(small_study(FULL)))
+    (contents,) = [a for a in page.named("details") if a.get("class") == "contents"]
+    assert "open" in contents
+    assert [a["tabindex"] for a in page.named("nav")] == ["0"]
+
+
 def test_every_table_has_a_caption_and_column_headers():
     page = Page(text_of(small_study(FULL, published=True)))
     assert len(page.named("caption")) == len(page.named("table")) > 3

@@ -33,6 +33,8 @@ def test_everything_holds(found: Acceptance) -> None:
         "equations",
     ]  # fmt: skip
     assert len(found.errata) == 10
+    assert {r.basis for t in found.tables for r in t.rows} == {"derived"}
+    assert "0.986 times m_y - m_x" in found.tables[-1].statements[0]
     assert found.citations == ("huuv2025",)
 
 

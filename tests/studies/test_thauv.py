@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -29,12 +31,12 @@ def test_steady_glides_to_a_ten_thousandth(thauv: Acceptance) -> None:
     rows = _table(thauv, "steady_glides").rows
     assert len(rows) == 12
     assert {r.tolerance for r in rows} == {1e-4}
-    assert {r.published for r in rows if r.quantity == "V"} == {0.39950, 0.39164, 0.42286, 0.28489, 0.27944, 0.30525}
+    assert {r.against for r in rows if r.quantity == "V"} == {0.39950, 0.39164, 0.42286, 0.28489, 0.27944, 0.30525}
 
 
 def test_published_speeds_are_called_in_sample_and_left_out_ones_stand_beside(thauv: Acceptance) -> None:
     speeds, left_out = _table(thauv, "speeds"), _table(thauv, "left_out")
-    assert [r.published for r in speeds.rows] == [0.25, 0.32, 0.34, 0.43, 0.54, 0.57]
+    assert [r.against for r in speeds.rows] == [0.25, 0.32, 0.34, 0.43, 0.54, 0.57]
     assert {(r.basis, r.tolerance) for r in speeds.rows} == {("in-sample", 0.005)}
     assert any("in-sample" in s for s in speeds.statements)
     apart = [abs(r.difference or 0.0) for r in left_out.rows if "left out" in r.case]
@@ -44,8 +46,18 @@ def test_published_speeds_are_called_in_sample_and_left_out_ones_stand_beside(th
 
 
 def test_the_cycle_settles(thauv: Acceptance) -> None:
-    rows = _table(thauv, "cycle").rows
-    assert max(abs(r.difference or 0.0) for r in rows if r.quantity == "V of the steady glide") < 1e-8
+    assert any("within 1e-08 m/s of the steady glide" in s for s in _table(thauv, "cycle").statements)
+
+
+def test_our_own_values_are_told_and_not_counted(thauv: Acceptance) -> None:
+    assert {t.key: len(t.rows) for t in thauv.tables} == {
+        "engine": 1, "steady_glides": 12, "speeds": 6, "left_out": 6, "cycle": 6, "gains": 4,
+    }  # fmt: skip
+    assert all(r.basis == "printed" for r in _table(thauv, "left_out").rows)
+    told = next(s for s in _table(thauv, "left_out").statements if "not counted" in s)
+    munk, moments = (float(word) for word in re.findall(r"(\d+\.\d+) (?:kg|N m) in", told))
+    assert munk <= 0.05
+    assert moments <= 5e-4
 
 
 def test_errata_and_doubts_are_named(thauv: Acceptance) -> None:

@@ -1,7 +1,22 @@
+// Beside the report the contents stay open, above it they are a fold that keeps what its reader chose.
+const contents = document.querySelector("details.contents"), list = contents.querySelector("nav");
+{
+  const beside = matchMedia("(min-width: 75rem)");
+  let chosen = false;
+  const arrange = () => {
+    contents.open = beside.matches || chosen;
+    if (beside.matches) list.tabIndex = 0;
+    else list.removeAttribute("tabindex");
+    contents.classList.add("arranged");
+  };
+  contents.addEventListener("toggle", () => { if (!beside.matches) chosen = contents.open; });
+  beside.addEventListener("change", arrange);
+  arrange();
+}
+
 // The entry of the contents whose section stands in the upper part of the window.
 {
-  const contents = document.querySelector("details.contents");
-  const entries = new Map([...contents.querySelectorAll("a")].map(a => [document.getElementById(a.hash.slice(1)), a]));
+  const entries = new Map([...list.querySelectorAll("a")].map(a => [document.getElementById(a.hash.slice(1)), a]));
   entries.delete(null);
   const seen = new Set();
   let marked = null;
@@ -11,10 +26,10 @@
     marked?.removeAttribute("aria-current");
     entry?.setAttribute("aria-current", "location");
     marked = entry;
-    const room = contents.getBoundingClientRect();
-    if (!entry || contents.scrollHeight <= contents.clientHeight) return;
+    const room = list.getBoundingClientRect();
+    if (!entry || list.scrollHeight <= list.clientHeight) return;
     const {top, bottom} = entry.getBoundingClientRect();
-    if (top < room.top + 40 || bottom > room.bottom - 40) contents.scrollTop += (top + bottom - room.top - room.bottom) / 2;
+    if (top < room.top + 40 || bottom > room.bottom - 40) list.scrollTop += (top + bottom - room.top - room.bottom) / 2;
   };
 
   // Sections stand in each other: the innermost one comes last in the document.

@@ -45,6 +45,19 @@ function swatch(sample, parent) {
   parent.append(svg);
 }
 
+// The words of a drawn label with its italics and indices; they wrap, which words of a drawing cannot.
+function lettered(label, parent) {
+  let level = 0;
+  for (const part of (label.querySelector("text") ?? label).childNodes) {
+    const look = part.nodeType === Node.ELEMENT_NODE ? part : null;
+    level += parseFloat(look?.getAttribute("dy") ?? 0) * parseFloat(look?.getAttribute("font-size") ?? 1);
+    const tags = [Math.abs(level) < 0.01 ? "" : level > 0 ? "sub" : "sup", look?.getAttribute("font-style") ? "i" : ""];
+    let place = parent;
+    for (const tag of tags.filter(Boolean)) place = made(tag, "", place);
+    place.append(part.textContent);
+  }
+}
+
 class Plot {
   constructor(figure, data) {
     this.figure = figure;
@@ -69,11 +82,11 @@ class Plot {
     row.setAttribute("aria-label", "Shown in the drawing");
     this.plot.before(row);
     const foot = drawn.getBBox(), box = this.svg.viewBox.baseVal;
-    const labels = [...drawn.querySelectorAll("[data-label]")].map(l => l.textContent.trim());
+    const labels = [...drawn.querySelectorAll("[data-label]")];
     const samples = [...drawn.querySelectorAll("[data-swatch]")];
     samples.forEach((sample, i) => {
       const key = sample.dataset.swatch;
-      const fill = place => { swatch(sample, place); place.append(labels[i]); };
+      const fill = place => { swatch(sample, place); lettered(labels[i], made("span", "", place)); };
       if (!key) fill(made("span", "entry", row));
       else switches(row, [[key, fill]], (k, on) => this.turn(k, on));
     });

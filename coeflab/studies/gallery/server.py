@@ -18,6 +18,7 @@ from typing import BinaryIO, cast
 from urllib.parse import parse_qs, urlsplit
 
 from coeflab.core.errors import CoeflabError, InputError, OutputError, shown
+from coeflab.core.files import typed
 from coeflab.presentation.printable import shortened
 from coeflab.studies import comparison_tables
 from coeflab.studies.compare import compare
@@ -68,6 +69,7 @@ class GalleryServer(ThreadingTCPServer):
     request_queue_size = 64
 
     def __init__(self, folder: Path, port: int) -> None:
+        folder = typed(folder)
         if not folder.is_dir():
             raise InputError(f"no folder {shown(folder, 300)}", "the folder of the gallery")
         self.shelf = Shelf(folder.resolve())

@@ -35,7 +35,7 @@ def figures(fish: FlyingFish, nearest: ComparedTable) -> tuple[tuple[str, Figure
 def _operating_points(nearest: ComparedTable) -> Figure:
     rows = nearest.rows
     shape = (len(rows) // 8, 8)
-    printed = np.array([r.published for r in rows]).reshape(shape)
+    printed = np.array([r.against for r in rows]).reshape(shape)
     found = np.array([np.nan if r.found is None else r.found for r in rows]).reshape(shape)
     motion = np.arange(1.0, shape[0] + 1.0)
     plots: list[Plot] = []

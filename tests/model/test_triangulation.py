@@ -1,0 +1,108 @@
+"""Which method is recommended: planted results, bodies whose exact answer is known, and what is said of rough guides."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coeflab.core.files import shipped
+from coeflab.model.added_mass import AddedMass
+from coeflab.model.body import Body
+from coeflab.model.shape import Ellipsoid, Part, Parts
+from coeflab.model.triangulation import APART, RULE, Triangulation, _felt
+from coeflab.presentation.added_mass_tables import derivatives
+from coeflab.workbench import read_body
+from coeflab.workbench.hulls import added_masses
+
+RHO = 1000.0
+
+
+def shipped_body(name: str) -> Body:
+    return read_body(Path(shipped("geometry")) / name / "body.toml")
+
+
+def told(body: Body, *methods: tuple[str, bool]) -> Triangulation:
+    """Results of those methods, rough or not, all the same matrix."""
+    results = tuple(AddedMass(np.eye(6), np.zeros(3), "d", body.name, m, ("said",), None, r) for m, r in methods)
+    return Triangulation(body, RHO, results, {}, ())
+
+
+def spheres(*places: float, radius: float = 0.1) -> Body:
+    parts = tuple(
+        Part(f"s{i}", Ellipsoid(radius, radius, radius), np.array([x, 0.0, 0.0]), np.eye(3))
+        for i, x in enumerate(places)
+    )
+    return replace(shipped_body("spheroid_example"), shape=Parts(parts), reference_point=np.zeros(3))
+
+
+HULL = "suboff_bare_hull"
+ALL = ("ellipsoid", "panel", "primitives", "strip", "strip:lamb")
+
+
+@pytest.mark.parametrize(
+    ("rough", "refused", "chosen"),
+    [
+        ((), (), "panel"),
+        (("ellipsoid",), ("panel", "primitives"), "strip:lamb"),
+        (("strip", "strip:lamb"), ("panel", "primitives"), "ellipsoid"),
+        (("primitives", "strip", "strip:lamb"), ("panel",), "ellipsoid"),
+        (("ellipsoid", "primitives", "strip", "strip:lamb"), ("panel",), "primitives"),
+        (("ellipsoid", "strip", "strip:lamb"), ("panel", "primitives"), "strip:lamb"),
+    ],
+)
+def test_rough_guides_come_last_and_say_so(rough: tuple[str, ...], refused: tuple[str, ...], chosen: str) -> None:
+    kept = tuple((m, m in rough) for m in ALL if m not in refused)
+    found = told(shipped_body(HULL), *kept)
+    assert found.recommended.method == chosen
+    assert bool(found.caution) is (chosen in rough)
+    if found.caution:
+        assert found.caution.endswith("for the method primitives")
+        assert f"{chosen} is a rough guide" in found.caution
+        assert found.recommended.statements == (found.caution, "said")
+        assert found.caution in derivatives(found).notes
+    else:
+        assert found.recommended.statements == ("said",)
+
+
+def test_the_rule_names_what_is_rough() -> None:
+    for words in ("one alone or so far apart", "rough guide comes last", "over 10 %", "a mesh as one plate"):
+        assert words in RULE
+
+
+def test_dipoles_by_hand() -> None:
+    """Neighbours at 1 m and 2 m of the one in the middle row: 3 (0.1^3 + 0.1^3 / 8) at the ends, 6 x 0.1^3 between."""
+    assert _felt(spheres(0.0).shape.parts) == 0.0
+    assert _felt(spheres(-1.0, 0.0, 1.0).shape.parts) == pytest.approx(6e-3, rel=1e-12)
+    assert _felt(spheres(0.0, 2.0).shape.parts) == pytest.approx(3.75e-4, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("places", "chosen"), [((0.0,), "ellipsoid"), ((-1.0, 1.0), "primitives"), ((0.0, 0.5), "panel")]
+)
+def test_exact_closed_forms_come_before_panels(places: tuple[float, ...], chosen: str) -> None:
+    methods = tuple((m, False) for m in ("ellipsoid", "panel", "primitives"))
+    assert told(spheres(*places), *methods).recommended.method == chosen
+    assert told(spheres(0.0), *methods[1:]).recommended.method == "primitives"
+
+
+def test_a_box_alone_is_no_exact_closed_form() -> None:
+    methods = tuple((m, False) for m in ("ellipsoid", "panel", "primitives"))
+    assert told(shipped_body("huuv_mesh"), *methods).recommended.method == "panel"
+    assert told(shipped_body("huuv"), *methods).recommended.method == "panel"
+
+
+@pytest.mark.slow
+def test_what_spheres_feel_is_within_the_estimate() -> None:
+    """Panels on two spheres, 5 radii apart, beside each alone: along the line 3 (R/d)^3, across half of it, Lamb 138."""
+    pair, alone = spheres(0.0, 0.5), spheres(0.0)
+    options = {"panels": 3000, "kernel": "numpy"}
+    both = added_masses(pair, RHO, "panel", options).results[0]
+    single = added_masses(alone, RHO, "panel", options).results[0]
+    change = np.diag(both.matrix)[:3] / (2.0 * np.diag(single.matrix)[:3]) - 1.0
+    bound = _felt(pair.shape.parts)
+    assert bound == pytest.approx(0.024)
+    assert bound > APART
+    assert change == pytest.approx([-bound, bound / 2.0, bound / 2.0], abs=0.15 * bound)
