@@ -250,7 +250,7 @@ def test_the_validation_is_printed_whole():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "pages"), [("huuv", 12), ("flyingfish", 10), ("thauv", 10)])
+@pytest.mark.parametrize(("name", "pages"), [("huuv", 12), ("flyingfish", 12), ("thauv", 12)])
 def test_publications_are_printed(name, pages):
     found = validation(name)
     whole = acceptance_document.document(found)
