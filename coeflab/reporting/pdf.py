@@ -125,14 +125,18 @@ def _figure(figure: Figure) -> dict[str, Any]:
 
 
 def _table(table: Table, level: int) -> dict[str, Any]:
+    """The table; of a long one deep inside, which HTML folds, its title and what it counts."""
+    title = _text(shortened(table.title, LONGEST_TITLE))
+    if level >= DEEP and len(table.rows) > LONG:
+        return {"elsewhere": True, "title": title, "count": len(table.rows)}
     columns = range(len(table.headers))
     units = {i for i in columns if table.headers[i] == "unit"}
     folds = [any(len(row[i]) > WHOLE and WORDY.search(row[i]) for row in table.rows) for i in columns]
     rows = [[_cell(text, i in units, folds[i]) for i, text in enumerate(row)] for row in table.rows]
     return {
-        "later": level >= DEEP and len(table.rows) > LONG,
+        "elsewhere": False,
         "together": len(table.rows) <= FEW and _letters(table) < ON_A_PAGE,
-        "title": _text(shortened(table.title, LONGEST_TITLE)),
+        "title": title,
         "headers": [_text(shortened(h, LONGEST_COLUMN)) for h in table.headers],
         "rows": rows,
         "whole": all(len(cell) < ON_A_PAGE // 4 for row in table.rows for cell in row),

@@ -144,7 +144,8 @@ def test_every_figure_and_table_is_there_and_numbered():
     whole = document(small_study(FULL, published=True))
     text = text_of(opened(whole))
     figures = [f for s in whole.sections for f in figures_of(s)]
-    tables = [t for s in whole.sections for t in tables_of(s)]
+    tables, elsewhere = on_paper(whole)
+    assert len(tables) + len(elsewhere) == sum(1 for s in whole.sections for _ in tables_of(s))
     assert len(figures) >= 6
     for word, n in (("Figure", len(figures)), ("Table", len(tables))):
         for i in range(1, n + 1):
@@ -241,12 +242,20 @@ def test_the_validation_is_printed_whole():
     assert len(made) < 110
     text = text_of(made)
     figures = [f for s in whole.sections for f in figures_of(s)]
-    tables = [t for s in whole.sections for t in tables_of(s)]
+    tables, elsewhere = on_paper(whole)
     assert f"Figure{len(figures)}" in text
     assert f"Table{len(tables)}" in text
+    assert len(elsewhere) > 10
+    assert all(f"atableof{t['count']}rows,intheHTMLofthisreport" in text for t in elsewhere)
     short = opened(summary.study_summary(study))
     assert len(short) == 1
     assert flaws(short) == []
+
+
+def on_paper(whole):
+    """Tables that are printed, and long ones that the paper only names."""
+    tables = [t for part in pdf.content(whole)["parts"] for t in part["tables"]]
+    return [t for t in tables if not t["elsewhere"]], [t for t in tables if t["elsewhere"]]
 
 
 @pytest.mark.slow
