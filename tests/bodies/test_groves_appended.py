@@ -123,8 +123,8 @@ def test_panels_on_aff8_hold_those_of_four_times_as_many() -> None:
     assert found.error is not None
     error = np.diag(found.error)
     assert np.all(np.abs(np.diag(found.matrix) - fine) <= error + share * fine)
-    # A tenth of the gap between potential theory and measurement, 27 to 36 %, is what an estimate may blur.
-    assert np.all(error[[1, 2, 4, 5]] < 0.027 * fine[[1, 2, 4, 5]])
+    # Beside what was asked before the estimate carried it: twice the 0.04 % of volume that extrapolation leaves.
+    assert np.all(error[[1, 2, 4, 5]] < (0.015 + 2.0 * 0.0005) * fine[[1, 2, 4, 5]])
 
 
 @pytest.mark.parametrize(
