@@ -115,7 +115,7 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
 def not_held(parameters: ParameterFile) -> tuple[str, ...]:
     """The added mass; every term whose derivative at straight motion is not the target's; products; controls."""
     torpedo, law, found = _fitted(parameters)
-    straight = held_when_straight(torpedo.force, parameters.conditions.speed)
+    straight = held_when_straight(torpedo.force, law, parameters.conditions.speed)
 
     def held(t: LawTerm) -> bool:
         return straight(t) or (t.symbol == "Xww" and "e" in found)

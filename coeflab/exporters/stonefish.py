@@ -141,7 +141,7 @@ def force(files: Mapping[str, bytes], nu: Array) -> Array:
 def not_held(parameters: ParameterFile) -> tuple[str, ...]:
     """The form of the resistance; the added mass; every other term, product and control."""
     link, law = _fitted(parameters).link, force_law(parameters)
-    straight = held_when_straight(link.force, parameters.conditions.speed)
+    straight = held_when_straight(link.force, law, parameters.conditions.speed)
     return (*_LEFT_OUT, *unheld(law, lambda t: t.symbol == "X0" and straight(t), ideal=False))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
@@ -10,12 +11,18 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
+from coeflab.core.symbols import derivative
+from coeflab.core.xml import parse_xml
 from coeflab.exporters import mujoco as exporter
 from coeflab.model.force_law import force_law
 from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.scaling import Conditions, Scaling
+from coeflab.model.stated_file import Stated, stated_file
+from coeflab.model.study import Study
 from coeflab.workbench.exports import export
 from tests.exporters import files as made
-from tests.exporters.massed import CENTRE, MASS, OWN, with_mass
+from tests.exporters.massed import CENTRE, MASS, OWN, torpedo, with_mass
+from tests.parameter_importers.vehicles import FACTS, vehicle
 
 GOLDEN = Path(__file__).parent / "golden" / "mujoco.xml"
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
@@ -26,6 +33,48 @@ SLENDER = replace(made.HULL, matrix=np.diag([2.0, 70.0, 68.0, 0.5, 15.0, 16.0]))
 def slender(**values: float) -> ParameterFile:
     """A file whose Munk moment and side force put the centre within the hull."""
     return made.parameters({**LIKE_SUBOFF, **values}, SLENDER)
+
+
+# Prestero, MIT and WHOI, 2001: REMUS, combined coefficients, SI per u v, u r and so on.
+REMUS = {
+    "Xu|u|": -1.62, "Yuv": -28.6, "Yur": 5.22, "Zuw": -28.6, "Zuq": -5.22, "Muw": 24.0, "Muq": -2.0, "Mq|q|": -188.0,
+    "Nuv": -24.0, "Nur": -2.0, "Nr|r|": -94.0, "Kp|p|": -0.13,
+}  # fmt: skip
+CANONICAL = {n: n.replace("u", "") for n in REMUS} | {"Xu|u|": "X0"}
+RATES = (0.05, 0.1, 0.2, 0.3, 0.5)
+
+
+def remus(*names: str) -> ParameterFile:
+    """Coefficients of REMUS under these names, with its added mass."""
+    scaling, at = Scaling(1.33, "LOA"), Conditions(1030.0, 1.54)
+    per_uv = {CANONICAL[n]: v for n, v in REMUS.items()} | REMUS
+    values = {n: (per_uv[n] / (0.5 * at.density * scaling.length ** derivative(n).powers[1]), "motion") for n in names}
+    matrix = np.diag([0.93, 35.5, 35.5, 0.0704, 4.88, 4.88])
+    return stated_file(Stated("remus", "remus", scaling, at, values, matrix=matrix), [], ())
+
+
+def damping(file: ParameterFile, force: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+    """(6, 5): X at five speeds up to the file's, and Y over v to N over r at five rates, the part that is odd in them."""
+    speed, out = file.conditions.speed, np.zeros((6, len(RATES)))
+    for i in range(6):
+        for k, rate in enumerate(RATES):
+            nu = np.tile([speed, 0.0, 0.0, 0.0, 0.0, 0.0], (2, 1))
+            if i == 0:
+                nu[:, 0] *= 2.0 * rate
+                out[i, k] = force(nu)[0, 0]
+            else:
+                nu[:, i] = rate * speed / (1.0 if i < 3 else file.scaling.length) * np.array([1.0, -1.0])
+                out[i, k] = -np.subtract(*force(nu)[::-1, i]) / 2.0
+    return out
+
+
+def wrong(file: ParameterFile) -> list[str]:
+    """Dampings whose sign is not that of the file's law; where no coefficient speaks of a motion, those that drive it."""
+    law, files = force_law(file), exporter.render(file)
+    ours, theirs = damping(file, law.force), damping(file, lambda nu: exporter.force(files, nu))
+    stated = damping(file, replace(law, ideal=np.zeros((6, 6, 6))).force)
+    bad = np.where(stated != 0.0, ours * theirs <= 0.0, theirs > np.maximum(ours, 0.0) + 1e-9)
+    return [f"{'XYZKMN'[i]} {RATES[k]}: {ours[i, k]:.3g}, {theirs[i, k]:.3g}" for i, k in np.argwhere(bad)]
 
 
 def engine() -> ModuleType:
@@ -85,8 +134,8 @@ def test_the_loss_is_said() -> None:
     assert loss is not None
     assert not loss.lossless
     assert "added inertia" in loss.not_held[0]
-    assert {"Nv", "Nr", "Zw", "Yvvv"} <= set(loss.not_held)
-    assert any("Nv is the Munk moment alone" in c for c in loss.changes)
+    assert {"Nr", "Zw", "Yvvv"} <= set(loss.not_held)
+    assert any("its Munk moment, and with it Nv, is chosen so that no turn is driven" in c for c in loss.changes)
 
 
 def test_mass_and_inertia_are_those_of_the_file() -> None:
@@ -115,3 +164,58 @@ def test_hostile_names_load(name: str) -> None:
     ((file, content),) = exporter.render(made.named(name)).items()
     assert "/" not in file
     assert mujoco.MjModel.from_xml_string(content.decode()).ngeom == 1
+
+
+def test_every_vehicle_is_damped_as_its_file_says(suboff: Study) -> None:
+    """Bare hull of SUBOFF at r' = .1: N was +185 N m for -69; REMUS and Healey's AUV were driven too. None needs refusal."""
+    shipped = {n: suboff.parameter_files[n] for n in suboff.parameter_files}
+    published = {n: vehicle(n) for n in FACTS}
+    ours = {"plain": made.plain(), "slender": slender(), "torpedo": torpedo(), "remus": remus(*REMUS)}
+    found = {n: wrong(file) for n, file in {**shipped, **published, **ours}.items()}
+    assert len(found) == 11
+    assert not {n: bad for n, bad in found.items() if bad}
+
+
+def test_the_hull_of_suboff_keeps_what_it_kept_and_is_damped(suboff: Study) -> None:
+    """Nv, Yv, Yr and X0 are met, Mw too since the geom stays where it is, and N at its rate is the file's."""
+    file = suboff.parameter_files["suboff_fully_appended"]
+    assert not {"X0", "Yv", "Nv", "Yr", "Mw"} & set(exporter.not_held(file))
+    speed = file.conditions.speed
+    geom, _ = exporter._fitted(file)
+    nu = np.array([[speed, 0.0, 0.0, 0.0, 0.0, geom.rate * speed / file.scaling.length]])
+    assert geom.force(nu)[0, 5] == pytest.approx(force_law(file).force(nu)[0, 5], rel=1e-6)
+
+
+@pytest.mark.parametrize("names", [("Yuv", "Nuv", "Xu|u|"), tuple(REMUS), ("Xu|u|", "Zuw", "Muw", "Muq")])
+def test_names_of_one_law_make_one_geom(names: tuple[str, ...]) -> None:
+    """Yuv is Yv on a straight course; such a REMUS had ``fluidcoef="0 0 0 0 0"``, and nothing of it was held."""
+    files = exporter.render(remus(*names))
+    assert files == exporter.render(remus(*(CANONICAL[n] for n in names)))
+    geom = next(parse_xml(files["remus.xml"].decode()).iter("geom"))
+    assert float(geom.get("fluidcoef").split()[0]) > 0.0
+    assert not {"Xu|u|", "Yuv", "Nuv", "Yur", "Muw"} & set(exporter.not_held(remus(*names)))
+    assert wrong(remus(*names)) == []
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_law_that_damps_is_not_refused(seed: int) -> None:
+    """Random slender bodies, more and less stable than their Munk moment."""
+    rng = np.random.default_rng(seed)
+    surge = 10 ** rng.uniform(-0.5, 1.5)
+    sway = surge * rng.uniform(1.2, 40.0)
+    values = {
+        "X0": -rng.uniform(0.1, 0.5) * surge, "Yv": -rng.uniform(0.05, 1.5) * sway, "Yr": rng.uniform(-0.25, 0.4) * sway,
+        "Nv": -rng.uniform(-0.15, 0.65) * (sway - surge), "Nr": -rng.uniform(0.01, 0.25) * sway,
+    }  # fmt: skip
+    masses = np.array([surge, sway, sway * rng.uniform(0.6, 1.5), 0.01 * sway, 0.1 * sway, 0.1 * sway])
+    file = made.parameters({n: v / 2000.0 for n, v in values.items()}, replace(made.HULL, matrix=np.diag(masses)))
+    assert wrong(file) == []
+
+
+def test_a_damping_of_the_wrong_sign_is_refused() -> None:
+    """A law that drives the turn: a fluid ellipsoid can only damp."""
+    driven = slender(Nr=4.4e-3)
+    said = r"Nr does not keep its sign: at r' = 0\.05 the file has N = 1\.98 N m, MuJoCo's fluid ellipsoid 0 N m"
+    with pytest.raises(InputError, match=said) as caught:
+        export(driven, "mujoco")
+    assert "fmi, xdyn, mss or gazebo" in caught.value.advice
