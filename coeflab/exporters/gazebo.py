@@ -11,7 +11,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from coeflab.core.identifiers import identifier
 from coeflab.kernels.kirchhoff import ideal_quadratics
 from coeflab.model.exported_law import common_changes, exported_law
 from coeflab.model.gz_sdf import missing_in_sdf, not_in_sdf, placed, sdf, sdf_force, tags
@@ -21,14 +20,14 @@ from coeflab.model.second_order import FLU
 summary = "gz-sim: SDF 1.10 with <fluid_added_mass>, viscous parts in the Hydrodynamics plugin"
 citations = ("fossen2011", "gz_sim")
 adds_coriolis = True
-holds: frozenset[str] = frozenset()
+holds = frozenset({"hydrostatics"})
 force, not_held, missing = sdf_force, not_in_sdf, missing_in_sdf
 
 VERSION = "1.10"
 
 
 def render(parameters: ParameterFile) -> Mapping[str, bytes]:
-    """One model file, its link's origin at the reference point."""
+    """A model, its link's origin at the reference point, and a world of water with it."""
     h = exported_law(parameters)
     fluid = None if h.inert else h.matrix * np.outer(FLU, FLU)
     written = [
@@ -36,7 +35,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         ("disable_added_mass", "true"),
         *tags(h.form.less(ideal_quadratics(h.matrix))),
     ]
-    return {f"{identifier(parameters.name)}.sdf": sdf(parameters, VERSION, written, fluid)}
+    return sdf(parameters, VERSION, written, fluid)
 
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:

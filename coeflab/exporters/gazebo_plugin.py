@@ -11,7 +11,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from coeflab.core.identifiers import identifier
 from coeflab.model.exported_law import common_changes, exported_law, number
 from coeflab.model.gz_link import FORCES, VELOCITIES
 from coeflab.model.gz_sdf import missing_in_sdf, not_in_sdf, placed, sdf, sdf_force, tags
@@ -21,19 +20,19 @@ from coeflab.model.second_order import FLU
 summary = "gz-sim: SDF 1.9, added mass and total damping in the Hydrodynamics plugin, its Coriolis disabled"
 citations = ("fossen2011", "gz_sim")
 adds_coriolis = False
-holds: frozenset[str] = frozenset()
+holds = frozenset({"hydrostatics"})
 force, not_held, missing = sdf_force, not_in_sdf, missing_in_sdf
 
 VERSION = "1.9"
 
 
 def render(parameters: ParameterFile) -> Mapping[str, bytes]:
-    """One model file, its link's origin at the reference point."""
+    """A model, its link's origin at the reference point, and a world of water with it."""
     h = exported_law(parameters)
     written = [("disable_coriolis", "true")]
     mass = -h.matrix * np.outer(FLU, FLU)
     written += [(f"{FORCES[i]}Dot{VELOCITIES[j]}", number(mass[i, j])) for i, j in np.argwhere(mass)]
-    return {f"{identifier(parameters.name)}.sdf": sdf(parameters, VERSION, [*written, *tags(h.form)], None)}
+    return sdf(parameters, VERSION, [*written, *tags(h.form)], None)
 
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.kernels.composition import definiteness
 from coeflab.kernels.transforms import skew
 from coeflab.model.force_law import ForceLaw, force_law
@@ -100,6 +101,67 @@ def central_inertia(parameters: ParameterFile) -> Array | None:
             f"{central:g} kg m^2 through the centre of gravity", "an inertia above zero", column="mass.inertia"
         )
     return central * np.eye(3)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Afloat:
+    """Weight and buoyancy as an export writes them, those that `coeflab.model.vehicle.vehicle` moves the file with.
+
+    Attributes
+    ----------
+    mass : float
+        kg.
+    centre, centre_of_buoyancy : (3,) arrays
+        From the reference point, m, FRD.
+    volume : float
+        Displaced, m^3.
+    gravity : float
+        m/s^2.
+    length : float
+        m, of a cylinder of that volume, no shorter than thick.
+    said : str
+        Where volume and centre come from.
+    """
+
+    mass: float
+    centre: Array
+    volume: float
+    centre_of_buoyancy: Array
+    gravity: float
+    length: float
+    said: str
+
+    @property
+    def radius(self) -> float:
+        """Of the cylinder, m."""
+        return float(np.sqrt(self.volume / (np.pi * self.length)))
+
+
+def afloat(parameters: ParameterFile, otherwise: float) -> Afloat:
+    """Mass, displaced volume and their centres: what the file has not is neutral, with both centres in one point.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    otherwise : float
+        kg, the mass that the target takes where the file states neither mass nor buoyancy.
+    """
+    h, density, length = parameters.hydrostatics, parameters.conditions.density, parameters.scaling.length
+    centre = centre_of_gravity(parameters)
+    mass = parameters.mass.mass if parameters.mass is not None else otherwise if h is None else density * h.volume
+    if h is None:
+        volume, at, gravity = mass / density, centre, STANDARD_GRAVITY
+        said = "neutrally buoyant, the centre of buoyancy in the centre of gravity: the file states no buoyancy"
+        if parameters.mass is None:
+            said = f"neutrally buoyant at {mass:g} kg: the file states neither weight nor buoyancy; write mass and volume together"
+    else:
+        volume, at, gravity = h.volume, np.array(h.centre_of_buoyancy), h.gravity
+        x, y, z = (f"{v:g}" for v in at)
+        said = f"displaced volume {volume:g} m^3 at ({x}, {y}, {z}) m, FRD from the reference point, of the file"
+        if parameters.mass is None:
+            centre = at
+            said += f"; the file states no mass: {mass:.6g} kg, neutral, with its centre in that of buoyancy"
+    return Afloat(mass, centre, volume, at, gravity, max(length, (4.0 * volume / np.pi) ** (1.0 / 3.0)), said)
 
 
 def states_buoyancy(parameters: ParameterFile, otherwise: str) -> str:

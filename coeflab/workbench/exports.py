@@ -57,8 +57,8 @@ def _refuse_places(files: Mapping[str, bytes], parameters: ParameterFile, target
 
 def _renamed(files: Mapping[str, bytes], parameters: ParameterFile) -> tuple[str, ...]:
     """What files are called where it is not the parameter file's name."""
-    stems = sorted({name.partition(".")[0] for name in files} - {parameters.name})
-    if not stems:
+    stems = sorted({name.partition(".")[0] for name in files})
+    if parameters.name in stems:
         return ()
     return (
         f"files are called {', '.join(stems)}: of the name {shown(parameters.name)} letters and digits are kept, at most 63, and "

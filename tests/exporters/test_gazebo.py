@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
+from xml.etree.ElementTree import tostring
 
 import numpy as np
 import pytest
@@ -13,13 +15,19 @@ import pytest
 from coeflab.core.xml import parse_xml
 from coeflab.exporters import gazebo, gazebo_plugin
 from coeflab.kernels.kirchhoff import ideal_force
+from coeflab.kernels.vehicle_motion import rotations
 from coeflab.model.force_law import force_law
 from coeflab.model.gz_link import GzLink, read_gz_link
+from coeflab.model.huuv import read_huuv
+from coeflab.model.huuv_parameters import parameter_file as huuv_file
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.study import Study
+from coeflab.model.vehicle import vehicle
 from coeflab.workbench.exports import export
 from tests.exporters import files as made
+from tests.exporters import of_a_vehicle
 from tests.exporters import of_second_order as second
+from tests.exporters.massed import torpedo
 from tests.model.test_force_law import HULL, Q, drifting, parameters
 
 GOLDEN = Path(__file__).parent / "golden"
@@ -32,8 +40,8 @@ def velocities(n: int = 60) -> np.ndarray:
 
 
 def content(target: ModuleType, file: ParameterFile) -> str:
-    (only,) = target.render(file).values()
-    return str(only.decode())
+    model, _ = target.render(file).values()
+    return str(model.decode())
 
 
 def tag(text: str, name: str) -> float | None:
@@ -45,7 +53,7 @@ def tag(text: str, name: str) -> float | None:
 def test_golden(target: ModuleType) -> None:
     """Regenerate by hand: write render(golden()) to golden/<target>.sdf and read the difference."""
     name = target.__name__.rpartition(".")[2]
-    assert target.render(second.golden()) == {"file.sdf": (GOLDEN / f"{name}.sdf").read_bytes()}
+    assert target.render(second.golden())["file.sdf"] == (GOLDEN / f"{name}.sdf").read_bytes()
 
 
 @BOTH
@@ -151,7 +159,8 @@ def test_what_has_no_place_is_said(target: ModuleType) -> None:
 @BOTH
 @pytest.mark.parametrize("name", made.HOSTILE, ids=range(len(made.HOSTILE)))
 def test_hostile_names(target: ModuleType, name: str) -> None:
-    (file,) = target.render(made.named(name))
+    file, water = target.render(made.named(name))
+    assert water == "world.sdf"
     assert file.removesuffix(".sdf").isidentifier()
     assert len(file) < 80
     assert read_gz_link(parse_xml(content(target, made.named(name)))).link == "base_link"
@@ -170,10 +179,11 @@ def checked(path: Path) -> str:
 @pytest.mark.parametrize("file", [second.golden(), second.bluerov2_heavy(), made.named(made.HOSTILE[0])])
 def test_the_real_parser_takes_sdf_1_9(file: ParameterFile, tmp_path: Path) -> None:
     path = tmp_path / "model.sdf"
-    path.write_text(content(gazebo_plugin, file), encoding="utf-8")
-    told = checked(path)
-    assert "Valid" in told
-    assert "Error" not in told
+    for written in gazebo_plugin.render(file).values():
+        path.write_bytes(written)
+        told = checked(path)
+        assert "Valid" in told
+        assert "Error" not in told
     twice = content(gazebo_plugin, file).replace("</link>", '</link><link name="base_link"/>')
     path.write_text(twice, encoding="utf-8")
     assert "Error" in checked(path)
@@ -198,3 +208,82 @@ def test_suboff_loses_nothing_in_surge(suboff: Study, target: ModuleType, name: 
     loss = export(suboff.parameter_files[name], target.__name__.rpartition(".")[2]).loss
     assert loss.relative[0] < 1e-12
     assert "X0" not in " ".join(c for c in loss.changes if c.startswith("u stands for U"))
+
+
+def floats(files: Mapping[str, bytes], attitude: np.ndarray) -> np.ndarray:
+    """(n, 6) FRD about the link's origin, by gz-sim's Buoyancy and DART's weight, from the world alone.
+
+    Buoyancy.cc: volume of a cylinder, in the place of the collision, with the world's density and gravity; the wrench is applied to
+    the link's origin. gz-physics applies mass times gravity in the centre of gravity, whatever <gravity> of the link says.
+    """
+    world = parse_xml(files["world.sdf"].decode()).find("world")
+    link = world.find("model/link")
+    gravity = np.array([float(x) for x in world.findtext("gravity").split()])
+    (buoyancy,) = [p for p in world.iter("plugin") if p.get("name") == "gz::sim::systems::Buoyancy"]
+    density = float(buoyancy.findtext("uniform_fluid_density"))
+    (hull,) = link.iter("collision")
+    radius, length = (float(hull.findtext(f"geometry/cylinder/{t}")) for t in ("radius", "length"))
+    at = np.array([float(x) for x in hull.findtext("pose").split()[:3]])
+    centre = np.array([float(x) for x in (link.findtext("inertial/pose") or "0 0 0").split()[:3]])
+    mass, out = float(link.findtext("inertial/mass") or 1.0), []
+    for turned in rotations(attitude):
+        along = ROTATION @ turned.T @ ROTATION @ gravity  # from the world, x north, y west, z up, to the link
+        weight, push = mass * along, -density * np.pi * radius**2 * length * along
+        out.append([*(ROTATION @ (weight + push)), *(ROTATION @ (np.cross(centre, weight) + np.cross(at, push)))])
+    return np.array(out)
+
+
+def attitudes() -> np.ndarray:
+    turns = np.random.default_rng(6).normal(size=(20, 4))
+    return np.vstack([[1.0, 0.0, 0.0, 0.0], turns / np.linalg.norm(turns, axis=1, keepdims=True)])
+
+
+@BOTH
+def test_weight_buoyancy_and_righting_moment_are_those_of_simulate(suboff: Study, target: ModuleType) -> None:
+    """It sank: <gravity> false has no effect on a link with <fluid_added_mass>, and nothing carried its weight."""
+    files = (
+        of_a_vehicle.floating(),
+        second.golden(),
+        torpedo(),
+        huuv_file(read_huuv()),
+        *suboff.parameter_files.values(),
+    )
+    for file in files:
+        moved = vehicle(file, free=("u", "v", "r")).restoring(attitudes())
+        found = floats(target.render(file), attitudes())
+        np.testing.assert_allclose(found, moved, atol=1e-12 * file.mass.mass * 9.81)
+    assert abs(moved[0]).max() < 1e-9
+    floating = floats(target.render(files[0]), attitudes())
+    assert np.ptp(floating[:, 3]) > 10.0
+    assert floating[0, 2] == pytest.approx((60.0 - 55.0) * of_a_vehicle.GRAVITY)
+
+
+@BOTH
+def test_what_the_file_does_not_weigh_floats_neutral_and_it_is_said(target: ModuleType) -> None:
+    """Without mass the 1 kg of SDFormat floats, or the mass of the displaced water where that is known."""
+    buoyant = made.plain().model_copy(update={"hydrostatics": of_a_vehicle.floating().hydrostatics})
+    for file, said in (
+        (made.plain(), "neither weight nor buoyancy"),
+        (buoyant, "the file states no mass: 55 kg, neutral"),
+    ):
+        assert np.abs(floats(target.render(file), attitudes())).max() < 1e-9
+        assert any(said in c for c in target.changes(file))
+    assert any("sinks" in c for c in target.changes(buoyant))
+    assert "hydrostatics" in target.holds
+
+
+@BOTH
+def test_the_world_holds_the_model_beside_it(target: ModuleType) -> None:
+    for file in (second.golden(), made.named("world")):
+        alone, world = (parse_xml(written.decode()) for written in target.render(file).values())
+        flat = [
+            tostring(root.find(path), encoding="unicode").split()
+            for root, path in ((alone, "model"), (world, "world/model"))
+        ]
+        assert flat[0] == flat[1]
+        assert alone.find(".//gravity") is None
+        systems = {p.get("filename") for p in world.iterfind("world/plugin")}
+        assert {"gz-sim-physics-system", "gz-sim-buoyancy-system"} <= systems
+    assert list(target.render(made.named("world"))) == ["world.sdf", "world_of_water.sdf"]
+    given = export(second.golden(), target.__name__.rpartition(".")[2])
+    assert not any(c.startswith("files are called") for c in given.loss.changes)

@@ -10,6 +10,7 @@ import pytest
 
 from coeflab.core.yaml import parse_yaml
 from coeflab.exporters import EXPORTERS, toml, uuv_simulator, xdyn
+from coeflab.kernels.rigid_body import rotation
 from coeflab.model.force_law import force_law
 from coeflab.model.lost import Kind
 from coeflab.model.parameter_file import ParameterFile
@@ -17,11 +18,11 @@ from coeflab.parameter_importers import mss as mss_reader
 from coeflab.parameter_importers import xdyn as xdyn_reader
 from coeflab.ports import SimulatorExporter
 from coeflab.workbench.exports import export
-from tests.exporters.massed import CENTRE, torpedo
-from tests.exporters.of_a_vehicle import BUOYANT, GRAVITY, VOLUME, driven, floating
+from tests.exporters.massed import CENTRE, MASS, torpedo
+from tests.exporters.of_a_vehicle import BUOYANT, GRAVITY, VOLUME, driven, floating, quaternion, restoring
 
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
-HOLD = {"fmi", "mss", "python_vehicle_simulator", "uuv_simulator", "xdyn"}
+HOLD = {"fmi", "gazebo", "gazebo_plugin", "mss", "python_vehicle_simulator", "uuv_simulator", "xdyn"}
 each_target = pytest.mark.parametrize("target", TARGETS)
 
 
@@ -85,6 +86,20 @@ def test_uuv_simulator_has_volume_and_centre_from_the_centre_of_gravity_in_its_o
     assert float(link.findtext("volume")) == VOLUME
     at = np.array(link.findtext("center_of_buoyancy").split(), dtype=float)
     np.testing.assert_allclose(at, [0.05, -0.03, 0.08], atol=1e-15)
+
+
+def test_uuv_simulator_floats_and_rights_as_simulate_does() -> None:
+    """BuoyantObject.cc, ApplyBuoyancyForce: density, volume and gravity, upward in the centre of buoyancy; weight in the origin."""
+    (text,) = uuv_simulator.render(floating()).values()
+    plugin = ElementTree.fromstring(text).find("gazebo/plugin")
+    buoyancy = float(plugin.findtext("fluid_density")) * float(plugin.findtext("link/volume")) * GRAVITY
+    at = np.array(plugin.findtext("link/center_of_buoyancy").split(), dtype=float) * [1.0, -1.0, -1.0]
+    for roll, pitch in ((0.0, 0.0), (0.3, -0.2), (-1.1, 0.7)):
+        turn = quaternion(roll, pitch)
+        down = rotation(turn).T @ np.array([0.0, 0.0, 1.0])
+        force = (MASS * GRAVITY - buoyancy) * down
+        moment = np.cross(at, -buoyancy * down) + np.cross(CENTRE, force)
+        np.testing.assert_allclose([*force, *moment], restoring(floating(), turn), atol=1e-10)
 
 
 def test_mss_has_the_numbers_that_its_gvect_asks_for() -> None:
