@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from coeflab.model.exported_law import central_inertia, centre_of_gravity, state
 from coeflab.model.force_law import ForceLaw, LawTerm, force_law
 from coeflab.model.loss import unheld
 from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.straight_motion import held_when_straight
+from coeflab.model.straight_motion import held_when_straight, straight_coefficients
 
 summary = (
     "HoloOcean: a scenario with fossen_model torpedo; drag, lift in heave and damping in yaw, no Yv, no Munk moment"
@@ -51,10 +51,12 @@ def _fitted(parameters: ParameterFile) -> tuple[Torpedo, ForceLaw, tuple[str, ..
     diam = float(np.sqrt(6.0 * p.mass.mass / (np.pi * p.conditions.density * length)))
     if diam >= length:
         raise InputError(f"{p.mass.mass:g} kg on {length:g} m", "a body longer than thick", column="mass.mass")
-    of = {t.symbol: t.coefficient for t in law.terms if t.speed_power == 2 - t.term.degree}
+    moving = tuple(t for t in law.terms if t.speed_power == 2 - t.term.degree)
+    of = {t.symbol: t.coefficient for t in moving if t.symbol == "Xww"}
+    of |= straight_coefficients(replace(law, terms=moving), p.conditions.speed)
     rest = {t.symbol: t.coefficient for t in law.terms if t.speed_power == 0 and t.term.degree == 1}
     pressure, front = 0.5 * WATER, np.pi * diam**2 / 4.0
-    blunt = max(0.0, -of.get("X0", 0.0) - of.get("Xu|u|", 0.0)) / pressure
+    blunt = max(0.0, -of.get("X0", 0.0)) / pressure
     found = {}
     area = lifting_area(-of.get("Zw", 0.0) / pressure - blunt, diam)
     if area is not None:

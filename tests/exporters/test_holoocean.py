@@ -180,3 +180,11 @@ def test_names_that_hurt(name: str) -> None:
     agent = json.loads(content)["agents"][0]
     assert f"{agent['agent_name']}.json" == file
     assert agent["agent_name"].isidentifier()
+
+
+def test_names_of_one_law_make_one_torpedo() -> None:
+    """Zuw is Zw on a straight course, Nur is Nr; by such names lift and damping in yaw were left out."""
+    same = {"X0": "Xu|u|", "Xww": "Xww", "Zw": "Zuw", "Nr": "Nur", "Yv": "Yuv", "Nv": "Nuv"}
+    other = with_mass(made.parameters({same[n]: v for n, v in LIFTING.items()}, made.HULL), np.zeros(3))
+    assert exporter.render(other) == exporter.render(lifting())
+    assert len(exporter.not_held(other)) == len(exporter.not_held(lifting()))
