@@ -212,19 +212,20 @@ def _flipped(geom: _Geom, law: ForceLaw, parameters: ParameterFile, rates: tuple
     """The first damping that has not the sign of the file's, or drives a motion of which the file says nothing; empty for none.
 
     The ideal fluid's products damp nothing by themselves: where they are all that the file has, the target only must not drive.
+    Fitted tables are a loss of every simulator's: where a damping is in a table alone, the target may have none.
     """
     measured = replace(law, ideal=np.zeros_like(law.ideal))
     for i in (5, 4, 3, 1, 2, 0):
         states = _states(MOTIONS[i], rates, parameters)
         tables = force_of_tables(parameters, states)
         tabled = np.zeros(states.shape) if tables is None else tables
-        stated, ours, theirs = (
+        stated, by_table, ours, theirs = (
             (f[: len(rates), i] if i == 0 else _odd(f[:, i]))
-            for f in (measured.force(states) + tabled, law.force(states) + tabled, geom.force(states))
+            for f in (measured.force(states), tabled, law.force(states) + tabled, geom.force(states))
         )
         scale = ROUNDING * max(float(np.max(np.abs(ours))), float(np.max(np.abs(theirs))))
-        damped = np.abs(stated) > scale
-        wrong = np.where(damped, ours * theirs <= 0.0, theirs > np.maximum(ours, 0.0) + scale)
+        wrong = np.where(np.abs(stated) > scale, ours * theirs <= 0.0, theirs > np.maximum(ours, 0.0) + scale)
+        wrong |= (np.abs(by_table) > scale) & (np.abs(theirs) > scale) & (ours * theirs < 0.0)
         if np.any(wrong):
             at = int(np.argmax(wrong))
             name, unit = COMPONENTS[i] + MOTIONS[i], "N" if i < 3 else "N m"

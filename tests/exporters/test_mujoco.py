@@ -32,6 +32,9 @@ LIKE_SUBOFF = {"X0": -1e-3, "Yv": -2.8e-2, "Yr": 5.2e-3, "Nv": -1.4e-2, "Nr": -4
 SLENDER = replace(made.HULL, matrix=np.diag([2.0, 70.0, 68.0, 0.5, 15.0, 16.0]))
 
 
+SLENDER_ADDED = made.parameters({"X0": -1e-3}, SLENDER).added_mass
+
+
 def slender(**values: float) -> ParameterFile:
     """A file whose Munk moment and side force put the centre within the hull."""
     return made.parameters({**LIKE_SUBOFF, **values}, SLENDER)
@@ -227,3 +230,11 @@ def test_a_damping_of_the_wrong_sign_is_refused() -> None:
     with pytest.raises(InputError, match=said) as caught:
         export(driven, "mujoco")
     assert "fmi, xdyn, mss or gazebo" in caught.value.advice
+
+
+def test_a_table_is_a_loss_and_no_reason_to_refuse() -> None:
+    """The drag and the side force of the HUUV are tables alone, which no simulator is given."""
+    hull = SLENDER_ADDED.model_copy(update={"body": "HUUV"})
+    file = huuv_file(read_huuv()).model_copy(update={"added_mass": hull})
+    loss = export(file, "mujoco").loss
+    assert any("simulators are given the coefficients alone" in str(x) for x in loss.lost)
