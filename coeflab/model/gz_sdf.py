@@ -12,6 +12,7 @@ from coeflab.core.identifiers import identifier, one_line
 from coeflab.core.xml import parse_xml, serialised
 from coeflab.model.exported_law import central_inertia, centre_of_gravity, exported_law, number, states_buoyancy
 from coeflab.model.gz_link import FLUID_TAGS, FORCES, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
+from coeflab.model.inertia import water_inertia
 from coeflab.model.loss import unheld
 from coeflab.model.lost import missing_mass, missing_water
 from coeflab.model.parameter_file import ParameterFile
@@ -47,11 +48,13 @@ def sdf(parameters: ParameterFile, version: str, plugin: list[tuple[str, str]], 
     for tag, text in plugin:
         SubElement(system, tag).text = text
     p = parameters
+    source = water_inertia(p).source
     return serialised(
         root,
         (
             f"{one_line(p.name)}, body: {one_line(p.body)}",
             f"Link frame: x forward, y port, z up, origin at the reference point; density {number(p.conditions.density)} kg/m^3",
+            f"Added mass: {one_line(source)}",
             f"N{WEIGHTLESS[1:]}: {states_buoyancy(p, NEITHER)}. Collisions and visuals are yours to add.",
         ),
     )
@@ -104,6 +107,14 @@ def sdf_force(files: Mapping[str, bytes], nu: Array) -> Array:
     """The system's own law (`coeflab.model.gz_link`, with file and lines of its source) of a rendered model, turned to FRD."""
     (content,) = files.values()
     return np.asarray(read_gz_link(parse_xml(content.decode())).force(nu * FLU) * FLU)
+
+
+def sdf_added_mass(files: Mapping[str, bytes]) -> Array:
+    """(6, 6) of <fluid_added_mass>, or of <xDotU> ... where the plugin uses them, turned to FRD."""
+    (content,) = files.values()
+    link = read_gz_link(parse_xml(content.decode()))
+    plugin = 0.0 if link.disable_added_mass else -link.plugin_mass
+    return np.asarray((link.fluid_mass + plugin) * np.outer(FLU, FLU))
 
 
 def not_in_sdf(parameters: ParameterFile) -> tuple[str, ...]:

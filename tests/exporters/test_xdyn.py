@@ -13,7 +13,7 @@ from coeflab.core.yaml import parse_yaml
 from coeflab.exporters import xdyn
 from coeflab.kernels.composition import moved
 from coeflab.model.force_law import force_law
-from coeflab.model.inertia import added_mass_of
+from coeflab.model.inertia import water_inertia
 from coeflab.model.lost import Kind
 from coeflab.model.study import Study
 from coeflab.model.xdyn_body import xdyn_body
@@ -64,7 +64,7 @@ def test_inertia_stands_about_the_centre_of_gravity() -> None:
     body = xdyn_body(content(torpedo()), "file.yml")
     np.testing.assert_allclose(body.rigid[3:, 3:], OWN, rtol=1e-12, atol=1e-12)
     np.testing.assert_array_equal(body.rigid[:3], MASS * np.eye(6)[:3])
-    np.testing.assert_allclose(body.added, moved(added_mass_of(torpedo())[0], CENTRE), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(body.added, moved(water_inertia(torpedo()).matrix, CENTRE), rtol=1e-12, atol=1e-12)
     np.testing.assert_array_equal(body.centre, np.zeros(3))
     np.testing.assert_allclose(body.mesh, CENTRE)
 
