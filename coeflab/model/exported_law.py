@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.kernels.composition import definiteness
 from coeflab.kernels.transforms import skew
 from coeflab.model.force_law import ForceLaw, force_law
 from coeflab.model.inertia import water_inertia
@@ -49,9 +50,18 @@ class ExportedLaw:
 
 
 def exported_law(parameters: ParameterFile) -> ExportedLaw:
-    """The law of a file and the added mass that a physics engine integrates, the same that `coeflab simulate` does."""
+    """The law of a file and the added mass that a physics engine integrates, the same that `coeflab simulate` does.
+
+    A file without mass cannot be simulated, and engines take a default mass: there an added mass that is not positive by itself
+    keeps its diagonal alone.
+    """
     law, water = force_law(parameters), water_inertia(parameters)
-    return ExportedLaw(law, second_order(law), water.matrix, water.statements)
+    matrix, statements = water.matrix, water.statements
+    if parameters.mass is None and not definiteness(matrix).holds:
+        matrix = np.diag(np.maximum(np.diag(matrix), 0.0))
+        said = "added mass: only its diagonal, because the whole is not positive and no mass is known: entries are missing or wrong"
+        statements = (*statements, said)
+    return ExportedLaw(law, second_order(law), matrix, statements)
 
 
 def centre_of_gravity(parameters: ParameterFile) -> Array:

@@ -68,8 +68,8 @@ def water_inertia(parameters: ParameterFile, accelerations: str = MEASURED) -> W
 
     Measured: the derivatives of the file, an off-diagonal one for its mirror image too, or the mean of both where the file
     states both; every other entry computed. Where a diagonal entry of that is negative, or M + M_A is not positive definite, all
-    entries are computed. Without a computed matrix the derivatives stand alone, those of them off the diagonal only where the
-    whole is positive.
+    entries are computed. Without a computed matrix the derivatives stand alone, those off the diagonal only where M + M_A is
+    positive definite, which a file without mass leaves open.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def water_inertia(parameters: ParameterFile, accelerations: str = MEASURED) -> W
     if accelerations == COMPUTED:
         warnings.append(f"accelerations {MEASURED}, not {COMPUTED}: the file has no computed added mass")
     source = f"accelerations {MEASURED}: {names} only; every other entry is unknown and written as zero"
-    if refused:
+    if refused and parameters.mass is not None:
         matrix = np.diag(np.diag(matrix))
         warnings.append(
             f"added mass: only its diagonal, because {refused}: entries are missing or wrong, and no computed ones complete them"
@@ -202,17 +202,12 @@ def _completed(matrix: Array, stated: dict[Entry, tuple[str, float]]) -> tuple[A
 
 def _no_inertia(parameters: ParameterFile, matrix: Array) -> str:
     """Why no vehicle has this added mass, in words; empty where one can."""
-    low = int(np.argmin(np.diag(matrix)))
-    if matrix[low, low] < 0.0:
-        return f"the added mass of {MOTIONS[low]} is {matrix[low, low]:.4g}, below zero"
     rigid, known = known_mass(parameters)
-    whole = rigid + matrix
-    if definiteness(whole).smallest < -ROUNDING:
-        return "M + M_A is not positive definite" if known else "M_A is not positive, and no mass is known"
-    at = np.ix_(known, known)
-    if known and not np.linalg.eigvalsh(whole[at])[0] > 0.0:
-        return "M + M_A is not positive definite"
-    return ""
+    whole, at = rigid + matrix, np.ix_(known, known)
+    if definiteness(whole).smallest < -ROUNDING or (known and not np.linalg.eigvalsh(whole[at])[0] > 0.0):
+        return f"{'M + M_A' if known else 'M_A, without a known mass,'} is not positive definite"
+    low = int(np.argmin(np.diag(matrix)))
+    return f"the added mass of {MOTIONS[low]} is {matrix[low, low]:.4g}, below zero" if matrix[low, low] < 0.0 else ""
 
 
 def converted(parameters: ParameterFile) -> tuple[str, ...]:
