@@ -135,6 +135,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     )  # fmt: skip
     comment = (
         f"{one_line(parameters.name)}, body: {one_line(parameters.body)}",
+        f"Shape by the inertia of the water: {one_line(water_inertia(parameters).source)}",
         "Body frame: x forward, y port, z up, origin at the reference point. Weight is balanced (gravcomp), nothing rights it.",
     )
     return {f"{name}.xml": serialised(root, comment)}

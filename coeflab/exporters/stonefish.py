@@ -115,6 +115,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     SubElement(robot, "world_transform", xyz="0.0 0.0 10.0", rpy="0.0 0.0 0.0")
     comment = (
         f"{one_line(parameters.name)}, body: {one_line(parameters.body)}",
+        f"Shape by the inertia of the water: {one_line(water_inertia(parameters).source)}",
         "Frame of base_link: x forward, y starboard, z down, origin at the reference point. The drags belong to this mesh: another",
         "has other areas, and theirs are to be multiplied by the ratio.",
     )

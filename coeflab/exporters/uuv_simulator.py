@@ -112,7 +112,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"{one_line(p.name)}, body: {one_line(p.body)}",
         "The plugin turns Gazebo's x forward, y port, z up to x forward, y starboard, z down itself: the matrices are in the latter,",
         "about the centre of gravity, which is the origin of base_link. Damping is negative, added mass positive.",
-        f"Added mass: {one_line(water_inertia(p).source)}",
+        f"Inertia of the water: {one_line(water_inertia(p).source)}",
         "Neutrally buoyant with both centres in one point: the parameter file states neither weight nor buoyancy."
         if h is None
         else "Volume and centre of buoyancy, the latter x forward, y port, z up from the centre of gravity, are the file's.",

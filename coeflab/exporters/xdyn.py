@@ -127,7 +127,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# Body frame: x forward, y starboard, z down, origin at the {origin};",
         f"# the mesh frame is FRD from: {one_line(parameters.reference_point.datum)}",
         f"# Totals: xdyn adds no C_A(nu) nu. {'Weight, buoyancy and propulsion are' if h is None else 'Propulsion is'} not in here.",
-        f"# Added mass: {one_line(water.source)}",
+        f"# Inertia of the water: {one_line(water.source)}",
         "rotations convention: [psi, theta', phi'']",
         "environmental constants:",
         f"    g: {{value: {STANDARD_GRAVITY if h is None else h.gravity!r}, unit: m/s^2}}",

@@ -54,7 +54,7 @@ def sdf(parameters: ParameterFile, version: str, plugin: list[tuple[str, str]], 
         (
             f"{one_line(p.name)}, body: {one_line(p.body)}",
             f"Link frame: x forward, y port, z up, origin at the reference point; density {number(p.conditions.density)} kg/m^3",
-            f"Added mass: {one_line(source)}",
+            f"Inertia of the water: {one_line(source)}",
             f"N{WEIGHTLESS[1:]}: {states_buoyancy(p, NEITHER)}. Collisions and visuals are yours to add.",
         ),
     )

@@ -85,24 +85,24 @@ def water_inertia(parameters: ParameterFile, accelerations: str = MEASURED) -> W
         raise InputError(shown(accelerations), f"one of {', '.join(ACCELERATIONS)}", column="--accelerations")
     computed, stated = _computed(parameters), stated_accelerations(parameters)
     hull = parameters.added_mass
-    by = "" if hull is None else f"added mass of {hull.body} by {hull.method}"
+    by = "" if hull is None else f"the added mass of {hull.body} by {hull.method}"
     names = ", ".join(primed(name) for name, _ in stated.values())
     if not stated or (accelerations == COMPUTED and computed is not None):
         if computed is None:
             return WaterInertia(np.zeros((6, 6)), accelerations, NONE, "no added mass is known")
-        return WaterInertia(computed, accelerations, COMPUTED, f"accelerations {COMPUTED}: {by}")
+        return WaterInertia(computed, accelerations, COMPUTED, f"accelerations {COMPUTED}, {by}")
     matrix, apart = _completed(np.zeros((6, 6)) if computed is None else computed, stated)
     refused = _no_inertia(parameters, matrix)
     if computed is not None:
         if refused:
             why = f"accelerations {COMPUTED}, not {MEASURED}: with {names} {refused}"
-            return WaterInertia(computed, accelerations, COMPUTED, f"accelerations {COMPUTED}: {by}", (why,))
-        source = f"accelerations {MEASURED}: {names} of the file, every other entry of the {by}"
+            return WaterInertia(computed, accelerations, COMPUTED, f"accelerations {COMPUTED}, {by}", (why,))
+        source = f"accelerations {MEASURED}, {names} of the file; every other entry of {by}"
         return WaterInertia(matrix, accelerations, MEASURED, source, apart)
     warnings = list(apart)
     if accelerations == COMPUTED:
         warnings.append(f"accelerations {MEASURED}, not {COMPUTED}: the file has no computed added mass")
-    source = f"accelerations {MEASURED}: {names} only; every other entry is unknown and written as zero"
+    source = f"accelerations {MEASURED}, {names} only; every other entry is unknown and written as zero"
     if refused and parameters.mass is not None:
         matrix = np.diag(np.diag(matrix))
         warnings.append(

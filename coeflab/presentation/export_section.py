@@ -33,15 +33,15 @@ def export_sections(study: Study) -> tuple[Section, ...]:
 def summary(exports: tuple[Export, ...]) -> Table:
     """One row an export."""
     rows = tuple(
-        (made.parameters, made.target, _accelerations(made), _verdict(made), _worst(made), _place(made))
+        (made.parameters, made.target, _verdict(made), _worst(made), _accelerations(made), _place(made))
         for made in exports
     )
-    headers = ("parameter file", "target", "accelerations", "loss", "worst of largest", "files")
+    headers = ("parameter file", "target", "loss", "worst of largest", "accelerations", "files")
     notes = (
         "worst of largest: largest difference of a force component or an acceleration over its largest value, both over the states that the loss of "
         f"each export names: what campaigns cover, and primes to {ASSUMED:g} either way of a motion that none covers",
     )
-    return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 3, 5}))
+    return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4, 5}))
 
 
 def _accelerations(made: Export) -> str:
