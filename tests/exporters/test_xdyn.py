@@ -163,4 +163,6 @@ def test_suboff(suboff: Study, tmp_path: Path, name: str) -> None:
     for c in file.coefficients:
         if c.value is not None and "dot" not in c.symbol:
             assert back.coefficient(c.symbol).value == pytest.approx(c.value, rel=1e-12), c.symbol
-    np.testing.assert_allclose(back.added_mass.matrix, file.added_mass.matrix, rtol=1e-12)
+    measured = water_inertia(file).matrix
+    np.testing.assert_allclose(back.added_mass.matrix, measured, rtol=1e-12, atol=1e-12 * measured.max())
+    assert np.abs(measured - file.added_mass.matrix).max() > 20.0
