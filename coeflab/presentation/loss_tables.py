@@ -66,12 +66,15 @@ def percent(share: float) -> str:
 
 
 def in_short(loss: Loss) -> str:
-    """The loss on one line: what is not held, what else is lost, and the largest difference of a component."""
+    """The loss on one line: what is not held, what else is lost, and the largest difference of a force and of an acceleration."""
     said = [f"it has no {_some(loss.not_held, NAMED)}"] if loss.not_held else []
     said += [_some([str(x) for x in loss.lost], 1)] if loss.lost else []
-    name, share = loss.furthest
-    if share > LOSSLESS or not said:
-        said.append(f"{name} differs by up to {percent(share)} of its largest")
+    found: list[tuple[int, float, Sequence[str]]] = [(*loss.forces.furthest, COMPONENTS)]
+    if loss.accelerations is not None:
+        found.append((*loss.accelerations.furthest, tuple(f"d{m}/dt" for m in MOTIONS)))
+    for i, share, names in found:
+        if share > LOSSLESS or not said:
+            said.append(f"{names[i]} differs by up to {percent(share)} of its largest")
     return ", and ".join(said)
 
 
