@@ -211,6 +211,21 @@ class SimulatorExporter(Exporter, Protocol):
 
 
 @runtime_checkable
+class InertialExporter(SimulatorExporter, Protocol):
+    """A simulator's exporter that also says what added mass the target integrates, so that accelerations are compared too."""
+
+    def added_mass(self, files: Mapping[str, bytes]) -> NDArray[np.float64]:
+        """(6, 6) added mass read from the written files, FRD, about the file's reference point, kg, kg m, kg m^2.
+
+        Parameters
+        ----------
+        files : mapping of str to bytes
+            What `render` made.
+        """
+        ...
+
+
+@runtime_checkable
 class ParameterImporter(Plugin, Protocol):
     """Reads somebody's model file."""
 

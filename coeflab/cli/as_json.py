@@ -11,6 +11,8 @@ from coeflab.model.acceptance import Acceptance
 from coeflab.model.coefficient import Coefficient
 from coeflab.model.export import Export
 from coeflab.model.fitted_model import FittedModel
+from coeflab.model.inertia import WaterInertia
+from coeflab.model.loss import Loss
 from coeflab.model.manoeuvre import Figure
 from coeflab.model.pooling import Pooling
 from coeflab.model.simulation import Simulation
@@ -95,12 +97,18 @@ def pooling(campaign: str, p: Pooling) -> dict[str, Any]:
     }
 
 
+def accelerations(water: WaterInertia) -> dict[str, Any]:
+    """Which accelerations were asked for and taken, and where they come from."""
+    return {"asked": water.asked, "used": water.used, "source": water.source, "warnings": list(water.warnings)}
+
+
 def export(made: Export) -> dict[str, Any]:
     """What one target makes of a parameter file; forces are X Y Z K M N, SI."""
     loss = made.loss
     return {
         "parameter_file": made.parameters,
         "target": made.target,
+        "accelerations": None if loss is None else accelerations(loss.water),
         "lossless": made.lossless,
         "not_held": [] if loss is None else list(loss.not_held),
         "lost": [] if loss is None else [{"kind": x.kind.value, "what": x.what} for x in loss.lost],
@@ -109,6 +117,20 @@ def export(made: Export) -> dict[str, Any]:
         "worst_difference": None if loss is None else loss.worst.tolist(),
         "rms_difference": None if loss is None else loss.rms.tolist(),
         "largest_force": None if loss is None else loss.largest.tolist(),
+        "accelerations_compared": None if loss is None else accelerations_compared(loss),
+    }
+
+
+def accelerations_compared(loss: Loss) -> dict[str, Any]:
+    """Differences of the rates of u v w p q r, m/s^2 and rad/s^2; null where they are not known."""
+    found = loss.accelerations
+    if found is None:
+        return {"why_not": loss.not_compared}
+    return {
+        "worst_difference": [finite(x) for x in found.worst.tolist()],
+        "rms_difference": [finite(x) for x in found.rms.tolist()],
+        "largest": [finite(x) for x in found.largest.tolist()],
+        "why_not": loss.not_compared or None,
     }
 
 
@@ -171,6 +193,7 @@ def simulation(made: Simulation) -> dict[str, Any]:
         "vehicle": made.vehicle.name,
         "manoeuvre": made.manoeuvre.name,
         "free": list(made.vehicle.free),
+        "accelerations": accelerations(made.vehicle.water),
         "ended": t.ended.value,
         "why": t.why or None,
         "duration": float(t.time[-1]),

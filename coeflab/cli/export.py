@@ -17,6 +17,7 @@ def command(
     out: Path | None = typer.Option(None, help="Folder for the files; default NAME.TARGET beside the parameter file."),
     accept_loss: bool = typer.Option(False, "--accept-loss", help="Write although the target cannot hold everything."),
     strict: bool = typer.Option(False, "--strict", help="Refuse any loss, whatever else is said."),
+    accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Write what a simulator loads, prove it by the simulator's own force law, and say what is lost."""
@@ -28,11 +29,11 @@ def command(
     from coeflab.workbench.exports import export
 
     parameters = read_parameter_file(file)
-    made = export(parameters, to)
+    made = export(parameters, to, accelerations)
     loss = made.loss
     if loss is not None and not json:
         show.table(loss_tables.forces(loss))
-        show.table(loss_tables.parts(parameters))
+        show.table(loss_tables.parts(parameters, loss.water))
     refused = loss is not None and not made.lossless and (strict or not accept_loss)
     if refused and json:
         from coeflab.cli.as_json import export as export_json

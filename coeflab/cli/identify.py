@@ -33,6 +33,7 @@ def command(
     ),
     asymmetric: bool = typer.Option(False, "--asymmetric", help="Also terms that symmetry port to starboard forbids."),
     fit_added_mass: bool = typer.Option(False, "--fit-added-mass", help="Acceleration derivatives are candidates too."),
+    accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
     optimizer: str = typer.Option("stlsq", help="stlsq or sr3 of pysindy."),
     resamples: int = typer.Option(200, help="How often stretches of the series are drawn."),
     seed: int = typer.Option(1, help="Of the draws."),
@@ -51,6 +52,7 @@ def command(
     options: dict[str, object] = {
         "terms": terms, "form": "weak" if weak else "derivative", "symmetric": "no" if asymmetric else "yes",
         "added_mass": "fit" if fit_added_mass else "known", "optimizer": optimizer, "resamples": resamples, "seed": seed,
+        "accelerations": accelerations,
     }  # fmt: skip
     if window:
         options["window"] = window

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from coeflab.model.table import Table
 
 SLOW = 2.0
+ACCELERATIONS = (
+    "Acceleration derivatives of the file before its computed added mass, where M + M_A stays positive definite; or computed "
+    "throughout."
+)
 COLOURS = {"pass": "green", "fail": "bold red", "warn": "yellow", "no verdict": "dim", "no table": "dim"}
 
 

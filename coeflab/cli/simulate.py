@@ -30,9 +30,7 @@ def command(
     step: float = typer.Option(0.0, help="Step of rk4 in s; 0: chosen."),
     record: float = typer.Option(0.0, help="Time between rows of the motion in s; 0: chosen."),
     tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
-    computed_added_mass: bool = typer.Option(
-        False, "--computed-added-mass", help="Leave measured acceleration derivatives aside."
-    ),
+    accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
     to: str = typer.Option("csv", help="Format of the motion: csv or parquet."),
     out: Path | None = typer.Option(None, help="Folder for motion and figure; nothing is written without it."),
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the manoeuvre, and stop."),
@@ -60,7 +58,7 @@ def command(
     how: dict[str, Any] = {"integrator": integrator, "step": step, "record": record, **current_of(current)}
     made = simulate(
         parameters, manoeuvre, further(ctx.args), how, listed(free), listed(hold),
-        tables=tables, measured=not computed_added_mass,
+        tables=tables, accelerations=accelerations,
     )  # fmt: skip
     written = [] if out is None else _write(made, out, to)
     if json:

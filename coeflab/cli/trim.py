@@ -42,9 +42,7 @@ def command(
         "for tells.",
     ),
     tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
-    computed_added_mass: bool = typer.Option(
-        False, "--computed-added-mass", help="Leave measured acceleration derivatives aside."
-    ),
+    accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
     starts: int = typer.Option(8, min=0, max=1000, help="Cold starts that look for other solutions."),
     seed: int = typer.Option(0, min=0, help="Of the cold starts."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
@@ -64,9 +62,7 @@ def command(
     orders = _named(command, "--command")
     upright = bool({"w", "pitch", "ds", "db"} & {*motion, *orders})
     chosen = plane or ("vertical" if upright else "horizontal")
-    craft = vehicle(
-        read_parameter_file(file), tuple(free.replace(",", " ").split()), chosen, tables, not computed_added_mass
-    )
+    craft = vehicle(read_parameter_file(file), tuple(free.replace(",", " ").split()), chosen, tables, accelerations)
     found = trim(craft, motion, orders, _named(near, "--near"), starts, seed)
     if json:
         show.json_object(as_json(found))
@@ -131,11 +127,13 @@ def _si(name: str, value: float, option: str) -> float:
 
 def as_json(found: Trim) -> dict[str, Any]:
     """The trim as one JSON object, SI and rad."""
+    from coeflab.cli.as_json import accelerations
     from coeflab.core.wording import finite
 
     point, f = found.point, found.point.found
     return {
         "vehicle": found.motion.vehicle.name,
+        "accelerations": accelerations(found.motion.vehicle.water),
         "outcome": point.outcome.value,
         "unknowns": [
             {

@@ -37,9 +37,7 @@ def command(
     current: str = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down."),
     kernel: str = typer.Option("auto", help="auto, compiled (numba) or numpy; the same numbers to 1e-12."),
     tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
-    computed_added_mass: bool = typer.Option(
-        False, "--computed-added-mass", help="Leave measured acceleration derivatives aside."
-    ),
+    accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
     out: Path | None = typer.Option(None, help="Folder for members and figure; nothing is written without it."),
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the manoeuvre, and stop."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
@@ -63,7 +61,7 @@ def command(
         return
     water = current_of(current)
     question = Question(
-        manoeuvre, further(ctx.args), members, seed, sobol, listed(free), listed(hold), tables, not computed_added_mass,
+        manoeuvre, further(ctx.args), members, seed, sobol, listed(free), listed(hold), tables, accelerations,
         (water.get("north", 0.0), water.get("east", 0.0), water.get("down", 0.0)), kernel,
     )  # fmt: skip
     folder = store if store is not None else out / "batches" if out is not None else None
@@ -106,6 +104,7 @@ def _write(made: Carried, folder: Path) -> list[Path]:
 
 def as_json(made: Carried) -> dict[str, Any]:
     """Figures in SI with intervals, shares of the variance, ranking and statements; absent values null."""
+    from coeflab.cli.as_json import accelerations
     from coeflab.presentation.uncertainty_tables import ranking
 
     q = made.question
@@ -114,6 +113,7 @@ def as_json(made: Carried) -> dict[str, Any]:
         "manoeuvre": q.manoeuvre,
         "members": q.members,
         "seed": q.seed,
+        "accelerations": accelerations(made.water),
         "motions": made.runs,
         "figures": [
             {

@@ -230,10 +230,7 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
     """What the unit's ``hydrodynamics`` (`coeflab/exporters/_fmi/unit.py`) computes from the model.json in the FMU, all
     velocities at once, with zero control angles.
     """
-    (content,) = (c for name, c in files.items() if name.endswith(".fmu"))
-    with zipfile.ZipFile(io.BytesIO(content)) as archive:
-        model = json.loads(archive.read("resources/model.json"))
-    values = {v["name"]: v["start"] for v in model["variables"]}
+    model, values = _read(files)
     moving = np.hstack([nu, np.zeros((len(nu), len(CONTROLS)))])
     speed = np.maximum(np.linalg.norm(nu[:, :3], axis=1), SLOWEST)
     out = np.zeros((len(nu), 6))
@@ -248,6 +245,24 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
             share = share * (np.abs(moving[:, index]) if absolute else moving[:, index]) ** power
         out[:, t["force"]] += share
     return out
+
+
+def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
+    """What the unit's ``exit_initialization_mode`` adds to the rigid body, from the model.json in the FMU."""
+    model, values = _read(files)
+    out = np.zeros((6, 6))
+    for a in model["accelerations"]:
+        scale = 0.5 * values["density"] * model["length"] ** a["length_power"]
+        out[a["force"], a["motion"]] -= scale * values[a["value"]]
+    return out
+
+
+def _read(files: Mapping[str, bytes]) -> tuple[dict[str, Any], dict[str, float]]:
+    """The model of the unit, and the values of its variables."""
+    (content,) = (c for name, c in files.items() if name.endswith(".fmu"))
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        model = json.loads(archive.read("resources/model.json"))
+    return model, {v["name"]: v["start"] for v in model["variables"]}
 
 
 def missing(parameters: ParameterFile) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from coeflab.kernels.kirchhoff import ideal_quadratics
 from coeflab.model.exported_law import common_changes, exported_law
-from coeflab.model.gz_sdf import missing_in_sdf, not_in_sdf, placed, sdf, sdf_force, tags
+from coeflab.model.gz_sdf import missing_in_sdf, not_in_sdf, placed, sdf, sdf_added_mass, sdf_force, tags
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.second_order import FLU
 
@@ -22,6 +22,7 @@ citations = ("fossen2011", "gz_sim")
 adds_coriolis = True
 holds = frozenset({"hydrostatics"})
 force, not_held, missing = sdf_force, not_in_sdf, missing_in_sdf
+added_mass = sdf_added_mass
 
 VERSION = "1.10"
 

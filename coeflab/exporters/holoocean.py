@@ -107,11 +107,20 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
 
 def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
     """HoloOcean's own law (`coeflab.kernels.fossen_torpedo`, with its source) of the scenario's agent; FRD as it is."""
+    return _read(files).force(nu)
+
+
+def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
+    """What HoloOcean computes for a spheroid of the scenario's length and diameter."""
+    return np.diag(_read(files).added)
+
+
+def _read(files: Mapping[str, bytes]) -> Torpedo:
     (content,) = files.values()
     dynamics = json.loads(content)["agents"][0]["dynamics"]
     given = {f.name: dynamics[f.name] for f in fields(Torpedo)}
     vectors = {k: np.array(given[k]) for k in ("r_bg", "r_bb")}
-    return Torpedo(**{**given, **vectors}).force(nu)
+    return Torpedo(**{**given, **vectors})
 
 
 def not_held(parameters: ParameterFile) -> tuple[str, ...]:

@@ -155,6 +155,19 @@ def _added_mass(accelerations: Mapping[str, float]) -> list[str]:
 
 def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
     """The function's own assignments, one after the other, with zero control angles."""
+    names, _ = _evaluated(files, nu)
+    return np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
+
+
+def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
+    """The function's own ``MA``, entry by entry."""
+    names, matrix = _evaluated(files, np.zeros((1, 6)))
+    rows = matrix.strip().removeprefix("-[").removesuffix("]").split(";")
+    return -np.array([[float(evaluate(entry, names, {})) for entry in row.split()] for row in rows])
+
+
+def _evaluated(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> tuple[dict[str, Any], str]:
+    """What the function's assignments give at velocities (n, 6), and the text of that of MA."""
     text = next(content for name, content in files.items() if name.endswith(".m")).decode()
     functions: dict[str, Callable[..., Any]] = {
         "nu": lambda k: nu[:, int(k) - 1],
@@ -164,10 +177,13 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
         "abs": np.abs,
     }
     names: dict[str, Any] = {}
+    matrix = ""
     for a in assignments(text):
-        if a.quoted is None and a.target not in ("nu", "delta", "tau", "MA"):
+        if a.target == "MA":
+            matrix = a.expression
+        elif a.quoted is None and a.target not in ("nu", "delta", "tau"):
             names[a.target] = evaluate(a.expression, names, functions)
-    return np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
+    return names, matrix
 
 
 def changes(parameters: ParameterFile) -> tuple[str, ...]:

@@ -23,7 +23,7 @@ from coeflab.core.xml import numbers, parse_xml, serialised
 from coeflab.kernels.mujoco_fluid import FluidEllipsoid, ellipsoid_of_masses
 from coeflab.model.exported_law import central_inertia, centre_of_gravity, number, states_buoyancy
 from coeflab.model.force_law import ForceLaw, force_law
-from coeflab.model.inertia import added_mass_of
+from coeflab.model.inertia import water_inertia
 from coeflab.model.loss import force_of_tables, unheld
 from coeflab.model.lost import missing_mass
 from coeflab.model.parameter_file import ParameterFile
@@ -87,8 +87,7 @@ def _fitted(parameters: ParameterFile) -> tuple[_Geom, ForceLaw]:
         The added masses along x, y and z are not all known, or those of no ellipsoid; no geom damps as the file does.
     """
     law = force_law(parameters)
-    matrix, _ = added_mass_of(parameters)
-    masses, rho = np.diag(matrix)[:3], parameters.conditions.density
+    masses, rho = np.diag(water_inertia(parameters).matrix)[:3], parameters.conditions.density
     if np.any(masses <= 0.0):
         raise InputError("no added mass along x, y and z", "an added mass, for the ellipsoid takes its shape from it")
     hull, miss = ellipsoid_of_masses(masses, rho)
@@ -284,6 +283,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     )  # fmt: skip
     comment = (
         f"{one_line(parameters.name)}, body: {one_line(parameters.body)}",
+        f"Shape by the inertia of the water: {one_line(water_inertia(parameters).source)}",
         "Body frame: x forward, y port, z up, origin at the reference point. Weight is balanced (gravcomp), nothing rights it.",
     )
     return {f"{name}.xml": serialised(root, comment)}
@@ -308,6 +308,11 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
     return _Geom(fluid, at[0], size).force(nu)
 
 
+def added_mass(files: Mapping[str, bytes]) -> Array:  # noqa: ARG001 - the port's signature
+    """Zero: MuJoCo has no force in proportion to acceleration."""
+    return np.zeros((6, 6))
+
+
 def not_held(parameters: ParameterFile) -> tuple[str, ...]:
     """Added inertia; every term whose derivative at straight motion is not the target's; products; controls."""
     geom, law = _fitted(parameters)
@@ -325,7 +330,7 @@ def missing(parameters: ParameterFile) -> tuple[str, ...]:
 def changes(parameters: ParameterFile) -> tuple[str, ...]:
     """How the ellipsoid was made, in words."""
     geom, _ = _fitted(parameters)
-    _, source = added_mass_of(parameters)
+    source = water_inertia(parameters).source
     e, (side_force, moment, turning, _, _) = geom.ellipsoid, geom.plane
     a, b, c = e.axes
     said = [

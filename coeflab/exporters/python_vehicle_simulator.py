@@ -216,17 +216,39 @@ def _force(terms: tuple[WrittenTerm, ...]) -> list[str]:
 
 def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
     """What ``hydrodynamics`` returns, read from the class without running it, with zero control angles."""
-    tree = ast.parse(next(content for name, content in files.items() if name.endswith(".py")))
-    vehicle = next(n for n in tree.body if isinstance(n, ast.ClassDef))
-    methods = {n.name: n for n in vehicle.body if isinstance(n, ast.FunctionDef)}
-    names: dict[str, Any] = {"nu": list(nu.T), "delta": [np.zeros(len(nu))] * 3}
-    for node in methods["__init__"].body:
-        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Attribute) and _is_number(node.value):
-            names[f"self.{node.targets[0].attr}"] = ast.literal_eval(node.value)
+    methods, numbers = _read(files)
+    names = {**numbers, "nu": list(nu.T), "delta": [np.zeros(len(nu))] * 3}
     for node in methods["hydrodynamics"].body:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
             names[node.targets[0].id] = _value(node.value, names)
     return np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
+
+
+def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
+    """``MA`` of the class, read without running it."""
+    methods, names = _read(files)
+    for node in methods["__init__"].body:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                names[name] = _value(value, names)
+            case ast.Assign(
+                targets=[ast.Attribute(attr="MA")],
+                value=ast.UnaryOp(op=ast.USub(), operand=ast.Call(args=[ast.List(elts=rows)])),
+            ):
+                return -np.array([[_value(e, names) for e in row.elts] for row in rows if isinstance(row, ast.List)])
+    raise ValueError("no self.MA in the class")
+
+
+def _read(files: Mapping[str, bytes]) -> tuple[dict[str, ast.FunctionDef], dict[str, Any]]:
+    """Methods of the class by name, and the numbers that its constructor sets."""
+    tree = ast.parse(next(content for name, content in files.items() if name.endswith(".py")))
+    vehicle = next(n for n in tree.body if isinstance(n, ast.ClassDef))
+    methods = {n.name: n for n in vehicle.body if isinstance(n, ast.FunctionDef)}
+    names: dict[str, Any] = {}
+    for node in methods["__init__"].body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Attribute) and _is_number(node.value):
+            names[f"self.{node.targets[0].attr}"] = ast.literal_eval(node.value)
+    return methods, names
 
 
 def _is_number(node: ast.expr) -> bool:

@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.identifiers import identifier, one_line
 from coeflab.core.xml import numbers, parse_xml, serialised
+from coeflab.kernels.composition import moved
 from coeflab.kernels.mujoco_fluid import ellipsoid_of_masses
 from coeflab.kernels.stonefish_fluid import added, ellipsoid_mesh
 from coeflab.model.exported_law import central_inertia, centre_of_gravity, number
 from coeflab.model.force_law import force_law
-from coeflab.model.inertia import added_mass_of
+from coeflab.model.inertia import water_inertia
 from coeflab.model.loss import unheld
 from coeflab.model.lost import missing_mass
 from coeflab.model.parameter_file import ParameterFile
@@ -48,7 +49,7 @@ def _axes(parameters: ParameterFile) -> Array:
     InputError
         Neither mass nor added masses along x, y and z of some ellipsoid.
     """
-    masses, rho = np.diag(added_mass_of(parameters)[0])[:3], parameters.conditions.density
+    masses, rho = np.diag(water_inertia(parameters).matrix)[:3], parameters.conditions.density
     axes = None
     if np.all(masses > 0.0):
         found, miss = ellipsoid_of_masses(masses, rho)
@@ -114,6 +115,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     SubElement(robot, "world_transform", xyz="0.0 0.0 10.0", rpy="0.0 0.0 0.0")
     comment = (
         f"{one_line(parameters.name)}, body: {one_line(parameters.body)}",
+        f"Shape by the inertia of the water: {one_line(water_inertia(parameters).source)}",
         "Frame of base_link: x forward, y starboard, z down, origin at the reference point. The drags belong to this mesh: another",
         "has other areas, and theirs are to be multiplied by the ratio.",
     )
@@ -123,6 +125,17 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
 
 def force(files: Mapping[str, bytes], nu: Array) -> Array:
     """Stonefish's own law (`coeflab.kernels.stonefish_fluid`, with its source) of the robot and its mesh; FRD as they are."""
+    return _read(files).force(nu)
+
+
+def added_mass(files: Mapping[str, bytes]) -> Array:
+    """What Stonefish computes from the mesh about its centre of gravity, moved to the reference point."""
+    link = _read(files)
+    mass, moments = added(link.corners, link.density)
+    return moved(np.diag([mass, mass, mass, *moments]), -link.centre)
+
+
+def _read(files: Mapping[str, bytes]) -> StonefishLink:
     root = parse_xml(next(c for n, c in files.items() if n.endswith(".scn")).decode())
     water, body = root.find("environment/ocean/water"), root.find("robot/base_link")
     drags = None if body is None else body.find("hydrodynamics")
@@ -135,7 +148,7 @@ def force(files: Mapping[str, bytes], nu: Array) -> Array:
     if cg is not None:
         centre = np.array(numbers(cg.get("xyz"), (3,), "cg"))
     form, skin = (np.array(numbers(drags.get(n), (3,), n)) for n in ("quadratic_drag", "viscous_drag"))
-    return StonefishLink(vertices, faces, centre, form, skin, float(water.get("density", "1000"))).force(nu)
+    return StonefishLink(vertices, faces, centre, form, skin, float(water.get("density", "1000")))
 
 
 def not_held(parameters: ParameterFile) -> tuple[str, ...]:

@@ -29,6 +29,7 @@ from coeflab.model.exported_law import (
 )
 from coeflab.model.force_law import LawTerm
 from coeflab.model.fossen_link import MATRICES, read_fossen_link
+from coeflab.model.inertia import water_inertia
 from coeflab.model.loss import unheld
 from coeflab.model.lost import missing_mass, missing_water
 from coeflab.model.parameter_file import ParameterFile
@@ -111,6 +112,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"{one_line(p.name)}, body: {one_line(p.body)}",
         "The plugin turns Gazebo's x forward, y port, z up to x forward, y starboard, z down itself: the matrices are in the latter,",
         "about the centre of gravity, which is the origin of base_link. Damping is negative, added mass positive.",
+        f"Inertia of the water: {one_line(water_inertia(p).source)}",
         "Neutrally buoyant with both centres in one point: the parameter file states neither weight nor buoyancy."
         if h is None
         else "Volume and centre of buoyancy, the latter x forward, y port, z up from the centre of gravity, are the file's.",
@@ -124,6 +126,13 @@ def force(files: Mapping[str, bytes], nu: Array) -> Array:
     link = read_fossen_link(parse_xml(content.decode()))
     at_link = nu @ velocity_transfer(-link.reference).T
     return np.asarray(link.force(at_link) @ force_transfer(link.reference).T)
+
+
+def added_mass(files: Mapping[str, bytes]) -> Array:
+    """<added_mass>, moved to the reference point."""
+    (content,) = files.values()
+    link = read_fossen_link(parse_xml(content.decode()))
+    return moved(link.added_mass, link.reference)
 
 
 def not_held(parameters: ParameterFile) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from coeflab.core.yaml import parse_yaml
 from coeflab.kernels.composition import definiteness, moved
 from coeflab.kernels.rigid_body import about_another, rigid_body_inertia
 from coeflab.kernels.transforms import force_transfer, velocity_transfer
-from coeflab.model.inertia import added_mass_of
+from coeflab.model.inertia import water_inertia
 from coeflab.model.lost import missing_water
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.written_law import (
@@ -108,7 +108,8 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     centre, rigid = _centre(parameters), _rigid(parameters)
     origin = "reference point" if centre is None else "centre of gravity"
     offset = np.zeros(3) if centre is None else 0.0 - centre
-    added = moved(added_mass_of(parameters)[0], -offset)
+    water = water_inertia(parameters)
+    added = moved(water.matrix, -offset)
     if rigid is not None and definiteness(rigid + added).smallest <= 0.0:
         raise InputError("an inertia that is not positive definite with its added mass", "positive masses and inertias")
     terms, speed = written_terms(parameters), parameters.conditions.speed
@@ -126,6 +127,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# Body frame: x forward, y starboard, z down, origin at the {origin};",
         f"# the mesh frame is FRD from: {one_line(parameters.reference_point.datum)}",
         f"# Totals: xdyn adds no C_A(nu) nu. {'Weight, buoyancy and propulsion are' if h is None else 'Propulsion is'} not in here.",
+        f"# Inertia of the water: {one_line(water.source)}",
         "rotations convention: [psi, theta', phi'']",
         "environmental constants:",
         f"    g: {{value: {STANDARD_GRAVITY if h is None else h.gravity!r}, unit: m/s^2}}",
@@ -226,6 +228,13 @@ def force(files: Mapping[str, bytes], nu: Array) -> Array:
     body = xdyn_body(parse_yaml(content.decode(), name), name)
     shift = body.manoeuvring[0].point - body.centre
     return np.asarray(body.force(nu @ velocity_transfer(-shift).T) @ force_transfer(shift).T)
+
+
+def added_mass(files: Mapping[str, bytes]) -> Array:
+    """The added mass matrix about the centre of gravity, moved to the reference point."""
+    name, content = next((n, c) for n, c in files.items() if n.endswith(".yml"))
+    body = xdyn_body(parse_yaml(content.decode(), name), name)
+    return moved(body.added, body.manoeuvring[0].point - body.centre)
 
 
 def missing(parameters: ParameterFile) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.model.draws import Uncertain
 from coeflab.model.frozen import locked
+from coeflab.model.inertia import MEASURED, WaterInertia
 from coeflab.model.marching import KERNELS
 from coeflab.model.spread import Importance, Spread
 
@@ -34,7 +35,8 @@ class Question:
         Whether independent groups get Sobol indices: as many rows as the largest power of two within ``members``, each of
         2 + groups further runs.
     free, hold : sequence of str
-    tables, measured : bool
+    tables : bool
+    accelerations : {"measured", "computed"}
     current : (float, float, float)
     kernel : str
         Of the march: auto, numpy or compiled.
@@ -48,7 +50,7 @@ class Question:
     free: Sequence[str] = ()
     hold: Sequence[str] = ()
     tables: bool = False
-    measured: bool = True
+    accelerations: str = MEASURED
     current: tuple[float, float, float] = (0.0, 0.0, 0.0)
     kernel: str = "auto"
 
@@ -82,6 +84,8 @@ class Carried:
     spreads : tuple of Spread
         Figures of the manoeuvre, then stability indices.
     importances : tuple of Importance
+    water : WaterInertia
+        Which accelerations were chosen.
     runs : int
         Motions that were computed, those for Sobol indices too.
     rows : int
@@ -98,6 +102,7 @@ class Carried:
     values: Array
     spreads: tuple[Spread, ...]
     importances: tuple[Importance, ...]
+    water: WaterInertia
     runs: int
     rows: int
     statements: tuple[str, ...]

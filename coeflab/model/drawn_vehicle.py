@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.kernels.kirchhoff import ideal_quadratics
 from coeflab.kernels.motion_law import WIND
 from coeflab.model.ensemble import Ensemble
-from coeflab.model.motion_terms import MotionTerm
+from coeflab.model.inertia import MEASURED, entry_of, stated_accelerations
+from coeflab.model.motion_terms import MotionTerm, open_places
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.vehicle import Vehicle
 
@@ -19,7 +21,7 @@ VELOCITY_OF = {"alpha": "w", "beta": "v"}
 
 
 def drawn(
-    vehicle: Vehicle, parameters: ParameterFile, symbols: Sequence[str], deviations: Array, measured: bool = True
+    vehicle: Vehicle, parameters: ParameterFile, symbols: Sequence[str], deviations: Array, tables: bool = False
 ) -> Ensemble:
     """Members whose coefficients and acceleration derivatives deviate.
 
@@ -32,8 +34,8 @@ def drawn(
         Of the columns of ``deviations``, as in `coeflab.model.draws.Uncertain`.
     deviations : (m, k) array
         In the units of the file.
-    measured : bool
-        Whether measured acceleration derivatives stand in the added mass.
+    tables : bool
+        Whether fitted tables come before derivatives in the vehicle.
 
     Raises
     ------
@@ -45,39 +47,37 @@ def drawn(
     for row, t in enumerate(vehicle.terms):
         if t.symbol in columns:
             coefficients[:, row] += t.per_prime * deviations[:, columns[t.symbol]]
-    return Ensemble(vehicle, coefficients, added=_added(vehicle, parameters, symbols, deviations, measured))
+    change = _added(vehicle, parameters, symbols, deviations)
+    if change is None:
+        return Ensemble(vehicle, coefficients)
+    ideal = None
+    if parameters.added_mass is not None:
+        unspoken = open_places(parameters, tables)
+        ideal = vehicle.law.ideal + np.array([np.where(unspoken, ideal_quadratics(c), 0.0) for c in change])
+    return Ensemble(vehicle, coefficients, added=vehicle.added + change, ideal=ideal)
 
 
-def _added(
-    vehicle: Vehicle, parameters: ParameterFile, symbols: Sequence[str], deviations: Array, measured: bool
-) -> Array | None:
-    """(m, 6, 6); an entry that the file states only on one side of the diagonal moves on both."""
-    if parameters.added_mass is not None and not measured:
+def _added(vehicle: Vehicle, parameters: ParameterFile, symbols: Sequence[str], deviations: Array) -> Array | None:
+    """(m, 6, 6) change of the added mass, by half where the file states an entry on both sides of the diagonal; None where
+    no draw is felt in it.
+    """
+    if vehicle.water.used != MEASURED:
         return None
-    stated = {at for c in parameters.coefficients if c.value is not None and (at := _entry(c.symbol)) is not None}
-    moved = [(k, at, s) for k, s in enumerate(symbols) if (at := _entry(s)) is not None]
+    stated = stated_accelerations(parameters)
+    moved = [(k, at, s) for k, s in enumerate(symbols) if (at := entry_of(s)) is not None]
     if not moved:
         return None
-    out = np.repeat(vehicle.added[None], len(deviations), axis=0)
+    out = np.zeros((len(deviations), 6, 6))
     for k, (i, j), s in moved:
         change = -deviations[:, k] * 0.5 * vehicle.density * vehicle.length ** derivative(s).powers[1]
-        out[:, i, j] += change
-        if i != j and (j, i) not in stated:
-            out[:, j, i] += change
+        share = 0.5 if i != j and (j, i) in stated else 1.0
+        out[:, i, j] += share * change
+        if i != j:
+            out[:, j, i] += share * change
     return out
 
 
-def _entry(symbol: str) -> tuple[int, int] | None:
-    """Row and column of an acceleration derivative in the added mass; None for anything else."""
-    if " " in symbol:
-        return None
-    d = derivative(symbol)
-    if len(d.factors) != 1 or not d.factors[0].endswith("dot"):
-        return None
-    return COMPONENTS.index(d.component), MOTIONS.index(d.factors[0].removesuffix("dot"))
-
-
-def unfelt(vehicle: Vehicle, symbols: Sequence[str], ordered: Collection[str], measured: bool = True) -> frozenset[str]:
+def unfelt(vehicle: Vehicle, symbols: Sequence[str], ordered: Collection[str]) -> frozenset[str]:
     """Symbols that cannot change the motion: of held motions, of controls that are never moved, of terms that are not in the law.
 
     Parameters
@@ -87,15 +87,14 @@ def unfelt(vehicle: Vehicle, symbols: Sequence[str], ordered: Collection[str], m
     symbols : sequence of str
     ordered : collection of str
         Controls that the manoeuvre moves.
-    measured : bool
     """
     terms = {t.symbol: t for t in vehicle.terms}
     still = ({*MOTIONS} - {*vehicle.free, "u"}) | ({*CONTROLS} - {*ordered})
     out = set()
     for s in symbols:
-        at = _entry(s)
+        at = entry_of(s)
         if at is not None:
-            felt = measured and all(MOTIONS[i] in vehicle.free for i in at)
+            felt = vehicle.water.used == MEASURED and all(MOTIONS[i] in vehicle.free for i in at)
         else:
             felt = s in terms and _acts(terms[s], vehicle, still)
         if not felt:

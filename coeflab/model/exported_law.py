@@ -12,7 +12,7 @@ from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.kernels.composition import definiteness
 from coeflab.kernels.transforms import skew
 from coeflab.model.force_law import ForceLaw, force_law
-from coeflab.model.inertia import added_mass_of
+from coeflab.model.inertia import water_inertia
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.second_order import SecondOrder, resists, second_order, slot
 
@@ -34,9 +34,9 @@ class ExportedLaw:
     form : SecondOrder
         The law's terms that have a place in it.
     matrix : (6, 6) array
-        Added mass, symmetric and at least semidefinite; zeros where nothing is known.
+        Added mass that the vehicle moves with, see `coeflab.model.inertia`; zeros where nothing is known.
     statements : tuple of str
-        Where the added mass comes from and what was done to it.
+        Where it comes from, then what was done to it.
     """
 
     law: ForceLaw
@@ -51,24 +51,18 @@ class ExportedLaw:
 
 
 def exported_law(parameters: ParameterFile) -> ExportedLaw:
-    """The law and an added mass that a physics engine can integrate.
+    """The law of a file and the added mass that a physics engine integrates, the same that `coeflab simulate` does.
 
-    An asymmetric matrix is replaced by the mean of it and its mirror image; where that is no kinetic energy, because
-    diagonal entries are unknown or too small, only what stands on the diagonal is kept.
+    A file without mass cannot be simulated, and engines take a default mass: there an added mass that is not positive by itself
+    keeps its diagonal alone.
     """
-    law = force_law(parameters)
-    stated, source = added_mass_of(parameters)
-    matrix = (stated + stated.T) / 2.0
-    statements = [source]
-    apart = 2.0 * float(np.max(np.abs(stated - matrix)))
-    if apart:
-        statements.append(f"added mass: mean of the matrix and its mirror image, which differ by up to {apart:.3g}")
-    if not definiteness(matrix).holds:
-        matrix = np.diag(np.maximum(np.diag(stated), 0.0))
-        statements.append(
-            "added mass: only its diagonal, because the whole is not positive: entries are missing or wrong"
-        )
-    return ExportedLaw(law, second_order(law), matrix, tuple(statements))
+    law, water = force_law(parameters), water_inertia(parameters)
+    matrix, statements = water.matrix, water.statements
+    if parameters.mass is None and not definiteness(matrix).holds:
+        matrix = np.diag(np.maximum(np.diag(matrix), 0.0))
+        said = "added mass: only its diagonal, because the whole is not positive and no mass is known: entries are missing or wrong"
+        statements = (*statements, said)
+    return ExportedLaw(law, second_order(law), matrix, statements)
 
 
 def centre_of_gravity(parameters: ParameterFile) -> Array:

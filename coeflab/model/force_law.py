@@ -1,12 +1,13 @@
 """The steady hydrodynamic force that a parameter file states, as a function of the velocities.
 
 Measured terms are taken as measured, potential part and all. Where an added-mass matrix is known, those products of two
-velocities that no measured term speaks of get their share of -C_A(nu) nu, so that nothing is counted twice and nothing known
-is left out.
+velocities that no measured term speaks of get their share of -C_A(nu) nu of the added mass that the vehicle moves with
+(`coeflab.model.inertia`), so that nothing is counted twice and nothing known is left out.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,7 @@ from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.kernels.kirchhoff import ideal_quadratics
 from coeflab.kernels.terms import Term, parse_suffix
 from coeflab.model.frozen import locked
+from coeflab.model.inertia import water_inertia
 from coeflab.model.parameter_file import ParameterFile
 
 Array = NDArray[np.float64]
@@ -113,10 +115,19 @@ def force_law(parameters: ParameterFile) -> ForceLaw:
         terms.append(LawTerm(d.text, d.component, term, value, power, potential))
     ideal = np.zeros((6, 6, 6))
     if parameters.added_mass is not None:
-        ideal = ideal_quadratics(np.array(parameters.added_mass.matrix))
-        ideal *= density / parameters.added_mass.density
-        for t in terms:
-            if t.pair is not None:
-                i, (j, k) = COMPONENTS.index(t.component), t.pair
-                ideal[i, j, k] = ideal[i, k, j] = 0.0
+        ideal = np.where(_open(terms), ideal_quadratics(water_inertia(parameters).matrix), 0.0)
     return ForceLaw(tuple(terms), ideal, tuple(left_out))
+
+
+def open_pairs(parameters: ParameterFile) -> NDArray[np.bool_]:
+    """(6, 6, 6), by force and two velocities: the products that no measured term of a parameter file speaks of."""
+    return _open(force_law(parameters).terms)
+
+
+def _open(terms: Sequence[LawTerm]) -> NDArray[np.bool_]:
+    out = np.ones((6, 6, 6), dtype=bool)
+    for t in terms:
+        if t.pair is not None:
+            i, (j, k) = COMPONENTS.index(t.component), t.pair
+            out[i, j, k] = out[i, k, j] = False
+    return out

@@ -17,6 +17,7 @@ from coeflab.core.identifiers import identifier, one_line
 from coeflab.core.xml import parse_xml, serialised
 from coeflab.model.exported_law import Afloat, afloat, central_inertia, exported_law, number
 from coeflab.model.gz_link import FLUID_TAGS, FORCES, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
+from coeflab.model.inertia import water_inertia
 from coeflab.model.loss import unheld
 from coeflab.model.lost import missing_mass, missing_water
 from coeflab.model.parameter_file import ParameterFile
@@ -76,12 +77,13 @@ def sdf(
             SubElement(system, tag).text = text
     frame = f"Link frame: x forward, y port, z up, origin at the reference point; density {number(p.conditions.density)} kg/m^3"
     shape = "The collision is a cylinder of the displaced volume in the centre of buoyancy: Buoyancy takes these two of it. Visuals are yours to add."
+    inertia = f"Inertia of the water: {one_line(water_inertia(p).source)}"
     titled = f"{one_line(p.name)}, body: {one_line(p.body)}"
     water = "world" if name != "world" else "world_of_water"
     return {
         f"{name}.sdf": serialised(
             alone,
-            (titled, frame, f"It needs a world with the system Buoyancy, as {water}.sdf is, and sinks without.", shape),
+            (titled, frame, inertia, f"It needs a world with the system Buoyancy, as {water}.sdf is, and sinks without.", shape),
         ),
         f"{water}.sdf": serialised(
             watered,
@@ -89,6 +91,7 @@ def sdf(
                 titled,
                 f"A world of water without surface or bottom: gz sim {water}.sdf. The model is that of {name}.sdf.",
                 frame,
+                inertia,
             ),
         ),
     }
@@ -166,6 +169,13 @@ def _spaced(vector: Array) -> str:
 def sdf_force(files: Mapping[str, bytes], nu: Array) -> Array:
     """The system's own law (`coeflab.model.gz_link`, with file and lines of its source) of a rendered model, turned to FRD."""
     return np.asarray(read_gz_link(parse_xml(next(iter(files.values())).decode())).force(nu * FLU) * FLU)
+
+
+def sdf_added_mass(files: Mapping[str, bytes]) -> Array:
+    """(6, 6) of <fluid_added_mass>, or of <xDotU> ... where the plugin uses them, turned to FRD."""
+    link = read_gz_link(parse_xml(next(iter(files.values())).decode()))
+    plugin = 0.0 if link.disable_added_mass else -link.plugin_mass
+    return np.asarray((link.fluid_mass + plugin) * np.outer(FLU, FLU))
 
 
 def not_in_sdf(parameters: ParameterFile) -> tuple[str, ...]:

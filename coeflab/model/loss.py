@@ -10,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.kernels.kirchhoff import momentum_quadratics
 from coeflab.model.force_law import ForceLaw, LawTerm, force_law
 from coeflab.model.frozen import locked
+from coeflab.model.inertia import WaterInertia, known_mass, water_inertia
 from coeflab.model.lost import Lost
 from coeflab.model.motion_terms import as_arrays, motion_terms, open_products
 from coeflab.model.parameter_file import ParameterFile
@@ -23,6 +25,50 @@ POINTS, FEW, MANY = 5, 3, 5
 ASSUMED = 0.2  # prime range of a motion that no campaign covers: 11 deg of incidence
 LOSSLESS = 1e-9  # rounding of coefficients that are written with 17 digits and multiplied a few times
 ANGLES = {"asin(v/U)": "v", "asin(w/U)": "w"}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Apart:
+    """How far a target is from the parameter file, six components each: forces, or rates of u v w p q r.
+
+    Attributes
+    ----------
+    worst, rms : (6,) array
+        Largest and root-mean-square difference; NaN of a component that is not compared.
+    largest, size : (6,) array
+        Largest and root-mean-square value of the file.
+    """
+
+    worst: Array
+    rms: Array
+    largest: Array
+    size: Array
+
+    def __post_init__(self) -> None:
+        for name in ("worst", "rms", "largest", "size"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+    @property
+    def relative(self) -> Array:
+        """(6,) worst over the largest value of the component; over the largest of its three where that is zero."""
+        scale = self.largest.copy()
+        for group in (slice(0, 3), slice(3, 6)):
+            scale[group] = np.where(scale[group] == 0.0, np.nanmax(scale[group], initial=0.0), scale[group])
+        return np.divide(self.worst, scale, out=np.where(self.worst > 0.0, np.inf, 0.0), where=scale != 0.0)
+
+    @property
+    def furthest(self) -> tuple[int, float]:
+        """The component with the largest relative difference, and that."""
+        shares = np.nan_to_num(self.relative, nan=0.0, posinf=np.inf)
+        return int(shares.argmax()), float(shares.max())
+
+
+def apart(theirs: Array, ours: Array) -> Apart:
+    """The difference of (n, 6) values."""
+    by = np.abs(theirs - ours)
+    return Apart(
+        by.max(axis=0), np.sqrt((by**2).mean(axis=0)), np.abs(ours).max(axis=0), np.sqrt((ours**2).mean(axis=0))
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,9 +84,15 @@ class Loss:
         What is lost beside terms.
     changes : tuple of str
         What was changed in sign, axes or form, and why.
-    worst, rms, largest, size : (6,) array
-        Largest and root-mean-square difference of the target's force from the file's, and the file's largest and
-        root-mean-square force, over the grid; N and N m.
+    forces : Apart
+        Of the target's force from the file's, over the grid; N and N m.
+    accelerations : Apart or None
+        Of the rates of u v w p q r, m/s^2 and rad/s^2, over the grid and from rest under a push along each axis. NaN for motions
+        whose inertia the file does not state; None where none is compared.
+    not_compared : str
+        Why accelerations are not, or not all, compared, in words; empty where all are.
+    water : WaterInertia
+        The accelerations that the export was asked for.
     grid : str
         The velocities that were tried, in words.
     """
@@ -49,23 +101,46 @@ class Loss:
     not_held: tuple[str, ...]
     lost: tuple[Lost, ...]
     changes: tuple[str, ...]
-    worst: Array
-    rms: Array
-    largest: Array
-    size: Array
+    forces: Apart
+    accelerations: Apart | None
+    not_compared: str
+    water: WaterInertia
     grid: str
 
-    def __post_init__(self) -> None:
-        for name in ("worst", "rms", "largest", "size"):
-            object.__setattr__(self, name, locked(getattr(self, name)))
+    @property
+    def worst(self) -> Array:
+        """(6,) of the forces, as in `Apart`."""
+        return self.forces.worst
+
+    @property
+    def rms(self) -> Array:
+        """(6,) of the forces, as in `Apart`."""
+        return self.forces.rms
+
+    @property
+    def largest(self) -> Array:
+        """(6,) of the forces, as in `Apart`."""
+        return self.forces.largest
+
+    @property
+    def size(self) -> Array:
+        """(6,) of the forces, as in `Apart`."""
+        return self.forces.size
 
     @property
     def relative(self) -> Array:
-        """(6,) worst over the largest force of the component; over the largest force or moment where it is zero."""
-        scale = self.largest.copy()
-        for group in (slice(0, 3), slice(3, 6)):
-            scale[group] = np.where(scale[group] > 0.0, scale[group], scale[group].max(initial=0.0))
-        return np.divide(self.worst, scale, out=np.where(self.worst > 0.0, np.inf, 0.0), where=scale > 0.0)
+        """(6,) of the forces, as in `Apart`."""
+        return self.forces.relative
+
+    @property
+    def furthest(self) -> tuple[str, float]:
+        """The force component, or the rate of a motion, with the largest relative difference, and that."""
+        i, share = self.forces.furthest
+        found = COMPONENTS[i], share
+        if self.accelerations is not None:
+            j, other = self.accelerations.furthest
+            found = (f"d{MOTIONS[j]}/dt", other) if other > max(share, LOSSLESS) else found
+        return found
 
     @property
     def worse_than_nothing(self) -> tuple[str, ...]:
@@ -75,8 +150,8 @@ class Loss:
 
     @property
     def lossless(self) -> bool:
-        """Whether the target holds everything, has what it needs, and its force is the file's to rounding."""
-        return not self.not_held and not self.lost and bool(np.all(self.relative <= LOSSLESS))
+        """Whether the target holds everything, has what it needs, and forces and accelerations are the file's to rounding."""
+        return not self.not_held and not self.lost and self.furthest[1] <= LOSSLESS
 
 
 def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
@@ -140,8 +215,10 @@ def loss_of(
     not_held: tuple[str, ...],
     lost: tuple[Lost, ...],
     changes: tuple[str, ...],
+    water: WaterInertia,
+    added_mass: Callable[[Mapping[str, bytes]], Array] | None = None,
 ) -> Loss:
-    """Evaluate a target's law, from its own files, beside the law of the parameter file.
+    """Evaluate a target's law and added mass, from its own files, beside those of the parameter file.
 
     Parameters
     ----------
@@ -159,24 +236,53 @@ def loss_of(
         What else of the file it is not given.
     changes : tuple of str
         What it is given otherwise, in words.
+    water : WaterInertia
+        The accelerations that the export was asked for.
+    added_mass : callable, optional
+        The target's files -> the (6, 6) added mass that it integrates, FRD, about the file's reference point.
     """
     nu, words = covered_grid(parameters)
     tables = force_of_tables(parameters, nu)
     ours, theirs = law.force(nu), force(files, nu)
     if tables is not None:
         ours, words = ours + tables, f"{words}; the file's force with its fitted tables"
-    apart = np.abs(theirs - ours)
-    return Loss(
-        target,
-        not_held,
-        lost,
-        changes,
-        apart.max(axis=0),
-        np.sqrt((apart**2).mean(axis=0)),
-        np.abs(ours).max(axis=0),
-        np.sqrt((ours**2).mean(axis=0)),
-        words,
-    )
+    compared, why = None, "its exporter does not say what added mass it integrates"
+    if added_mass is not None:
+        compared, why = accelerations_apart(parameters, added_mass(files), nu, theirs, ours)
+    return Loss(target, not_held, lost, changes, apart(theirs, ours), compared, why, water, words)
+
+
+def accelerations_apart(
+    parameters: ParameterFile, added: Array, nu: Array, theirs: Array, ours: Array
+) -> tuple[Apart | None, str]:
+    """Rates of u v w p q r under forces (n, 6) at velocities (n, 6), by a target's added mass and by that of the file.
+
+    Six rows more: from rest, pushed along each axis by the file's largest force or moment. Both have the rigid body of the file.
+    Motions whose inertia it does not state are held and have NaN; second stands why.
+    """
+    rigid, known = known_mass(parameters)
+    if not known:
+        return None, "accelerations are not compared: the file states no mass"
+    largest = np.abs(ours).max(axis=0)
+    groups = np.repeat([largest[:3].max(), largest[3:].max()], 3)
+    push = np.diag(np.where(largest > 0.0, largest, np.where(groups > 0.0, groups, 1.0)))
+    turned = momentum_quadratics(rigid)
+    own = np.einsum("ijk,nj,nk->ni", turned, nu, nu)
+    at = np.ix_(known, known)
+
+    def rates(mass: Array, forces: Array) -> Array:
+        out = np.full((len(forces) + 6, 6), np.nan)
+        every = np.vstack([forces + own, push])[:, known]
+        out[:, known] = np.linalg.solve((rigid + mass)[at], every.T).T
+        return out
+
+    reference = water_inertia(parameters).matrix
+    try:
+        found = apart(rates(added, theirs), rates(reference, ours))
+    except np.linalg.LinAlgError:
+        return None, "accelerations are not compared: an inertia M + M_A is singular"
+    held = [m for k, m in enumerate(MOTIONS) if k not in known]
+    return found, f"{', '.join(held)}: not compared, the file does not state the inertia" if held else ""
 
 
 def unheld(law: ForceLaw, held: Callable[[LawTerm], bool], *, ideal: bool) -> tuple[str, ...]:

@@ -7,9 +7,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative, primed
-from coeflab.model.inertia import added_mass_of
-from coeflab.model.parameter_added_mass import ParameterAddedMass
+from coeflab.core.symbols import COMPONENTS, derivative, primed
+from coeflab.model.inertia import COMPUTED, WaterInertia, stated_accelerations, water_inertia
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.parameter_model import ParameterModel
 
@@ -46,17 +45,15 @@ class Lost:
         return f"{self.kind}: {self.what}"
 
 
-def lost_by_all(parameters: ParameterFile, holds: frozenset[str]) -> tuple[Lost, ...]:
+def lost_by_all(parameters: ParameterFile, holds: frozenset[str], water: WaterInertia) -> tuple[Lost, ...]:
     """What every simulator loses: fitted tables, parts of the vehicle that are not among those it ``holds``, accelerations
-    beside an added mass, and an added mass of another body.
+    that are not in the added mass it is given, and an added mass of another body.
     """
     tables = tuple(_table(m) for m in parameters.models if not _by_coefficients(m, parameters))
     unheld = tuple(Lost(Kind.NOT_HELD, said) for said in (*tables, *_vehicle(parameters, holds)))
     hull = parameters.added_mass
-    if hull is None:
-        return unheld
-    out = [*unheld, *(Lost(Kind.REPLACED, said) for said in _accelerations(parameters, hull))]
-    if hull.body != parameters.body:
+    out = [*unheld, *(Lost(Kind.REPLACED, said) for said in _accelerations(parameters, water))]
+    if hull is not None and hull.body != parameters.body:
         out.append(
             Lost(
                 Kind.MISMATCH,
@@ -101,21 +98,23 @@ def _table(model: ParameterModel) -> str:
     )
 
 
-def _accelerations(parameters: ParameterFile, hull: ParameterAddedMass) -> list[str]:
-    """Acceleration derivatives that differ from the added mass in their place."""
-    matrix, length = np.array(hull.matrix), parameters.scaling.length
+def _accelerations(parameters: ParameterFile, water: WaterInertia) -> list[str]:
+    """Acceleration derivatives that are not in the added mass, not even in a mean with their mirror image."""
+    stated, hull = stated_accelerations(parameters), parameters.added_mass
+    values = {derivative(c.symbol).text: c for c in parameters.coefficients}
     out = []
-    for c in parameters.coefficients:
-        d = derivative(c.symbol)
-        if not c.value or len(d.factors) != 1 or not d.factors[0].endswith("dot"):
+    for (i, j), (name, entry) in stated.items():
+        mirror = stated.get((j, i), (name, entry))[1]
+        if not entry or min(abs(water.matrix[i, j] - x) for x in (entry, (entry + mirror) / 2.0)) <= SAME * abs(entry):
             continue
-        entry = matrix[COMPONENTS.index(d.component), MOTIONS.index(d.factors[0].removesuffix("dot"))]
-        computed = float(-entry / (0.5 * hull.density * length ** d.powers[1]))
-        if abs(computed - c.value) > SAME * abs(c.value):
-            out.append(
-                f"{primed(d.text)} {c.value:.4g} ({c.origin}) is not used: the added mass of {hull.body} by {hull.method} has "
-                f"{computed:.4g}, {computed / c.value:.3g} times it"
-            )
+        given = values[name]
+        share = float(water.matrix[i, j] / entry)
+        place = (
+            f"the added mass of {hull.body} by {hull.method} has {share * (given.value or 0.0):.4g}, {share:.3g} times it"
+            if hull is not None and water.used == COMPUTED
+            else "zero stands in its place"
+        )
+        out.append(f"{primed(name)} {given.value:.4g} ({given.origin}) is not used: {place}")
     return out
 
 
@@ -142,7 +141,7 @@ def missing_mass(parameters: ParameterFile, otherwise: str, roll: str = ROLL) ->
 
 def missing_water(parameters: ParameterFile) -> tuple[str, ...]:
     """Added mass that a target carries and the file does not have."""
-    diagonal = np.diag(added_mass_of(parameters)[0])
+    diagonal = np.diag(water_inertia(parameters).matrix)
     if not np.any(diagonal):
         return ("added mass: the file has none; the vehicle accelerates as if in air",)
     unknown = [way for way, m in zip(WAYS, diagonal, strict=True) if m == 0.0]

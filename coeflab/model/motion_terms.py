@@ -12,7 +12,7 @@ from coeflab.core.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS,
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.motion_law import BASE, REVERSAL, WIND, MotionLaw
 from coeflab.kernels.terms import parse_suffix
-from coeflab.model.force_law import force_law
+from coeflab.model.force_law import force_law, open_pairs
 from coeflab.model.parameter_coefficient import ParameterCoefficient
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.parameter_model import ANGLE_OF, ParameterModel
@@ -76,15 +76,20 @@ def open_products(parameters: ParameterFile, tables: bool) -> Array:
     A table over alpha or beta speaks of all products of u with w or v in its component, one over a rate of those with it,
     unless it says that the potential part is not in its values.
     """
-    ideal = force_law(parameters).ideal.copy()
+    return np.where(open_places(parameters, tables), force_law(parameters).ideal, 0.0)
+
+
+def open_places(parameters: ParameterFile, tables: bool) -> np.ndarray:
+    """(6, 6, 6), by force and two velocities: whether `open_products` has a place for a product."""
+    out = open_pairs(parameters)
     for m in _used(parameters, _derivatives(parameters), tables):
         if not m.contains_potential:
             continue
         moved = sorted({MOTIONS.index(v) for name in m.names for v in _moves(name)} | {0})
         for c in _components(m):
             i = COMPONENTS.index(c)
-            ideal[np.ix_([i], moved, moved)] = 0.0
-    return ideal
+            out[np.ix_([i], moved, moved)] = False
+    return out
 
 
 def _moves(variable: str) -> tuple[str, ...]:

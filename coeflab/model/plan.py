@@ -11,6 +11,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.toml import Section, read_toml
+from coeflab.model.inertia import ACCELERATIONS, MEASURED
 from coeflab.model.scaling import read_conditions, read_scaling
 from coeflab.model.study import (
     Plan,
@@ -88,7 +89,12 @@ def _manoeuvres(root: Section, path: Path) -> tuple[PlannedManoeuvre, ...]:
     out = []
     for s in root.sections("manoeuvre"):
         options = s.section("options", required=False)
-        out.append(PlannedManoeuvre(s.text("parameter_file"), s.text("name"), dict(options.content), path, s.name))
+        accelerations = s.text("accelerations", MEASURED, ACCELERATIONS)
+        out.append(
+            PlannedManoeuvre(
+                s.text("parameter_file"), s.text("name"), dict(options.content), accelerations, path, s.name
+            )
+        )
         s.finish()
     return tuple(out)
 
@@ -128,7 +134,10 @@ def read_plan(path: Path) -> Plan:
         s.finish()
     exports: list[PlannedExport] = []
     for s in root.sections("export"):
-        planned = PlannedExport(s.text("to"), s.flag("accept_loss", False), s.flag("strict", False), path, s.name)
+        planned = PlannedExport(
+            s.text("to"), s.flag("accept_loss", False), s.flag("strict", False),
+            s.text("accelerations", MEASURED, ACCELERATIONS), path, s.name,
+        )  # fmt: skip
         if planned.to in {e.to for e in exports}:
             raise s.fail("to", f"the target {shown(planned.to)} twice", "every target once")
         exports.append(planned)

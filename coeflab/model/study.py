@@ -19,6 +19,7 @@ from coeflab.model.coefficient import Coefficient
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
 from coeflab.model.frozen import locked
+from coeflab.model.inertia import MEASURED
 from coeflab.model.reference import Comparison, Reference
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.triangulation import Triangulation
@@ -82,6 +83,7 @@ class PlannedExport:
         Write although the target cannot hold everything.
     strict : bool
         Refuse any loss, whatever else is said.
+    accelerations : {"measured", "computed"}
     file : Path or None
         The plan's, for messages.
     place : str
@@ -91,6 +93,7 @@ class PlannedExport:
     to: str
     accept_loss: bool = False
     strict: bool = False
+    accelerations: str = MEASURED
     file: Path | None = None
     place: str = "export"
 
@@ -107,6 +110,7 @@ class PlannedManoeuvre:
     ----------
     parameter_file, name : str
     options : mapping
+    accelerations : {"measured", "computed"}
     file : Path or None
         The plan's, for messages.
     place : str
@@ -116,6 +120,7 @@ class PlannedManoeuvre:
     parameter_file: str
     name: str
     options: Mapping[str, Any] = field(default_factory=dict)
+    accelerations: str = MEASURED
     file: Path | None = None
     place: str = "manoeuvre"
 

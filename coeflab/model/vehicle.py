@@ -16,7 +16,7 @@ from coeflab.kernels.rigid_body import rigid_body_inertia
 from coeflab.kernels.transforms import rigid_body_force
 from coeflab.kernels.vehicle_motion import restoring, turned_about
 from coeflab.model.frozen import locked
-from coeflab.model.inertia import added_mass_of, measured_first
+from coeflab.model.inertia import MEASURED, WaterInertia, water_inertia, with_accelerations
 from coeflab.model.motion_terms import MotionTerm, as_arrays, motion_terms, open_products
 from coeflab.model.parameter_file import CoveredRange, ParameterFile
 from coeflab.model.parameter_vehicle import ParameterHydrostatics, ParameterSurface, ParameterThruster
@@ -39,6 +39,9 @@ class Vehicle:
     inertia : (3, 3) array
         About the reference point.
     added : (6, 6) array
+        M_A, that of ``water`` but in draws of it.
+    water : WaterInertia
+        Which accelerations were chosen, and where they come from.
     terms : tuple of MotionTerm
         Of ``law``, in its order.
     law : MotionLaw
@@ -59,6 +62,7 @@ class Vehicle:
     centre: Array
     inertia: Array
     added: Array
+    water: WaterInertia
     terms: tuple[MotionTerm, ...]
     law: MotionLaw
     hydrostatics: ParameterHydrostatics
@@ -170,7 +174,11 @@ class Vehicle:
 
 
 def vehicle(
-    parameters: ParameterFile, free: Sequence[str] = (), plane: str = "", tables: bool = False, measured: bool = True
+    parameters: ParameterFile,
+    free: Sequence[str] = (),
+    plane: str = "",
+    tables: bool = False,
+    accelerations: str = MEASURED,
 ) -> Vehicle:
     """The vehicle of a parameter file.
 
@@ -182,8 +190,8 @@ def vehicle(
     plane : {"horizontal", "vertical", ""}
     tables : bool
         Whether fitted tables come before derivatives.
-    measured : bool
-        Whether measured acceleration derivatives stand in the added mass in place of computed entries.
+    accelerations : {"measured", "computed"}
+        Whether acceleration derivatives of the file come before its computed added mass; see `coeflab.model.inertia`.
 
     Raises
     ------
@@ -204,6 +212,8 @@ def vehicle(
             shown(strange[0] if strange else plane), f"some of {' '.join(MOTIONS)}, or a plane: {', '.join(PLANES)}",
             column="free" if strange else "plane",
         )  # fmt: skip
+    water = water_inertia(parameters, accelerations)
+    parameters = with_accelerations(parameters, accelerations)
     centre = np.array(mass.centre if mass.centre is not None else (mass.mass_moment / mass.mass, 0.0, 0.0))
     terms, statements = motion_terms(parameters, tables)
     known = _known(parameters, terms)
@@ -214,8 +224,7 @@ def vehicle(
         why = "" if free else f"; the file does not know enough of {', '.join(m for m in MOTIONS if m not in known)}"
         said.append(f"{', '.join(lacking)} held at the values of the start{why}")
     inertia = _inertia(parameters, moves)
-    added, source = measured_first(parameters) if measured else added_mass_of(parameters)
-    said.append(source)
+    said += water.statements
     hydrostatics = parameters.hydrostatics
     if hydrostatics is None:
         hydrostatics = ParameterHydrostatics(
@@ -226,7 +235,7 @@ def vehicle(
         if set(moves) & set("wpq"):
             said.append("no hydrostatics in the file: neutrally buoyant, centre of buoyancy at that of gravity")
     made = Vehicle(
-        name=parameters.name, mass=mass.mass, centre=centre, inertia=inertia, added=added, terms=terms,
+        name=parameters.name, mass=mass.mass, centre=centre, inertia=inertia, added=water.matrix, water=water, terms=terms,
         law=as_arrays(terms, open_products(parameters, tables)), hydrostatics=hydrostatics, thrusters=parameters.thrusters,
         surfaces=parameters.surfaces, free=moves, speed=parameters.conditions.speed, length=parameters.scaling.length,
         density=parameters.conditions.density, covered=parameters.covered, statements=tuple(said),

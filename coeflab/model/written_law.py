@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.kernels.terms import Term, parse_suffix
 from coeflab.model.force_law import force_law
-from coeflab.model.inertia import added_mass_of
+from coeflab.model.inertia import water_inertia
 from coeflab.model.parameter_file import ParameterFile
 
 _SPELT = re.compile(r"a(dr|ds|db|[uvwpqr](?!dot))")
@@ -121,7 +121,8 @@ def written_terms(parameters: ParameterFile) -> tuple[WrittenTerm, ...]:
 
 def written_accelerations(parameters: ParameterFile) -> tuple[dict[str, float], str]:
     """Primed acceleration derivatives that are not zero, and where they come from."""
-    matrix, source = added_mass_of(parameters)
+    water = water_inertia(parameters)
+    matrix, source = water.matrix, water.source
     density, length = parameters.conditions.density, parameters.scaling.length
     out = {}
     for i, component in enumerate(COMPONENTS):
@@ -157,9 +158,11 @@ def written_changes(parameters: ParameterFile, target: str, ideal: str, matrix: 
     matrix : str
         What the added mass is called.
     """
+    water = water_inertia(parameters)
     return (
         "axes, signs, primes and reference point are the file's; primes are multiplied by 1/2 rho L^k U^n in the program",
         f"totals are written, for {target} adds no C_A(nu) nu; products of the ideal fluid that nothing measured speaks of stand as "
         f"{ideal}",
-        f"{matrix}: {added_mass_of(parameters)[1]}",
+        f"{matrix}: {water.source}",
+        *water.warnings,
     )

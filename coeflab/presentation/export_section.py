@@ -11,8 +11,8 @@ from coeflab.presentation.document import Section
 
 TEXT = (
     "The files were read again and evaluated by the target's own force law, written from its source, beside the force law of the "
-    "parameter file. A difference is what a simulation with that target has wrong in steady motion, if the parameter file is "
-    "right.",
+    "parameter file; so are the accelerations that this force and the added mass in those files give. A difference is what a "
+    "simulation with that target has wrong, if the parameter file is right.",
     "Where a target adds -C_A(nu) nu itself, first-order derivatives are given to it less their potential part, so that nothing "
     "counts twice.",
 )
@@ -32,13 +32,20 @@ def export_sections(study: Study) -> tuple[Section, ...]:
 
 def summary(exports: tuple[Export, ...]) -> Table:
     """One row an export."""
-    rows = tuple((made.parameters, made.target, _verdict(made), _worst(made), _place(made)) for made in exports)
-    headers = ("parameter file", "target", "loss", "worst of largest", "files")
+    rows = tuple(
+        (made.parameters, made.target, _verdict(made), _worst(made), _accelerations(made), _place(made))
+        for made in exports
+    )
+    headers = ("parameter file", "target", "loss", "worst of largest", "accelerations", "files")
     notes = (
-        "worst of largest: largest difference of a force component over its largest value, both over the states that the loss of "
+        "worst of largest: largest difference of a force component or an acceleration over its largest value, both over the states that the loss of "
         f"each export names: what campaigns cover, and primes to {ASSUMED:g} either way of a motion that none covers",
     )
-    return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4}))
+    return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4, 5}))
+
+
+def _accelerations(made: Export) -> str:
+    return ABSENT if made.loss is None else made.loss.water.used
 
 
 def _verdict(made: Export) -> str:
@@ -46,14 +53,14 @@ def _verdict(made: Export) -> str:
         return "none: tables of the file's own values"
     if made.lossless:
         return "none"
-    return f"accepted: {loss_tables.counted(made.loss) or 'the force differs'}"
+    return f"accepted: {loss_tables.counted(made.loss) or 'force or acceleration differs'}"
 
 
 def _worst(made: Export) -> str:
     if made.loss is None:
         return ABSENT
-    worst = float(made.loss.relative.max())
-    return f"{100.0 * worst if worst > LOSSLESS else 0.0:.2g} %"
+    name, worst = made.loss.furthest
+    return f"{loss_tables.percent(worst)} ({name})" if worst > LOSSLESS else loss_tables.percent(worst)
 
 
 def _place(made: Export) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from coeflab.model.inertia import water_inertia
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.study import Study
 from coeflab.model.table import Table, number
@@ -22,8 +23,16 @@ def mass_table(study: Study) -> tuple[Table, ...]:
     notes = (
         "m' = m / (1/2 rho L^3); xG' = x_G / L, from the reference point, forward; Iy = Iz about the reference point",
         "No uncertainty of mass and inertia is in U95 of indices, roots or manoeuvres: it is not assessed.",
+        *_added(study),
     )
     return (Table("Mass and inertia used", headers, tuple(rows), notes, frozenset({0, 1, 3, 4, 5})),)
+
+
+def _added(study: Study) -> tuple[str, ...]:
+    """The added mass that goes with them, of each parameter file with a mass."""
+    massive = [p for p in study.parameter_files.values() if p.mass is not None]
+    said = [(p.name, *water_inertia(p).statements) for p in massive]
+    return tuple(f"{name}: {'; '.join(each)}" for name, *each in said)
 
 
 def _rows(parameters: ParameterFile, source: str, stated: str) -> tuple[tuple[str, ...], ...]:

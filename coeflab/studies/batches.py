@@ -49,7 +49,9 @@ class Setup:
     options : tuple of (str, value)
         Of the manoeuvre.
     free, hold : tuple of str
-    tables, measured : bool
+    tables : bool
+    accelerations : str
+        Measured or computed.
     current : (float, float, float)
     step, record : float
     kernel : str
@@ -62,7 +64,7 @@ class Setup:
     free: tuple[str, ...]
     hold: tuple[str, ...]
     tables: bool
-    measured: bool
+    accelerations: str
     current: tuple[float, float, float]
     step: float = 0.0
     record: float = 0.0
@@ -92,7 +94,7 @@ class Batch:
 def prepared(setup: Setup) -> tuple[ParameterFile, Vehicle, Uncertain]:
     """File, vehicle and what is uncertain of it."""
     parameters = ParameterFile.model_validate_json(setup.parameters)
-    how = {"tables": setup.tables, "measured": setup.measured}
+    how = {"tables": setup.tables, "accelerations": setup.accelerations}
     body = moved(parameters, setup.manoeuvre, setup.free, setup.hold, **how)
     return parameters, body, uncertain(parameters, [t.symbol for t in body.terms])
 
@@ -108,7 +110,7 @@ def figures_of(setup: Setup, deviations: Array) -> list[tuple[tuple[Figure, ...]
     """
     parameters, body, varied = prepared(setup)
     plugin, options = MANOEUVRES.load(setup.manoeuvre), dict(setup.options)
-    whole = drawn(body, parameters, varied.symbols, deviations, setup.measured)
+    whole = drawn(body, parameters, varied.symbols, deviations, setup.tables)
     members = [whole.member(i) for i in range(whole.count)]
     plans = [_plan(plugin, m, options) for m in members]
     out: list[tuple[tuple[Figure, ...], str]] = [((), NO_PLAN)] * whole.count
@@ -117,7 +119,10 @@ def figures_of(setup: Setup, deviations: Array) -> list[tuple[tuple[Figure, ...]
         if p is not None:
             alike.setdefault(_steered(p), []).append(i)
     for chosen in alike.values():
-        part = Ensemble(body, whole.coefficients[chosen], None if whole.added is None else whole.added[chosen])
+        part = Ensemble(
+            body, whole.coefficients[chosen], None if whole.added is None else whole.added[chosen],
+            None if whole.ideal is None else whole.ideal[chosen],
+        )  # fmt: skip
         orders = [p for i in chosen if (p := plans[i]) is not None]
         with ONE_AT_A_TIME:
             found = march(part, orders, setup.step, setup.record, setup.kernel, np.array(setup.current))

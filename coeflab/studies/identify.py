@@ -18,6 +18,7 @@ from coeflab.kernels.marine_library import ALONG
 from coeflab.model.candidate_terms import candidate_terms
 from coeflab.model.force_balance import NOISE, STRETCH, Candidate, centres, differenced, excited, known, stretches, weak
 from coeflab.model.identified import HOW, Balanced, Identified, IdentifiedTerm, Outcome, together_in_words
+from coeflab.model.inertia import ACCELERATIONS, MEASURED, WaterInertia
 from coeflab.model.motion_series import ANGLES, MotionSeries, read_series
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.potential import potential_part
@@ -60,6 +61,7 @@ class Options:
     window: float = measured(0.0, 0.0, 1e4, "time")
     symmetric: str = one_of("yes", "yes", "no")
     added_mass: str = one_of("known", "known", "fit")
+    accelerations: str = one_of(MEASURED, *ACCELERATIONS)
     optimizer: str = one_of("stlsq", "stlsq", "sr3")
     resamples: int = bounded(200, 20, 100_000)
     seed: int = bounded(1, 0, 2**31)
@@ -83,10 +85,10 @@ def identify_from(files: Sequence[Path], parameters: ParameterFile, options: dic
         A file or an option that cannot be used, or series too short or too coarse for the window.
     """
     o = parse_options(Options, options, "identify")
-    reader = vehicle(parameters, free=("u",))
+    reader = vehicle(parameters, free=("u",), accelerations=o.accelerations)
     series = [read_series(f, reader) for f in files]
     moving = frozenset().union(*(s.moving for s in series))
-    body = vehicle(parameters, free=[m for m in MOTIONS if m in moving])
+    body = vehicle(parameters, free=[m for m in MOTIONS if m in moving], accelerations=o.accelerations)
     _attitude_known(series, files, body, moving)
     half = o.window or _half(series, body)
     _long_enough(series, files, half)
@@ -145,7 +147,7 @@ def _identified(
         if not mine:
             continue
         balance = (weak if o.form == "weak" else differenced)(series, body, c, mine, half)
-        some, balanced = _component(c, mine, balance, share, parameters, o)
+        some, balanced = _component(c, mine, balance, share, parameters, body.water, o)
         terms += some
         balances.append(balanced)
     return Identified(
@@ -156,7 +158,7 @@ def _identified(
 
 def _component(
     component: str, mine: Sequence[Candidate], balance: Products, share: dict[str, float], parameters: ParameterFile,
-    o: Options,
+    water: WaterInertia, o: Options,
 ) -> tuple[list[IdentifiedTerm], Balanced]:  # fmt: skip
     """Terms of one component."""
     why = _unusable(mine, balance, share)
@@ -168,7 +170,7 @@ def _component(
         others = exchangeable(sub, found.kept)
     out = []
     for j, candidate in enumerate(mine):
-        file = _in_file(candidate, parameters)
+        file = _in_file(candidate, parameters, water)
         if j in why or found is None:
             out.append(_term(candidate, Outcome.NOT_IDENTIFIABLE, why[j], file))
             continue
@@ -200,15 +202,14 @@ def _unusable(mine: Sequence[Candidate], balance: Products, share: dict[str, flo
 File = tuple[float | None, float | None, str]
 
 
-def _in_file(candidate: Candidate, parameters: ParameterFile) -> File:
+def _in_file(candidate: Candidate, parameters: ParameterFile, water: WaterInertia) -> File:
     """Value and U95 that the file has, or what its added mass gives to a product of velocities."""
     c = parameters.coefficient(candidate.symbol)
     if c is not None and c.value is not None:
         return c.value, c.u95, c.origin
-    hull = parameters.added_mass
-    if hull is not None and not candidate.rate:
-        point, scaling = parameters.reference_point, Scaling(parameters.scaling.length, parameters.scaling.length_name)
-        ideal = potential_part(candidate.symbol, hull.as_noun(point.point, point.datum), scaling, hull.density)
+    if parameters.added_mass is not None and not candidate.rate:
+        scaling = Scaling(parameters.scaling.length, parameters.scaling.length_name)
+        ideal = potential_part(candidate.symbol, water.as_noun(parameters), scaling, parameters.conditions.density)
         if ideal:
             return ideal, None, "ideal fluid"
     return None, None, ""
@@ -253,7 +254,7 @@ def _statements(
     o: Options,
 ) -> tuple[str, ...]:
     """What was assumed, and what the series cannot show."""
-    out = [HOW]
+    out = [HOW, *body.water.statements]
     if o.form == "weak":
         out.append(
             "Even and odd rows serve each other as instruments, which takes out the bias of noise that is white."

@@ -76,7 +76,7 @@ def uncertainty(
     setup, plan = _setup(parameters, question)
     _, body, varied = prepared(setup)
     members = varied.members(question.members, question.seed)
-    still = unfelt(body, varied.symbols, _ordered(plan), question.measured)
+    still = unfelt(body, varied.symbols, _ordered(plan))
     felt = frozenset() if any(question.current) else still
     sampled = sobol_design(varied, question.members, question.seed, felt) if question.sobol else None
     every = np.vstack([members, *(sampled.to_run if sampled else ())])
@@ -106,7 +106,7 @@ def uncertainty(
         statements += (f"without effect on this motion: {', '.join(s for s in varied.symbols if s in felt)}",)
     return Carried(
         question, body.name, body.length, varied, members, names, whole.values[:count], tuple(spreads), tuple(importances),
-        len(every), sampled.base if sampled else 0, tuple(dict.fromkeys(statements)),
+        body.water, len(every), sampled.base if sampled else 0, tuple(dict.fromkeys(statements)),
     )  # fmt: skip
 
 
@@ -115,7 +115,7 @@ def _setup(parameters: ParameterFile, question: Question) -> tuple[Setup, Manoeu
     setup = Setup(
         VERSION,
         parameters.to_json().decode(), question.manoeuvre, tuple(sorted(question.options.items())), tuple(question.free),
-        tuple(question.hold), question.tables, question.measured, question.current, kernel=kernel,
+        tuple(question.hold), question.tables, question.accelerations, question.current, kernel=kernel,
     )  # fmt: skip
     plugin = MANOEUVRES.load(question.manoeuvre)
     return setup, plugin.plan(prepared(setup)[1], dict(question.options))
@@ -131,7 +131,7 @@ def _step(setup: Setup, plan: Manoeuvre, every: Array) -> float:
     parts = np.array_split(every, -(-len(every) // CHUNK))
     current = np.array(setup.current)
     return min(
-        chosen_step(drawn(body, parameters, varied.symbols, rows, setup.measured), plan, current) for rows in parts
+        chosen_step(drawn(body, parameters, varied.symbols, rows, setup.tables), plan, current) for rows in parts
     )
 
 

@@ -9,19 +9,26 @@ from coeflab.core.identifiers import PREFIX, file_stem
 from coeflab.exporters import EXPORTERS
 from coeflab.model.export import Export
 from coeflab.model.force_law import force_law
-from coeflab.model.inertia import converted
+from coeflab.model.inertia import MEASURED, converted, water_inertia, with_accelerations
 from coeflab.model.loss import loss_of
 from coeflab.model.lost import Kind, Lost, lost_by_all
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.study import PlannedExport
-from coeflab.ports import SimulatorExporter
+from coeflab.ports import InertialExporter, SimulatorExporter
 from coeflab.presentation.loss_tables import as_text, in_short
 
 LONGEST = 255
 
 
-def export(parameters: ParameterFile, target: str) -> Export:
+def export(parameters: ParameterFile, target: str, accelerations: str = MEASURED) -> Export:
     """Render a parameter file for a target and evaluate the target's own law from the rendered files.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    target : str
+    accelerations : {"measured", "computed"}
+        As for `coeflab.workbench.manoeuvres.simulate`. The loss is counted from the file with its measured ones.
 
     Raises
     ------
@@ -31,16 +38,24 @@ def export(parameters: ParameterFile, target: str) -> Export:
         The target cannot hold the file at all, or a file of it would leave the folder.
     """
     plugin = EXPORTERS.load(target)
-    files = dict(plugin.render(parameters))
+    water = water_inertia(parameters, accelerations)
+    given = with_accelerations(parameters, accelerations)
+    files = dict(plugin.render(given if isinstance(plugin, SimulatorExporter) else parameters))
     _refuse_places(files, parameters, target)
     if not isinstance(plugin, SimulatorExporter):
         return Export(parameters.name, target, files, None, plugin.citations)
-    lost = (*(Lost(Kind.MISSING, said) for said in plugin.missing(parameters)), *lost_by_all(parameters, plugin.holds))
-    changes = (*plugin.changes(parameters), *converted(parameters), *_renamed(files, parameters))
-    found = loss_of(
-        target, force_law(parameters), parameters, files, plugin.force, plugin.not_held(parameters), lost, changes
+    missing = tuple(Lost(Kind.MISSING, said) for said in plugin.missing(given))
+    lost = (*missing, *lost_by_all(parameters, plugin.holds, water))
+    changes = (
+        *dict.fromkeys((*plugin.changes(given), *water.warnings)),
+        *converted(parameters),
+        *_renamed(files, parameters),
     )
-    files[f"{file_stem(parameters.name)}.{target}.loss.txt"] = as_text(found, parameters).encode()
+    found = loss_of(
+        target, force_law(parameters), parameters, files, plugin.force, plugin.not_held(given), lost, changes, water,
+        plugin.added_mass if isinstance(plugin, InertialExporter) else None,
+    )  # fmt: skip
+    files[f"{file_stem(parameters.name)}.{target}.loss.txt"] = as_text(found, given).encode()
     return Export(parameters.name, target, files, found, plugin.citations)
 
 
@@ -101,7 +116,7 @@ def exports_of(
     out = []
     for p, parameters in ((p, parameters) for p in planned for parameters in files):
         try:
-            made = export(parameters, p.to)
+            made = export(parameters, p.to, p.accelerations)
         except InputError as why:
             found = f"{why.found} in {parameters.name} for {p.to}"
             raise InputError(found, why.expected, file=p.file, column=p.key("to"), advice=why.advice) from None

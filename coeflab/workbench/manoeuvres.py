@@ -46,7 +46,7 @@ def manoeuvres_of(
                 file=asked.file, column=asked.key("parameter_file"),
             )  # fmt: skip
         try:
-            out.append(simulate(parameters, asked.name, asked.options))
+            out.append(simulate(parameters, asked.name, asked.options, accelerations=asked.accelerations))
         except InputError as why:
             raise InputError(
                 why.found, why.expected, file=asked.file, column=asked.key(why.column or "name"), advice=why.advice
@@ -68,7 +68,7 @@ def moved(
     free, hold : sequence of str
         Motions that may change, and those of them that are held after all.
     **how
-        ``tables`` and ``measured`` of `coeflab.model.vehicle.vehicle`.
+        ``tables`` and ``accelerations`` of `coeflab.model.vehicle.vehicle`.
 
     Raises
     ------

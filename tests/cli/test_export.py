@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 from tests.cli.conftest import Run
+from tests.model.test_inertia import accelerating
 
 PARAMS = Path(__file__).parents[1] / "data" / "parameters_1_2.json"
 
@@ -100,3 +101,21 @@ def test_a_name_that_leads_elsewhere_stays_in_the_folder(coeflab: Run, tmp_path:
         "up_sin_46c498a5.csv/up_sin_46c498a5.table_1_Y.csv", "up_sin_46c498a5.mss/up_sin.m",
         "up_sin_46c498a5.mss/up_sin_46c498a5.mss.loss.txt",
     ]  # fmt: skip
+
+
+def test_the_choice_of_accelerations_is_named(coeflab: Run, tmp_path: Path) -> None:
+    file = tmp_path / "a.parameters.json"
+    file.write_bytes(accelerating().to_json())
+    for accelerations, lossless in (("measured", True), ("computed", False)):
+        out = tmp_path / accelerations
+        done = coeflab(
+            "export", file, "--to", "xdyn", "--out", out, "--accept-loss", "--accelerations", accelerations, "--json"
+        )
+        assert done.returncode == 0, done.stderr
+        said = json.loads(done.stdout)
+        assert said["accelerations"]["used"] == accelerations
+        assert said["lossless"] is lossless
+        assert (max(said["accelerations_compared"]["worst_difference"]) > 0.01) is not lossless
+        assert f"# Inertia of the water: accelerations {accelerations}, " in (out / "file.yml").read_text()
+    refused = coeflab("export", file, "--to", "xdyn", "--accelerations", "computed", "--strict")
+    assert "/dt differs by up to" in refused.stderr

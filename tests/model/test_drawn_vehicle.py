@@ -45,17 +45,17 @@ def restated(file: ParameterFile, symbols: tuple[str, ...], deviation: np.ndarra
 
 
 @pytest.mark.parametrize("hull", [False, True])
-@pytest.mark.parametrize("measured", [False, True])
-def test_a_member_is_the_vehicle_of_the_drawn_file(hull: bool, measured: bool) -> None:
+@pytest.mark.parametrize("accelerations", ["measured", "computed"])
+def test_a_member_is_the_vehicle_of_the_drawn_file(hull: bool, accelerations: str) -> None:
     file = accelerating(hull)
-    body = vehicle(file, measured=measured)
+    body = vehicle(file, accelerations=accelerations)
     varied = uncertain(file, [t.symbol for t in body.terms])
     deviations = varied.members(4, 1)
-    ensemble = drawn(body, file, varied.symbols, deviations, measured)
+    ensemble = drawn(body, file, varied.symbols, deviations)
     rng = np.random.default_rng(3)
     nu, controls = rng.normal(0.0, 0.5, (20, 6)), rng.normal(0.0, 0.2, (20, 3))
     for i in range(4):
-        wanted = vehicle(restated(file, varied.symbols, deviations[i]), measured=measured)
+        wanted = vehicle(restated(file, varied.symbols, deviations[i]), accelerations=accelerations)
         np.testing.assert_allclose(ensemble.member(i).effective_mass, wanted.effective_mass, rtol=1e-12, atol=1e-12)
         np.testing.assert_allclose(
             ensemble.member(i).force(nu, controls), wanted.force(nu, controls), rtol=1e-10, atol=1e-10

@@ -15,7 +15,7 @@ from coeflab.kernels.composition import moved
 from coeflab.kernels.transforms import derivative_transfer
 from coeflab.model.exported_law import centre_of_gravity
 from coeflab.model.force_law import force_law
-from coeflab.model.inertia import added_mass_of
+from coeflab.model.inertia import water_inertia
 from coeflab.model.parameter_coefficient import ParameterCoefficient
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.second_order import SURGE, second_order
@@ -108,8 +108,8 @@ def test_every_representable_term_comes_back(target: str, file: ParameterFile, t
         else:
             assert same.value == pytest.approx(c.value, rel=1e-12), symbol
     assert len(held) == (len(stated(file)) if target in EVERYTHING else SECOND_ORDER[file.name])
-    wanted, _ = added_mass_of(file)
-    np.testing.assert_allclose(added_mass_of(back)[0], wanted, rtol=1e-12, atol=1e-13 * np.max(wanted))
+    wanted = water_inertia(file).matrix
+    np.testing.assert_allclose(water_inertia(back).matrix, wanted, rtol=1e-12, atol=1e-13 * np.max(wanted))
     if target == "xdyn" and file.mass is not None and file.mass.inertia_matrix is None:
         assert any(said.startswith("Rigid-body inertia: the parameter file has no") for said in xdyn.missing(file))
     else:
@@ -135,8 +135,8 @@ def test_uuv_simulator_about_its_centre_of_gravity(file: ParameterFile, tmp_path
         (left @ linear @ right, moved_products, quadratic), linear_and_products(file), strict=True
     ):
         np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-12 * max(np.max(np.abs(wanted)), 1e-300))
-    wanted, _ = added_mass_of(file)
-    found = moved(added_mass_of(back)[0], -centre_of_gravity(file))
+    wanted = water_inertia(file).matrix
+    found = moved(water_inertia(back).matrix, -centre_of_gravity(file))
     np.testing.assert_allclose(found, wanted, rtol=1e-12, atol=1e-12 * np.max(wanted))
     assert np.count_nonzero(np.hstack(linear_and_products(file)[:2])) >= 2
     names = {s for s in stated(file) if s not in lost("uuv_simulator", file)}
@@ -157,4 +157,4 @@ def test_the_facts_are_those_of_the_model_files(name: str) -> None:
         assert ours[symbol].value_si == pytest.approx(c.value_si, rel=1e-12), symbol
     if name != "lauv":
         assert set(ours) == set(stated(read))
-    np.testing.assert_allclose(added_mass_of(read)[0], added_mass_of(vehicle(name))[0], rtol=1e-9)
+    np.testing.assert_allclose(water_inertia(read).matrix, water_inertia(vehicle(name)).matrix, rtol=1e-9)

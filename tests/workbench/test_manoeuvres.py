@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,8 +12,10 @@ from coeflab.core.files import shipped
 from coeflab.model.plan import read_plan
 from coeflab.model.study import PlannedManoeuvre
 from coeflab.presentation.manoeuvre_section import manoeuvre_sections
+from coeflab.workbench.exports import exports_of
 from coeflab.workbench.manoeuvres import manoeuvres_of
 from tests.manoeuvres.vehicles import UNSTABLE, made
+from tests.model.test_inertia import accelerating
 from tests.presentation.studies import FULL, small_study
 
 PLAN = '[study]\nname = "s"\n[[table]]\ncampaign = "suboff_roddy_2"\n'
@@ -77,3 +80,21 @@ def test_a_turn_that_nothing_limits_is_said_to_be_undetermined() -> None:
     status = {row[0]: row[-2] for row in turn.tables[0].rows}
     assert status["steady turning diameter"] == "not determined"
     assert len(turn.figures) >= 3
+
+
+def test_a_plan_chooses_accelerations_for_manoeuvres_and_exports(tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    asked = '[[manoeuvre]]\nparameter_file = "v"\nname = "straight_run"\naccelerations = "computed"\n[manoeuvre.options]\nduration = 5\n'
+    path.write_text(PLAN + asked + '[[export]]\nto = "mss"\naccelerations = "computed"\n[[export]]\nto = "csv"\n')
+    plan = read_plan(path)
+    assert [e.accelerations for e in plan.exports] == ["computed", "measured"]
+    file = accelerating()
+    (made_of,) = manoeuvres_of(plan.manoeuvres, {"v": file}, quiet)
+    assert made_of.vehicle.water.used == "computed"
+    assert made_of.vehicle.water.source in made_of.statements
+    (exported,) = exports_of([replace(plan.exports[0], accept_loss=True)], [file], quiet)
+    assert exported.loss is not None
+    assert exported.loss.water.used == "computed"
+    path.write_text(PLAN + '[[export]]\nto = "mss"\naccelerations = "guessed"\n')
+    with pytest.raises(InputError, match="guessed"):
+        read_plan(path)

@@ -70,7 +70,7 @@ h.ideal.Kqr = -0.000125;
 h.ideal.Mpr = 0.0044375;
 h.ideal.Npq = -0.0043125;
 
-% Primed acceleration derivatives, the negative of the added mass: added mass of body of tow by ellipsoid
+% Primed acceleration derivatives, the negative of the added mass: accelerations computed, the added mass of body of tow by ellipsoid
 h.Xudot = -0.005;
 h.Yvdot = -0.15;
 h.Zwdot = -0.145;
