@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source
 from coeflab.model.frozen import locked
@@ -126,7 +127,8 @@ class Body:
 
     Attributes
     ----------
-    name, title, datum : str
+    name, title : str
+    datum : Datum
     reference_point : (3,) array
         Point of the mass properties, m, FRD, from the datum.
     lengths : mapping of str to float
@@ -144,7 +146,7 @@ class Body:
 
     name: str
     title: str
-    datum: str
+    datum: Datum
     reference_point: NDArray[np.float64]
     lengths: Mapping[str, float]
     configurations: tuple[Configuration, ...]

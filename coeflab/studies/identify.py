@@ -208,7 +208,7 @@ def _in_file(candidate: Candidate, parameters: ParameterFile) -> File:
     hull = parameters.added_mass
     if hull is not None and not candidate.rate:
         point, scaling = parameters.reference_point, Scaling(parameters.scaling.length, parameters.scaling.length_name)
-        ideal = potential_part(candidate.symbol, hull.as_noun(point.point, point.datum), scaling, hull.density)
+        ideal = potential_part(candidate.symbol, hull.as_noun(point.point, point.origin), scaling, hull.density)
         if ideal:
             return ideal, None, "ideal fluid"
     return None, None, ""

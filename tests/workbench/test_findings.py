@@ -60,7 +60,7 @@ def test_an_angle_in_radians_that_was_meant_in_degrees_is_refused(tmp_path: Path
 def test_the_added_mass_of_a_plan_reaches_file_and_study() -> None:
     hull = shipped("geometry") / "spheroid_example"
     table = PlannedTable(shipped("cfd_data") / "suboff_cfd_barehull", ("slope_at_origin",))
-    plan = Plan(name="s", title="", tables=(table,), wanted=(), datum="", hull=hull, method="ellipsoid")
+    plan = Plan(name="s", title="", tables=(table,), wanted=(), hull=hull, method="ellipsoid")
     with pytest.raises(Exception, match="datum"):
         run(plan)
     bare = Plan(
