@@ -13,7 +13,7 @@ from coeflab.core.symbols import derivative, primed
 from coeflab.core.version import VERSION
 from coeflab.kernels.rigid_body import about_another
 from coeflab.model.added_mass import AddedMass
-from coeflab.model.body import Body, MassProperties
+from coeflab.model.body import Body, MassProperties, likeness
 from coeflab.model.coefficient import Coefficient, CoefficientSet
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
@@ -179,12 +179,27 @@ def assemble(
     prime = mass.primed(first.scaling, conditions.density) if mass else (1.0, 0.0)
     hull, record = None, None
     if found is not None:
-        record = added_mass_record(found, first.reference_point, first.datum)
+        alike = likeness(
+            found.body, group.body, configuration, own_file=body is not None and body.files == found.body.files
+        )
+        shape, label = found.body, ""
+        if alike.same is False and shape.name == group.body:
+            label = f"{shape.name}, of another shape"
+        record = added_mass_record(found, first.reference_point, first.datum, group.body if alike.same else label)
         hull = record.as_noun(first.reference_point.tolist(), first.datum)
-        if hull.body != group.body:
+        if alike.same is None:
             notes.append(
-                f"added mass is that of {hull.body}, the coefficients are those of {group.body}: their potential parts are "
-                "those of another shape"
+                f"added mass is that of {shape.name}, the coefficients are those of {group.body}: whether both are one body is "
+                f"not known ({alike.words})"
+            )
+        elif not alike.same:
+            notes.append(
+                f"added mass is that of {shape.name}, the coefficients are those of {group.body}: their potential parts are "
+                f"those of another shape ({alike.words})"
+            )
+        elif shape.name != group.body:
+            notes.append(
+                f"added mass of {group.body} computed from the shape {shape.name} ({shape.title}): {alike.words}"
             )
     return ParameterFile(
         name=group.name,

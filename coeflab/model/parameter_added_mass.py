@@ -56,7 +56,7 @@ class ParameterAddedMass(Strict):
         return AddedMass(np.array(self.matrix), np.array(point), datum, self.body, self.method, self.statements)
 
 
-def added_mass_record(found: Triangulation, point: np.ndarray, datum: Datum) -> ParameterAddedMass:
+def added_mass_record(found: Triangulation, point: np.ndarray, datum: Datum, vehicle: str = "") -> ParameterAddedMass:
     """The added mass of a file, the recommended method and the others about its reference point.
 
     Parameters
@@ -65,6 +65,8 @@ def added_mass_record(found: Triangulation, point: np.ndarray, datum: Datum) -> 
     point : (3,) array
     datum : Datum
         Of the file.
+    vehicle : str
+        Whose body the shape is; empty: that of its own name.
 
     Raises
     ------
@@ -79,7 +81,7 @@ def added_mass_record(found: Triangulation, point: np.ndarray, datum: Datum) -> 
         )
     return ParameterAddedMass.model_validate(
         {
-            "body": chosen.body,
+            "body": vehicle or chosen.body,
             "method": chosen.method,
             "density": found.density,
             "matrix": _rows(chosen, point),
