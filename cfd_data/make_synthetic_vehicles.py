@@ -46,6 +46,7 @@ class Description:
     title: str
     body: str
     datum: str
+    datum_note: str
     length: str
     length_name: str
     density: float
@@ -83,6 +84,7 @@ notes = "{d.notes}"
 [axes]
 frame = "FRD"
 {alpha}datum = "{d.datum}"
+datum_note = "{d.datum_note}"
 reference_point = [0.0, 0.0, 0.0]
 
 [scaling]
@@ -124,7 +126,8 @@ def flyingfish(medium: str) -> tuple[bytes, Description]:
     return csv_of(columns), Description(
         title=f"TJ-FlyingFish in {medium}, synthetic, one velocity at a time",
         body=f"tj_flyingfish_{medium}_synthetic",
-        datum="centre of gravity",
+        datum="cg",
+        datum_note="centre of gravity",
         length="1 m",
         length_name="unit length (the paper prints none)",
         density=DENSITY[medium],
@@ -160,7 +163,8 @@ def thauv(case: str) -> tuple[bytes, Description]:
     return csv_of(columns), Description(
         title=f"THAUV case {case}, synthetic, angle of attack at three speeds",
         body=f"thauv_case_{case}_synthetic",
-        datum="origin of the paper's body axes",
+        datum="paper_axes",
+        datum_note="origin of the paper's body axes",
         length="1 m",
         length_name="unit length (the polar needs none)",
         density=1025.0,
@@ -196,7 +200,8 @@ def elevator() -> tuple[bytes, Description]:
     return csv_of(columns), Description(
         title="HUUV elevator, synthetic, elevator angle at three angles of attack",
         body="huuv_elevator_synthetic",
-        datum="the elevator's axis of rotation",
+        datum="elevator_axis",
+        datum_note="the elevator's axis of rotation",
         length=f"{ELEVATOR_LENGTH:g} m",
         length_name="characteristic length of the elevator",
         density=1000.0,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from coeflab.core.datums import read_datum
 from coeflab.core.provenance import InputFile, read_source, sha256_of
 from coeflab.core.toml import read_toml
 from coeflab.model.body import Body
@@ -28,7 +29,7 @@ def read(path: Path) -> Body:
     body = Body(
         name=head.text("name"),
         title=head.text("title", ""),
-        datum=head.text("datum"),
+        datum=read_datum(head),
         reference_point=reference,
         lengths={k: lengths.positive(k, "length") for k in lengths.content},
         configurations=tuple(read_configuration(s, prime, reference) for s in root.sections("configuration")),

@@ -7,7 +7,6 @@ from itertools import combinations
 
 import numpy as np
 
-from coeflab.core.datums import same_datum
 from coeflab.core.symbols import primed
 from coeflab.model.check import Check, Severity
 from coeflab.model.study import Study
@@ -20,7 +19,7 @@ def check(study: Study) -> Sequence[Check]:
     """One finding per pair of campaigns and coefficient."""
     out = []
     for a, b in combinations(study.fits, 2):
-        if a.campaign == b.campaign or a.body != b.body or not same_datum(a.coefficients.datum, b.coefficients.datum):
+        if a.campaign == b.campaign or a.body != b.body or a.coefficients.datum != b.coefficients.datum:
             continue
         if not np.allclose(a.coefficients.reference_point, b.coefficients.reference_point, atol=1e-9):
             continue

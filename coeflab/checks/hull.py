@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from coeflab.model.body import likeness
 from coeflab.model.check import Check, Severity
 from coeflab.model.study import Study
 
@@ -14,7 +15,7 @@ LENGTH, VOLUME, ABSURD = 0.1, 0.05, 0.5
 
 
 def check(study: Study) -> Sequence[Check]:
-    """The hull's length against that of the primes, its volume against the particulars, and its name."""
+    """The hull's length against that of the primes, its volume against the particulars, and whether both are one body."""
     out = []
     for name, found in study.hulls.items():
         file, hull = study.parameter_files[name], found.body
@@ -25,9 +26,11 @@ def check(study: Study) -> Sequence[Check]:
             pairs.append((f"volume of {stated.name}", shape.volume, stated.volume, "m^3", VOLUME))
         for what, ours, theirs, unit, limit in pairs:
             out.append(_held(f"{name}: {hull.name}", what, ours, theirs, unit, limit))
-        if hull.name != file.body:
+        alike = likeness(hull, file.body, stated, own_file=study.body is not None and study.body.files == hull.files)
+        if not alike.same:
+            severity = Severity.NOTE if alike.same is None else Severity.WARN
             out.append(
-                Check("hull", f"{name}: {hull.name}", Severity.NOTE, f"the forces are those of {file.body}", "one body",
+                Check("hull", f"{name}: {hull.name}", severity, f"the forces are those of {file.body}; {alike.words}", "one body",
                       "Potential parts are those of another shape; say why that will do, or give the body itself.")
             )  # fmt: skip
     return out

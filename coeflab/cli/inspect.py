@@ -77,7 +77,7 @@ def _tables(table: str, json: bool) -> None:
                         "varies": list(t.varies),
                         "components": list(t.forces),
                         "reference_point": [float(x) for x in t.reference_point],
-                        "datum": t.datum,
+                        "datum": t.datum.id,
                         "scaling": str(t.scaling),
                         "density": t.conditions.density,
                         "excluded": [

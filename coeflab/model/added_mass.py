@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.kernels.composition import Definiteness, definiteness, moved
@@ -26,7 +27,8 @@ class AddedMass:
         kg, kg m, kg m^2.
     reference_point : (3,) array
         m, FRD, from the datum.
-    datum, body, method : str
+    datum : Datum
+    body, method : str
     statements : tuple of str
         What the method assumed, in words.
     error : (6, 6) array, optional
@@ -37,7 +39,7 @@ class AddedMass:
 
     matrix: NDArray[np.float64]
     reference_point: NDArray[np.float64]
-    datum: str
+    datum: Datum
     body: str
     method: str
     statements: tuple[str, ...] = ()

@@ -7,14 +7,13 @@ from typing import Literal
 
 import numpy as np
 
-from coeflab.core.datums import same_datum
-from coeflab.core.errors import InputError, ScalingMismatchError
+from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import derivative, primed
 from coeflab.core.version import VERSION
 from coeflab.kernels.rigid_body import about_another
 from coeflab.model.added_mass import AddedMass
-from coeflab.model.body import Body, MassProperties
+from coeflab.model.body import Body, MassProperties, likeness
 from coeflab.model.coefficient import Coefficient, CoefficientSet
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
@@ -91,7 +90,12 @@ def _triple(values: np.ndarray) -> tuple[float, float, float]:
 def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tuple[MassProperties | None, list[str]]:
     """Mass properties about the set's reference point; none where only another datum or another axis leads there."""
     shift = among.reference_point - body.reference_point
-    if not same_datum(body.datum, among.datum) or np.any(np.abs(shift[1:]) > 1e-6):
+    if body.datum != among.datum:
+        return None, [
+            f"mass properties left out: {body.name} counts from {shown(body.datum.id)}, the coefficients from "
+            f"{shown(among.datum.id)}"
+        ]
+    if np.any(np.abs(shift[1:]) > 1e-6):
         return None, ["mass properties left out: the body states them about a point that no shift along x leads from"]
     if abs(shift[0]) <= 1e-6:
         return mass, []
@@ -153,13 +157,20 @@ def assemble(
         first.scaling.require(s.scaling)
         if f.body != group.body:
             raise ScalingMismatchError(f"{f.campaign} is about {f.body}, the parameter file {group.name} {group.body}.")
-        if not same_datum(s.datum, first.datum) or not np.allclose(s.reference_point, first.reference_point, atol=1e-9):
+        if s.datum != first.datum:
+            raise ScalingMismatchError(
+                f"{chosen[0].campaign} measures points from {shown(first.datum.id)}, {f.campaign} from {shown(s.datum.id)}; "
+                "nothing says how far apart they are. Give both the same datum; words of explanation go into datum_note."
+            )
+        if not np.allclose(s.reference_point, first.reference_point, atol=1e-9):
             raise ScalingMismatchError(
                 f"{f.campaign} and {chosen[0].campaign} have other reference points; give the study a reference_point."
             )
     coefficients, covariance, notes = gathered(group, chosen, missing, references)
     models, repeated = recorded(chosen)
     notes += repeated
+    if first.datum.note:
+        notes.append(f"points count from {first.datum}")
     configuration = body.configuration(group.body) if body else None
     mass = configuration.mass if configuration else None
     if mass and body:
@@ -168,18 +179,33 @@ def assemble(
     prime = mass.primed(first.scaling, conditions.density) if mass else (1.0, 0.0)
     hull, record = None, None
     if found is not None:
-        record = added_mass_record(found, first.reference_point, first.datum)
+        alike = likeness(
+            found.body, group.body, configuration, own_file=body is not None and body.files == found.body.files
+        )
+        shape, label = found.body, ""
+        if alike.same is False and shape.name == group.body:
+            label = f"{shape.name}, of another shape"
+        record = added_mass_record(found, first.reference_point, first.datum, group.body if alike.same else label)
         hull = record.as_noun(first.reference_point.tolist(), first.datum)
-        if hull.body != group.body:
+        if alike.same is None:
             notes.append(
-                f"added mass is that of {hull.body}, the coefficients are those of {group.body}: their potential parts are "
-                "those of another shape"
+                f"added mass is that of {shape.name}, the coefficients are those of {group.body}: whether both are one body is "
+                f"not known ({alike.words})"
+            )
+        elif not alike.same:
+            notes.append(
+                f"added mass is that of {shape.name}, the coefficients are those of {group.body}: their potential parts are "
+                f"those of another shape ({alike.words})"
+            )
+        elif shape.name != group.body:
+            notes.append(
+                f"added mass of {group.body} computed from the shape {shape.name} ({shape.title}): {alike.words}"
             )
     return ParameterFile(
         name=group.name,
         body=group.body,
         scaling=ParameterScaling(length=first.scaling.length, length_name=first.scaling.length_name),
-        reference_point=ParameterPoint(point=tuple(map(float, first.reference_point)), datum=first.datum),
+        reference_point=ParameterPoint(point=tuple(map(float, first.reference_point)), datum=first.datum.id),
         conditions=ParameterConditions(
             density=conditions.density, speed=conditions.speed, viscosity=conditions.viscosity
         ),

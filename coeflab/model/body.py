@@ -9,11 +9,14 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Scaling
 from coeflab.model.shape import Shape
+
+SAME_VOLUME, SAME_SURFACE = 0.01, 0.03  # printed particulars of one model; sail and planes of a submarine are more
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -126,7 +129,8 @@ class Body:
 
     Attributes
     ----------
-    name, title, datum : str
+    name, title : str
+    datum : Datum
     reference_point : (3,) array
         Point of the mass properties, m, FRD, from the datum.
     lengths : mapping of str to float
@@ -144,7 +148,7 @@ class Body:
 
     name: str
     title: str
-    datum: str
+    datum: Datum
     reference_point: NDArray[np.float64]
     lengths: Mapping[str, float]
     configurations: tuple[Configuration, ...]
@@ -190,6 +194,59 @@ class Body:
             known = ", ".join(c.name for c in self.configurations)
             raise InputError(f"no configuration {shown(name)} of {self.name}", f"one of {known}")
         return found
+
+
+@dataclass(frozen=True, slots=True)
+class Likeness:
+    """Whether a shape is that of a vehicle.
+
+    Attributes
+    ----------
+    same : bool or None
+        None where nothing but their names can be compared, and these differ.
+    words : str
+        What was compared.
+    """
+
+    same: bool | None
+    words: str
+
+
+def likeness(hull: Body, vehicle: str, stated: Configuration | None, own_file: bool = False) -> Likeness:
+    """Compare a shape with the vehicle that it is to stand for.
+
+    A body that bears the vehicle's name, or whose file has a configuration of that name, is the vehicle unless both its
+    volume and its wetted surface say otherwise. A body of another name is the vehicle where both are known and agree.
+
+    Parameters
+    ----------
+    hull : Body
+        With a shape; its first configuration is computed from it.
+    vehicle : str
+    stated : Configuration or None
+        Of the vehicle, from its particulars.
+    own_file : bool
+        The particulars stand in the hull's own file, which then describes one vehicle.
+    """
+    named = hull.name == vehicle or hull.configuration(vehicle) is not None
+    if (named and own_file) or stated is None:
+        return Likeness(
+            True if named else None, f"the body of {vehicle}" if named else "no particulars to compare with"
+        )
+    own = next(iter(hull.configurations), None)
+    apart, words = [], []
+    for what, unit, limit in (("volume", "m^3", SAME_VOLUME), ("wetted_surface", "m^2", SAME_SURFACE)):
+        ours, theirs = getattr(own, what, None), getattr(stated, what)
+        if ours and theirs:
+            share = ours / theirs - 1.0
+            apart.append(abs(share) > limit)
+            words.append(
+                f"{what.replace('_', ' ')} {ours:.4g} against {theirs:.4g} {unit} ({share:+.1%}, limit {limit:.0%})"
+            )
+    said = ", ".join(words) or "neither volume nor wetted surface to compare"
+    if len(apart) == 2:
+        return Likeness(not (all(apart) if named else any(apart)), said)
+    return Likeness(True if named else False if any(apart) else None, said)
 
 
 def mass_from_primes(mass: float, moment: float, inertia: float | None, by: Scaling, density: float) -> MassProperties:

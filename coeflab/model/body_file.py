@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from coeflab.core.datums import read_datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import InputFile, read_source, sha256_of
 from coeflab.core.toml import Section, read_toml
@@ -31,7 +32,7 @@ class BodyFile:
         out = Body(
             name=head.text("name"),
             title=head.text("title", ""),
-            datum=head.text("datum"),
+            datum=read_datum(head),
             reference_point=reference,
             lengths={k: lengths.positive(k, "length") for k in lengths.content},
             configurations=(computed, *printed),

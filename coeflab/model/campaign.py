@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import Axes, parse_axes
+from coeflab.core.datums import Datum, read_datum
 from coeflab.core.provenance import TABLE_KINDS, Source, read_source
 from coeflab.core.toml import Section, read_toml
 from coeflab.model.frozen import locked
@@ -80,7 +81,7 @@ class Campaign:
     importer: str
     axes: Axes
     signs: Mapping[str, str]
-    datum: str
+    datum: Datum
     reference_point: NDArray[np.float64]
     scaling: Scaling
     conditions: Conditions
@@ -159,7 +160,7 @@ def read_campaign(path: Path) -> Campaign:
         importer=head.text("importer", "csv"),
         axes=parse_axes(axes.raw("frame"), path),
         signs={k: axes.text(k) for k in ("alpha", "beta") if axes.has(k)},
-        datum=axes.text("datum"),
+        datum=read_datum(axes),
         reference_point=axes.point("reference_point"),
         scaling=read_scaling(scaling),
         conditions=read_conditions(conditions),

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.core.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative
 from coeflab.kernels.transforms import derivative_transfer
@@ -148,7 +149,7 @@ class CoefficientSet:
         Density and speed of a dimensional set; None when primed.
     reference_point : (3,) array
         m, FRD, from the datum.
-    datum : str
+    datum : Datum
     body : str
     """
 
@@ -156,7 +157,7 @@ class CoefficientSet:
     covariance: Array
     scaling: Scaling
     reference_point: Array
-    datum: str
+    datum: Datum
     body: str
     conditions: Conditions | None = None
 

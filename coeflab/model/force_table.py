@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.datums import Datum
 from coeflab.core.provenance import InputFile, Source
 from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.kernels.transforms import force_transfer, velocity_transfer
@@ -75,7 +76,7 @@ class ForceTable:
         One text per row for figures and messages (run or point number).
     reference_point : (3,) array
         m, FRD, from the datum.
-    datum : str
+    datum : Datum
         The body point that reference points are measured from.
     conditions : Conditions
     scaling : Scaling
@@ -103,7 +104,7 @@ class ForceTable:
     exclusions: tuple[Exclusion, ...]
     labels: tuple[str, ...]
     reference_point: Array
-    datum: str
+    datum: Datum
     conditions: Conditions
     scaling: Scaling
     source: Source

@@ -9,15 +9,14 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.symbols import derivative, primed
-from coeflab.model.coefficient import Coefficient, Status
+from coeflab.model.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.reference import Reference
-from coeflab.model.scaling import Scaling
 from coeflab.model.study import PlannedParameterFile
 
 
 def _literature(
-    group: PlannedParameterFile, references: Sequence[Reference], scaling: Scaling, point: NDArray[np.float64]
+    group: PlannedParameterFile, references: Sequence[Reference], among: CoefficientSet
 ) -> list[Coefficient]:
     """Literature coefficients of a group, rescaled to its length, labelled with method and source."""
     out = []
@@ -28,7 +27,12 @@ def _literature(
                 f"no reference {shown(name)}", f"one of {', '.join(known) or 'none'}",
                 column=f"parameter_file.{group.name}.literature",
             )  # fmt: skip
-        reference = known[name]
+        reference, point = known[name], among.reference_point
+        if reference.datum is not None and reference.datum != among.datum:
+            raise ScalingMismatchError(
+                f"{name} measures points from {shown(reference.datum.id)}, the parameter file from {shown(among.datum.id)}: "
+                "literature values are taken only about their own point."
+            )
         if reference.reference_point is not None and not np.allclose(reference.reference_point, point, atol=1e-9):
             raise ScalingMismatchError(
                 f"{name} is about {tuple(reference.reference_point)}, the parameter file about {tuple(point)}: "
@@ -36,7 +40,7 @@ def _literature(
             )
         for kind in reference.literature:
             for v in kind.values:
-                value = None if v.value is None else v.value * reference.scaling.ratio(v.symbol, scaling)
+                value = None if v.value is None else v.value * reference.scaling.ratio(v.symbol, among.scaling)
                 what = f"{kind.method} {kind.kind}, {reference.place}"
                 out.append(
                     Coefficient(
@@ -96,7 +100,7 @@ def gathered(
                 notes.append(f"{primed(c.symbol)} from {used.campaign}; {other.campaign} gives {given}")
             if used is c:
                 entries[c.symbol] = (c, k, i)
-    extra = {c.symbol: c for c in _literature(group, references, first.scaling, first.reference_point)}
+    extra = {c.symbol: c for c in _literature(group, references, first)}
     entries = {s: e for s, e in entries.items() if e[0].value is not None or s not in extra or extra[s].value is None}
     absent = [c for c in missing if c.campaign == ", ".join(group.campaigns) and c.body == group.body]
     coefficients = [c for c, _, _ in entries.values()]

@@ -32,7 +32,7 @@ def parameter_file(huuv: Huuv) -> ParameterFile:
         "name": "huuv",
         "body": "HUUV, horizontal plane",
         "scaling": {"length": chosen["length"], "length_name": "characteristic length of Table 1"},
-        "reference_point": {"point": (0.0, 0.0, 0.0), "datum": "centre of buoyancy"},
+        "reference_point": {"point": (0.0, 0.0, 0.0), "datum": "cb"},
         "conditions": {"density": chosen["density"], "speed": chosen["speed"]},
         "mass": _mass(huuv),
         "coefficients": (),

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.identifiers import one_line
 from coeflab.core.provenance import InputFile, sha256_of
@@ -109,7 +110,7 @@ def link_file(
         scaling=scaling,
         conditions=at,
         coefficients=stated_coefficients(link.form, link.added, link.matrix, scaling, at),
-        datum=f"origin of the link {one_line(link.link)}"[:200],
+        datum=Datum(f"origin of the link {one_line(link.link)}"[:200]),
         matrix=kept_matrix(link.matrix),
         mass=stated_mass(link.mass, link.centre, link.inertia, notes),
         notes=tuple(notes),

@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import model_validator
 
-from coeflab.core.datums import same_datum
+from coeflab.core.datums import Datum
 from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.kernels.composition import definiteness
 from coeflab.model.added_mass import AddedMass
@@ -51,20 +51,22 @@ class ParameterAddedMass(Strict):
             )
         return self
 
-    def as_noun(self, point: Sequence[float], datum: str) -> AddedMass:
+    def as_noun(self, point: Sequence[float], datum: Datum) -> AddedMass:
         """The matrix in use, about the file's reference point."""
         return AddedMass(np.array(self.matrix), np.array(point), datum, self.body, self.method, self.statements)
 
 
-def added_mass_record(found: Triangulation, point: np.ndarray, datum: str) -> ParameterAddedMass:
+def added_mass_record(found: Triangulation, point: np.ndarray, datum: Datum, vehicle: str = "") -> ParameterAddedMass:
     """The added mass of a file, the recommended method and the others about its reference point.
 
     Parameters
     ----------
     found : Triangulation
     point : (3,) array
-    datum : str
+    datum : Datum
         Of the file.
+    vehicle : str
+        Whose body the shape is; empty: that of its own name.
 
     Raises
     ------
@@ -72,14 +74,14 @@ def added_mass_record(found: Triangulation, point: np.ndarray, datum: str) -> Pa
         The body measures points from another datum.
     """
     chosen, *others = found.ordered
-    if not same_datum(chosen.datum, datum):
+    if chosen.datum != datum:
         raise ScalingMismatchError(
-            f"the added mass of {chosen.body} is stated from {shown(chosen.datum)}, the parameter file from {shown(datum)}; "
+            f"the added mass of {chosen.body} is stated from {shown(chosen.datum.id)}, the parameter file from {shown(datum.id)}; "
             "give both the same datum."
         )
     return ParameterAddedMass.model_validate(
         {
-            "body": chosen.body,
+            "body": vehicle or chosen.body,
             "method": chosen.method,
             "density": found.density,
             "matrix": _rows(chosen, point),

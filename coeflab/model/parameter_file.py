@@ -14,6 +14,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, model_validator
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.toml import read_text
 from coeflab.model import noun_tables
@@ -59,8 +60,18 @@ class ParameterPoint(Strict):
     """Point that moments, rates and mass moments refer to."""
 
     point: Annotated[tuple[Finite, Finite, Finite], told("x y z from the datum, in `axes`", "m")]
-    datum: Annotated[Name, told("the point of the body that points are measured from, in words")]
+    datum: Annotated[
+        Name,
+        told(
+            "id of the point of the body that points are measured from, for example nose, cg or midship; compared letter by letter"
+        ),
+    ]
     axes: Annotated[Literal["FRD"], told("x forward, y starboard, z down")] = "FRD"
+
+    @property
+    def origin(self) -> Datum:
+        """The datum; phrases of files up to 1.3 stand for ids, as in `coeflab.core.datums`."""
+        return Datum.named(self.datum)
 
 
 class CoveredRange(Strict):
@@ -155,7 +166,7 @@ class ParameterFile(Strict):
             raise ValueError(f"{booked[0].symbol}: a potential part without an added mass")
         if self.added_mass is None:
             return
-        hull = self.added_mass.as_noun(self.reference_point.point, self.reference_point.datum)
+        hull = self.added_mass.as_noun(self.reference_point.point, self.reference_point.origin)
         for c in booked:
             due = potential_part(c.symbol, hull, primes, self.added_mass.density) or 0.0
             if not math.isclose(c.potential or 0.0, due, rel_tol=1e-6, abs_tol=1e-9):

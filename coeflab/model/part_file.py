@@ -30,7 +30,10 @@ def part_file(body: Body, shape: Parts, opening: tuple[str, ...], remarks: Mappi
     """
     lines = [*_comments(opening), "[body]"]
     lines += [f"name = {_text(body.name)}", f"title = {_text(body.title)}", 'reader = "primitives"']
-    lines += [f"datum = {_text(body.datum)}", f"reference_point = {_numbers(body.reference_point)}", "", "[source]"]
+    lines.append(f"datum = {_text(body.datum.id)}")
+    if body.datum.note:
+        lines.append(f"datum_note = {_text(body.datum.note)}")
+    lines += [f"reference_point = {_numbers(body.reference_point)}", "", "[source]"]
     for key in ("citation", "place", "kind", "how_obtained", "stated_uncertainty"):
         value = getattr(body.source, key)
         if value:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from coeflab.core.datums import read_datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
 from coeflab.core.provenance import InputFile, sha256_of
@@ -148,7 +149,7 @@ def read_plan(path: Path) -> Plan:
         tables=_tables(root),
         joint=_joint(root),
         reference_point=study.point("reference_point") if study.has("reference_point") else None,
-        datum=study.text("datum", ""),
+        datum=read_datum(study) if study.has("datum") else None,
         scaling=read_scaling(scaling) if scaling.content else None,
         conditions=read_conditions(conditions) if conditions.content else None,
         body=_path(body, "path", "geometry") if body.content else None,

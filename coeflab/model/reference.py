@@ -11,6 +11,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.datums import Datum, read_datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.toml import Section, read_toml
 from coeflab.core.units import quantity
@@ -76,6 +77,7 @@ class Reference:
     uncertainties: Mapping[str, float]
     reference_point: NDArray[np.float64] | None
     indices: tuple[PublishedValue, ...] = ()
+    datum: Datum | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "uncertainties", MappingProxyType(dict(self.uncertainties)))
@@ -131,8 +133,12 @@ class Comparison:
 
 
 def compare_set(among: CoefficientSet, references: tuple[Reference, ...]) -> tuple[Comparison, ...]:
-    """Hold a set against published values, each about the point and by the length of its own source."""
+    """Hold a set against published values, each about the point and by the length of its own source.
+
+    Those that count from another datum are left out; those that name none count from that of the set.
+    """
     out: list[Comparison] = []
+    references = tuple(r for r in references if r.datum is None or r.datum == among.datum)
     points = {None if r.reference_point is None else tuple(map(float, r.reference_point)) for r in references}
     for point in sorted(points, key=str, reverse=True):
         here = [
@@ -241,6 +247,7 @@ def read_references(path: Path) -> tuple[Reference, ...]:
                 uncertainties=_uncertainties(s.section("uncertainties", required=False)),
                 reference_point=s.point("reference_point") if s.has("reference_point") else None,
                 indices=_values(s.section("indices", required=False), STABILITY),
+                datum=read_datum(s) if s.has("datum") else None,
             )
         )
         s.finish()

@@ -6,7 +6,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from coeflab.core.datums import same_datum
 from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.model.force_table import ForceTable
 from coeflab.model.scaling import Scaling
@@ -25,9 +24,9 @@ def about_one_point(tables: Sequence[ForceTable]) -> tuple[ForceTable, ...]:
     """
     first = tables[0]
     for t in tables:
-        if not same_datum(t.datum, first.datum):
+        if t.datum != first.datum:
             raise ScalingMismatchError(
-                f"{first.campaign} measures points from {shown(first.datum)}, {t.campaign} from {shown(t.datum)}; state "
+                f"{first.campaign} measures points from {shown(first.datum.id)}, {t.campaign} from {shown(t.datum.id)}; state "
                 "the reference points of both from one datum."
             )
     return tuple(t.about(first.reference_point) for t in tables)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative, primed
@@ -32,6 +33,7 @@ from coeflab.model.scaling import Conditions, Scaling
 
 Array = NDArray[np.float64]
 Law = Literal["motion", "rest"]
+MODEL_ORIGIN = Datum("origin of the model")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,7 +60,7 @@ class Stated:
     conditions : Conditions
     coefficients : mapping of symbol to (primed value, law)
     point : (3,) tuple
-    datum : str
+    datum : Datum
     matrix : (6, 6) array or None
         Added mass about the point, where the file is to hold it as such: symmetric and positive.
     matrix_body, matrix_method : str
@@ -72,7 +74,7 @@ class Stated:
     conditions: Conditions
     coefficients: dict[str, tuple[float, Law]]
     point: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    datum: str = "origin of the model"
+    datum: Datum = MODEL_ORIGIN
     matrix: Array | None = None
     matrix_body: str = ""
     matrix_method: str = "stated"
@@ -106,7 +108,7 @@ def _built(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, .
         name=s.name,
         body=s.body,
         scaling=ParameterScaling(length=s.scaling.length, length_name=s.scaling.length_name),
-        reference_point=ParameterPoint(point=s.point, datum=s.datum),
+        reference_point=ParameterPoint(point=s.point, datum=s.datum.id),
         conditions=ParameterConditions(density=at.density, speed=at.speed, viscosity=at.viscosity),
         mass=None
         if s.mass is None

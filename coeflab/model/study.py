@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.datums import Datum
 from coeflab.core.provenance import InputFile
 from coeflab.model.body import Body
 from coeflab.model.budget import Budget
@@ -138,7 +139,8 @@ class Plan:
     name, title : str
     reference_point : (3,) array or None
         m, FRD, from the datum; None leaves every campaign where it is.
-    datum : str
+    datum : Datum or None
+        From which the reference point counts; None takes each campaign's own.
     scaling : Scaling or None
         None keeps each campaign's own length.
     conditions : Conditions or None
@@ -162,7 +164,7 @@ class Plan:
     title: str
     tables: tuple[PlannedTable, ...]
     reference_point: NDArray[np.float64] | None = None
-    datum: str = ""
+    datum: Datum | None = None
     scaling: Scaling | None = None
     conditions: Conditions | None = None
     body: Path | None = None

@@ -17,6 +17,7 @@ from coeflab.model.columns import Array, Columns
 from coeflab.model.force_table import Exclusion, ForceTable
 
 SYMMETRIC = ("X", "Z", "M")
+TAKEN_OUT = "inertia of the model taken out"
 
 
 def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -> ForceTable:
@@ -46,7 +47,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         notes.append("half model: X, Z, M doubled")
     if any(np.any(motion[m] != 0.0) for m in ANGULAR) and (inertia := _contained(campaign, table)):
         forces = _without_inertia(inertia, campaign, forces, motion)
-        notes.append(f"inertia of the model taken out (m = {inertia.mass:g} kg)")
+        notes.append(f"{TAKEN_OUT} (m = {inertia.mass:g} kg)")
     return ForceTable(
         name=f"{campaign.name}/{table.file}",
         campaign=campaign.name,

@@ -115,7 +115,7 @@ def _coefficients(p: ParameterFile, numbered: list[Numbered], tuning: Tuning) ->
             update = {"u95": half, "status": "single_estimator" if half is None else "form_assumed", "origin": "fit",
                       "parts": UncertaintyParts(random=half)}  # fmt: skip
         if c.potential is not None and p.added_mass is not None:
-            hull = p.added_mass.as_noun(p.reference_point.point, p.reference_point.datum)
+            hull = p.added_mass.as_noun(p.reference_point.point, p.reference_point.origin)
             primes = Scaling(p.scaling.length, p.scaling.length_name)
             update["potential"] = potential_part(c.symbol, hull, primes, p.added_mass.density) or 0.0
         changed.append(c.model_copy(update=update))

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coeflab.core.datums import same_datum
 from coeflab.model.budget import Budget
 from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.study import Study
@@ -121,4 +120,4 @@ def validation(s: Budget, d: Budget, ratio: float = 1.0) -> Validation:
 
 
 def _alike(a: CoefficientSet, b: CoefficientSet) -> bool:
-    return same_datum(a.datum, b.datum) and bool(np.allclose(a.reference_point, b.reference_point, atol=1e-6))
+    return a.datum == b.datum and bool(np.allclose(a.reference_point, b.reference_point, atol=1e-6))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.kernels.kirchhoff import ideal_quadratics
@@ -27,7 +28,7 @@ from coeflab.model.munk_moment import Written, munk_twice
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.potential import potential_part
 from coeflab.model.scaling import Conditions, Scaling
-from coeflab.model.stated_file import Law, Stated, StatedMass, matrix_doubts, stated_file
+from coeflab.model.stated_file import MODEL_ORIGIN, Law, Stated, StatedMass, matrix_doubts, stated_file
 from coeflab.model.units_told import SLUGS, gravity, gyration, no_mass, water, weight
 
 summary = "MSS .m files with plain assignments: primed or SI derivatives, slug and foot units told by rho or g"
@@ -157,7 +158,7 @@ def _own(found: MFile, path: Path) -> Stated:
         conditions=at,
         coefficients=coefficients,
         point=(n["x_ref"], n["y_ref"], n["z_ref"]),
-        datum=found.texts.get("datum", "origin of the model"),
+        datum=Datum.named(found.texts.get("datum", MODEL_ORIGIN.id)),
         matrix=matrix,
         matrix_body=found.texts.get("MA_body", ""),
         matrix_method=method or "stated",
@@ -198,7 +199,7 @@ def _foreign(found: MFile, path: Path, density: float | None) -> Stated:
     doubts = matrix_doubts(matrix)
     kept = matrix if found.adds_coriolis and not doubts else None
     notes += [*doubts, _coriolis_note(found, kept is not None)]
-    hull = None if kept is None else AddedMass(kept, np.zeros(3), "origin of the model", path.stem, "stated")
+    hull = None if kept is None else AddedMass(kept, np.zeros(3), MODEL_ORIGIN, path.stem, "stated")
     coefficients: dict[str, tuple[float, Law]] = {}
     squares: dict[str, str] = {}
     for symbol, value in v.values.items():

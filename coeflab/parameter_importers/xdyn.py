@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.arithmetic import ArithmeticProblem
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.identifiers import one_line
 from coeflab.core.provenance import InputFile, sha256_of
@@ -115,7 +116,7 @@ def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
         conditions=at,
         coefficients=coefficients,
         point=(x, y, z),
-        datum="origin of the body frame" if body.mesh is None else "origin of the mesh",
+        datum=Datum("origin of the body frame" if body.mesh is None else "origin of the mesh"),
         matrix=matrix if kept else None,
         mass=mass,
         notes=(*notes, *doubt),

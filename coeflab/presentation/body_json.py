@@ -13,7 +13,7 @@ from coeflab.model.mesh import TriangleMesh
 
 def body_json(body: Body, density: float) -> dict[str, Any]:
     """Volumes, centres, areas and inertia of the displaced water by configuration, SI, FRD; None where not known."""
-    out: dict[str, Any] = {"body": body.name, "datum": body.datum, "density": density}
+    out: dict[str, Any] = {"body": body.name, "datum": str(body.datum), "density": density}
     if isinstance(body.shape, TriangleMesh):
         out |= {"faces": len(body.shape.faces), "extents": body.shape.extents.tolist()}
     out["configurations"] = [

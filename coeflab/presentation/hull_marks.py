@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.datums import same_datum
 from coeflab.model.body import Body
 from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.derived import CENTRES, Derived, centre_of_pressure
@@ -35,7 +34,7 @@ def hull_marks(study: Study, body: Body, files: tuple[str, ...]) -> tuple[tuple[
     for name in files:
         parameters = study.parameter_files[name]
         point = parameters.reference_point
-        if not same_datum(point.datum, body.datum):
+        if point.origin != body.datum:
             unknown.append(f"{name} counts from another datum ({point.datum}), so its points are not drawn.")
             continue
         of_file = f" of {name}" if len(files) > 1 else ""

@@ -101,7 +101,7 @@ def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
         covariance,
         Scaling(parameters.scaling.length, parameters.scaling.length_name),
         np.array(parameters.reference_point.point),
-        parameters.reference_point.datum,
+        parameters.reference_point.origin,
         parameters.body,
     )  # fmt: skip
 
@@ -123,7 +123,7 @@ def compare(a: ParameterFile, b: ParameterFile) -> Comparison:
     same_datum = ours.datum == theirs.datum
     if not same_datum:
         said.append(
-            f'reference points are measured from other datums, "{ours.datum}" and "{theirs.datum}": moments and rates '
+            f'reference points are measured from other datums, "{ours.datum.id}" and "{theirs.datum.id}": moments and rates '
             "are not comparable"
         )
     elif not np.allclose(ours.reference_point, theirs.reference_point, rtol=0.0, atol=SAME_POINT):

@@ -147,7 +147,7 @@ def _obstacle(first: ParameterModel, second: ParameterModel, a: ParameterFile, b
         return "no area stated, and other lengths"
     if _moment(first.response) or set(first.names) & set(ANGULAR):
         here, there = a.reference_point, b.reference_point
-        if here.datum != there.datum:
+        if here.origin != there.origin:
             return "the reference points are measured from other datums"
         if not np.allclose(here.point, there.point, rtol=0.0, atol=SAME):
             return "about other reference points: moments and rates of a table are not transferred"

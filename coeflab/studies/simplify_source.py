@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.axes import parse_axes
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.files import located, shipped
 from coeflab.core.provenance import InputFile, Source, sha256_of
@@ -98,7 +99,7 @@ def _bare(path: Path, unit: float, turn: np.ndarray[Any, Any], repair: bool) -> 
     return Body(
         name=path.stem,
         title=path.name,
-        datum=f"origin of {path.name}",
+        datum=Datum(f"origin of {path.name}"),
         reference_point=np.zeros(3),
         lengths={},
         configurations=(computed(shape, sound.statements),),

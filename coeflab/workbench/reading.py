@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from coeflab.bodies import BODIES
-from coeflab.core.datums import same_datum
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.toml import read_toml
 from coeflab.importers import IMPORTERS
@@ -43,9 +42,9 @@ def settled(table: ForceTable, plan: Plan) -> ForceTable:
         table = table.with_uncertain_cells()
     if plan.reference_point is None:
         return table
-    if plan.datum and not same_datum(plan.datum, table.datum):
+    if plan.datum and plan.datum != table.datum:
         raise ScalingMismatchError(
-            f"the plan measures points from {shown(plan.datum)}, {table.campaign} from {shown(table.datum)}; "
+            f"the plan measures points from {shown(plan.datum.id)}, {table.campaign} from {shown(table.datum.id)}; "
             "state the reference point from one datum."
         )
     return table.about(plan.reference_point)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from coeflab.added_mass import ADDED_MASS, ellipsoid, primitives, strip
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError, PluginError
 from coeflab.core.files import shipped
 from coeflab.kernels.ellipsoid import ellipsoid_added_mass
@@ -136,7 +137,7 @@ def test_primes_do_not_depend_on_density() -> None:
 
 
 def test_primes_by_hand() -> None:
-    mass = AddedMass(np.diag([1.0, 2, 3, 4, 5, 6]), np.zeros(3), "d", "b", "m")
+    mass = AddedMass(np.diag([1.0, 2, 3, 4, 5, 6]), np.zeros(3), Datum("d"), "b", "m")
     assert mass.primed("Yvdot", Scaling(2.0, "L"), 1000.0) == pytest.approx(-2.0 / (500.0 * 8.0))
     assert mass.primed("Nrdot", Scaling(2.0, "L"), 1000.0) == pytest.approx(-6.0 / (500.0 * 32.0))
 
@@ -150,7 +151,7 @@ def test_about_another_point() -> None:
 
 def test_a_matrix_that_is_no_kinetic_energy_says_so() -> None:
     for matrix in (-np.eye(6), np.eye(6) + 2.0 * np.eye(6, k=1) + 2.0 * np.eye(6, k=-1)):
-        assert "do not use it" in AddedMass(matrix, np.zeros(3), "d", "b", "m").verdict
+        assert "do not use it" in AddedMass(matrix, np.zeros(3), Datum("d"), "b", "m").verdict
 
 
 def test_statements_name_what_is_estimated(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from coeflab.core.datums import Datum
 from coeflab.core.symbols import CONTROLS, derivative
 from coeflab.kernels.terms import parse_suffix
 from coeflab.model.added_mass import AddedMass
@@ -32,7 +33,7 @@ HOSTILE = (
 def full(seed: int) -> ParameterFile:
     """Every kind of term, and a full random added mass."""
     root = np.random.default_rng(seed).normal(size=(6, 6))
-    hull = AddedMass(40.0 * root @ root.T, np.zeros(3), "nose", "body of tow", "panel")
+    hull = AddedMass(40.0 * root @ root.T, np.zeros(3), Datum("nose"), "body of tow", "panel")
     return parameters(VALUES, hull)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from coeflab.core.datums import Datum
 from coeflab.kernels.rigid_body import parallel_axis
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.parameter_file import ParameterFile
@@ -40,4 +41,4 @@ def with_mass(file: ParameterFile, centre: np.ndarray = CENTRE) -> ParameterFile
 
 def torpedo() -> ParameterFile:
     """Straight-running and stable, every entry of its added mass other than zero."""
-    return with_mass(parameters(VALUES, AddedMass(ADDED, np.zeros(3), "nose", "body of tow", "panel")))
+    return with_mass(parameters(VALUES, AddedMass(ADDED, np.zeros(3), Datum("nose"), "body of tow", "panel")))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from coeflab.core.datums import Datum
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.parameter_mass import ParameterMass
@@ -39,7 +40,7 @@ def with_mass(file: ParameterFile, centre: np.ndarray = CENTRE) -> ParameterFile
 def exact(seed: int, values: dict[str, float] = EXACT) -> ParameterFile:
     """No term in U, and a full random added mass."""
     root = np.random.default_rng(seed).normal(size=(6, 6))
-    return parameters(values, AddedMass(40.0 * root @ root.T, np.zeros(3), "nose", "body of tow", "panel"))
+    return parameters(values, AddedMass(40.0 * root @ root.T, np.zeros(3), Datum("nose"), "body of tow", "panel"))
 
 
 def golden() -> ParameterFile:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.files import shipped
 from coeflab.fits import FITS
@@ -352,7 +353,7 @@ def test_different_bodies_are_said() -> None:
 def test_points_from_two_datums_do_not_mix() -> None:
     a, b = pair(1)
     with pytest.raises(ScalingMismatchError, match="one datum"):
-        fitted((a, replace(b, datum="midship")), terms=NAMES)
+        fitted((a, replace(b, datum=Datum("midship"))), terms=NAMES)
 
 
 SWEEP = "beta [deg],Y [N],N [N*m]\n" + "".join(f"{b},{5 * b + b % 3},{7 * b - b % 2}\n" for b in range(-9, 10, 3))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import Source
 from coeflab.core.symbols import COMPONENTS, MOTIONS
@@ -32,7 +33,7 @@ def sweep(primed: dict[str, np.ndarray], **motion: np.ndarray) -> ForceTable:
         name="planted/table.csv", campaign="planted", title="synthetic", body="synthetic", motion=nu,
         controls={k: x for k, x in motion.items() if k not in MOTIONS}, speed=np.full(n, SPEED), forces=forces,
         errors={}, usable={c: np.ones(n, dtype=bool) for c in forces}, exclusions=(), labels=tuple(map(str, range(n))),
-        reference_point=np.zeros(3), datum="nose", conditions=Conditions(DENSITY, SPEED), scaling=SCALING,
+        reference_point=np.zeros(3), datum=Datum("nose"), conditions=Conditions(DENSITY, SPEED), scaling=SCALING,
         source=Source("synthetic", kind="synthetic"),
     )  # fmt: skip
 

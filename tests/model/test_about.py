@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from coeflab.core.datums import Datum
 from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.model.coefficient import CoefficientSet, Status
 from coeflab.model.force_table import ForceTable
@@ -105,7 +106,7 @@ def test_a_value_without_interval_gives_values_without_interval() -> None:
     start = coefficients(HORIZONTAL, UNIT)
     covariance = np.array(start.covariance)
     covariance[0, :] = covariance[:, 0] = np.nan
-    bare = CoefficientSet(start.coefficients, covariance, UNIT, start.reference_point, "nose", "b")
+    bare = CoefficientSet(start.coefficients, covariance, UNIT, start.reference_point, Datum("nose"), "b")
     moved = bare.about(np.array([0.5, 0.0, 0.0]))
     assert moved["Nv"].value is not None
     assert moved["Nv"].u95 is None

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.model.assemble import assemble
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Status
@@ -30,7 +31,7 @@ def fitted(campaign: str, values: dict[str, float | None], scaling: Scaling = SC
             )
             for s, v in values.items()
         ),
-        np.diag(variances), scaling, np.zeros(3), "nose", body,
+        np.diag(variances), scaling, np.zeros(3), Datum("nose"), body,
     )  # fmt: skip
     return FitResult("f", campaign, body, coefficients, (), (), {})
 

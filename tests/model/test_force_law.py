@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.core.datums import Datum
 from coeflab.core.provenance import Source
 from coeflab.kernels.kirchhoff import ideal_force
 from coeflab.model.added_mass import AddedMass
@@ -24,7 +25,7 @@ from coeflab.model.triangulation import Triangulation
 from tests.presentation.studies import FULL, small_table
 
 LENGTH, AT = Scaling(2.0, "LOA"), Conditions(1000.0, 1.5)
-HULL = AddedMass(np.diag([20.0, 600.0, 580.0, 1.0, 70.0, 72.0]), np.zeros(3), "nose", "body of tow", "ellipsoid")
+HULL = AddedMass(np.diag([20.0, 600.0, 580.0, 1.0, 70.0, 72.0]), np.zeros(3), Datum("nose"), "body of tow", "ellipsoid")
 Q = 0.5 * AT.density * LENGTH.length**2
 
 
@@ -34,14 +35,14 @@ def parameters(values: dict[str, float], hull: AddedMass | None = None, **more: 
         for s, v in values.items()
     )
     among = CoefficientSet(
-        coefficients, np.full((len(values), len(values)), np.nan), LENGTH, np.zeros(3), "nose", "body of tow"
+        coefficients, np.full((len(values), len(values)), np.nan), LENGTH, np.zeros(3), Datum("nose"), "body of tow"
     )
     fit = FitResult("slope_at_origin", "tow", "body of tow", among, (), (), {})
     group = PlannedParameterFile("file", "body of tow", ("tow",), ())
     given = None
     if hull is not None:
         box = Part("hull", Box(2.0, 0.5, 0.5), np.zeros(3), np.eye(3))
-        body = Body(hull.body, "", "nose", np.zeros(3), {}, (), Source("synthetic"), (), shape=Parts((box,)))
+        body = Body(hull.body, "", Datum("nose"), np.zeros(3), {}, (), Source("synthetic"), (), shape=Parts((box,)))
         given = Triangulation(body, AT.density, (hull,), {}, ())
     return assemble(group, "study", [fit], [small_table(FULL)], [], [], None, AT, [], given)
 

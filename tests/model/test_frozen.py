@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.model.added_mass import AddedMass
@@ -38,7 +39,7 @@ def nouns(suboff: Study) -> dict[str, Any]:
         "body": read_body(shipped("geometry") / "suboff" / "body.toml"),
         "parameter file": next(iter(suboff.parameter_files.values())),
         "campaign": read_campaign(shipped("cfd_data") / "suboff_cfd_barehull" / "campaign.toml"),
-        "added mass": AddedMass(np.eye(6), np.zeros(3), "nose", "b", "m"),
+        "added mass": AddedMass(np.eye(6), np.zeros(3), Datum("nose"), "b", "m"),
         "scaling": Scaling(1.0, "L"),
         "conditions": Conditions(1.0, 1.0),
         "source": suboff.tables[0].source,
@@ -119,7 +120,7 @@ def test_campaign_is_a_noun_too(nouns: dict[str, Any]) -> None:
 
 def test_added_mass_is_six_by_six() -> None:
     with pytest.raises(InputError, match="6 x 6"):
-        AddedMass(np.eye(3), np.zeros(3), "nose", "b", "m")
+        AddedMass(np.eye(3), np.zeros(3), Datum("nose"), "b", "m")
 
 
 def test_a_force_table_is_a_data_frame_for_notebooks(suboff) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import Source
 from coeflab.kernels.rigid_body import about_another
@@ -64,7 +65,9 @@ def test_mass_properties_move_with_the_reference_point() -> None:
     own = np.array([-0.3, 0.0, 0.0])
     about = about_another(INERTIA, MASS, CENTRE, CENTRE - own)
     mass = MassProperties(MASS, MASS * float(CENTRE[0] + 0.3), None, CENTRE - own, about)
-    body = Body("b", "", "nose", own, {}, (Configuration("b", "", None, None, None, mass),), Source("synthetic"), ())
+    body = Body(
+        "b", "", Datum("nose"), own, {}, (Configuration("b", "", None, None, None, mass),), Source("synthetic"), ()
+    )
     group = PlannedParameterFile("file", "b", ("tow",), ())
     fit = fitted("tow", {"Yv": -0.03})
     moved = assemble(group, "study", [fit], [], [], [], body, Conditions(1000.0, 2.0), []).mass

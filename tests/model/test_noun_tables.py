@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 
+from coeflab.core.datums import Datum
 from coeflab.core.files import shipped
 from coeflab.fits import FITS
 from coeflab.model.added_mass import AddedMass
@@ -38,7 +39,7 @@ def nouns():
     tables = read_tables(PlannedTable(shipped("cfd_data") / "suboff_roddy_2", (), {}))
     result = FITS.load("polynomial").fit(tables, LENGTH, {"variable": "v", "degree": 3, "responses": "Y"})
     file = made()
-    matrix = AddedMass(np.diag([1.0, 20.0, 20.0, 0.0, 5.0, 5.0]), np.zeros(3), HOSTILE, "body", "panel")
+    matrix = AddedMass(np.diag([1.0, 20.0, 20.0, 0.0, 5.0, 5.0]), np.zeros(3), Datum(HOSTILE), "body", "panel")
     return {
         "table": (Table(HOSTILE, ("a", HOSTILE), (("1", HOSTILE),), (HOSTILE,)), "&lt;script&gt;"),
         "fit": (small_study(FULL, named=HOSTILE).fits[0], "Yv&#x27;"),

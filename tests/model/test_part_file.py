@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from coeflab.bodies.primitives import read
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import Source
 from coeflab.kernels.attitude import rotation
@@ -31,7 +32,7 @@ TURNS = [(0.0, 0.0, 0.0), (0.0, 90.0, 0.0), (12.34, -45.5, 170.01), (0.0, -90.0,
 
 def body(shape: Parts, name: str = 'odd "name" \\ ü', scaling: Scaling | None = None) -> Body:
     source = Source("huuv2025", "Fig. 7", "made\nhere\x7f", "computed")
-    return Body(name, "t", "nose", np.array([-1.5, 0.0, 0.25]), {}, (), source, (), shape, scaling)
+    return Body(name, "t", Datum("nose"), np.array([-1.5, 0.0, 0.25]), {}, (), source, (), shape, scaling)
 
 
 def test_there_and_back(tmp_path: Path) -> None:

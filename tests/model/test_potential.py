@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from coeflab.core.datums import Datum
 from coeflab.kernels.kirchhoff import ideal_force
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Status
@@ -13,7 +14,7 @@ from coeflab.model.scaling import Scaling
 
 LENGTH = Scaling(4.0, "LOA")
 DENSITY = 1000.0
-HULL = AddedMass(np.diag([20.0, 600.0, 580.0, 1.0, 700.0, 720.0]), np.zeros(3), "nose", "hull", "ellipsoid")
+HULL = AddedMass(np.diag([20.0, 600.0, 580.0, 1.0, 700.0, 720.0]), np.zeros(3), Datum("nose"), "hull", "ellipsoid")
 
 
 def of(symbol: str, hull: AddedMass = HULL) -> float:
@@ -40,7 +41,7 @@ def test_in_acceleration_derivatives() -> None:
 def test_second_order_terms_sum_up_to_the_force() -> None:
     rng = np.random.default_rng(5)
     root = rng.normal(size=(6, 6))
-    hull = AddedMass(root @ root.T, np.zeros(3), "nose", "hull", "any")
+    hull = AddedMass(root @ root.T, np.zeros(3), Datum("nose"), "hull", "any")
     nu = rng.normal(size=6)
     q, length = 0.5 * DENSITY, LENGTH.length
     for i, component in enumerate("XYZKMN"):
@@ -57,7 +58,7 @@ def test_moving_the_point_commutes_with_the_derivatives() -> None:
     """Potential parts about a new point are those about the old one, moved as derivatives are."""
     symbols = ("Yv", "Yr", "Nv", "Nr")
     coefficients = tuple(Coefficient(s, of(s), None, Status.SINGLE_ESTIMATOR, "hull") for s in symbols)
-    among = CoefficientSet(coefficients, np.full((4, 4), np.nan), LENGTH, np.zeros(3), "nose", "hull")
+    among = CoefficientSet(coefficients, np.full((4, 4), np.nan), LENGTH, np.zeros(3), Datum("nose"), "hull")
     point = np.array([-0.8, 0.0, 0.0])
     for c in among.about(point).coefficients:
         assert c.value == pytest.approx(of(c.symbol, HULL.about(point)), rel=1e-12)

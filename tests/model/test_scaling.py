@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.model.scaling import Conditions, Scaling
@@ -36,7 +37,7 @@ def coefficients(
         covariance=covariance,
         scaling=scaling,
         reference_point=np.array(point, dtype=float),
-        datum="nose",
+        datum=Datum("nose"),
         body="b",
     )  # fmt: skip
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.datums import Datum
 from coeflab.core.files import shipped
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
@@ -26,7 +27,7 @@ def shipped_body(name: str) -> Body:
 
 def told(body: Body, *methods: tuple[str, bool]) -> Triangulation:
     """Results of those methods, rough or not, all the same matrix."""
-    results = tuple(AddedMass(np.eye(6), np.zeros(3), "d", body.name, m, ("said",), None, r) for m, r in methods)
+    results = tuple(AddedMass(np.eye(6), np.zeros(3), Datum("d"), body.name, m, ("said",), None, r) for m, r in methods)
     return Triangulation(body, RHO, results, {}, ())
 
 

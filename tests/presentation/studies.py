@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from coeflab.core.datums import Datum
 from coeflab.core.provenance import InputFile, Source
 from coeflab.fits.slope_at_origin import fit
 from coeflab.model.budget import budgets_of
@@ -49,7 +50,7 @@ def small_table(angles: list[float], *, named: str = "tow", errors: bool = False
         exclusions=exclusions,
         labels=tuple(f"{named} {i}" for i in range(n)),
         reference_point=np.zeros(3),
-        datum="nose",
+        datum=Datum("nose"),
         conditions=CONDITIONS,
         scaling=LENGTH,
         source=Source("synthetic", kind="synthetic"),

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from coeflab.core.datums import Datum
 from coeflab.core.provenance import Source
 from coeflab.model.body import Body
 from coeflab.model.plan import read_plan
@@ -27,7 +28,7 @@ PARTS = Parts(
 
 
 def body_of(shape):
-    return Body("b", "B", "nose", np.zeros(3), {}, (), Source("synthetic", kind="synthetic"), (), shape)
+    return Body("b", "B", Datum("nose"), np.zeros(3), {}, (), Source("synthetic", kind="synthetic"), (), shape)
 
 
 def with_body(shape, **more):

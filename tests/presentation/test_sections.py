@@ -148,7 +148,7 @@ def test_a_centre_that_is_not_known_has_no_mark_and_is_said():
     file = made().model_copy(update={"mass": None})
     parts = Parts((Part("hull", Cylinder(0.1, 1.0), np.zeros(3), np.eye(3)),))
     body = Body(
-        "b", "B", file.reference_point.datum, np.zeros(3), {}, (), Source("synthetic", kind="synthetic"), (), parts
+        "b", "B", file.reference_point.origin, np.zeros(3), {}, (), Source("synthetic", kind="synthetic"), (), parts
     )
     marks, unknown = hull_marks(with_files(file), body, (file.name,))
     assert [m.label for m in marks] == ["CB"]
@@ -169,7 +169,7 @@ def test_the_centre_of_pressure_is_the_moment_over_the_force():
     )
     parts = Parts((Part("hull", Cylinder(0.1, 1.0), np.zeros(3), np.eye(3)),))
     body = Body(
-        "b", "B", file.reference_point.datum, np.zeros(3), {}, (), Source("synthetic", kind="synthetic"), (), parts
+        "b", "B", file.reference_point.origin, np.zeros(3), {}, (), Source("synthetic", kind="synthetic"), (), parts
     )
     marks, _ = hull_marks(replace(study, parameter_files={file.name: file}), body, (file.name,))
     (sway,) = [m for m in marks if m.label == "CP sway"]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from coeflab.core.datums import Datum
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.manoeuvre import Manoeuvre, Phase, Until
 from coeflab.model.parameter_file import ParameterFile
@@ -25,7 +26,7 @@ def swimmer(smooth: bool = False) -> Vehicle:
     surface = ParameterSurface(control="dr", limit=0.6, rate=RATE)
     afloat = ParameterHydrostatics(volume=MASS / 1000.0, centre_of_buoyancy=(CENTRE[0], CENTRE[1], CENTRE[2] - 0.05))
     values = {s: c for s, c in VALUES.items() if not (smooth and "|" in s)}
-    file = with_mass(parameters(values, AddedMass(ADDED, np.zeros(3), "nose", "body of tow", "panel")))
+    file = with_mass(parameters(values, AddedMass(ADDED, np.zeros(3), Datum("nose"), "body of tow", "panel")))
     return vehicle(file.model_copy(update={"surfaces": (surface,), "hydrostatics": afloat}))
 
 
@@ -34,7 +35,7 @@ def massive(
     free: Sequence[str] = (), **more: object,
 ) -> Vehicle:  # fmt: skip
     """The torpedo's mass with an added mass and coefficients of one's own."""
-    hull = None if added is None else AddedMass(added, np.zeros(3), "nose", "body of tow", "panel")
+    hull = None if added is None else AddedMass(added, np.zeros(3), Datum("nose"), "body of tow", "panel")
     file: ParameterFile = with_mass(parameters(values or {}, hull), centre).model_copy(update=more)
     return vehicle(file, free)
 

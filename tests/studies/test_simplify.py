@@ -10,6 +10,7 @@ import pytest
 from manifold3d import Manifold
 
 from coeflab.bodies.primitives import read
+from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, Source
@@ -34,7 +35,7 @@ def body(*solids: Manifold, turn: np.ndarray | None = None) -> Body:
     vertices = np.vstack([v for v, _ in surfaces]) @ (np.eye(3) if turn is None else turn).T
     faces = np.vstack([f + s for (_, f), s in zip(surfaces, starts)])
     return Body(
-        "b", "a body", "nose", np.array([-1.0, 0.0, 0.0]), {}, (), Source("synthetic", kind="synthetic"),
+        "b", "a body", Datum("nose"), np.array([-1.0, 0.0, 0.0]), {}, (), Source("synthetic", kind="synthetic"),
         (InputFile("b/b.stl", "0" * 64),), TriangleMesh(vertices, faces), Scaling(4.0, "length"),
     )  # fmt: skip
 
@@ -228,14 +229,14 @@ def test_many_faces_are_decimated_and_said(monkeypatch: pytest.MonkeyPatch) -> N
 
 def open_mesh() -> Body:
     vertices, faces = surface(rod(0.2, 2.0))
-    return Body("b", "", "nose", np.zeros(3), {}, (), Source(""), (), TriangleMesh(vertices, faces[1:]))
+    return Body("b", "", Datum("nose"), np.zeros(3), {}, (), Source(""), (), TriangleMesh(vertices, faces[1:]))
 
 
 def hollow() -> Body:
     outer, faces = surface(Manifold.sphere(1.0, 32))
     inner, more = surface(Manifold.sphere(0.5, 32))
     mesh = TriangleMesh(np.vstack([outer, inner]), np.vstack([faces, more[:, ::-1] + len(outer)]))
-    return Body("b", "", "nose", np.zeros(3), {}, (), Source(""), (), mesh)
+    return Body("b", "", Datum("nose"), np.zeros(3), {}, (), Source(""), (), mesh)
 
 
 @pytest.mark.parametrize(

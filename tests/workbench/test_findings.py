@@ -12,6 +12,7 @@ from coeflab.core.files import shipped
 from coeflab.core.toml import read_toml
 from coeflab.model.check import Severity
 from coeflab.model.input_uncertainty import read_input_uncertainty
+from coeflab.model.lost import lost_by_all
 from coeflab.model.plan import read_plan
 from coeflab.model.scaling import Scaling
 from coeflab.model.study import Plan, PlannedTable, Study
@@ -60,7 +61,7 @@ def test_an_angle_in_radians_that_was_meant_in_degrees_is_refused(tmp_path: Path
 def test_the_added_mass_of_a_plan_reaches_file_and_study() -> None:
     hull = shipped("geometry") / "spheroid_example"
     table = PlannedTable(shipped("cfd_data") / "suboff_cfd_barehull", ("slope_at_origin",))
-    plan = Plan(name="s", title="", tables=(table,), wanted=(), datum="", hull=hull, method="ellipsoid")
+    plan = Plan(name="s", title="", tables=(table,), wanted=(), hull=hull, method="ellipsoid")
     with pytest.raises(Exception, match="datum"):
         run(plan)
     bare = Plan(
@@ -104,3 +105,54 @@ def test_a_name_too_long_for_the_file_is_one_error() -> None:
         run(plan)
     assert "length_name" in str(why.value)
     assert len(str(why.value)) < 500
+
+
+def of_hull(folder: Path, hull: Path, campaign: str = "suboff_roddy_2", body: str = "suboff_fully_appended") -> Study:
+    """A parameter file of one campaign with a body's added mass, and Roddy's particulars beside it."""
+    (folder / "plan.toml").write_text(
+        f'[study]\nname = "s"\nwanted = ["Yv"]\n[body]\npath = "{shipped("geometry") / "suboff" / "body.toml"}"\n'
+        f'[[table]]\ncampaign = "{shipped("cfd_data") / campaign}"\nfits = ["slope_at_origin"]\n'
+        f'[[parameter_file]]\nname = "p"\nbody = "{body}"\ncampaigns = ["{campaign}"]\n'
+        f'added_mass = "{hull}"\nadded_mass_method = "ellipsoid"\n'
+    )
+    return run(read_plan(folder / "plan.toml"))
+
+
+def alarms(study: Study) -> tuple[list[str], list[str]]:
+    """Findings, and what the parameter file itself says."""
+    (file,) = study.parameter_files.values()
+    lost = [str(each) for each in lost_by_all(file, frozenset()) if "another shape" in str(each)]
+    notes = [n for n in file.provenance.notes if "another shape" in n]
+    return [c.comment for c in study.checks if "another shape" in c.comment], lost + notes
+
+
+@pytest.mark.slow
+def test_one_body_under_two_names_raises_no_alarm(tmp_path: Path) -> None:
+    """AFF-8 has the volume and the surface of Roddy's fully appended model within one per cent."""
+    study = of_hull(tmp_path, shipped("geometry") / "suboff_aff8")
+    assert alarms(study) == ([], [])
+    (file,) = study.parameter_files.values()
+    assert file.added_mass is not None
+    assert file.added_mass.body == "suboff_fully_appended"
+    (said,) = [n for n in file.provenance.notes if "suboff_aff8" in n]
+    assert "no ring wing" in said
+    assert "wetted surface 6.352 against 6.285 m^2" in said
+
+
+@pytest.mark.parametrize("renamed", [False, True])
+def test_another_body_still_does(tmp_path: Path, renamed: bool) -> None:
+    """The bare hull in the appended hull's file, under its own name and under the appended hull's."""
+    hull = shipped("geometry") / "suboff_bare_hull"
+    if renamed:
+        text = (hull / "body.toml").read_text()
+        hull = tmp_path / "body.toml"
+        hull.write_text(text.replace('name = "suboff_bare_hull"', 'name = "suboff_fully_appended"'))
+    found, said = alarms(of_hull(tmp_path, hull))
+    assert found
+    assert said[0].startswith("mismatch: ")
+    assert "wetted surface 5.988 against 6.285 m^2" in said[1]
+
+
+def test_a_body_of_the_vehicles_name_raises_none(tmp_path: Path) -> None:
+    study = of_hull(tmp_path, shipped("geometry") / "suboff_bare_hull", "suboff_roddy_3", "suboff_bare_hull")
+    assert alarms(study) == ([], [])
