@@ -226,6 +226,16 @@ def test_a_run_astern_is_beyond_the_data_in_all_its_figures() -> None:
     assert {f.status for f in found.figures} == {"extrapolated"}
 
 
+@pytest.mark.parametrize("commands", ["left=0 right=60", "left=60 right=0"])
+def test_a_circle_steered_by_thrusters_ends_after_its_turns(commands: str) -> None:
+    """It ran until its longest time: 85 turns for the two that were asked for."""
+    file = read_parameter_file(shipped("cfd_data") / "huuv" / "huuv.parameters.json")
+    motion = run(file, "turning_circle", commands=commands, turns=2.0).trajectory
+    assert motion.reached[0] is not None
+    assert abs(motion.heading[-1]) == pytest.approx(4.0 * np.pi, rel=1e-9)
+    assert np.sign(motion.heading[-1]) == (-1.0 if commands.startswith("left=0") else 1.0)
+
+
 def test_what_does_not_turn_is_not_said_to_change() -> None:
     found = figures(run(made(), "turning_circle", commands="thrust=9", longest=400.0))
     assert found["steady turning diameter"].why == "the vehicle does not turn"
