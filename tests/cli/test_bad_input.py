@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import subprocess
 from pathlib import Path
 
@@ -101,6 +102,23 @@ def test_failed_check_is_exit_code_one(coeflab: Run, study: Path) -> None:
     assert done.returncode == 1
     assert "Yv'" in done.stdout
     assert "below zero" in done.stdout
+
+
+@pytest.mark.parametrize("more", [(), ("--json",)])
+def test_fit_with_a_failed_check_is_exit_code_one(coeflab: Run, study: Path, more: tuple[str, ...]) -> None:
+    """It printed the failure and exited 0."""
+    spoil(study / CAMPAIGN, "v = -U sin(beta)", "v = +U sin(beta)")
+    done = coeflab("fit", study / DRIFT, *more)
+    assert (done.returncode, done.stderr) == (1, "")
+    assert "below zero" in done.stdout
+
+
+@pytest.mark.parametrize("command", ["formats", "params schema", "inspect suboff_roddy_2 --json", "--help"])
+def test_a_reader_that_has_seen_enough_is_no_failure(command: str, tmp_path: Path) -> None:
+    """``coeflab ... | head -1`` under pipefail gave 1."""
+    piped = f"set -o pipefail; {shlex.quote(str(COEFLAB))} {command} | true"
+    done = subprocess.run(["bash", "-c", piped], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_fewer_points_than_parameters_are_refused(coeflab: Run, study: Path) -> None:
