@@ -176,6 +176,7 @@ def simulation(made: Simulation) -> dict[str, Any]:
         "duration": float(t.time[-1]),
         "outside": sorted(name for name, flags in t.outside.items() if flags.any()),
         "determined_until": None if math.isinf(made.determined) else made.determined,
+        "undetermined": made.undetermined or None,
         "figures": figures(made.figures),
         "statements": list(made.statements),
     }

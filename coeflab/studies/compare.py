@@ -79,7 +79,7 @@ class Comparison:
     @property
     def disagrees(self) -> bool:
         """Whether files of one body are apart in anything; different bodies owe each other nothing."""
-        return self.same_body and any(row.verdict is Verdict.APART for row in (*self.rows, *self.models))
+        return self.same_body and Verdict.APART in (*(r.verdict for r in self.rows), *(m.verdict for m in self.models))
 
 
 def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
