@@ -188,10 +188,12 @@ def acceptance(found: Acceptance) -> dict[str, Any]:
         "name": found.name,
         "title": found.title,
         "passed": found.holds,
+        "numbers": {b.value: count for b, count in found.counts.items()},
         "tables": {
             t.key: {
                 "title": t.title,
                 "source": t.source,
+                "repeats": t.repeats or None,
                 "passed": t.holds,
                 "rows": [
                     {
