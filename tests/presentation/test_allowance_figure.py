@@ -48,7 +48,7 @@ def test_what_holds_lies_within_and_what_does_not_is_marked_outside() -> None:
 
 
 def test_every_number_is_one_mark() -> None:
-    rows = tuple(Compared(str(i), "u", "1", 1.0, 1.0 + 0.001 * i, 0.1) for i in range(101))
+    rows = tuple(Compared(str(i), "u", "1", 1.0, 1.0 + 0.001 * i, 0.1, Basis.PRINTED) for i in range(101))
     (panel,) = shown(*rows).panels
     assert sum(len(s.x) for s in panel.series) == 101
     assert {n.split(",")[0] for s in panel.series for n in s.notes} == {str(i) for i in range(101)}
