@@ -149,6 +149,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
             for c in s.checks
         ],
         "exports": [export(made) for made in s.exports],
+        "refused_exports": [{"parameter_file": r.parameters, "target": r.target, "why": str(r.why)} for r in s.refused],
         "files": files,
     }
 

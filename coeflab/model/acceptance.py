@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from coeflab.model.parameter_file import ParameterFile
 
 
 class Basis(StrEnum):
@@ -152,6 +155,8 @@ class Acceptance:
         File name without ending, and the drawing.
     conventions : tuple of str
         Axes, signs and units of its own, beside those that hold for every report.
+    parameter_files : tuple of ParameterFile
+        The system, as far as the format holds it; their notes say what it does not hold.
     """
 
     name: str
@@ -162,11 +167,17 @@ class Acceptance:
     citations: tuple[str, ...]
     figures: tuple[tuple[str, Drawing], ...] = ()
     conventions: tuple[str, ...] = ()
+    parameter_files: tuple[ParameterFile, ...] = ()
 
     @property
     def holds(self) -> bool:
         """Whether every table does."""
         return all(t.holds for t in self.tables)
+
+    @property
+    def file_notes(self) -> tuple[str, ...]:
+        """What the parameter files say of themselves, and of what they do not hold; each once."""
+        return tuple(dict.fromkeys(note for p in self.parameter_files for note in p.provenance.notes))
 
     @property
     def numbers(self) -> tuple[Compared, ...]:

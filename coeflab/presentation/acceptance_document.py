@@ -31,6 +31,7 @@ def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
         *_section("figures", "Figures", figures=figures(found)),
         Section("compared", "Every number and what it is held against", (DIFFERENCES,), subsections=tables),
         *_section("statements", "What to know", found.statements),
+        *_section("parameter-files", "Parameter files", found.file_notes),
         *_errata(found),
         published_conventions(found.conventions),
         *_provenance(inputs),

@@ -9,6 +9,7 @@ from coeflab.kernels.tilting_rotors import CONSTANTS, calibrated, steady_residua
 from coeflab.model.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.model.flyingfish import FlyingFish, read_flyingfish
 from coeflab.model.operating_point import OperatingPoint
+from coeflab.model.published_files import flyingfish_file
 from coeflab.studies.validations.flyingfish_figures import figures
 from coeflab.studies.validations.flyingfish_trim import DEGREE, RPM, UNKNOWNS, trim
 
@@ -60,6 +61,7 @@ def acceptance() -> Acceptance:
         ("tj_flyingfish",),
         figures(fish, nearest),
         CONVENTIONS,
+        (flyingfish_file(fish),),
     )
 
 

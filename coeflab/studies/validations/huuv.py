@@ -66,6 +66,7 @@ def acceptance() -> Acceptance:
         ("huuv2025",),
         tuple(_figures(huuv, halves)),
         CONVENTIONS,
+        (parameter_file(huuv),),
     )
 
 

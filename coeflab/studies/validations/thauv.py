@@ -16,6 +16,7 @@ from coeflab.kernels.steady_glide import glide
 from coeflab.model.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.model.glide import steady_glides
 from coeflab.model.glider import Glider, GliderPhase
+from coeflab.model.published_files import thauv_file
 from coeflab.presentation.document import Figure
 from coeflab.presentation.laws_figure import Plot, Trace, laws_figure
 from coeflab.studies.glide import Flown, fly
@@ -60,6 +61,7 @@ def acceptance() -> Acceptance:
         ("thauv", "leonard_graver2001"),
         tuple(_figures(flown)),
         CONVENTIONS,
+        tuple(thauv_file(f.run.glider) for f in flown),
     )
 
 
