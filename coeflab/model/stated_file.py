@@ -209,7 +209,7 @@ def stated_table(
     statements : tuple of str
     unit : str
     """
-    low, high = (tuple(v[k] for v in variables.values()) for k in (1, 2))
+    low, high = tuple(v[1] for v in variables.values()), tuple(v[2] for v in variables.values())
     count = len(variables)
     spaces = []
     for i in range(count):
