@@ -87,6 +87,7 @@ def _root(
 def main() -> None:
     """Run the command line: exit code 0 fine, 1 a check failed, 2 wrong input.
 
+    A reader that has seen enough and closes the pipe, such as ``head``, is no failure: exit code 0 without a message.
     Linear algebra keeps to one thread unless told otherwise: on small matrices more threads are slower by orders of
     magnitude. The commands import numpy later, so the setting comes in time.
     """
@@ -97,13 +98,23 @@ def main() -> None:
 
     try:
         app()
+    except SystemExit as ended:
+        if not isinstance(ended.__context__, BrokenPipeError):  # typer makes exit code 1 of it
+            raise
+        _discard_output()
+        sys.exit(0)
     except CoeflabError as why:
         typer.echo(visible(f"error: {why}"), err=True)
         sys.exit(2)
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(141)
+        _discard_output()
+        sys.exit(0)
     except OSError as why:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _discard_output()
         typer.echo(f"error: cannot write the output: {why.strerror or why}", err=True)
         sys.exit(2)
+
+
+def _discard_output() -> None:
+    """Send what is still in the buffer of standard output nowhere, so that leaving does not try to write it again."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)

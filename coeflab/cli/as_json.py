@@ -171,6 +171,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
             for c in s.checks
         ],
         "exports": [export(made) for made in s.exports],
+        "refused_exports": [{"parameter_file": r.parameters, "target": r.target, "why": str(r.why)} for r in s.refused],
         "files": files,
     }
 
@@ -199,6 +200,7 @@ def simulation(made: Simulation) -> dict[str, Any]:
         "duration": float(t.time[-1]),
         "outside": sorted(name for name, flags in t.outside.items() if flags.any()),
         "determined_until": None if math.isinf(made.determined) else made.determined,
+        "undetermined": made.undetermined or None,
         "figures": figures(made.figures),
         "statements": list(made.statements),
     }
@@ -210,10 +212,12 @@ def acceptance(found: Acceptance) -> dict[str, Any]:
         "name": found.name,
         "title": found.title,
         "passed": found.holds,
+        "numbers": {b.value: count for b, count in found.counts.items()},
         "tables": {
             t.key: {
                 "title": t.title,
                 "source": t.source,
+                "repeats": t.repeats or None,
                 "passed": t.holds,
                 "rows": [
                     {

@@ -16,7 +16,7 @@ REPORTS = "reports"
 
 
 def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
-    """Run, render everything, then write; exit code 1 when a check or a comparison fails."""
+    """Run, render everything, then write; exit code 1 when a check or a comparison fails, or an export is refused."""
     from coeflab.core.files import write_all
     from coeflab.workbench import rendered, run
 
@@ -37,6 +37,8 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
         show.text(f"Written to {folder} ({changed} of {len(files)} files changed):")
         for path in paths:
             show.text(f"  {path}")
+    for refused in study.refused:
+        show.error(f"error: {refused.why}")
     if study.failed:
         raise typer.Exit(1)
 

@@ -23,7 +23,8 @@ def command(
     """Compare two parameter files: differences against the combined U95, lengths and reference points converted.
 
     Fitted tables of one response over the same variables are held together on a grid inside the data of both: "within"
-    means that at 95 % of its points the difference is inside the combined 95 % half-width.
+    means that at 95 % of its points the difference is inside the combined 95 % half-width. Exit code 1 where two files of
+    one body are apart.
     """
     from coeflab.model.parameter_file import read_parameter_file
     from coeflab.studies.compare import compare
@@ -33,6 +34,8 @@ def command(
         show.json_object(as_json(found))
     else:
         _print(found)
+    if found.disagrees:
+        raise typer.Exit(1)
 
 
 def as_json(found: Comparison) -> dict[str, Any]:

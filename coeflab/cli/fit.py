@@ -41,6 +41,7 @@ def command(
     """Fit the coefficients of a table, or of several jointly, and show how they were made.
 
     Any further --option VALUE goes to the fit: --seed 2, --degree 4, --terms "Yv Yv|v|". See --fit NAME --help-options.
+    Exit code 1 when a check fails.
     """
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import located
@@ -77,19 +78,21 @@ def command(
     with show.progress(json) as say:
         study = run(plan, say)
     wanted = [s.removesuffix("'") for s in symbol]
+    _refuse_strange(study, wanted)
+    if figure is not None:
+        _draw(study, wanted, figure)
     if json:
-        if figure is not None:
-            _draw(study, wanted, figure)
         from coeflab.cli.as_json import study as study_json
 
         show.json_object(study_json(study, []))
-        return
-    _print(study, wanted)
-    if diagnostics:
-        _diagnose(study)
-    if figure is not None:
-        _draw(study, wanted, figure)
-        show.text(f"Written: {figure}")
+    else:
+        _print(study, wanted)
+        if diagnostics:
+            _diagnose(study)
+        if figure is not None:
+            show.text(f"Written: {figure}")
+    if study.failed:
+        raise typer.Exit(1)
 
 
 def given(words: list[str], equations: list[str]) -> tuple[list[str], dict[str, int | float | str]]:
@@ -122,6 +125,18 @@ def further(arguments: list[str]) -> dict[str, int | float | str]:
         else:
             out[name[2:].replace("-", "_")] = text
     return out
+
+
+def _refuse_strange(study: Study, symbols: list[str]) -> None:
+    from coeflab.core.errors import InputError, shown
+
+    known = [s.symbol for f in study.fits for s in f.sweeps]
+    for symbol in symbols:
+        if symbol not in known:
+            raise InputError(
+                f"no sweep for {shown(symbol)}",
+                f"one of {', '.join(dict.fromkeys(known))}" if known else "no --symbol: this fit has no sweeps",
+            )
 
 
 def _draw(study: Study, symbols: list[str], file: Path) -> None:
@@ -161,7 +176,6 @@ def _diagnose(study: Study) -> None:
 
 def _print(study: Study, symbols: list[str]) -> None:
     from coeflab.cli.carry_out import findings
-    from coeflab.core.errors import InputError, shown
     from coeflab.model import noun_tables
     from coeflab.presentation import budget_tables, joint_tables, model_tables, tables
 
@@ -174,11 +188,6 @@ def _print(study: Study, symbols: list[str]) -> None:
     show.table(joint_tables.campaigns(study.fits))
     known = {s.symbol: s for f in study.fits for s in f.sweeps}
     for symbol in symbols:
-        if symbol not in known:
-            raise InputError(
-                f"no sweep for {shown(symbol)}",
-                f"one of {', '.join(known)}" if known else "no --symbol: this fit has no sweeps",
-            )
         sweep = known[symbol]
         for content in (
             tables.members(sweep),

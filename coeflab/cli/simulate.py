@@ -39,7 +39,7 @@ def command(
     """Move the vehicle of a parameter file through a manoeuvre and read its figures off.
 
     Any further --option VALUE goes to the manoeuvre: --rudder "20 deg", --speed "3 kn". See --help-options. Exit code 1
-    where the motion could not be computed to its end.
+    where the motion could not be computed to its end, or where the file determines nothing of it; then nothing is written.
     """
     from coeflab.cli.fit import further
     from coeflab.core.errors import InputError, shown
@@ -60,14 +60,20 @@ def command(
         parameters, manoeuvre, further(ctx.args), how, listed(free), listed(hold),
         tables=tables, accelerations=accelerations,
     )  # fmt: skip
-    written = [] if out is None else _write(made, out, to)
+    written = [] if out is None or made.undetermined else _write(made, out, to)
     if json:
         from coeflab.cli.as_json import simulation
 
         show.json_object({**simulation(made), "files": [str(p) for p in written]})
+    elif made.undetermined:
+        name = made.manoeuvre.name.replace("_", " ")
+        show.text(
+            f"The file determines nothing of the {name} of {made.vehicle.name}, so that nothing is drawn or written."
+        )
+        show.text(made.undetermined)
     else:
         _print(made, written)
-    if made.trajectory.why:
+    if made.trajectory.why or made.undetermined:
         raise typer.Exit(1)
 
 
@@ -123,6 +129,6 @@ def _write(made: Simulation, folder: Path, to: str) -> list[Path]:
             "--to parquet without pyarrow", "the extra", column="--to", advice='pip install "coeflab[parquet]"'
         ) from None
     rows = [(f,) for f in motion_figures(made.trajectory.until(made.determined), name, made.vehicle.length)]
-    content = {f"{name}.{to}": table, f"{name}.svg": sheet(rows)}
+    content = {f"{name}.{to}": table, **({f"{name}.svg": sheet(rows)} if rows else {})}
     write_all(folder, content)
     return [folder / file for file in content]

@@ -45,7 +45,8 @@ def command(
     """Draw the coefficients of a parameter file, run the manoeuvre for each draw, and give intervals of its figures.
 
     Says which coefficient is worth another test or CFD run. Any further --option VALUE goes to the manoeuvre: --rudder "20 deg".
-    Numbers do not depend on workers, scheduler, or on having been stopped and started again.
+    Numbers do not depend on workers, scheduler, or on having been stopped and started again. Exit code 1 where the file
+    determines no figure of the manoeuvre.
     """
     from coeflab.cli.fit import further
     from coeflab.cli.simulate import current_of, listed
@@ -67,16 +68,23 @@ def command(
     folder = store if store is not None else out / "batches" if out is not None else None
     with show.narrated():
         made = uncertainty(read_parameter_file(file), question, workers, scheduler, folder)
-    written = [] if out is None else _write(made, out)
+    written = [] if out is None or made.undetermined else _write(made, out)
     if json:
         show.json_object({**as_json(made), "files": [str(p) for p in written]})
     else:
         _print(made, written)
+    if made.undetermined:
+        raise typer.Exit(1)
 
 
 def _print(made: Carried, written: list[Path]) -> None:
     from coeflab.presentation import uncertainty_tables
 
+    if made.undetermined:
+        name = f"{made.question.manoeuvre.replace('_', ' ')} of {made.vehicle}"
+        show.text(f"No figure of the {name} has a value, so that none has an interval; no draw was run.")
+        show.text(made.undetermined)
+        show.text()
     show.table(uncertainty_tables.spread_table(made))
     for found in made.importances:
         show.table(uncertainty_tables.share_table(found))
@@ -115,6 +123,7 @@ def as_json(made: Carried) -> dict[str, Any]:
         "seed": q.seed,
         "accelerations": accelerations(made.water),
         "motions": made.runs,
+        "undetermined": made.undetermined or None,
         "figures": [
             {
                 "name": s.figure.name, "unit": s.figure.unit, "value": s.figure.value, "status": s.figure.status,

@@ -36,9 +36,12 @@ def command(
 
 def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
     from coeflab.core.files import write_all
-    from coeflab.presentation import acceptance_tables
+    from coeflab.presentation import acceptance_document, acceptance_tables
+    from coeflab.studies.documents import report_of, written
+    from coeflab.workbench.exports import parameter_files_rendered
 
-    files = {f"{found.name}.csv": acceptance_tables.acceptance_csv(found)}
+    files = parameter_files_rendered(found.parameter_files) | dict(written(report_of(found).document, ["html"]))
+    files |= {f"{found.name}.csv": acceptance_tables.acceptance_csv(found)}
     files |= {f"{name}.svg": figure.svg.encode() for name, figure in found.figures}
     write_all(folder, files)
     paths = [folder / name for name in sorted(files)]
@@ -54,8 +57,8 @@ def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
         show.table(acceptance_tables.errata(found))
         for line in found.statements:
             show.text(line)
-        rows = [r for t in found.tables for r in t.rows]
-        show.text(f"Verdict: {sum(r.holds for r in rows)} of {len(rows)} numbers within what is allowed.")
+        for line in (*(f"Parameter file: {note}" for note in found.file_notes), *acceptance_document.headline(found)):
+            show.text(line)
         for path in paths:
             show.text(f"  {path}")
     if not found.holds:

@@ -148,6 +148,8 @@ def _level(watched: int, sign: float, value: float, s: Array) -> float:
         here = s[2]
     elif watched == 7:
         here = s[7]
+    elif watched == 9:
+        here = abs(s[13])
     else:
         here = math.sqrt(s[7] ** 2 + s[8] ** 2 + s[9] ** 2)
     return float(sign * (here - value))

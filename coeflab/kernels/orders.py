@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.motion_law import Ints
 
-WATCHED = ("heading", "yaw_rate", "pitch", "pitch_rate", "roll", "roll_rate", "depth", "u", "speed")
+WATCHED = ("heading", "yaw_rate", "pitch", "pitch_rate", "roll", "roll_rate", "depth", "u", "speed", "turned")
 COMPLETE, NOT_FINITE, TOO_FAST, STEP_TOO_SMALL = range(4)
 NEAR = 1e-9
 
@@ -125,6 +125,8 @@ def watched_value(which: int, state: Array) -> Array:
             return np.asarray(state[2])
         case "u":
             return np.asarray(state[7])
+        case "turned":
+            return np.asarray(np.abs(state[13]))
     return np.asarray(np.sqrt(state[7] ** 2 + state[8] ** 2 + state[9] ** 2))
 
 

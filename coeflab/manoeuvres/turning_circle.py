@@ -47,9 +47,9 @@ class Options:
     commands
         Thruster commands such as left=0 right=60; they take the place of the rudder, and the side is theirs.
     turns
-        Full turns, at the end of which it stops.
+        Full turns to either side, at the end of which it stops, whatever steers.
     longest
-        s.
+        s; a vehicle that has not made its turns by then stops.
     """
 
     rudder: float = measured(float(np.radians(15.0)), 1e-4, 1.2, "angle")
@@ -65,14 +65,14 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     o = parse_options(Options, options, NAME)
     nu = along(vehicle, o.speed)
     sign = 1.0 if o.side == "starboard" else -1.0
+    done = Until("turned", True, 2.0 * np.pi * o.turns)
     if o.commands:
         orders = thruster_orders(vehicle, o.commands)
-        phase = Phase("turning", orders, o.longest)
+        phase = Phase("turning", orders, o.longest, done)
         return Manoeuvre(NAME, (phase,), nu, statements=("thrusters as commanded from time zero",))
     angle = within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder")
     order = angle * sign * turning_sense(vehicle, "dr", "r", float(nu[0]))
     orders, said = propulsion(vehicle, float(nu[0]))
-    done = Until("heading", o.side == "starboard", sign * 2.0 * np.pi * o.turns)
     rudder = f"rudder {np.degrees(order):+.4g} deg turns to {o.side} by the coefficients of the file"
     return Manoeuvre(
         NAME, (Phase("turning", {"dr": order}, o.longest, done),), nu, orders=orders, statements=(said, rudder)

@@ -1,4 +1,4 @@
-"""Zigzag (Kempf): the rudder is reversed whenever the heading has changed by the execute angle (IMO MSC.137(76))."""
+"""Zigzag (Kempf): rudder or unequal thrusters are reversed whenever the heading has changed by the execute angle (IMO MSC.137(76))."""
 
 from __future__ import annotations
 
@@ -7,10 +7,22 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from coeflab.core.options import bounded, measured, parse_options
+from coeflab.core.errors import InputError
+from coeflab.core.options import bounded, measured, parse_options, words
 from coeflab.kernels.read_off import crossing, extreme, value_at
-from coeflab.model.approach import along, judged, propulsion, turning_sense, unlimited, within_limit
+from coeflab.model.approach import (
+    along,
+    judged,
+    mirrored,
+    propulsion,
+    thruster_orders,
+    turning_sense,
+    unlimited,
+    within_limit,
+    yaw_acceleration,
+)
 from coeflab.model.manoeuvre import Figure, Manoeuvre, Phase, Until
 from coeflab.model.trajectory import Trajectory
 from coeflab.model.vehicle import Vehicle
@@ -27,8 +39,13 @@ class Options:
 
     Attributes
     ----------
-    rudder, heading
-        Rudder angle and change of heading at which it is reversed; 10 deg each by default.
+    rudder
+        Angle, 10 deg by default.
+    heading
+        Change of heading at which the rudder is reversed; 0: the rudder's angle, so that 20 deg of rudder are a 20/20 zigzag.
+    commands
+        Thruster commands such as left=30 right=60; they take the place of the rudder, and thrusters that mirror each other
+        exchange them at every reversal. The heading is then 10 deg unless stated.
     executes
         How often the rudder is laid over.
     speed
@@ -38,26 +55,56 @@ class Options:
     """
 
     rudder: float = measured(float(np.radians(10.0)), 1e-4, 1.2, "angle")
-    heading: float = measured(float(np.radians(10.0)), 1e-4, 1.5, "angle")
+    heading: float = measured(0.0, 0.0, 1.5, "angle")
+    commands: tuple[str, ...] = words()
     executes: int = bounded(5, 2, 50)
     speed: float = measured(0.0, 0.0, 100.0, "speed")
     longest: float = bounded(300.0, 1.0, 1e5)
+
+    @property
+    def execute(self) -> float:
+        """Change of heading at which the rudder is reversed, rad."""
+        return self.heading or self.rudder
 
 
 def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     """One phase a leg, first to starboard."""
     o = parse_options(Options, options, NAME)
     nu = along(vehicle, o.speed)
-    angle = within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder") * turning_sense(vehicle, "dr", "r", float(nu[0]))
-    orders, said = propulsion(vehicle, float(nu[0]))
-    phases = []
-    for k in range(o.executes):
-        sign = 1.0 if k % 2 == 0 else -1.0
-        phases.append(
-            Phase(f"execute {k + 1}", {"dr": sign * angle}, o.longest, Until("heading", k % 2 == 0, sign * o.heading))
+    if o.commands:
+        standing: dict[str, float] = {}
+        sides, said = _by_thrusters(vehicle, o.commands, nu)
+    else:
+        angle = within_limit(vehicle, "dr", o.rudder, f"{NAME}.rudder") * turning_sense(
+            vehicle, "dr", "r", float(nu[0])
         )
-    rudder = f"first rudder {np.degrees(angle):+.4g} deg, which turns to starboard by the coefficients of the file"
-    return Manoeuvre(NAME, tuple(phases), nu, orders=orders, statements=(said, rudder))
+        standing, thrust = propulsion(vehicle, float(nu[0]))
+        sides = {"dr": angle}, {"dr": -angle}
+        said = (
+            thrust,
+            f"first rudder {np.degrees(angle):+.4g} deg, which turns to starboard by the coefficients of the file",
+        )
+    phases = tuple(
+        Phase(f"execute {k + 1}", sides[k % 2], o.longest, Until("heading", k % 2 == 0, (-1.0) ** k * o.execute))
+        for k in range(o.executes)
+    )
+    return Manoeuvre(NAME, phases, nu, orders=standing, statements=said)
+
+
+def _by_thrusters(
+    vehicle: Vehicle, commands: tuple[str, ...], nu: NDArray[np.float64]
+) -> tuple[tuple[dict[str, float], dict[str, float]], tuple[str, ...]]:
+    """Orders that turn to starboard and to port, and what that means, in words."""
+    given = thruster_orders(vehicle, commands)
+    other = mirrored(vehicle, given)
+    turning = yaw_acceleration(vehicle, mirrored(vehicle, other), nu) - yaw_acceleration(vehicle, other, nu)
+    if turning == 0.0:
+        raise InputError(
+            f"{' '.join(commands)}, which turns to neither side", "unequal commands", column=f"{NAME}.commands"
+        )
+    sides = (mirrored(vehicle, other), other) if turning > 0.0 else (other, mirrored(vehicle, other))
+    first = " ".join(f"{name}={value:g}" for name, value in sides[0].items())
+    return sides, (f"thrusters in place of the rudder, first {first}, which turns to starboard; then exchanged",)
 
 
 def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]:
@@ -80,8 +127,8 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
     for k, word in ((1, "first"), (2, "second")):
         begins = reached[k - 1]
         peak = None if begins is None else extreme(t, psi, largest=k == 1, after=begins)
-        over = None if peak is None else abs(peak[1]) - o.heading
-        text = f"heading beyond {np.degrees(o.heading):g} deg after execute {k + 1} (IMO MSC.137(76))"
+        over = None if peak is None else abs(peak[1]) - o.execute
+        text = f"heading beyond {np.degrees(o.execute):g} deg after execute {k + 1} (IMO MSC.137(76))"
         out.append(figure(f"{word} overshoot", over, "rad", text, None if peak is None else peak[0]))
     back = None if first is None else crossing(t, psi, 0.0, rises=False, after=first)
     again = None if back is None else crossing(t, psi, 0.0, rises=True, after=back)

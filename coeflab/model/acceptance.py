@@ -3,13 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, Protocol
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, Protocol
 
-Basis = Literal["printed", "derived", "in-sample"]
+if TYPE_CHECKING:
+    from coeflab.model.parameter_file import ParameterFile
+
+
+class Basis(StrEnum):
+    """Where the number comes from that ours is compared with; only the first two validate anything."""
+
+    PREDICTED = "predicted"
+    PRINTED = "printed and recomputed"
+    CALIBRATION = "calibration"
+    CONSISTENCY = "consistency"
+
+    @property
+    def validates(self) -> bool:
+        """Whether agreement says anything about the model that was not put into it."""
+        return self in (Basis.PREDICTED, Basis.PRINTED)
+
+
 BASES: dict[Basis, str] = {
-    "printed": "a number that the paper prints",
-    "derived": "worked out independently from what the paper prints, or by theory; the paper does not print it",
-    "in-sample": "the model was calibrated on this very number, so that meeting it proves nothing new",
+    Basis.PREDICTED: "published, and not used to make the model that meets it",
+    Basis.PRINTED: "printed by the paper, and computed here from other printed numbers",
+    Basis.CALIBRATION: "the model was calibrated on this very number, so that meeting it proves nothing new",
+    Basis.CONSISTENCY: "worked out here another way, or by theory; the paper does not print it",
 }
 
 
@@ -29,7 +48,7 @@ class Compared:
         None where the computation gave no number.
     tolerance : float
         Largest difference that counts as agreement: of ``unit``, or a ratio where ``relative``.
-    basis : {"printed", "derived", "in-sample"}
+    basis : Basis
     relative : bool
     at_most : bool
         Whether ``against`` is a limit that ``found`` must not exceed.
@@ -41,7 +60,7 @@ class Compared:
     against: float
     found: float | None
     tolerance: float
-    basis: Basis = "printed"
+    basis: Basis
     relative: bool = False
     at_most: bool = False
 
@@ -75,6 +94,8 @@ class ComparedTable:
         Table, figure or equation of the publication.
     statements : tuple of str
         What a reader has to know, in words.
+    repeats : str
+        Key of the table whose numbers this one meets another way; they count once.
     """
 
     key: str
@@ -82,6 +103,7 @@ class ComparedTable:
     rows: tuple[Compared, ...]
     source: str
     statements: tuple[str, ...] = ()
+    repeats: str = ""
 
     @property
     def holds(self) -> bool:
@@ -133,6 +155,8 @@ class Acceptance:
         File name without ending, and the drawing.
     conventions : tuple of str
         Axes, signs and units of its own, beside those that hold for every report.
+    parameter_files : tuple of ParameterFile
+        The system, as far as the format holds it; their notes say what it does not hold.
     """
 
     name: str
@@ -143,8 +167,29 @@ class Acceptance:
     citations: tuple[str, ...]
     figures: tuple[tuple[str, Drawing], ...] = ()
     conventions: tuple[str, ...] = ()
+    parameter_files: tuple[ParameterFile, ...] = ()
 
     @property
     def holds(self) -> bool:
         """Whether every table does."""
         return all(t.holds for t in self.tables)
+
+    @property
+    def file_notes(self) -> tuple[str, ...]:
+        """What the parameter files say of themselves, and of what they do not hold; each once."""
+        return tuple(dict.fromkeys(note for p in self.parameter_files for note in p.provenance.notes))
+
+    @property
+    def numbers(self) -> tuple[Compared, ...]:
+        """Rows that count: those of tables that repeat another's numbers do not."""
+        return tuple(r for t in self.tables if not t.repeats for r in t.rows)
+
+    @property
+    def repeated(self) -> tuple[Compared, ...]:
+        """Rows that meet numbers of another table another way."""
+        return tuple(r for t in self.tables if t.repeats for r in t.rows)
+
+    @property
+    def counts(self) -> dict[Basis, int]:
+        """How many numbers there are of each basis, in the order of `Basis`."""
+        return {b: sum(r.basis is b for r in self.numbers) for b in Basis}

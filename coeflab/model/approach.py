@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,8 +13,9 @@ from coeflab.core.options import named_numbers
 from coeflab.core.symbols import ANGULAR, CONTROLS, MOTIONS
 from coeflab.core.wording import listed
 from coeflab.kernels.linearisation import linearised, modes
-from coeflab.model.manoeuvre import UPRIGHT, Figure, Phase
-from coeflab.model.outside import UNCOVERED
+from coeflab.model.manoeuvre import UPRIGHT, Figure, Manoeuvre, Phase
+from coeflab.model.outside import UNCOVERED, outside, outside_in_words
+from coeflab.model.parameter_vehicle import ParameterThruster
 from coeflab.model.trajectory import Trajectory
 from coeflab.model.vehicle import THRUST, Vehicle
 
@@ -79,7 +80,7 @@ def _instead(vehicle: Vehicle) -> str:
     if not vehicle.thrusters:
         return "The file has neither control surfaces nor thrusters."
     orders = " ".join(f"{t.name}={t.curve.segments[-1].high:g}" for t in vehicle.thrusters)
-    return f'A turning circle takes thrusters in its place: --commands "{orders}", unequal.'
+    return f'Turning circle and zigzag take thrusters in its place: --commands "{orders}", unequal.'
 
 
 def within_limit(vehicle: Vehicle, control: str, angle: float, key: str) -> float:
@@ -127,6 +128,59 @@ def thruster_orders(vehicle: Vehicle, commands: Sequence[str]) -> dict[str, floa
     return out
 
 
+def mirrored(vehicle: Vehicle, orders: Mapping[str, float]) -> dict[str, float]:
+    """Orders of all thrusters and control surfaces that turn the vehicle to the other side as the given ones to theirs.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+    orders : mapping of str to float
+        Of thrusters, ``thrust``, ``dr``, ``ds`` and ``db``; what is not named is zero.
+
+    Raises
+    ------
+    InputError
+        An order for a tilt, or a thruster that has no mirror image among the others.
+    """
+    out = {name: orders[name] for name in (THRUST, "ds", "db") if name in orders}
+    if "dr" in orders:
+        out["dr"] = -orders["dr"]
+    tilts = [name for name in orders if name.endswith(".tilt")]
+    if tilts:
+        raise InputError(
+            f"an order for {tilts[0]}", "thrusters without tilts, one side against the other", column="commands"
+        )
+    for t in vehicle.thrusters:
+        image = next((o for o in vehicle.thrusters if _images(t, o)), None)
+        if image is None:
+            raise InputError(
+                f"the thruster {t.name} without an image on the other side",
+                "thrusters that mirror each other",
+                column="commands",
+            )
+        out[t.name] = orders.get(image.name, 0.0)
+    return out
+
+
+def yaw_acceleration(vehicle: Vehicle, orders: Mapping[str, float], velocity: Array) -> float:
+    """Rate of r under orders for thrusters and control surfaces, at a velocity (6,), rad/s^2."""
+    angles = np.array([[orders.get(c, 0.0) for c in CONTROLS]])
+    pushed = vehicle.wrench({k: v for k, v in orders.items() if k not in CONTROLS})
+    return float(vehicle.acceleration(velocity[None, :], np.array([UPRIGHT]), angles, pushed)[0, 5])
+
+
+def _images(one: ParameterThruster, other: ParameterThruster) -> bool:
+    """Whether one thruster is the other's image in the plane of symmetry."""
+    aside = np.array([1.0, -1.0, 1.0])
+    turns = one.torque_curve is None or one.handedness == -other.handedness
+    return (
+        turns
+        and (one.curve, one.torque_curve) == (other.curve, other.torque_curve)
+        and np.allclose(one.position, aside * other.position, atol=1e-9)
+        and np.allclose(one.direction, aside * other.direction, atol=1e-9)
+    )
+
+
 def linear_growth(vehicle: Vehicle, plane: Sequence[str], speed: float) -> float:
     """Largest real part of the eigenvalues of small motions about a straight course with the speed held, 1/s.
 
@@ -167,6 +221,25 @@ def unlimited(vehicle: Vehicle, rate: str, speed: float) -> str:
         f"straight motion is unstable, and the file has no nonlinear term in {rate} of {components[0]} or {components[1]} "
         "that would limit the turn"
     )
+
+
+def undetermined_at_once(vehicle: Vehicle, manoeuvre: Manoeuvre) -> str:
+    """Why a file determines nothing of a manoeuvre, in words, before it is computed; empty where it determines its beginning.
+
+    A vehicle whose straight course is unstable, without nonlinear terms that limit the turn, is determined only within its
+    data. Orders that it follows at once may leave them at time zero.
+    """
+    speed = float(manoeuvre.velocity[0])
+    lacking = next(
+        (why for rate in "rq" if rate in vehicle.free and speed > 0.0 and (why := unlimited(vehicle, rate, speed))), ""
+    )
+    rated = {s.control for s in vehicle.surfaces if s.rate is not None}
+    first = {**manoeuvre.orders, **manoeuvre.phases[0].orders}
+    angles = {c: first[c] for c in CONTROLS if c in first and c not in rated}
+    flags = outside(vehicle, manoeuvre.velocity[None, :], {c: np.array([x]) for c, x in angles.items()})
+    if not lacking or not any(f[0] for name, f in flags.items() if not name.endswith(UNCOVERED)):
+        return ""
+    return " ".join((*outside_in_words(vehicle, manoeuvre.velocity, angles), f"{lacking[:1].upper()}{lacking[1:]}."))
 
 
 def in_current(current: Array) -> tuple[str, ...]:

@@ -91,6 +91,8 @@ class Carried:
     rows : int
         Of the Sobol design; zero where there is none.
     statements : tuple of str
+    undetermined : str
+        Why no figure of the manoeuvre has a value at the values of the file, so that no member was moved.
     """
 
     question: Question
@@ -106,6 +108,7 @@ class Carried:
     runs: int
     rows: int
     statements: tuple[str, ...]
+    undetermined: str = ""
 
     def __post_init__(self) -> None:
         for name in ("deviations", "values"):

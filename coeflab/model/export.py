@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from coeflab.core.errors import InputError
 from coeflab.core.identifiers import file_stem
 from coeflab.model.loss import Loss
 
@@ -41,3 +42,21 @@ class Export:
     def folder(self) -> str:
         """Where the files stand beside the parameter file: a folder of their own, tables beside it."""
         return "" if self.loss is None else f"{file_stem(self.parameters)}.{self.target}"
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """A planned export that was not made, and why.
+
+    Attributes
+    ----------
+    parameters : str
+        Name of the parameter file.
+    target : str
+    why : InputError
+        Names the plan's file and key.
+    """
+
+    parameters: str
+    target: str
+    why: InputError

@@ -83,7 +83,13 @@ def sdf(
     return {
         f"{name}.sdf": serialised(
             alone,
-            (titled, frame, inertia, f"It needs a world with the system Buoyancy, as {water}.sdf is, and sinks without.", shape),
+            (
+                titled,
+                frame,
+                inertia,
+                f"It needs a world with the system Buoyancy, as {water}.sdf is, and sinks without.",
+                shape,
+            ),
         ),
         f"{water}.sdf": serialised(
             watered,

@@ -12,9 +12,18 @@ from coeflab.core.version import VERSION
 from coeflab.model.huuv import Huuv
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.parameter_versions import SCHEMA_VERSION
+from coeflab.model.stated_file import stated_table
 
 SPLIT = "Only the sum of rigid-body and added moment of inertia counts in a steady turn; its parts are chosen."
 LEVEL = "Only surge, sway and yaw are described: hold w, p and q."
+MADE: dict[str, Any] = {
+    "form": "polynomial of a tuned model",
+    "table": "turns.csv",
+    "campaign": "HUUV Fig. 17",
+    "statements": (
+        "Tuned to steady turns; no forces were measured, so that it has no points and no residuals of its own.",
+    ),
+}
 SOURCES = ("vehicle.toml", "turns.csv")
 
 
@@ -41,19 +50,19 @@ def parameter_file(huuv: Huuv) -> ParameterFile:
             {"variable": "v'", "low": -drift, "high": drift, "unit": "rad", "campaign": "HUUV Fig. 17"},
         ),
         "models": (
-            _table("C_D", {"beta": (-drift, drift)}, {"1": ((), c["d0"]), "beta^2": ((("beta", 2, False),), c["d2"])}, pressure),
-            _table(
-                "C_S", {"beta": (-drift, drift)},
-                {"beta": ((("beta", 1, False),), -c["s1"]), "beta^3": ((("beta", 3, False),), -c["s3"])}, pressure,
+            stated_table("C_D", {"beta": ("rad", -drift, drift)}, {"1": ((), c["d0"]), "beta^2": ((("beta", 2, False),), c["d2"])}, pressure, **MADE),
+            stated_table(
+                "C_S", {"beta": ("rad", -drift, drift)},
+                {"beta": ((("beta", 1, False),), -c["s1"]), "beta^3": ((("beta", 3, False),), -c["s3"])}, pressure, **MADE,
             ),
-            _table(
-                "C_n", {"beta": (-drift, drift)},
+            stated_table(
+                "C_n", {"beta": ("rad", -drift, drift)},
                 {"beta": ((("beta", 1, False),), c["n1"]), "beta^3": ((("beta", 3, False),), c["n3"])},
-                pressure * chosen["length"],
+                pressure * chosen["length"], **MADE,
             ),
-            _table(
-                "N", {"r": (-rate, rate)}, {"r|r|": ((("r", 1, False), ("r", 1, True)), -c["nrr"])}, 1.0,
-                unit="N*m", of="rad/s",
+            stated_table(
+                "N", {"r": ("rad/s", -rate, rate)}, {"r|r|": ((("r", 1, False), ("r", 1, True)), -c["nrr"])}, 1.0,
+                unit="N*m", **MADE,
             ),
         ),
         "added_mass": _added_mass(huuv),
@@ -78,40 +87,6 @@ def _added_mass(huuv: Huuv) -> dict[str, Any]:
     return {
         "body": "HUUV", "method": "stated", "density": huuv.chosen["density"],
         "matrix": tuple(tuple(row) for row in matrix.tolist()), "statements": (SPLIT, LEVEL),
-    }  # fmt: skip
-
-
-def _table(
-    response: str,
-    variables: dict[str, tuple[float, float]],
-    terms: dict[str, tuple[tuple[tuple[str, int, bool], ...], float]],
-    per_unit: float,
-    unit: str = "1",
-    of: str = "rad",
-) -> dict[str, Any]:
-    empty = tuple((None,) * len(terms) for _ in terms)
-    return {
-        "response": response, "unit": unit, "form": "polynomial of a tuned model",
-        "variables": tuple({"name": v, "unit": of} for v in variables),
-        "terms": tuple(
-            {
-                "symbol": symbol,
-                "factors": tuple({"variable": v, "power": n, "absolute": a} for v, n, a in factors),
-                "value": float(f"{value / per_unit:.12g}"),
-                "half_width_95": None,
-            }
-            for symbol, (factors, value) in terms.items()
-        ),
-        "covariance": empty,
-        "domain": {
-            "low": tuple(low for low, _ in variables.values()), "high": tuple(high for _, high in variables.values()),
-            "half_spaces": tuple(row for low, high in variables.values() for row in ((-1.0, low), (1.0, -high))),
-            "extrapolation": "clamp",
-        },
-        "n_points": 0, "rms": 0.0, "press_rms": None, "table": "turns.csv", "campaign": "HUUV Fig. 17",
-        "statements": ("Tuned to steady turns; no forces were measured, so that it has no points and no residuals of its own.",),
-        "holds": (),
-        "contains_potential": False,
     }  # fmt: skip
 
 

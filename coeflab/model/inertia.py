@@ -60,7 +60,7 @@ class WaterInertia:
     def as_noun(self, parameters: ParameterFile) -> AddedMass:
         """The same as `AddedMass`, for potential parts."""
         at = parameters.reference_point
-        return AddedMass(self.matrix, np.array(at.point), at.datum, parameters.body, self.source)
+        return AddedMass(self.matrix, np.array(at.point), at.origin, parameters.body, self.source)
 
 
 def water_inertia(parameters: ParameterFile, accelerations: str = MEASURED) -> WaterInertia:

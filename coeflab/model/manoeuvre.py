@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from coeflab.model.frozen import locked
 
 Array = NDArray[np.float64]
-Quantity = Literal["heading", "yaw_rate", "pitch", "pitch_rate", "roll", "roll_rate", "depth", "u", "speed"]
+Quantity = Literal["heading", "yaw_rate", "pitch", "pitch_rate", "roll", "roll_rate", "depth", "u", "speed", "turned"]
 QUANTITIES: dict[Quantity, str] = {
     "heading": "rad",
     "yaw_rate": "rad/s",
@@ -24,6 +24,7 @@ QUANTITIES: dict[Quantity, str] = {
     "depth": "m",
     "u": "m/s",
     "speed": "m/s",
+    "turned": "rad",
 }
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
@@ -35,7 +36,7 @@ class Until:
     Attributes
     ----------
     quantity : str
-        One of `QUANTITIES`; heading is counted from the start, not wrapped.
+        One of `QUANTITIES`; heading is counted from the start, not wrapped, and turned is its size, to either side.
     rises : bool
         Whether it crosses from below.
     value : float

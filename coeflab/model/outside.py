@@ -68,8 +68,10 @@ def outside_in_words(vehicle: Vehicle, velocity: Array, controls: Mapping[str, f
     out = []
     for name, ranges in _ranges(vehicle).items():
         if name in values and flags[name][0]:
-            spans = " or ".join(f"{number(low)} to {number(high)}" for low, high in ranges)
-            out.append(f"{name} = {number(float(values[name][1][0]))} lies outside of what the data cover, {spans}.")
+            factor, unit = (180.0 / np.pi, " deg") if name in CONTROLS or name.startswith("asin") else (1.0, "")
+            spans = " or ".join(f"{number(low * factor)} to {number(high * factor)}{unit}" for low, high in ranges)
+            here = f"{number(float(values[name][1][0]) * factor)}{unit}"
+            out.append(f"{name} = {here} lies outside of what the data cover, {spans}.")
     return tuple(out)
 
 

@@ -26,6 +26,8 @@ class Simulation:
         Time from which on the motion leans on terms that no data give, s; infinite where it never does.
     citations : tuple of str
         Works that the manoeuvre and the simulator rest on.
+    undetermined : str
+        Why the file determines nothing of the motion, from its first instant; empty where it determines its beginning.
     """
 
     vehicle: Vehicle
@@ -35,3 +37,4 @@ class Simulation:
     statements: tuple[str, ...]
     determined: float = inf
     citations: tuple[str, ...] = ()
+    undetermined: str = ""

@@ -26,7 +26,7 @@ from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.triangulation import Triangulation
 
 if TYPE_CHECKING:
-    from coeflab.model.export import Export
+    from coeflab.model.export import Export, Refused
     from coeflab.model.parameter_file import ParameterFile
     from coeflab.model.simulation import Simulation
 
@@ -188,7 +188,8 @@ class Plan:
 class Study:
     """Everything that a run found; export and report are two leaves of this one object.
 
-    ``parameter_files`` and ``hulls``, the added mass of those that have one, go by the name of the file.
+    ``parameter_files`` and ``hulls``, the added mass of those that have one, go by the name of the file. ``refused`` are
+    planned exports that were not made; all else stands.
     """
 
     plan: Plan
@@ -204,6 +205,7 @@ class Study:
     checks: tuple[Check, ...] = ()
     hulls: Mapping[str, Triangulation] = field(default_factory=dict)
     exports: tuple[Export, ...] = ()
+    refused: tuple[Refused, ...] = ()
     manoeuvres: tuple[Simulation, ...] = ()
 
     def __post_init__(self) -> None:
@@ -217,8 +219,9 @@ class Study:
 
     @property
     def failed(self) -> bool:
-        """Whether a finding or a comparison fails."""
-        return any(c.severity is Severity.FAIL for c in self.checks) or any(c.passed is False for c in self.comparisons)
+        """Whether a finding or a comparison fails, or an export was refused."""
+        findings = any(c.severity is Severity.FAIL for c in self.checks)
+        return findings or any(c.passed is False for c in self.comparisons) or bool(self.refused)
 
     def with_checks(self, checks: tuple[Check, ...]) -> Study:
         """The study with its findings."""

@@ -31,6 +31,7 @@ def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
         *_section("figures", "Figures", figures=figures(found)),
         Section("compared", "Every number and what it is held against", (DIFFERENCES,), subsections=tables),
         *_section("statements", "What to know", found.statements),
+        *_section("parameter-files", "Parameter files", found.file_notes),
         *_errata(found),
         published_conventions(found.conventions),
         *_provenance(inputs),
@@ -42,7 +43,7 @@ def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
 
 SUBTITLE = "A publication reproduced: every number and what it is held against"
 DIFFERENCES = (
-    "Held against: a number that the paper prints only where the basis beside it says printed. Difference: found less what it is "
+    "Held against: a number that the paper prints only where the basis beside it says so. Difference: found less what it is "
     "held against, as a share of the latter where a per cent sign stands. A number passes when the difference is no larger than "
     "what is allowed."
 )
@@ -51,23 +52,37 @@ PROVENANCE = "The files below are known by the sha256 of their bytes."
 
 def verdict(found: Acceptance) -> Section:
     """How many numbers hold, and which do not."""
-    rows = [r for t in found.tables for r in t.rows]
-    held = sum(r.holds for r in rows)
-    text = [
-        f"All {held} numbers lie within what is allowed."
-        if held == len(rows)
-        else f"{held} of {len(rows)} numbers lie within what is allowed."
-    ]
+    rows = [*found.numbers, *found.repeated]
+    text = [*headline(found)]
     for t in found.tables:
         failed = [f"{r.quantity} of {r.case}" for r in t.rows if not r.holds]
         if failed:
             text.append(f"Outside, {t.title}: {', '.join(failed)}.")
-    kinds = [f"{sum(r.basis == b for r in rows)} {b} ({meaning})" for b, meaning in BASES.items()]
-    text.append(f"What they are held against: {'; '.join(kinds)}.")
-    if rows and not any(r.basis == "printed" for r in rows):
-        text.append("No number that the paper itself prints is among them.")
+    kinds = [f"{b}: {meaning}" for b, meaning in BASES.items() if found.counts[b]]
+    text.append(f"What they are compared with. {'; '.join(kinds)[:1].upper()}{'; '.join(kinds)[1:]}.")
     drawn = (allowance_figure(found, "allowances"),) if rows else ()
     return Section("verdict", "Verdict", tuple(text), (overview(found),), drawn)
+
+
+def headline(found: Acceptance) -> tuple[str, ...]:
+    """How many numbers hold by basis, and how many of them validate anything: two sentences."""
+    numbers, again, counts = found.numbers, found.repeated, found.counts
+    held = sum(r.holds for r in numbers)
+    by_basis = ", ".join(f"{count} {b}" for b, count in counts.items())
+    first = f"{held} of {len(numbers)} numbers within what is allowed: {by_basis}."
+    if again:
+        first += f" {sum(r.holds for r in again)} of {len(again)} comparisons meet numbers among them another way, and do not count."
+    validating = sum(count for b, count in counts.items() if b.validates)
+    if validating:
+        good = sum(r.holds for r in numbers if r.basis.validates)
+        return (
+            first,
+            f"Validation rests on {validating} of them, predicted or printed and recomputed, of which {good} hold.",
+        )
+    return (
+        first,
+        "Nothing here is validation: no number of the paper is predicted, and none that it prints is recomputed.",
+    )
 
 
 def overview(found: Acceptance) -> Table:

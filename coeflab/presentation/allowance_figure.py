@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 
 from coeflab.model.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.presentation.document import Figure, Panel
+from coeflab.presentation.legends import COLUMNS
 from coeflab.presentation.panel import BOTTOM, LEGEND_ROW, RIGHT, WIDTH, Array, drawing, height_of, legend, ticks
 from coeflab.presentation.plotted import numbers, points, tagged
 from coeflab.presentation.svg import COLOURS, settings, svg_text
@@ -23,19 +24,20 @@ INDENT = 16.0
 HOLLOW: dict[str, Any] = {"markerfacecolor": "none", "markeredgewidth": 0.9}
 FILLED: dict[str, Any] = {"markeredgewidth": 0.0}
 MARKS: dict[Basis, dict[str, Any]] = {
-    "printed": {"marker": "D", "markersize": 3.8, "markeredgecolor": COLOURS["b"], "markerfacecolor": COLOURS["b"], **FILLED},
-    "derived": {"marker": "o", "markersize": 4.0, "markeredgecolor": COLOURS["a"], "markerfacecolor": COLOURS["a"], **FILLED},
-    "in-sample": {"marker": "s", "markersize": 3.8, "markeredgecolor": COLOURS["c"], **HOLLOW},
+    Basis.PREDICTED: {"marker": "^", "markersize": 4.4, "markeredgecolor": COLOURS["d"], "markerfacecolor": COLOURS["d"], **FILLED},
+    Basis.PRINTED: {"marker": "D", "markersize": 3.8, "markeredgecolor": COLOURS["b"], "markerfacecolor": COLOURS["b"], **FILLED},
+    Basis.CALIBRATION: {"marker": "s", "markersize": 3.8, "markeredgecolor": COLOURS["c"], **HOLLOW},
+    Basis.CONSISTENCY: {"marker": "o", "markersize": 4.0, "markeredgecolor": COLOURS["a"], "markerfacecolor": COLOURS["a"], **FILLED},
 }  # fmt: skip
 OUTSIDE: dict[str, Any] = {"marker": "x", "markersize": 5.0, "markeredgecolor": COLOURS["ink"], "markeredgewidth": 1.3}
 CAPTION = (
-    "One mark a number, in the order of its table. At 0 ours is what it is held against, at -1 and 1 the whole allowance is used. A "
+    "One mark a comparison, in the order of its table. At 0 ours is what it is held against, at -1 and 1 the whole allowance is used. A "
     "number that may be at most some limit stands at its share of the limit."
 )
 
 
 def allowance_figure(found: Acceptance, anchor: str) -> Figure:
-    """All compared numbers.
+    """All comparisons, those that repeat others too.
 
     Parameters
     ----------
@@ -44,7 +46,7 @@ def allowance_figure(found: Acceptance, anchor: str) -> Figure:
     """
     rows = [r for t in found.tables for r in t.rows]
     held = sum(r.holds for r in rows)
-    title = f"{held} of {len(rows)} numbers within what is allowed"
+    title = f"{held} of {len(rows)} comparisons within what is allowed"
     heights = [_height(len(t.rows)) for t in found.tables]
     body = sum(heights) + HEAD * len(heights)
     description = (
@@ -53,14 +55,15 @@ def allowance_figure(found: Acceptance, anchor: str) -> Figure:
         + "."
     )
     with settings():
-        figure = drawing(BOTTOM + body + 10.0 + LEGEND_ROW * 2)
+        handles = _legend(rows)
+        figure = drawing(BOTTOM + body + 10.0 + LEGEND_ROW * max(2, -(-len(handles) // COLUMNS)))
         top, panels = BOTTOM + body, []
         for t, height in zip(found.tables, heights, strict=True):
             _heading(figure, top, t)
             panels.append(_strip(figure, top - HEAD - height, height, t))
             top -= HEAD + height
         _scale(figure)
-        legend(figure, _legend(rows), BOTTOM + body)
+        legend(figure, handles, BOTTOM + body)
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, CAPTION, description, tuple(panels))
 
@@ -113,10 +116,15 @@ def _strip(figure: Drawing, bottom: float, height: float, t: ComparedTable) -> P
     order = np.arange(1.0, count + 1.0)
     series = []
     for basis, look in MARKS.items():
-        mine = np.array([r.basis == basis and r.holds for r in t.rows])
-        series.append(_drawn(axes, basis, basis, at, order, mine, look, t.rows))
+        mine = np.array([r.basis is basis and r.holds for r in t.rows])
+        series.append(_drawn(axes, _key(basis), basis, at, order, mine, look, t.rows))
     series.append(_drawn(axes, "outside", "outside", at, order, ~np.array([r.holds for r in t.rows]), OUTSIDE, t.rows))
     return numbers(axes, series, ACROSS, "row of the table")
+
+
+def _key(basis: Basis) -> str:
+    """The basis as a mark of the drawing, which is one word."""
+    return basis.name.lower()
 
 
 def _drawn(
@@ -147,8 +155,8 @@ def _scale(figure: Drawing) -> None:
 
 
 def _legend(rows: Sequence[Compared]) -> list[Any]:
-    kinds = [b for b in MARKS if any(r.basis == b and r.holds for r in rows)]
-    handles = [tagged(Line2D([], [], linestyle="none", label=b, **MARKS[b]), b) for b in kinds]
+    kinds = [b for b in MARKS if any(r.basis is b and r.holds for r in rows)]
+    handles = [tagged(Line2D([], [], linestyle="none", label=b, **MARKS[b]), _key(b)) for b in kinds]
     if not all(r.holds for r in rows):
         handles.append(tagged(Line2D([], [], linestyle="none", label="outside", **OUTSIDE), "outside"))
     return handles

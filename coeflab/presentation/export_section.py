@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from coeflab.model.export import Export
+from coeflab.model.export import Export, Refused
 from coeflab.model.loss import ASSUMED, LOSSLESS
 from coeflab.model.study import Study
 from coeflab.model.table import ABSENT, Table
@@ -20,22 +20,29 @@ TEXT = (
 
 def export_sections(study: Study) -> tuple[Section, ...]:
     """One section, or none where the plan asks for no export."""
-    if not study.exports:
+    if not study.exports and not study.refused:
         return ()
     each = tuple(
         Section(f"export-{i}", f"{made.parameters} for {made.target}", tables=(loss_tables.forces(made.loss),))
         for i, made in enumerate(study.exports)
         if made.loss is not None
     )
-    return (Section("exports", "Exports", TEXT, (summary(study.exports),), subsections=each),)
+    refused = tuple(f"Refused, and not written: {_sentence(r)}" for r in study.refused)
+    return (Section("exports", "Exports", (*TEXT, *refused), (summary(study),), subsections=each),)
 
 
-def summary(exports: tuple[Export, ...]) -> Table:
-    """One row an export."""
+def _sentence(refused: Refused) -> str:
+    why = refused.why
+    return f"{refused.parameters} for {refused.target}. Found {why.found}; expected {why.expected}."
+
+
+def summary(study: Study) -> Table:
+    """One row an export, those that were refused last."""
     rows = tuple(
         (made.parameters, made.target, _verdict(made), _worst(made), _accelerations(made), _place(made))
-        for made in exports
+        for made in study.exports
     )
+    rows += tuple((r.parameters, r.target, "refused", ABSENT, ABSENT, "none") for r in study.refused)
     headers = ("parameter file", "target", "loss", "worst of largest", "accelerations", "files")
     notes = (
         "worst of largest: largest difference of a force component or an acceleration over its largest value, both over the states that the loss of "

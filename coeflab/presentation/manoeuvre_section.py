@@ -26,6 +26,8 @@ def _manoeuvre(made: Simulation, anchor: str) -> Section:
     name = made.manoeuvre.name.replace("_", " ")
     title = f"{name[:1].upper()}{name[1:]} of {made.vehicle.name}"
     text = [f"Assumed and found: {'; '.join(made.statements)}."]
+    if made.undetermined:
+        text.append(f"Nothing is drawn, as the file determines nothing of this motion. {made.undetermined}")
     if made.trajectory.why:
         text.append(f"The motion could not be computed to its end: {made.trajectory.why}")
     length = made.vehicle.length

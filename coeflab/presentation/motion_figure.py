@@ -156,7 +156,7 @@ def _history(time: Array, series: Mapping[str, Array], anchor: str, name_up: str
 
 
 def motion_figures(trajectory: Trajectory, anchor: str, length: float, what: str = "") -> tuple[Figure, ...]:
-    """Tracks and all histories.
+    """Tracks and all histories; none of a motion that is no longer than an instant.
 
     Parameters
     ----------
@@ -168,5 +168,7 @@ def motion_figures(trajectory: Trajectory, anchor: str, length: float, what: str
     what : str
         The motion, for the titles of a document that holds several.
     """
+    if not np.ptp(trajectory.time) > 0.0:
+        return ()
     after = f", {what}" if what else ""
     return *track_figures(trajectory, anchor, length, after), *history_figures(trajectory, anchor, after)

@@ -53,7 +53,8 @@ def spread_table(carried: Carried) -> Table:
         "status",
         "interval",
     )
-    title = f"{q.manoeuvre.replace('_', ' ')} of {carried.vehicle}"
+    what = "stability" if carried.undetermined else q.manoeuvre.replace("_", " ")
+    title = f"{what} of {carried.vehicle}"
     return Table(title, headers, tuple(rows), tuple(notes), frozenset({0, 2, 8, 9}))
 
 

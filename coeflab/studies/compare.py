@@ -76,6 +76,11 @@ class Comparison:
     statements: tuple[str, ...]
     models: tuple[ComparedModel, ...] = ()
 
+    @property
+    def disagrees(self) -> bool:
+        """Whether files of one body are apart in anything; different bodies owe each other nothing."""
+        return self.same_body and Verdict.APART in (*(r.verdict for r in self.rows), *(m.verdict for m in self.models))
+
 
 def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
     """The coefficients of a parameter file as a set with covariance; those without U95 have NaN rows."""

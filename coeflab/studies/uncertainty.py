@@ -16,7 +16,7 @@ from coeflab.core.machine import compiles, cores, stage
 from coeflab.core.version import VERSION
 from coeflab.kernels.sobol import known_share, share_noise, sobol_indices
 from coeflab.manoeuvres import MANOEUVRES
-from coeflab.model.approach import in_current
+from coeflab.model.approach import in_current, undetermined_at_once
 from coeflab.model.carried import Carried, Question
 from coeflab.model.derived import INDICES
 from coeflab.model.drawn_stability import drawn_stability
@@ -28,6 +28,7 @@ from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.sobol_design import SobolDesign, sobol_design
 from coeflab.model.spread import MOST_LACKING, Importance, Spread, shares, spread
 from coeflab.model.trajectory import Ended
+from coeflab.model.vehicle import Vehicle
 from coeflab.studies.batches import Batch, Setup, Store, figures_of, prepared, run_batch
 from coeflab.studies.workers import carried_out
 
@@ -49,6 +50,9 @@ def uncertainty(
     parameters: ParameterFile, question: Question, workers: int = 1, scheduler: str = "", store: Path | None = None
 ) -> Carried:
     """Draw, run, and read intervals off.
+
+    Where no figure of the manoeuvre has a value at the values of the file, no member is moved: a figure without value has no
+    interval. The reason is `Carried.undetermined`, and the stability indices keep theirs.
 
     The numbers hang on file, question, release and kernel (compiled where numba is installed, which agrees to 1e-12), not on
     workers, scheduler or on what was stored before.
@@ -76,13 +80,18 @@ def uncertainty(
     setup, plan = _setup(parameters, question)
     _, body, varied = prepared(setup)
     members = varied.members(question.members, question.seed)
+    setup = replace(setup, record=min(plan.duration / 100.0, 0.1 * body.length / body.speed))
+    exact, how = _at_the_file(setup, plan)
+    if all(f.value is None for f in exact):
+        return _stability_alone(
+            parameters, question, body, varied, members, undetermined_at_once(body, plan) or _reasons(exact)
+        )
     still = unfelt(body, varied.symbols, _ordered(plan))
     felt = frozenset() if any(question.current) else still
     sampled = sobol_design(varied, question.members, question.seed, felt) if question.sobol else None
     every = np.vstack([members, *(sampled.to_run if sampled else ())])
-    step = _step(setup, plan, every)
-    setup = replace(setup, step=step, record=min(plan.duration / 100.0, 0.1 * body.length / body.speed))
-    (nominal, how), *_ = figures_of(setup, np.zeros((1, len(varied.symbols))))
+    setup = replace(setup, step=_step(setup, plan, every))
+    (nominal, ended), *_ = figures_of(setup, np.zeros((1, len(varied.symbols))))
     names = tuple(f.name for f in nominal)
     whole = _run(setup, plan, question, names, every, workers or cores(), scheduler, store)
     count = len(members)
@@ -99,7 +108,7 @@ def uncertainty(
         others = frozenset(varied.symbols) - {str(s) for s in INDICES[name][:4]}
         importances.append(_importance(spreads[-1], values, members, varied, others, sampled, found))
     statements = (*body.statements, *plan.statements, *in_current(np.array(setup.current)), EACH)
-    statements += (*varied.statements, *_missed(setup, plan, nominal, how), *_said(whole.ended[:count], how))
+    statements += (*varied.statements, *_missed(setup, nominal, ended, exact, how), *_said(whole.ended[:count], ended))
     if sampled:
         statements += (sampled.statement,)
     if felt:
@@ -135,11 +144,37 @@ def _step(setup: Setup, plan: Manoeuvre, every: Array) -> float:
     )
 
 
-def _missed(setup: Setup, plan: Manoeuvre, nominal: tuple[Figure, ...], how: str) -> list[str]:
-    """Figures at the values of the file that fixed steps do not find as the adaptive integrator does, in words."""
+def _at_the_file(setup: Setup, plan: Manoeuvre) -> tuple[tuple[Figure, ...], str]:
+    """Figures at the values of the file by the adaptive integrator, and how its motion ended."""
     _, body, _ = prepared(setup)
     motion = march_by_tolerance(body, plan, setup.record, current=np.array(setup.current)).trajectory()
-    exact = MANOEUVRES.load(setup.manoeuvre).figures(motion, body, dict(setup.options))
+    return tuple(MANOEUVRES.load(setup.manoeuvre).figures(motion, body, dict(setup.options))), motion.ended.value
+
+
+def _reasons(figures: tuple[Figure, ...]) -> str:
+    """Why figures have no value, each reason once."""
+    return "; ".join(dict.fromkeys(f.why or f.status for f in figures)) + "."
+
+
+def _stability_alone(
+    parameters: ParameterFile, question: Question, body: Vehicle, varied: Uncertain, members: Array, why: str
+) -> Carried:
+    """What draws say of the stability indices, where the manoeuvre has no figure that an interval could be of."""
+    spreads, importances = [], []
+    for name, (figure, values, reason) in drawn_stability(parameters, varied, members).items():
+        spreads.append(spread(figure, values, ["ok"] * len(members), reason))
+        others = frozenset(varied.symbols) - {str(s) for s in INDICES[name][:4]}
+        importances.append(_importance(spreads[-1], values, members, varied, others, None, ()))
+    none = np.empty((len(members), 0))
+    return Carried(
+        question, body.name, body.length, varied, members, (), none, tuple(spreads), tuple(importances), body.water, 0, 0,
+        tuple(dict.fromkeys((*body.statements, *varied.statements))), why,
+    )  # fmt: skip
+
+
+def _missed(setup: Setup, nominal: tuple[Figure, ...], ended: str, exact: tuple[Figure, ...], how: str) -> list[str]:
+    """Figures at the values of the file that fixed steps do not find as the adaptive integrator does, in words."""
+    _, body, _ = prepared(setup)
     time = body.length / body.speed
     sizes = {"m": body.length, "s": time, "m/s": body.speed, "rad/s": 1.0 / time}
     missed = [
@@ -151,8 +186,8 @@ def _missed(setup: Setup, plan: Manoeuvre, nominal: tuple[Figure, ...], how: str
             and abs(f.value - e.value) > STEPPED * max(abs(e.value), sizes.get(e.unit, 0.1))
         )
     ]
-    if how != motion.ended.value:
-        missed.append(f"the end ({how} for {motion.ended.value})")
+    if ended != how:
+        missed.append(f"the end ({ended} for {how})")
     if not missed:
         return []
     return [

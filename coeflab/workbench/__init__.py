@@ -9,7 +9,6 @@ from coeflab.checks import CHECKS
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.symbols import MOTIONS
-from coeflab.exporters import EXPORTERS
 from coeflab.fits import FITS
 from coeflab.model.assemble import assemble
 from coeflab.model.body import Body
@@ -26,7 +25,7 @@ from coeflab.model.several_campaigns import one_length
 from coeflab.model.study import Plan, PlannedParameterFile, Study
 from coeflab.presentation.content import document
 from coeflab.reporting import REPORTERS
-from coeflab.workbench.exports import exports_of, refuse_unknown
+from coeflab.workbench.exports import exports_of, parameter_files_rendered, refuse_unknown
 from coeflab.workbench.hulls import hulls_of
 from coeflab.workbench.manoeuvres import manoeuvres_of
 from coeflab.workbench.reading import read_body, read_tables, settled, together
@@ -92,6 +91,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
             files[g.name] = assemble(
                 g, plan.name, fits, tables, missing, references, body, conditions, inputs, hulls.get(g.name)
             )
+    exports, refused = exports_of(plan.exports, files.values(), progress)
     study = Study(
         plan=plan,
         tables=tuple(tables),
@@ -105,7 +105,8 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         hulls=hulls,
         inputs=inputs,
         budgets=tuple(budgets),
-        exports=exports_of(plan.exports, files.values(), progress),
+        exports=exports,
+        refused=refused,
         manoeuvres=manoeuvres_of(plan.manoeuvres, files, progress),
     )
     findings = [c for name in CHECKS.names() for c in CHECKS.load(name).check(study)]
@@ -202,9 +203,7 @@ def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, byte
     report = document(study)
     for name in formats:
         files.update(REPORTERS.load(name).render(report))
-    for parameters in study.parameter_files.values():
-        files[f"{parameters.name}.parameters.json"] = parameters.to_json()
-        files.update(EXPORTERS.load("csv").render(parameters))
+    files.update(parameter_files_rendered(study.parameter_files.values()))
     for made in study.exports:
         files.update(
             {f"{made.folder}/{name}" if made.folder else name: content for name, content in made.files.items()}

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from coeflab.core.errors import InputError, PluginError, shown
 from coeflab.core.identifiers import PREFIX, file_stem
 from coeflab.exporters import EXPORTERS
-from coeflab.model.export import Export
+from coeflab.model.export import Export, Refused
 from coeflab.model.force_law import force_law
 from coeflab.model.inertia import MEASURED, converted, water_inertia, with_accelerations
 from coeflab.model.loss import loss_of
@@ -81,6 +81,15 @@ def _renamed(files: Mapping[str, bytes], parameters: ParameterFile) -> tuple[str
     )
 
 
+def parameter_files_rendered(several: Iterable[ParameterFile]) -> dict[str, bytes]:
+    """Every parameter file and its tables as CSV, by name. Nothing is written."""
+    files: dict[str, bytes] = {}
+    for parameters in several:
+        files[f"{parameters.name}.parameters.json"] = parameters.to_json()
+        files.update(EXPORTERS.load("csv").render(parameters))
+    return files
+
+
 def refuse_unknown(planned: Sequence[PlannedExport]) -> None:
     """Refuse targets without an exporter before anything is computed.
 
@@ -98,8 +107,8 @@ def refuse_unknown(planned: Sequence[PlannedExport]) -> None:
 
 def exports_of(
     planned: Sequence[PlannedExport], files: Iterable[ParameterFile], progress: Callable[[str], None]
-) -> tuple[Export, ...]:
-    """Every parameter file of a study for every target of its plan.
+) -> tuple[tuple[Export, ...], tuple[Refused, ...]]:
+    """Every parameter file of a study for every target of its plan; what is refused does not keep the rest from being made.
 
     Parameters
     ----------
@@ -108,27 +117,45 @@ def exports_of(
     progress : callable
         Takes what is being done, in words.
 
+    Returns
+    -------
+    tuple of Export
+    tuple of Refused
+        A target cannot hold a file, or not all of it and the plan does not accept that.
+    """
+    out: list[Export] = []
+    refused: list[Refused] = []
+    for p, parameters in ((p, parameters) for p in planned for parameters in files):
+        try:
+            out.append(_accepted(p, parameters))
+        except InputError as why:
+            refused.append(Refused(parameters.name, p.to, why))
+            progress(f"refused {parameters.name} for {p.to}")
+        else:
+            progress(f"exported {parameters.name} for {p.to}")
+    return tuple(out), tuple(refused)
+
+
+def _accepted(p: PlannedExport, parameters: ParameterFile) -> Export:
+    """The export, if the plan accepts what it loses.
+
     Raises
     ------
     InputError
-        A target cannot hold a file, or not all of it and the plan does not accept that; names the plan's file and key.
+        Names the plan's file and key.
     """
-    out = []
-    for p, parameters in ((p, parameters) for p in planned for parameters in files):
-        try:
-            made = export(parameters, p.to, p.accelerations)
-        except InputError as why:
-            found = f"{why.found} in {parameters.name} for {p.to}"
-            raise InputError(found, why.expected, file=p.file, column=p.key("to"), advice=why.advice) from None
-        if made.loss is not None and not made.lossless and (p.strict or not p.accept_loss):
-            raise InputError(
-                f"{p.to} cannot hold all of {parameters.name}: {in_short(made.loss)}",
-                "a target that holds everything" if p.strict else "accept_loss = true, once the loss has been read",
-                file=p.file,
-                column=p.key("strict" if p.strict else "accept_loss"),
-                advice="Without this [[export]] the study writes the parameter file; `coeflab export FILE --to "
-                f"{p.to}` then prints the whole loss.",
-            )
-        progress(f"exported {parameters.name} for {p.to}")
-        out.append(made)
-    return tuple(out)
+    try:
+        made = export(parameters, p.to, p.accelerations)
+    except InputError as why:
+        found = f"{why.found} in {parameters.name} for {p.to}"
+        raise InputError(found, why.expected, file=p.file, column=p.key("to"), advice=why.advice) from None
+    if made.loss is not None and not made.lossless and (p.strict or not p.accept_loss):
+        raise InputError(
+            f"{p.to} cannot hold all of {parameters.name}: {in_short(made.loss)}",
+            "a target that holds everything" if p.strict else "accept_loss = true, once the loss has been read",
+            file=p.file,
+            column=p.key("strict" if p.strict else "accept_loss"),
+            advice=f"The study and its parameter file are written without this export; `coeflab export FILE --to {p.to}` "
+            "prints the whole loss.",
+        )
+    return made

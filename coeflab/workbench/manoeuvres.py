@@ -9,7 +9,7 @@ from typing import Any
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import MOTIONS
 from coeflab.manoeuvres import MANOEUVRES
-from coeflab.model.approach import at_once, unlimited
+from coeflab.model.approach import at_once, undetermined_at_once, unlimited
 from coeflab.model.outside import UNCOVERED
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.simulation import Simulation
@@ -123,7 +123,8 @@ def simulate(
     until, why = determined_until(trajectory, body)
     figures = plugin.figures(trajectory, body, options)
     works = tuple(dict.fromkeys((*plugin.citations, *mover.citations)))
-    return Simulation(body, plan, trajectory, figures, (*statements, *([why] if why else [])), until, works)
+    nothing = undetermined_at_once(body, plan)
+    return Simulation(body, plan, trajectory, figures, (*statements, *([why] if why else [])), until, works, nothing)
 
 
 def determined_until(trajectory: Trajectory, vehicle: Vehicle) -> tuple[float, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import subprocess
 from pathlib import Path
 
@@ -101,6 +102,51 @@ def test_failed_check_is_exit_code_one(coeflab: Run, study: Path) -> None:
     assert done.returncode == 1
     assert "Yv'" in done.stdout
     assert "below zero" in done.stdout
+
+
+def test_an_export_that_is_refused_leaves_the_study_standing(coeflab: Run, study: Path) -> None:
+    """The whole study was computed and thrown away, without report and parameter file."""
+    plan = study / PLAN
+    plan.write_text(plan.read_text() + '\n[[export]]\nto = "gazebo"\n')
+    done = coeflab("run", plan)
+    assert done.returncode == 1
+    assert done.stderr.startswith("error: ")
+    assert "export[0].accept_loss" in done.stderr
+    assert done.stderr.count("\n") == 1
+    written = sorted(p.name for p in (study.parent / "reports" / "my_study").iterdir())
+    assert written == ["my_vehicle.coefficients.csv", "my_vehicle.parameters.json", "report.html"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "files"),
+    [("huuv", ["huuv"]), ("flyingfish", ["flyingfish_water"]), ("thauv", [f"thauv_case_0{i}" for i in (1, 2, 3)])],
+)
+def test_a_publication_writes_its_parameter_file_beside_the_report(
+    coeflab: Run, tmp_path: Path, name: str, files: list[str]
+) -> None:
+    assert coeflab("validate", name).returncode == 0
+    folder = tmp_path / "reports" / name
+    assert sorted(p.name for p in folder.glob("*.parameters.json")) == [f"{f}.parameters.json" for f in files]
+    assert (folder / "report.html").is_file()
+    assert all(coeflab("params", "check", p).returncode == 0 for p in folder.glob("*.parameters.json"))
+
+
+@pytest.mark.parametrize("more", [(), ("--json",)])
+def test_fit_with_a_failed_check_is_exit_code_one(coeflab: Run, study: Path, more: tuple[str, ...]) -> None:
+    """It printed the failure and exited 0."""
+    spoil(study / CAMPAIGN, "v = -U sin(beta)", "v = +U sin(beta)")
+    done = coeflab("fit", study / DRIFT, *more)
+    assert (done.returncode, done.stderr) == (1, "")
+    assert "below zero" in done.stdout
+
+
+@pytest.mark.parametrize("command", ["formats", "params schema", "inspect suboff_roddy_2 --json", "--help"])
+def test_a_reader_that_has_seen_enough_is_no_failure(command: str, tmp_path: Path) -> None:
+    """``coeflab ... | head -1`` under pipefail gave 1."""
+    piped = f"set -o pipefail; {shlex.quote(str(COEFLAB))} {command} | true"
+    done = subprocess.run(["bash", "-c", piped], cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_fewer_points_than_parameters_are_refused(coeflab: Run, study: Path) -> None:

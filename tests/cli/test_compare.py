@@ -199,6 +199,12 @@ def test_the_command_prints_a_table_and_exits_zero_even_when_apart(
     assert content["coefficients"][0]["difference"] == pytest.approx(-0.022)
 
 
+def test_files_of_one_body_that_are_apart_exit_one(coeflab: Run, write: Callable[[ParameterFile, str], Path]) -> None:
+    a = write(made(VALUES), "a.json")
+    assert coeflab("compare", a, write(made(VALUES, name="second"), "b.json")).returncode == 0
+    assert coeflab("compare", a, write(made(changed(Yv=(-0.05, 0.001)), name="third"), "c.json")).returncode == 1
+
+
 @pytest.mark.parametrize("content", [None, b"", b"{", b'{"schema_version": "9"}', b"[1, 2]"])
 def test_bad_input_exits_two_with_one_message(
     coeflab: Run, tmp_path: Path, write: Callable[[ParameterFile, str], Path], content: bytes | None

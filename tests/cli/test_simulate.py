@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.cli.conftest import Run
-from tests.manoeuvres.vehicles import STABLE, made
+from tests.manoeuvres.vehicles import STABLE, made, rudder_covered
+from tests.studies.uncertain import with_uncertainty
 
 FREE = ("--free", "u,v,r")
 
@@ -48,6 +50,24 @@ def test_what_cannot_be_is_one_message(coeflab: Run, torpedo: Path, words: tuple
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("error:") == 1
     assert says in done.stderr
+
+
+@pytest.mark.parametrize("command", ["simulate", "uncertainty"])
+def test_what_a_file_determines_nothing_of_is_said_once(coeflab: Run, tmp_path: Path, command: str) -> None:
+    """The README's own zigzag drew an empty figure, leaked four warnings of Python, and ran 1000 draws for six empty rows."""
+    path = tmp_path / "unstable.parameters.json"
+    path.write_bytes(with_uncertainty(rudder_covered(np.radians(15.0)), {"Nr'": 1e-3}, {}).to_json())
+    done = coeflab(command, path, "--manoeuvre", "zigzag", "--rudder", "20 deg", *FREE, "--out", "zigzag")
+    assert (done.returncode, done.stderr) == (1, "")
+    assert (
+        "dr = -20.00 deg lies outside of what the data cover, -15.00 to 15.00 deg. Straight motion is uns"
+        in done.stdout
+    )
+    assert "not determined" not in done.stdout
+    assert not (tmp_path / "zigzag").exists()
+    within = coeflab("simulate", path, "--manoeuvre", "zigzag", "--rudder", "10 deg", *FREE, "--out", "zigzag")
+    assert (within.returncode, within.stderr) == (0, "")
+    assert (tmp_path / "zigzag" / "zigzag.svg").exists()
 
 
 def test_without_control_surfaces_the_way_out_exists(coeflab: Run, tmp_path: Path) -> None:

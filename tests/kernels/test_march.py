@@ -83,7 +83,7 @@ def test_every_quantity_ends_a_phase_alike(quantity: str) -> None:
     seen = {
         "heading": free.heading, "yaw_rate": free.velocity[:, 5], "pitch": pitched, "pitch_rate": free.velocity[:, 4],
         "roll": rolled, "roll_rate": free.velocity[:, 3], "depth": free.position[:, 2], "u": free.velocity[:, 0],
-        "speed": free.speed,
+        "speed": free.speed, "turned": np.abs(free.heading),
     }[quantity]  # fmt: skip
     until = Until(quantity, bool(seen[-1] > seen[0]), float((seen[0] + seen[-1]) / 2))
     asked = Manoeuvre("asked", (Phase("wait", {}, 0.4, until),), start)

@@ -226,6 +226,38 @@ def test_a_run_astern_is_beyond_the_data_in_all_its_figures() -> None:
     assert {f.status for f in found.figures} == {"extrapolated"}
 
 
+def test_a_zigzag_of_20_deg_of_rudder_is_20_20() -> None:
+    """Its heading stayed at 10 deg."""
+    motion = run(made(), "zigzag", rudder="20 deg").trajectory
+    at = np.array([np.interp(t, motion.time, motion.heading) for t in motion.reached if t is not None])
+    np.testing.assert_allclose(np.degrees(at), [20.0, -20.0, 20.0, -20.0, 20.0], rtol=1e-6)
+    stated = run(made(), "zigzag", rudder="20 deg", heading="10 deg").trajectory
+    assert np.degrees(np.interp(stated.reached[0] or 0.0, stated.time, stated.heading)) == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize("commands", ["left=30 right=60", "left=60 right=30"])
+def test_thrusters_that_mirror_each_other_steer_a_zigzag(commands: str) -> None:
+    file = read_parameter_file(shipped("cfd_data") / "huuv" / "huuv.parameters.json")
+    found = run(file, "zigzag", commands=commands)
+    motion = found.trajectory
+    at = np.array([np.interp(t, motion.time, motion.heading) for t in motion.reached if t is not None])
+    np.testing.assert_allclose(np.degrees(at), [10.0, -10.0, 10.0, -10.0, 10.0], rtol=1e-6)
+    assert motion.controls["left"][0] == 60.0
+    assert value(found, "first overshoot") > 0.0
+    with pytest.raises(InputError, match="turns to neither side"):
+        run(file, "zigzag", commands="left=30 right=30")
+
+
+@pytest.mark.parametrize("commands", ["left=0 right=60", "left=60 right=0"])
+def test_a_circle_steered_by_thrusters_ends_after_its_turns(commands: str) -> None:
+    """It ran until its longest time: 85 turns for the two that were asked for."""
+    file = read_parameter_file(shipped("cfd_data") / "huuv" / "huuv.parameters.json")
+    motion = run(file, "turning_circle", commands=commands, turns=2.0).trajectory
+    assert motion.reached[0] is not None
+    assert abs(motion.heading[-1]) == pytest.approx(4.0 * np.pi, rel=1e-9)
+    assert np.sign(motion.heading[-1]) == (-1.0 if commands.startswith("left=0") else 1.0)
+
+
 def test_what_does_not_turn_is_not_said_to_change() -> None:
     found = figures(run(made(), "turning_circle", commands="thrust=9", longest=400.0))
     assert found["steady turning diameter"].why == "the vehicle does not turn"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from coeflab.model.parameter_file import ParameterFile
+from coeflab.model.parameter_file import CoveredRange, ParameterFile
 from coeflab.model.parameter_vehicle import ParameterHydrostatics, ParameterSurface
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.stated_file import Stated, StatedMass, stated_file
@@ -28,6 +28,12 @@ def made(values: dict[str, float] = STABLE, metacentric: float = 0.0) -> Paramet
         volume=MASS / DENSITY, centre_of_buoyancy=(0.0, 0.0, -metacentric), gravity=9.81
     )
     return file.model_copy(update={"hydrostatics": hydrostatics, "schema_version": "1.3"})
+
+
+def rudder_covered(rudder: float) -> ParameterFile:
+    """An unstable vehicle whose rudder was tested up to an angle, rad, and whose turning nobody tested."""
+    tested = CoveredRange(variable="dr", low=-rudder, high=rudder, unit="rad", campaign="synthetic")
+    return made(UNSTABLE).model_copy(update={"covered": (tested,)})
 
 
 def with_limits(file: ParameterFile, limit: float, rate: float | None) -> ParameterFile:

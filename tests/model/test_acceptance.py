@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
+from coeflab.model.acceptance import Acceptance, Basis, Compared, ComparedTable
 
 
 @pytest.mark.parametrize(
@@ -20,11 +20,11 @@ from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
     ],
 )
 def test_agreement(published: float, found: float | None, tolerance: float, how: dict[str, bool], holds: bool) -> None:
-    row = Compared("case", "q", "m", published, found, tolerance, **how)
+    row = Compared("case", "q", "m", published, found, tolerance, Basis.PRINTED, **how)
     assert row.holds is holds
     table = ComparedTable("k", "t", (row,), "Table 1")
     assert Acceptance("n", "t", (table,), (), (), ()).holds is holds
 
 
 def test_a_relative_difference_of_zero_is_absolute() -> None:
-    assert Compared("case", "q", "deg", 0.0, 1e-4, 1e-3, relative=True).difference == 1e-4
+    assert Compared("case", "q", "deg", 0.0, 1e-4, 1e-3, Basis.PRINTED, relative=True).difference == 1e-4

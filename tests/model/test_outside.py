@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import asin, sin
+from math import degrees, sin
 
 import numpy as np
 import pytest
@@ -39,8 +39,8 @@ def test_angles_of_the_flow_and_of_controls() -> None:
     craft = ranged(("asin(v/U)", -0.2, 0.2), ("dr", -0.3, 0.3))
     nu = np.array([2.0 * np.cos(0.25), 2.0 * sin(0.25), 0.0, 0.0, 0.0, 0.0])
     drift, rudder = outside_in_words(craft, nu, {"dr": 0.4})
-    assert drift.startswith(f"asin(v/U) = {asin(sin(0.25)):.4f} lies outside")
-    assert rudder == "dr = 0.4000 lies outside of what the data cover, -0.3000 to 0.3000."
+    assert drift.startswith(f"asin(v/U) = {degrees(0.25):.2f} deg lies outside")
+    assert rudder == "dr = 22.92 deg lies outside of what the data cover, -17.19 to 17.19 deg."
     assert outside_in_words(craft, nu * [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], {"dr": -0.3}) == ()
 
 

@@ -34,7 +34,7 @@ def test_every_table_holds_and_says_what_is_calibrated(made: Acceptance) -> None
         "constants": 5, "residuals": 60, "predicted": 12, "nearest": 80, "families": 6, "cold": 18, "corrected": 8,
     }  # fmt: skip
     assert all(r.found is not None for t in made.tables for r in t.rows)
-    assert {r.basis for r in table(made, "nearest").rows} == {"in-sample"}
+    assert {r.basis for r in table(made, "nearest").rows} == {"calibration"}
     assert any("calibrated" in s for s in made.statements)
     assert len(made.errata) == 7
     assert set(made.citations) <= set(WORKS)

@@ -33,7 +33,9 @@ def test_everything_holds(found: Acceptance) -> None:
         "equations",
     ]  # fmt: skip
     assert len(found.errata) == 10
-    assert {r.basis for t in found.tables for r in t.rows} == {"derived"}
+    assert {r.basis for t in found.tables for r in t.rows} == {"calibration", "consistency"}
+    assert list(found.counts.values()) == [0, 0, 6, 44]
+    assert len(found.repeated) == 50  # 25 numbers of steady turns two more ways
     assert "0.986 times m_y - m_x" in found.tables[-1].statements[0]
     assert found.citations == ("huuv2025",)
 

@@ -37,7 +37,7 @@ def test_steady_glides_to_a_ten_thousandth(thauv: Acceptance) -> None:
 def test_published_speeds_are_called_in_sample_and_left_out_ones_stand_beside(thauv: Acceptance) -> None:
     speeds, left_out = _table(thauv, "speeds"), _table(thauv, "left_out")
     assert [r.against for r in speeds.rows] == [0.25, 0.32, 0.34, 0.43, 0.54, 0.57]
-    assert {(r.basis, r.tolerance) for r in speeds.rows} == {("in-sample", 0.005)}
+    assert {(r.basis, r.tolerance) for r in speeds.rows} == {("calibration", 0.005)}
     assert any("in-sample" in s for s in speeds.statements)
     apart = [abs(r.difference or 0.0) for r in left_out.rows if "left out" in r.case]
     assert len(apart) == 6
@@ -53,7 +53,7 @@ def test_our_own_values_are_told_and_not_counted(thauv: Acceptance) -> None:
     assert {t.key: len(t.rows) for t in thauv.tables} == {
         "engine": 1, "steady_glides": 12, "speeds": 6, "left_out": 6, "cycle": 6, "gains": 4,
     }  # fmt: skip
-    assert all(r.basis == "printed" for r in _table(thauv, "left_out").rows)
+    assert all(r.basis == "predicted" for r in _table(thauv, "left_out").rows)
     told = next(s for s in _table(thauv, "left_out").statements if "not counted" in s)
     munk, moments = (float(word) for word in re.findall(r"(\d+\.\d+) (?:kg|N m) in", told))
     assert munk <= 0.05

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -69,27 +70,34 @@ def test_the_report_shows_every_export_with_its_loss(study: Study) -> None:
 @pytest.mark.parametrize(
     ("table", "key", "expected"),
     [
-        ('to = "gazebo"', "export[0].accept_loss", "accept_loss = true"),
-        ('to = "gazebo"\naccept_loss = false', "export[0].accept_loss", "accept_loss = true"),
-        ('to = "gazebo"\nstrict = true', "export[0].strict", "a target that holds everything"),
-        ('to = "gazebo"\naccept_loss = true\nstrict = true', "export[0].strict", "a target that holds everything"),
+        ('to = "gazebo"', "export[1].accept_loss", "accept_loss = true"),
+        ('to = "gazebo"\naccept_loss = false', "export[1].accept_loss", "accept_loss = true"),
+        ('to = "gazebo"\nstrict = true', "export[1].strict", "a target that holds everything"),
+        ('to = "gazebo"\naccept_loss = true\nstrict = true', "export[1].strict", "a target that holds everything"),
     ],
 )
 def test_a_loss_has_to_be_accepted(tmp_path: Path, table: str, key: str, expected: str) -> None:
-    with pytest.raises(InputError) as caught:
-        run(planned(tmp_path, table))
-    assert (caught.value.file, caught.value.column) == (tmp_path / "plan.toml", key)
-    assert caught.value.found.startswith("gazebo cannot hold all of my_vehicle: missing: roll inertia: the file has")
-    assert expected in caught.value.expected
-    assert "\n" not in str(caught.value)
+    """The study stands: it was computed, and thrown away whole."""
+    found = run(planned(tmp_path, 'to = "csv"', table))
+    (refused,) = found.refused
+    why = refused.why
+    assert (refused.parameters, refused.target) == ("my_vehicle", "gazebo")
+    assert (why.file, why.column) == (tmp_path / "plan.toml", key)
+    assert why.found.startswith("gazebo cannot hold all of my_vehicle: missing: roll inertia: the file has")
+    assert expected in why.expected
+    assert "\n" not in str(why)
+    assert found.failed
+    assert [made.target for made in found.exports] == ["csv"]
+    files = rendered(found)
+    assert "my_vehicle.parameters.json" in files
+    assert not any("gazebo" in name for name in files)
+    assert b"Refused, and not written: my_vehicle for gazebo" in files["report.html"]
 
 
 def test_a_refusal_names_what_is_not_held(tmp_path: Path) -> None:
-    with pytest.raises(
-        InputError,
-        match=r"uuv_simulator cannot hold all of my_vehicle: it has no Xvv, and missing: .* and X differs by",
-    ):
-        run(planned(tmp_path, 'to = "uuv_simulator"'))
+    (refused,) = run(planned(tmp_path, 'to = "uuv_simulator"')).refused
+    said = r"uuv_simulator cannot hold all of my_vehicle: it has no Xvv, and missing: .* and X differs by"
+    assert re.search(said, str(refused.why))
 
 
 def test_what_a_target_cannot_take_at_all_names_the_plan(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -97,10 +105,9 @@ def test_what_a_target_cannot_take_at_all_names_the_plan(tmp_path: Path, monkeyp
         raise InputError("an inertia that is not positive", "a body")
 
     monkeypatch.setattr("coeflab.exporters.xdyn.render", refuse)
-    with pytest.raises(InputError) as caught:
-        run(planned(tmp_path, 'to = "csv"', 'to = "xdyn"'))
-    assert (caught.value.file, caught.value.column) == (tmp_path / "plan.toml", "export[1].to")
-    assert caught.value.found == "an inertia that is not positive in my_vehicle for xdyn"
+    (refused,) = run(planned(tmp_path, 'to = "csv"', 'to = "xdyn"')).refused
+    assert (refused.why.file, refused.why.column) == (tmp_path / "plan.toml", "export[1].to")
+    assert refused.why.found == "an inertia that is not positive in my_vehicle for xdyn"
 
 
 @pytest.mark.parametrize(
@@ -130,8 +137,8 @@ def test_an_unknown_target_is_refused_before_anything_is_read(tmp_path: Path) ->
 
 def test_a_plan_of_a_program_has_no_file_to_name(study: Study) -> None:
     plan = replace(study.plan, exports=(PlannedExport("gazebo"),))
-    with pytest.raises(InputError, match=r'^"export.accept_loss": found gazebo'):
-        run(plan)
+    (refused,) = run(plan).refused
+    assert str(refused.why).startswith('"export.accept_loss": found gazebo')
 
 
 def test_json_names_the_losses(study: Study) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
@@ -14,7 +15,7 @@ from coeflab.model.study import PlannedManoeuvre
 from coeflab.presentation.manoeuvre_section import manoeuvre_sections
 from coeflab.workbench.exports import exports_of
 from coeflab.workbench.manoeuvres import manoeuvres_of
-from tests.manoeuvres.vehicles import UNSTABLE, made
+from tests.manoeuvres.vehicles import UNSTABLE, made, rudder_covered
 from tests.model.test_inertia import accelerating
 from tests.presentation.studies import FULL, small_study
 
@@ -69,6 +70,18 @@ def test_what_cannot_be_is_refused_by_its_key(planned: PlannedManoeuvre, column:
     with pytest.raises(InputError) as caught:
         manoeuvres_of([planned], {"v": made()}, quiet)
     assert caught.value.column == column
+
+
+def test_nothing_is_drawn_of_a_motion_that_nothing_determines() -> None:
+    """Two panels of no width, whose warnings the command line leaked."""
+    from dataclasses import replace
+
+    planned = PlannedManoeuvre("v", "zigzag", {"rudder": "20 deg"})
+    made_up = manoeuvres_of([planned], {"v": rudder_covered(np.radians(15.0))}, quiet)
+    (section,) = manoeuvre_sections(replace(small_study(FULL), manoeuvres=made_up))
+    (zigzag,) = section.subsections
+    assert zigzag.figures == ()
+    assert "Nothing is drawn" in " ".join(zigzag.paragraphs)
 
 
 def test_a_turn_that_nothing_limits_is_said_to_be_undetermined() -> None:

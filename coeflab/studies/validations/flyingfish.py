@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.kernels.tilting_rotors import CONSTANTS, calibrated, steady_residuals
-from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
+from coeflab.model.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.model.flyingfish import FlyingFish, read_flyingfish
 from coeflab.model.operating_point import OperatingPoint
+from coeflab.model.published_files import flyingfish_file
 from coeflab.studies.validations.flyingfish_figures import figures
 from coeflab.studies.validations.flyingfish_trim import DEGREE, RPM, UNKNOWNS, trim
 
@@ -60,12 +61,13 @@ def acceptance() -> Acceptance:
         ("tj_flyingfish",),
         figures(fish, nearest),
         CONVENTIONS,
+        (flyingfish_file(fish),),
     )
 
 
 def _constants(fish: FlyingFish, constants: Array) -> ComparedTable:
     rows = tuple(
-        Compared("calibrated", name, UNITS[name], fish.constants[name], float(c), DERIVED[name], "derived")
+        Compared("calibrated", name, UNITS[name], fish.constants[name], float(c), DERIVED[name], Basis.CONSISTENCY)
         for name, c in zip(CONSTANTS, constants, strict=True)
     )
     return ComparedTable(
@@ -87,7 +89,7 @@ def _residuals(fish: FlyingFish, constants: Array) -> ComparedTable:
             0.0,
             float(left[row, k]),
             FORCES if k < 3 else MOMENTS,
-            "in-sample",
+            Basis.CALIBRATION,
         )
         for row in range(len(left))
         for k, name in enumerate("XYZKMN")
@@ -102,7 +104,7 @@ def _predicted(fish: FlyingFish) -> ComparedTable:
     taught = calibrated(fish.rotors, fish.motion[chosen], fish.angles[chosen], fish.speeds[chosen])
     left = np.abs(_left(fish, taught))
     rows = tuple(
-        Compared(f"motion {row + 1}", what, unit, 0.0, float(np.max(left[row, part])), tolerance, "derived")
+        Compared(f"motion {row + 1}", what, unit, 0.0, float(np.max(left[row, part])), tolerance, Basis.PREDICTED)
         for row in TOLD
         for what, unit, part, tolerance in (
             ("largest force left", "N", slice(0, 3), 3.5e-4), ("largest moment left", "N m", slice(3, 6), 6.5e-4),
@@ -123,7 +125,7 @@ def _rows(case: str, published: Array, found: Array | None, angle: float, speed:
             float(published[i]),
             None if found is None else float(found[i]),
             angle if i < 4 else speed,
-            "derived" if case.startswith("corrected") else "in-sample",
+            Basis.CONSISTENCY if case.startswith("corrected") else Basis.CALIBRATION,
         )
         for i in which
     ]
@@ -158,7 +160,7 @@ def _families(fish: FlyingFish, constants: Array) -> ComparedTable:
             published,
             float(trim(fish, constants, row, near=True, given=(2, 3), starts=0).dimension),
             0.0,
-            "derived",
+            Basis.CONSISTENCY,
         )
         for cases, published in ((LEVEL, 1.0), (ISOLATED, 0.0))
         for row in cases
@@ -181,7 +183,7 @@ def _cold(fish: FlyingFish, constants: Array) -> ComparedTable:
         said.append(f"{case}: {found.words()[0]}")
     return ComparedTable(
         "cold", "Cold starts with beta3 and beta4 as printed", tuple(rows), "Table 1",
-        (*said, "The tolerance on rotor speed is 0.07 rpm to its last printed digit."),
+        (*said, "The tolerance on rotor speed is 0.07 rpm to its last printed digit."), "nearest",
     )  # fmt: skip
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.parts import plate_coefficient
 from coeflab.kernels.steady_turn import SteadyTurns, coriolis, run, steady_turns
-from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
+from coeflab.model.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.model.huuv import MATLAB, TRACKER, Huuv, Turns, read_huuv, thrust
 from coeflab.model.huuv_parameters import parameter_file
 from coeflab.model.steady_motion import steady_motions, wrenches
@@ -66,6 +66,7 @@ def acceptance() -> Acceptance:
         ("huuv2025",),
         tuple(_figures(huuv, halves)),
         CONVENTIONS,
+        (parameter_file(huuv),),
     )
 
 
@@ -84,14 +85,18 @@ def _rows(huuv: Huuv, found: Array) -> tuple[Compared, ...]:
     rows: list[Compared] = []
     for i, (u, beta, radius) in enumerate(turns.figures):
         case = _case(turns, i)
-        rows.append(Compared(case, "u", "m/s", float(u), float(found[i, 0]), ACCEPTED, "derived", True))
+        rows.append(Compared(case, "u", "m/s", float(u), float(found[i, 0]), ACCEPTED, Basis.CONSISTENCY, True))
         drift = float(np.degrees(abs(ours.drift[i])))
-        rows.append(Compared(case, "|beta|", "deg", float(np.degrees(beta)), drift, ACCEPTED, "derived", True))
+        rows.append(Compared(case, "|beta|", "deg", float(np.degrees(beta)), drift, ACCEPTED, Basis.CONSISTENCY, True))
         if np.isfinite(radius):
-            rows.append(Compared(case, "R", "m", float(radius), float(ours.radius[i]), ACCEPTED, "derived", True))
+            rows.append(
+                Compared(case, "R", "m", float(radius), float(ours.radius[i]), ACCEPTED, Basis.CONSISTENCY, True)
+            )
         if np.isfinite(huuv.accepted_rate[i]):
             rate = float(abs(found[i, 2]))
-            rows.append(Compared(case, "|r|", "rad/s", float(huuv.accepted_rate[i]), rate, ACCEPTED, "derived", True))
+            rows.append(
+                Compared(case, "|r|", "rad/s", float(huuv.accepted_rate[i]), rate, ACCEPTED, Basis.CONSISTENCY, True)
+            )
     return tuple(rows)
 
 
@@ -108,7 +113,12 @@ def _simulated(huuv: Huuv) -> ComparedTable:
     times = np.array([0.0, LASTS])
     ends = np.array([run(huuv.theta, one, times)[-1] for one in _wrench(huuv, huuv.accepted)])
     return ComparedTable(
-        "simulated", f"The same after {LASTS:g} s from rest", _rows(huuv, ends), "equations 1, 5-7, 34-38", (SIGNS,)
+        "simulated",
+        f"The same after {LASTS:g} s from rest",
+        _rows(huuv, ends),
+        "equations 1, 5-7, 34-38",
+        (SIGNS,),
+        "steady_turns",
     )
 
 
@@ -119,7 +129,7 @@ def _through_file(huuv: Huuv) -> ComparedTable:
     found, _ = steady_motions(made, wrenches(made, commands))
     return ComparedTable(
         "through_file", "The same from the parameter file huuv.parameters.json", _rows(huuv, found[:, [0, 1, 5]]),
-        "equations 1, 5-7, 34-38", ("Tables C_D, C_S and C_n over beta, yaw damping over r, thrusters with a dead zone.",),
+        "equations 1, 5-7, 34-38", ("Tables C_D, C_S and C_n over beta, yaw damping over r, thrusters with a dead zone.",), "steady_turns",
     )  # fmt: skip
 
 
@@ -128,9 +138,9 @@ def _skew(huuv: Huuv) -> ComparedTable:
     matrices = coriolis(huuv.theta, velocity)
     rows = (
         Compared("1000 random motions", "largest |C + C^T|", "kg m/s", 0.0,
-                 float(np.max(np.abs(matrices + np.swapaxes(matrices, 1, 2)))), 1e-12, "derived"),
+                 float(np.max(np.abs(matrices + np.swapaxes(matrices, 1, 2)))), 1e-12, Basis.CONSISTENCY),
         Compared("1000 random motions", "largest power of C nu", "W", 0.0,
-                 float(np.max(np.abs(np.einsum("ni,nij,nj->n", velocity, matrices, velocity)))), 1e-12, "derived"),
+                 float(np.max(np.abs(np.einsum("ni,nij,nj->n", velocity, matrices, velocity)))), 1e-12, Basis.CONSISTENCY),
     )  # fmt: skip
     return ComparedTable("coriolis", "Coriolis forces do no work", rows, "equation 1, matrix C")
 
@@ -138,7 +148,7 @@ def _skew(huuv: Huuv) -> ComparedTable:
 def _origin(huuv: Huuv) -> ComparedTable:
     fit = tuned(huuv, MATLAB, BASE)
     rows = tuple(
-        Compared("fit of seven", TOLD[n], p.unit, huuv.constants[n], p.after, 1e-3, "derived", True)
+        Compared("fit of seven", TOLD[n], p.unit, huuv.constants[n], p.after, 1e-3, Basis.CONSISTENCY, True)
         for n in BASE
         if (p := fit.parameter(n))
     )
@@ -151,10 +161,18 @@ def _origin(huuv: Huuv) -> ComparedTable:
 
 def _tuned(fit: Tuning) -> ComparedTable:
     rows = [
-        Compared("MATLAB", "thrust intercept", "N", INTERCEPT, -fit.parameter("intercept").after, EITHER_WAY, "derived")
+        Compared(
+            "MATLAB",
+            "thrust intercept",
+            "N",
+            INTERCEPT,
+            -fit.parameter("intercept").after,
+            EITHER_WAY,
+            Basis.CONSISTENCY,
+        )
     ]
     rows += [
-        Compared("MATLAB", f"rms of {n}", unit, most, fit.quantity(n).rms(), 0.0, "derived", at_most=True)
+        Compared("MATLAB", f"rms of {n}", unit, most, fit.quantity(n).rms(), 0.0, Basis.CALIBRATION, at_most=True)
         for n, (unit, most) in LIMITS.items()
     ]
     said = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
@@ -166,7 +184,7 @@ def _tuned(fit: Tuning) -> ComparedTable:
 
 def _told(fit: Tuning) -> ComparedTable:
     rows = tuple(
-        Compared("TRACKER", f"rms of {n}", unit, about, fit.quantity(n).rms(), ROUGHLY, "derived", True)
+        Compared("TRACKER", f"rms of {n}", unit, about, fit.quantity(n).rms(), ROUGHLY, Basis.CALIBRATION, True)
         for n, (unit, about) in ABOUT.items()
     )
     return ComparedTable(
@@ -180,10 +198,14 @@ def _hidden(huuv: Huuv, fit: Tuning) -> ComparedTable:
     rows, said = [], []
     for name in ("m", "my", "arm"):
         found = hidden(huuv, fit, MATLAB, name)
-        rows.append(Compared("MATLAB", f"sets that {TOLD[name]} hides in", "1", 1.0, float(len(found)), 0.0, "derived"))
+        rows.append(
+            Compared("MATLAB", f"sets that {TOLD[name]} hides in", "1", 1.0, float(len(found)), 0.0, Basis.CONSISTENCY)
+        )
         said += list(found)
     both = sum("beta^3" in text and "r|r|" in text for text in fit.together)
-    rows.append(Compared("MATLAB", "sets of M_mr (r|r|) and C_m (beta^3)", "1", 1.0, float(both), 0.0, "derived"))
+    rows.append(
+        Compared("MATLAB", "sets of M_mr (r|r|) and C_m (beta^3)", "1", 1.0, float(both), 0.0, Basis.CONSISTENCY)
+    )
     return ComparedTable(
         "hidden", "What the turns do not determine", tuple(rows), "Fig. 17 b, d, f",
         (*said, "So C_S is known only up to the mass, and the yaw equation only up to the arm and m_y - m_x."),
@@ -193,10 +215,12 @@ def _hidden(huuv: Huuv, fit: Tuning) -> ComparedTable:
 def _equations(huuv: Huuv) -> ComparedTable:
     c = huuv.constants
     rows = [
-        Compared("equation 34", "intercept without a step", "N", 2.3156, c["slope"] * huuv.dead_zone, 1e-4, "derived"),
+        Compared(
+            "equation 34", "intercept without a step", "N", 2.3156, c["slope"] * huuv.dead_zone, 1e-4, Basis.CONSISTENCY
+        ),
     ]
     rows += [
-        Compared(f"equation 30, aspect {a:g}", "k", "1", k, plate_coefficient(a), 0.01, "derived", True)
+        Compared(f"equation 30, aspect {a:g}", "k", "1", k, plate_coefficient(a), 0.01, Basis.CONSISTENCY, True)
         for a, k in PLATES
     ]
     return ComparedTable(

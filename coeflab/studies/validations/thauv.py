@@ -13,9 +13,10 @@ from coeflab.core.files import shipped
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.pitch_calibration import GlideSpeed, calibrated, speed_of
 from coeflab.kernels.steady_glide import glide
-from coeflab.model.acceptance import Acceptance, Compared, ComparedTable
+from coeflab.model.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.model.glide import steady_glides
 from coeflab.model.glider import Glider, GliderPhase
+from coeflab.model.published_files import thauv_file
 from coeflab.presentation.document import Figure
 from coeflab.presentation.laws_figure import Plot, Trace, laws_figure
 from coeflab.studies.glide import Flown, fly
@@ -60,6 +61,7 @@ def acceptance() -> Acceptance:
         ("thauv", "leonard_graver2001"),
         tuple(_figures(flown)),
         CONVENTIONS,
+        tuple(thauv_file(f.run.glider) for f in flown),
     )
 
 
@@ -74,7 +76,7 @@ def _dive(glider: Glider, stage: str) -> GliderPhase:
 
 def _engine(gliders: dict[str, Flown]) -> ComparedTable:
     found = _dive(gliders["01"].run.glider, "1").net_mass
-    row = Compared("piston at 0.03 m", "net mass, both engines", "kg", 0.483, found, BALLAST)
+    row = Compared("piston at 0.03 m", "net mass, both engines", "kg", 0.483, found, BALLAST, Basis.PRINTED)
     return ComparedTable("engine", "Ballast water", (row,), "Equation 5 and section 5")
 
 
@@ -85,8 +87,10 @@ def _steady(gliders: dict[str, Flown]) -> ComparedTable:
         weight = _dive(g, p["stage"]).net_mass * g.gravity
         speed, zeta = glide(g.body.polar, weight, np.radians(float(p["alpha [deg]"])))
         case = f"case {p['case']}, {p['alpha [deg]']} deg"
-        rows.append(Compared(case, "V", "m/s", float(p["V [m/s]"]), float(speed), SAME, "derived"))
-        rows.append(Compared(case, "zeta", "deg", float(p["zeta [deg]"]), float(np.degrees(zeta)), SAME, "derived"))
+        rows.append(Compared(case, "V", "m/s", float(p["V [m/s]"]), float(speed), SAME, Basis.CONSISTENCY))
+        rows.append(
+            Compared(case, "zeta", "deg", float(p["zeta [deg]"]), float(np.degrees(zeta)), SAME, Basis.CONSISTENCY)
+        )
     return ComparedTable(
         "steady_glides", "Steady glides at an angle of attack, first stage", tuple(rows), "Table 3, equations 28 and 29"
     )
@@ -98,7 +102,7 @@ def _speeds(gliders: dict[str, Flown]) -> ComparedTable:
         g = gliders[p["case"]].run.glider
         found = steady_glides(g, _dive(g, p["stage"]))
         speed = found[0].speed if len(found) == 1 else None
-        rows.append(Compared(_case(p), "V", "m/s", float(p["V [m/s]"]), speed, SPEED, "in-sample"))
+        rows.append(Compared(_case(p), "V", "m/s", float(p["V [m/s]"]), speed, SPEED, Basis.CALIBRATION))
     return ComparedTable(
         "speeds", "Dive speeds in balance of pitch", tuple(rows), "Section 5, text to Figure 13",
         (CALIBRATED, "No other upright glide ahead is in balance within 30 degrees of attack."),
@@ -119,7 +123,7 @@ def _left_out(gliders: dict[str, Flown]) -> ComparedTable:
     for i, p in enumerate(_published("published_speed")):
         speed = speed_of(known[i], calibrated([*known[:i], *known[i + 1 :]]))
         found = speed if np.isfinite(speed) else None
-        rows.append(Compared(f"{_case(p)}, left out", "V", "m/s", known[i].speed, found, SPEED, "printed"))
+        rows.append(Compared(f"{_case(p)}, left out", "V", "m/s", known[i].speed, found, SPEED, Basis.PREDICTED))
     return ComparedTable(
         "left_out", "Each speed from a calibration on the other five", tuple(rows), "Section 5",
         ("Least squares, started from the linear pitch balance, not from known constants.", _again(gliders, known)),
@@ -144,7 +148,7 @@ def _cycle(gliders: dict[str, Flown]) -> ComparedTable:
         run = gliders[p["case"]].run
         index = next(i for i in range(len(run.ends)) if run.phase_of(i) == _dive(run.glider, p["stage"]))
         speed, steady = float(run.speed[run.ends[index]]), run.nearest(index)
-        rows.append(Compared(_case(p), "V at the end", "m/s", float(p["V [m/s]"]), speed, SPEED, "in-sample"))
+        rows.append(Compared(_case(p), "V at the end", "m/s", float(p["V [m/s]"]), speed, SPEED, Basis.CALIBRATION))
         if steady is not None:
             settled.append(abs(speed - steady.speed))
     far = max([SETTLED, *settled])  # no finer than that, so that every machine says the same
@@ -154,7 +158,7 @@ def _cycle(gliders: dict[str, Flown]) -> ComparedTable:
             "The second stage dives at 1060 s and surfaces at 1430 s, as printed; the first climb at 660 s is assumed.",
             "Climbs follow from moments linear in the piston's stroke; the paper's text gives no speed to hold them against.",
             f"Every dive ends within {far:.0e} m/s of the steady glide of its balance, which is ours too and not counted.",
-        ),
+        ), "speeds",
     )  # fmt: skip
 
 
@@ -163,13 +167,15 @@ def _gains(gliders: dict[str, Flown]) -> ComparedTable:
     rows = []
     for stage, printed in (("1", 28.0), ("2", 25.58)):
         found = 100.0 * (known["02", stage] / known["01", stage] - 1.0)
-        rows.append(Compared(f"stage {stage}", "gain of the printed speeds", "%", printed, found, 0.005))
+        rows.append(Compared(f"stage {stage}", "gain of the printed speeds", "%", printed, found, 0.005, Basis.PRINTED))
         ours = {
             c: next(s.speed for s in steady_glides(gliders[c].run.glider, _dive(gliders[c].run.glider, stage)))
             for c in ("01", "02")
         }
         found = 100.0 * (ours["02"] / ours["01"] - 1.0)
-        rows.append(Compared(f"stage {stage}", "gain of our steady speeds", "%", printed, found, GAIN, "in-sample"))
+        rows.append(
+            Compared(f"stage {stage}", "gain of our steady speeds", "%", printed, found, GAIN, Basis.CALIBRATION)
+        )
     return ComparedTable(
         "gains", "Gain in speed, the two printed numbers swapped back", tuple(rows), "Section 5",
         ("Gain of case 02 over 01. The printed speeds give the printed gains once these are swapped back.",),
