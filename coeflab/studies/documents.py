@@ -105,10 +105,11 @@ def written(document: Document, formats: Sequence[str]) -> Mapping[str, bytes]:
     InputError
         No renderer has that name.
     """
-    renderers = [REPORTERS.load(name) for name in dict.fromkeys(formats)]
+    renderers = {name: REPORTERS.load(name) for name in formats}
     files: dict[str, bytes] = {}
-    for renderer in renderers:
-        files.update(renderer.render(document))
+    for name, renderer in renderers.items():
+        with REPORTERS.guarded(name):
+            files.update(renderer.render(document))
     return files
 
 

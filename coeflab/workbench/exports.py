@@ -31,7 +31,8 @@ def export(parameters: ParameterFile, target: str) -> Export:
         The target cannot hold the file at all, or a file of it would leave the folder.
     """
     plugin = EXPORTERS.load(target)
-    files = dict(plugin.render(parameters))
+    with EXPORTERS.guarded(target):
+        files = dict(plugin.render(parameters))
     _refuse_places(files, parameters, target)
     if not isinstance(plugin, SimulatorExporter):
         return Export(parameters.name, target, files, None, plugin.citations)

@@ -21,7 +21,7 @@ FILE = "body.toml"
 def methods() -> tuple[str, ...]:
     """Every method with its presets: ``strip`` and ``strip:lamb``."""
     out = []
-    for name in ADDED_MASS.names():
+    for name in ADDED_MASS.usable():
         out += [name, *(f"{name}:{preset}" for preset in getattr(ADDED_MASS.load(name), "presets", {}))]
     return tuple(out)
 
