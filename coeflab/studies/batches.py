@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_atomically
+from coeflab.core.machine import one_thread
 from coeflab.core.symbols import CONTROLS
 from coeflab.core.version import VERSION
 from coeflab.manoeuvres import MANOEUVRES
@@ -97,6 +98,7 @@ def prepared(setup: Setup) -> tuple[ParameterFile, Vehicle, Uncertain]:
     return parameters, body, uncertain(parameters, [t.symbol for t in body.terms])
 
 
+@one_thread()
 def figures_of(setup: Setup, deviations: Array) -> list[tuple[tuple[Figure, ...], str]]:
     """Figures of every member and how its motion ended; no figures for one that cannot even start.
 
@@ -140,6 +142,7 @@ def _steered(plan: Manoeuvre) -> tuple[Any, ...]:
     return tuple((tuple((c, p.orders[c]) for c in CONTROLS if c in p.orders), p.longest, p.until) for p in plan.phases)
 
 
+@one_thread()
 def run_batch(setup: Setup, names: Sequence[str], deviations: Array) -> Batch:
     """Values and statuses of the named figures.
 

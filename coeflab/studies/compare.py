@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from coeflab.core.machine import one_thread
 from coeflab.core.symbols import primed
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Status, transfer_matrix
 from coeflab.model.parameter_file import ParameterFile
@@ -106,6 +107,7 @@ def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
     )  # fmt: skip
 
 
+@one_thread()
 def compare(a: ParameterFile, b: ParameterFile) -> Comparison:
     """Hold the second file against the first.
 

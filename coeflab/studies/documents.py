@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped, typed
+from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.model.acceptance import Acceptance
 from coeflab.model.plan import read_plan
@@ -53,6 +54,7 @@ def studied(study: str, progress: Progress = lambda _: None) -> Study | Acceptan
     return run(made, progress) if isinstance(made, Plan) else made
 
 
+@one_thread()
 def report_of(found: Study | Acceptance, *, short: bool = False) -> Report:
     """The report of what was computed; figures are drawn on several cores while this process has a single thread.
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.files import located
+from coeflab.core.machine import one_thread
 from coeflab.kernels.glider_motion import Setting
 from coeflab.model.glide import GlideRun, SteadyGlide, steady_glides
 from coeflab.model.glider import GliderPhase
@@ -36,6 +37,7 @@ class Flown:
     steady: tuple[SteadyGlide, ...]
 
 
+@one_thread()
 def fly(name: str | Path, cycles: int, options: Mapping[str, Any]) -> tuple[Flown, ...]:
     """Fly a glider file, every one of a folder, or a shipped glider.
 

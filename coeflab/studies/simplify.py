@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.machine import one_thread
 from coeflab.core.provenance import Source
 from coeflab.kernels import solids
 from coeflab.kernels.attitude import angles, rotation, snapped
@@ -45,6 +46,7 @@ class _Piece:
     cut: bool
 
 
+@one_thread()
 def simplify(
     body: Body, boxes: Sequence[NamedBox] = (), expected: int | None = None, convex: bool = False
 ) -> Simplification:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.machine import one_thread
 from coeflab.core.symbols import CONTROLS
 from coeflab.kernels.linearisation import growth
 from coeflab.kernels.wind_axes import incidence
@@ -76,6 +77,7 @@ class Trim:
         return Table("Other solutions", (*headers, "small motions"), rows, (), frozenset({len(headers)}))
 
 
+@one_thread()
 def trim(
     vehicle: Vehicle,
     motion: Mapping[str, float],

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
+from coeflab.core.machine import one_thread
 from coeflab.kernels.output_error import Estimate, by_likelihood, estimate
 from coeflab.kernels.output_problem import Problem, problem
 from coeflab.kernels.settling import differences
@@ -59,6 +60,7 @@ class Tuned:
         }
 
 
+@one_thread()
 def tune(plan: TuningPlan) -> Tuned:
     """Fit, account for it, and make the tuned file.
 

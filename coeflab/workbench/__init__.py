@@ -7,6 +7,7 @@ from typing import Any
 
 from coeflab.checks import CHECKS
 from coeflab.core.errors import CoeflabError, InputError, shown
+from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.symbols import MOTIONS
 from coeflab.exporters import EXPORTERS
@@ -38,6 +39,7 @@ Progress = Callable[[str], None]
 FEWEST = 3
 
 
+@one_thread()
 def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     """Carry out a plan.
 
@@ -215,6 +217,7 @@ def _inputs(plan: Plan, tables: list[ForceTable], bodies: list[Body]) -> tuple[I
     return tuple(dict.fromkeys(files))
 
 
+@one_thread()
 def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, bytes]:
     """Every file of a study: parameter files, exports and the report, by name. Nothing is written."""
     files: dict[str, bytes] = {}

@@ -8,6 +8,7 @@ from typing import Any
 
 from coeflab.added_mass import ADDED_MASS
 from coeflab.core.errors import InputError
+from coeflab.core.machine import one_thread
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.study import PlannedParameterFile
@@ -53,6 +54,7 @@ def hulls_of(
     return out
 
 
+@one_thread()
 def added_masses(
     body: Body,
     density: float,

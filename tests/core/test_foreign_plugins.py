@@ -14,8 +14,8 @@ import pytest
 
 from coeflab.checks import CHECKS
 from coeflab.core.errors import PluginError
-from coeflab.core.registry import OURS
 from coeflab.core.registry import Registry as Room
+from coeflab.core.version import VERSION
 from coeflab.fits import FITS
 from coeflab.model.check import Severity
 from coeflab.model.plan import read_plan
@@ -116,7 +116,7 @@ def test_ours_stays_where_a_name_is_claimed(install: Install, plan: Plan, caplog
     ((name, reason),) = FITS.unusable()
     assert name == "slope_at_origin"
     assert reason == (
-        f'the fit "slope_at_origin" of usurper 1.2 is refused: {OURS} ships one of that name, which stays'
+        f'the fit "slope_at_origin" of usurper 1.2 is refused: coeflab {VERSION} ships one of that name, which stays'
     )
     assert [r.getMessage() for r in caplog.records if r.levelname == "WARNING"] == [f"{reason}."]
 
