@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol
 
+from coeflab.kernels.brief import brief
+
 Basis = Literal["printed", "derived", "in-sample"]
 BASES: dict[Basis, str] = {
     "printed": "a number that the paper prints",
@@ -13,6 +15,7 @@ BASES: dict[Basis, str] = {
 }
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Compared:
     """One number of ours and what it is held against.
@@ -61,6 +64,7 @@ class Compared:
         return (self.difference if self.at_most else abs(self.difference)) <= self.tolerance
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class ComparedTable:
     """Rows of one published table or figure.
@@ -117,6 +121,7 @@ class Drawing(Protocol):
         """The numbers behind it."""
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Acceptance:
     """A publication reproduced.

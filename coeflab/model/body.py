@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Scaling
 from coeflab.model.shape import Shape
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class MassProperties:
     """Mass properties about the body's reference point.
@@ -51,6 +53,7 @@ class MassProperties:
         return self.mass / unit, self.mass_moment / (unit * scaling.length)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Configuration:
     """One state of appendages.
@@ -120,6 +123,7 @@ class Measured:
         return float(self.printed.replace("?", "0")), float(self.printed.replace("?", "9"))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
     """A body with one or more configurations.

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from coeflab.core.axes import Axes, parse_axes
 from coeflab.core.provenance import TABLE_KINDS, Source, read_source
 from coeflab.core.toml import Section, read_toml
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.input_uncertainty import InputUncertainty, read_input_uncertainty
 from coeflab.model.scaling import Conditions, Scaling, read_conditions, read_scaling
@@ -20,6 +21,7 @@ from coeflab.model.scaling import Conditions, Scaling, read_conditions, read_sca
 FILE = "campaign.toml"
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Inertia:
     """Mass properties of the towed model, for forces that contain its inertia.
@@ -39,6 +41,7 @@ class Inertia:
     tensor: tuple[float, float, float]
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class TableDeclaration:
     """One ``[[table]]`` of a campaign.
@@ -69,6 +72,7 @@ class TableDeclaration:
     cells: str = ""
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Campaign:
     """A folder of tables from one test or one set of computations."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.core.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative
+from coeflab.kernels.brief import brief
 from coeflab.kernels.transforms import derivative_transfer
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Conditions, Scaling
@@ -69,6 +70,7 @@ class Parts:
     input: float | None = None
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Coefficient:
     """One coefficient.
@@ -133,6 +135,7 @@ class Coefficient:
         return replace(self, window=(self.window[0] * longer, self.window[1] * longer))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class CoefficientSet:
     """Coefficients of one body, one scaling, one reference point.

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 
 Array = NDArray[np.float64]
@@ -28,6 +29,7 @@ QUANTITIES: dict[Quantity, str] = {
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Until:
     """A phase ends when a quantity crosses a value, rising or falling.
@@ -46,6 +48,7 @@ class Until:
     value: float
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Phase:
     """Orders that stand until something happens.
@@ -69,6 +72,7 @@ class Phase:
         object.__setattr__(self, "orders", MappingProxyType(dict(self.orders)))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Manoeuvre:
     """Where it starts, and what is ordered.

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.toml import Section, read_toml
 from coeflab.core.units import quantity
+from coeflab.kernels.brief import brief
 from coeflab.model.coefficient import Coefficient, CoefficientSet
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Scaling, read_scaling
@@ -48,6 +49,7 @@ class PublishedValue:
     value: float | None
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Literature:
     """Published values that may enter a parameter file, with their stated relative uncertainty."""
@@ -58,6 +60,7 @@ class Literature:
     values: tuple[PublishedValue, ...]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Reference:
     """One column of published derivatives, and the stability indices G_h and G_v that its source prints."""
@@ -99,6 +102,7 @@ class Reference:
         return tuple((s.length_name, published.value * s.ratio(symbol, to)) for s in lengths)
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """Ours against one published value.

@@ -14,6 +14,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.core.version import VERSION
+from coeflab.kernels.brief import brief
 from coeflab.kernels.composition import definiteness
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.parameter_added_mass import ParameterAddedMass
@@ -34,6 +35,7 @@ Array = NDArray[np.float64]
 Law = Literal["motion", "rest"]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class StatedMass:
     """Mass, kg; x_G m, kg m; where they are known transverse inertia, kg m^2, the centre of gravity (3,) from the
@@ -47,6 +49,7 @@ class StatedMass:
     inertia_matrix: Array | None = None
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Stated:
     """What a model file states, in SI and FRD.

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.provenance import InputFile
+from coeflab.kernels.brief import brief
 from coeflab.model.body import Body
 from coeflab.model.budget import Budget
 from coeflab.model.check import Check, Severity
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from coeflab.model.simulation import Simulation
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class PlannedTable:
     """One ``[[table]]``: a campaign (a folder, a campaign.toml or one CSV of it), its fits and their options."""
@@ -39,6 +41,7 @@ class PlannedTable:
     only: str | None = None
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class PlannedJoint:
     """One ``[[joint]]``: one fit over several tables or campaigns."""
@@ -48,6 +51,7 @@ class PlannedJoint:
     options: Mapping[str, Any] = field(default_factory=dict)
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class PlannedParameterFile:
     """One ``[[parameter_file]]``: which campaigns, which literature and whose added mass it holds.
@@ -70,6 +74,7 @@ class PlannedParameterFile:
     method: str = "all"
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class PlannedExport:
     """One ``[[export]]``: every parameter file of the study for one target.
@@ -99,6 +104,7 @@ class PlannedExport:
         return f"{self.place}.{name}"
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class PlannedManoeuvre:
     """One ``[[manoeuvre]]``: a parameter file of the study, the manoeuvre's name and its options.
@@ -124,6 +130,7 @@ class PlannedManoeuvre:
         return f"{self.place}.{name}"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
     """What to do, with paths resolved.
@@ -177,6 +184,7 @@ class Plan:
             object.__setattr__(self, "reference_point", locked(self.reference_point))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Study:
     """Everything that a run found; export and report are two leaves of this one object.

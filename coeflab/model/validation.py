@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.datums import same_datum
+from coeflab.kernels.brief import brief
 from coeflab.model.budget import Budget
 from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.study import Study
@@ -20,6 +21,7 @@ NUMERICAL = ("random", "grid")
 REDUCTION = ("model form", "random and model form")
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Validation:
     """One coefficient computed and measured.

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import CONTROLS, derivative
+from coeflab.kernels.brief import brief
 
 GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "theta": "θ", "lambda": "λ", "nu": "ν", "rho": "ρ",
@@ -28,6 +29,7 @@ class Factor:
     absolute: bool = False
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Symbol:
     """A letter with what stands below and above it.

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from coeflab.core.wording import listed
+from coeflab.kernels.brief import brief
 from coeflab.model.table import number
 from coeflab.model.tuning import TunedQuantity, Tuning
 from coeflab.presentation.document import Figure, Panel, Series
@@ -31,6 +32,7 @@ AFTER: dict[str, Any] = {
 BARE: dict[str, Any] = {"linewidth": 0.9, "linestyle": (0, (3.0, 2.2))}
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Groups:
     """Cases as curves: where each lies on the axis, and to which curve it belongs.

@@ -20,6 +20,7 @@ from coeflab.core.files import write_atomically
 from coeflab.core.machine import one_thread
 from coeflab.core.symbols import CONTROLS
 from coeflab.core.version import VERSION
+from coeflab.kernels.brief import brief
 from coeflab.manoeuvres import MANOEUVRES
 from coeflab.model.drawn_vehicle import drawn
 from coeflab.model.draws import Uncertain, uncertain
@@ -36,6 +37,7 @@ NO_PLAN = "no start"
 ONE_AT_A_TIME = Lock()
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Setup:
     """What every process needs to know, picklable and hashable.
@@ -70,6 +72,7 @@ class Setup:
     kernel: str = "numpy"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Batch:
     """Figures of some members.
@@ -171,6 +174,7 @@ def run_batch(setup: Setup, names: Sequence[str], deviations: Array) -> Batch:
     return Batch(np.array(rows, dtype=np.float64), tuple(statuses), tuple(ended))
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Store:
     """Finished batches in a folder of their own run, one file each, with a checksum.

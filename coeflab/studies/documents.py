@@ -10,6 +10,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped, typed
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.kernels.brief import brief
 from coeflab.model.acceptance import Acceptance
 from coeflab.model.plan import read_plan
 from coeflab.model.study import Plan, Study
@@ -21,6 +22,7 @@ from coeflab.studies.validate import PLAN, validation, validations
 Progress = Callable[[str], None]
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Report:
     """A document and whether what it tells of fails."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from coeflab.core.files import located
 from coeflab.core.machine import one_thread
+from coeflab.kernels.brief import brief
 from coeflab.kernels.glider_motion import Setting
 from coeflab.model.glide import GlideRun, SteadyGlide, steady_glides
 from coeflab.model.glider import GliderPhase
@@ -22,6 +23,7 @@ ORDERS = ("net_mass [kg]", "position [m]", "phase [-]")
 POLAR = ("net_mass [kg]", "alpha [deg]", "zeta [deg]", "theta [deg]", "V [m/s]", "ahead [m/s]", "sinking [m/s]")
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Flown:
     """One glider.

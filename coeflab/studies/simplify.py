@@ -14,6 +14,7 @@ from coeflab.core.machine import one_thread
 from coeflab.core.provenance import Source
 from coeflab.kernels import solids
 from coeflab.kernels.attitude import angles, rotation, snapped
+from coeflab.kernels.brief import brief
 from coeflab.kernels.convex_pieces import convex_pieces
 from coeflab.kernels.form_fits import Piece
 from coeflab.kernels.part_forms import Likeness, likeness
@@ -37,6 +38,7 @@ SECTORS = ("starboard", "starboard_bottom", "bottom", "port_bottom", "port", "po
 SLIVERS, REMNANT, HAIR, CHIPS = 2e-4, 0.2, 1e-6, 0.01
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class _Piece:
     """A body of the mesh before it has a form."""
