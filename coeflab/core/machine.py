@@ -48,3 +48,21 @@ def one_thread() -> Iterator[None]:
 
     with threadpool_limits(limits=1):
         yield
+
+
+def end_with_parent() -> None:
+    """Let this process, a worker of `multiprocessing`, end as soon as the one that started it is gone, killed or not.
+
+    A worker whose parent was killed would wait for work for ever, and keep the memory that it has.
+    """
+    from multiprocessing import parent_process
+    from threading import Thread
+
+    parent = parent_process()
+
+    def watch() -> None:
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
