@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from coeflab.core.axes import Axes, parse_axes
 from coeflab.core.provenance import TABLE_KINDS, Source, read_source
 from coeflab.core.toml import Section, read_toml
+from coeflab.core.wording import Verbatim
 from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.input_uncertainty import InputUncertainty, read_input_uncertainty
@@ -157,12 +158,12 @@ def read_campaign(path: Path) -> Campaign:
     source = root.section("source")
     campaign = Campaign(
         path=path,
-        name=head.text("name", path.parent.name),
+        name=Verbatim(head.text("name", path.parent.name)),
         title=head.text("title"),
         body=head.text("body"),
         importer=head.text("importer", "csv"),
         axes=parse_axes(axes.raw("frame"), path),
-        signs={k: axes.text(k) for k in ("alpha", "beta") if axes.has(k)},
+        signs={k: str(axes.text(k)) for k in ("alpha", "beta") if axes.has(k)},
         datum=axes.text("datum"),
         reference_point=axes.point("reference_point"),
         scaling=read_scaling(scaling),

@@ -34,7 +34,7 @@ from coeflab.model.parameter_versions import (
 )
 from coeflab.model.potential import potential_part
 from coeflab.model.scaling import Conditions, Scaling
-from coeflab.model.schema_types import Finite, Name, Positive, Strict, told
+from coeflab.model.schema_types import Finite, Name, Positive, Strict, Words, told
 
 LARGEST = 16 << 20
 SCHEMA_FILE = Path(__file__).with_name("parameter_file.schema.json")
@@ -44,7 +44,7 @@ class ParameterScaling(Strict):
     """Length of the primes."""
 
     length: Annotated[Positive, told("length L of the primes", "m")]
-    length_name: Annotated[Name, told("which length it is, for example LBP or LOA")]
+    length_name: Annotated[Words, told("which length it is, for example LBP or LOA")]
 
 
 class ParameterConditions(Strict):
@@ -59,7 +59,7 @@ class ParameterPoint(Strict):
     """Point that moments, rates and mass moments refer to."""
 
     point: Annotated[tuple[Finite, Finite, Finite], told("x y z from the datum, in `axes`", "m")]
-    datum: Annotated[Name, told("the point of the body that points are measured from, in words")]
+    datum: Annotated[Words, told("the point of the body that points are measured from, in words")]
     axes: Annotated[Literal["FRD"], told("x forward, y starboard, z down")] = "FRD"
 
 
@@ -96,8 +96,8 @@ class ParameterFile(Strict):
     schema_version: Annotated[str, Field(pattern=r"^1\.\d+$"), told("version of this schema that the file follows")] = (
         SCHEMA_VERSION
     )
-    name: Annotated[Name, told("name of the set of coefficients; exports are named after it")]
-    body: Annotated[Name, told("the vehicle, and in which configuration")]
+    name: Annotated[Words, told("name of the set of coefficients; exports are named after it")]
+    body: Annotated[Words, told("the vehicle, and in which configuration")]
     scaling: Annotated[ParameterScaling, told("the prime system: Y' = Y / (1/2 rho U^2 L^2), N' with L^3")]
     reference_point: Annotated[ParameterPoint, told("where all moments and velocities are taken")]
     conditions: Annotated[ParameterConditions, told("density and speed of the dimensional values")]

@@ -217,6 +217,8 @@ class Document:
         Sixteen hexadecimal digits of the sha256 over all inputs; empty where there are none.
     works : tuple of (str, str)
         Key and text of every work that it rests on.
+    verbatim : tuple of str
+        Texts of users in it, which renderers set as they stand.
     """
 
     title: str
@@ -225,3 +227,4 @@ class Document:
     name: str = ""
     digest: str = ""
     works: tuple[tuple[str, str], ...] = ()
+    verbatim: tuple[str, ...] = ()

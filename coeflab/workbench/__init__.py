@@ -10,6 +10,7 @@ from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.symbols import MOTIONS
+from coeflab.core.wording import Verbatim
 from coeflab.exporters import EXPORTERS
 from coeflab.fits import FITS
 from coeflab.model.assemble import assemble
@@ -127,10 +128,16 @@ def _findings(name: str, study: Study) -> tuple[Check, ...]:
         if CHECKS.is_shipped(name):
             raise
         return (
-            Check(name, "every campaign", Severity.WARN, str(why), "a check that ends with findings",
+            Check(name, "every campaign", Severity.WARN, Verbatim(why), "a check that ends with findings",
                   "What this check looks at was not assessed. Mend or uninstall the package that it comes from."),
         )  # fmt: skip
-    return found
+    return found if CHECKS.is_shipped(name) else tuple(map(_in_their_words, found))
+
+
+def _in_their_words(c: Check) -> Check:
+    """Another package's finding: nothing in its texts is taken for a symbol."""
+    said = map(Verbatim, (c.statistic, c.rule, c.comment))
+    return Check(Verbatim(c.name), Verbatim(c.subject), c.severity, *said)
 
 
 def _fitted(
