@@ -223,7 +223,7 @@ def _longest(beginning: str, rest: str, kept: Kept) -> int:
 def _last_cut(text: str, kept: Kept) -> int:
     """How many characters at the end of a text that was cut are the beginning of a user's, too short to be found."""
     return max(
-        (k for k in range(2, BEGINNING) for t in kept.texts if len(t) > k and text.endswith(t[:k].rstrip())), default=0
+        (k for k in range(1, BEGINNING) for t in kept.texts if len(t) > k and text.endswith(t[:k].rstrip())), default=0
     )
 
 

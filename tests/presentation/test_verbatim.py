@@ -52,16 +52,16 @@ def symbols(text: str, user: str) -> list[str]:
 @pytest.mark.parametrize("around", ADJACENT)
 def test_no_symbol_in_what_a_user_wrote_and_ours_stay(user: str, around: str) -> None:
     text = around.replace("{}", user)
-    assert symbols(text, user) == (["Yv'"] if around.startswith("Yv'") and "$" not in user else [])
+    assert symbols(text, user) == (["Yv'"] if around.startswith("Yv'") else [])
 
 
 def test_the_same_texts_without_marking_hold_symbols() -> None:
     """The search alone cannot tell: this is what it makes of them."""
-    assert [p.text for p in runs(TITLE) if isinstance(p, Symbol)] == ["Yr"]
+    assert [p.text for p in runs(TITLE) if isinstance(p, Symbol)] == ["Xu", "Yr"]
     assert all(any(not isinstance(p, str) for p in cell_runs(t)) for t in HOSTILE if "$" not in t)
 
 
-@pytest.mark.parametrize("longest", [24, 30, 36, 300])
+@pytest.mark.parametrize("longest", [8, 12, 16, 20, 24, 30, 36, 300])
 def test_a_title_that_was_cut_is_still_the_users(longest: int) -> None:
     user = "Mr Nu saw Yv' rise and Nr' fall in Yr 2024, U95 and all"
     assert symbols(shortened(f"Title {user}", longest), user) == []
@@ -113,10 +113,8 @@ def test_reports_show_the_title_as_it_stands(make: Callable[[Study], Any]) -> No
     visible = re.sub(r"<(?:style|script).*?</(?:style|script)>", "", shown, flags=re.DOTALL)
     plain = unset(html.unescape(re.sub(r"<[^>]+>", "", visible)))
     assert plain.count("Li in Y") == plain.count(TITLE) > 2
-    assert visible.count("in Yr 2024") == plain.count(TITLE) + visible.count('title="Tank tests') * 0, (
-        "no element inside"
-    )
     assert "in <i>Y" not in visible
+    assert "of <i>X" not in visible
     content = pdf.content(made)
     holding = [p for p in pieces(content) if "Wang" in unset("".join(x for x in p if isinstance(x, str)))]
     assert len(holding) > 2
@@ -124,13 +122,13 @@ def test_reports_show_the_title_as_it_stands(make: Callable[[Study], Any]) -> No
     assert any(isinstance(x, dict) for p in pieces(content) for x in p), "our own symbols are set"
 
 
-def test_the_pdf_prints_it(suboff: Study) -> None:
+def test_the_pdf_prints_it() -> None:
     pymupdf = pytest.importorskip("pymupdf")
     made = pymupdf.open(stream=pdf.render(study_summary(named_study(TITLE)))["report.pdf"], filetype="pdf")
     spans = [s for p in made for b in p.get_text("dict")["blocks"] for n in b.get("lines", ()) for s in n["spans"]]
     heading = [s for s in spans if "Tank tests" in s["text"]]
     assert heading
-    assert len({(s["font"], round(s["size"], 1)) for s in spans if "Yr" in s["text"] or "Tank" in s["text"]}) <= 2
+    assert any("Xu, Wang and Li in Yr 2024" in s["text"] for s in heading)
 
 
 def test_a_drawing_alone() -> None:
