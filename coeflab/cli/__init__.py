@@ -30,6 +30,7 @@ from coeflab.cli import (
     validate,
 )
 
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 app = typer.Typer(
     name="coeflab",
     help="Hydrodynamic coefficients from force tables: slopes at the origin with honest uncertainty, parameter files "
@@ -88,11 +89,11 @@ def main() -> None:
     """Run the command line: exit code 0 fine, 1 a check failed, 2 wrong input.
 
     A reader that has seen enough and closes the pipe, such as ``head``, is no failure: exit code 0 without a message.
-    Linear algebra keeps to one thread unless told otherwise: on small matrices more threads are slower by orders of
-    magnitude. The commands import numpy later, so the setting comes in time.
+    Linear algebra keeps to one thread whatever the environment says: several threads sum in another order, so that bytes
+    would depend on them, and on small matrices they are slower by orders of magnitude. The commands import numpy later,
+    so the setting comes in time.
     """
-    for threads in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(threads, "1")
+    os.environ.update(dict.fromkeys(THREADS, "1"))
     from coeflab.core.errors import CoeflabError
     from coeflab.presentation.printable import visible
 

@@ -46,6 +46,7 @@ def command(
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import located
     from coeflab.core.units import quantity
+    from coeflab.core.wording import Verbatim
     from coeflab.model.plan import table_at
     from coeflab.model.scaling import Scaling
     from coeflab.model.study import Plan, PlannedJoint
@@ -67,8 +68,8 @@ def command(
         raise InputError("--length without its name", "--length and --length-name together")
     alone = len(paths) == 1
     plan = Plan(
-        name="_".join(p.stem for p in paths)[:80],
-        title=", ".join(p.name for p in paths),
+        name=Verbatim("_".join(p.stem for p in paths)[:80]),
+        title=Verbatim(", ".join(p.name for p in paths)),
         tables=(table_at(paths[0], (fit,), {fit: options}),) if alone else (),
         joint=() if alone else (PlannedJoint(tuple(map(table_at, paths)), fit, options),),
         scaling=Scaling(quantity(length, "length", key="--length"), length_name) if length else None,

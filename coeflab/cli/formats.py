@@ -22,16 +22,18 @@ def command(
     """List everything that can be plugged in: importers, fits, exporters, checks, reports, validations."""
     from coeflab.model.table import Table
 
-    found = _chosen(name)
+    found, broken = _chosen(name)
     rows = [(room.kind, plugin, room.load(plugin).summary) for room, plugin in found]
     if not name:
         from coeflab.studies.validate import validations
 
         rows += [("validation", v, f"coeflab validate {v}") for v in validations()]
+    ours = len(rows)
+    rows += [(room.kind, plugin, f"broken: {reason}") for room, plugin, reason in broken]
     if json:
         show.json_object({"plugins": [_as_object(room, plugin) for room, plugin in found] + [
-            dict(zip(("kind", "name", "summary"), row, strict=True)) for row in rows[len(found):]
-        ]})  # fmt: skip
+            dict(zip(("kind", "name", "summary"), row, strict=True)) for row in rows[len(found):ours]
+        ] + [{"kind": room.kind, "name": plugin, "broken": reason} for room, plugin, reason in broken]})  # fmt: skip
         return
     notes = () if name else ("`coeflab formats NAME` explains the options of a plugin, or of a room such as fits.",)
     show.table(Table("Formats", ("kind", "name", "what"), tuple(rows), notes, frozenset({0, 1, 2})))
@@ -51,7 +53,8 @@ def options_of(room: Registry[Any], plugin: str) -> Table:
     from coeflab.model.table import Table
 
     kind = getattr(room.load(plugin), "Options", None)
-    rows = tuple((o.name, o.takes, o.default, o.meaning) for o in described(kind)) if kind else ()
+    with room.guarded(plugin, "has options that cannot be read"):
+        rows = tuple((o.name, o.takes, o.default, o.meaning) for o in described(kind)) if kind else ()
     notes = (
         f"On the command line: coeflab fit TABLE --fit {plugin} --{rows[0][0].replace('_', '-')} VALUE; in a plan: [table.options.{plugin}].",
     ) if rows and room.package == "coeflab.fits" else ()  # fmt: skip
@@ -66,8 +69,8 @@ def _as_object(room: Registry[Any], plugin: str) -> dict[str, Any]:
     return {"kind": room.kind, "name": plugin, "summary": room.load(plugin).summary, "options": options}
 
 
-def _chosen(name: str) -> list[tuple[Registry[Any], str]]:
-    """Every plugin, those of one room, or those of one name.
+def _chosen(name: str) -> tuple[list[tuple[Registry[Any], str]], list[tuple[Registry[Any], str, str]]]:
+    """Every plugin, those of one room, or those of one name; and beside them those that cannot be used, with the reason.
 
     Raises
     ------
@@ -78,16 +81,18 @@ def _chosen(name: str) -> list[tuple[Registry[Any], str]]:
 
     from coeflab.core.errors import InputError, shown
 
-    every = [(room, plugin) for room in _rooms() for plugin in room.names()]
+    every = [(room, plugin) for room in _rooms() for plugin in room.usable()]
+    useless = [(room, plugin, why) for room in _rooms() for plugin, why in room.unusable()]
     rooms = [room.package.rpartition(".")[2] for room in _rooms()]
     out = [(r, p) for r, p in every if not name or name in (p, r.package.rpartition(".")[2])]
-    if not out and name not in rooms:
+    broken = [(r, p, why) for r, p, why in useless if not name or name in (p, r.package.rpartition(".")[2])]
+    if not out and not broken and name not in rooms:
         near = difflib.get_close_matches(name, [*rooms, *(p for _, p in every)], n=1)
         hint = f"Did you mean {near[0]}? " if near else ""
         raise InputError(
             shown(name), f"a plugin, or one of {', '.join(rooms)}", advice=f"{hint}`coeflab formats` lists all."
         )
-    return out
+    return out, broken
 
 
 def _rooms() -> tuple[Registry[Any], ...]:

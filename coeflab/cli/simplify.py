@@ -35,6 +35,7 @@ def command(
     """
     from coeflab.core.errors import InputError, OutputError, shown
     from coeflab.core.files import write_all
+    from coeflab.core.wording import Verbatim
     from coeflab.model.named_box import parse_box, read_boxes
     from coeflab.presentation.body_figure import body_figure
     from coeflab.presentation.body_scene import body_scene
@@ -47,7 +48,7 @@ def command(
     found = simplify(mesh_body(mesh, unit, axes, repair), named, parts, split == "convex")
     name = found.body.name
     folder = out if out is not None else Path(name)
-    figure = body_figure(name, found.shape, found.mesh, "overlay")
+    figure = body_figure(Verbatim(name), found.shape, found.mesh, "overlay")
     files = {
         "body.toml": found.part_file(),
         "overlay.svg": figure.svg.encode(),

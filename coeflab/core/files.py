@@ -1,16 +1,25 @@
-"""Files: shipped data by name, and writing that leaves either the old file or the new one."""
+"""Files: shipped data by name, and writing that leaves either the old file or the new one, and no litter of the killed."""
 
 from __future__ import annotations
 
 import os
+import re
+import stat
+import sys
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import ExitStack, suppress
 from errno import EISDIR
 from importlib.resources import files
 from pathlib import Path
 
 from coeflab.core.errors import InputError, OutputError, clipped, shown
 
+if sys.platform != "win32":
+    import fcntl
+
+SUFFIX = ".coeflab"
+_LITTER = re.compile(rf"\..+\.\w{{8}}{re.escape(SUFFIX)}", re.DOTALL)
 _CHECKOUT = Path(__file__).resolve().parents[2]
 
 
@@ -70,7 +79,8 @@ def write_all(folder: Path, contents: Mapping[str, bytes]) -> dict[str, bool]:
     """Write files so that all of them change or none: every content first goes to a temporary neighbour, then into place.
 
     A fault while a content is written, such as a full disk, leaves all files as they were. Only a stop between the
-    replacements at the end, which need no space, leaves old and new files side by side, each of them whole.
+    replacements at the end, which need no space, leaves old and new files side by side, each of them whole. What killed
+    processes left of theirs in the same folders is removed first.
 
     Parameters
     ----------
@@ -92,37 +102,79 @@ def write_all(folder: Path, contents: Mapping[str, bytes]) -> dict[str, bool]:
     changed = {}
     path = folder
     try:
-        try:
-            for name, content in contents.items():
-                path = folder / name
-                changed[name] = not (path.is_file() and path.read_bytes() == content)
-                if changed[name]:
-                    staged[path] = _staged(path, content)
-            for path, temporary in staged.items():
-                temporary.replace(path)
-        finally:
-            for temporary in staged.values():
-                temporary.unlink(missing_ok=True)
+        with ExitStack() as locks:
+            try:
+                _sweep({(folder / name).parent for name in contents})
+                for name, content in contents.items():
+                    path = folder / name
+                    changed[name] = not (path.is_file() and path.read_bytes() == content)
+                    if changed[name]:
+                        staged[path] = _staged(path, content, locks)
+                for path, temporary in staged.items():
+                    temporary.replace(path)
+            finally:
+                for temporary in staged.values():
+                    temporary.unlink(missing_ok=True)
     except OSError as why:
         raise OutputError(f"cannot write {clipped(path)}: {why.strerror or why}. Choose another folder.") from None
     return changed
 
 
-def _staged(path: Path, content: bytes) -> Path:
-    """A temporary neighbour of the path with the content."""
+def _staged(path: Path, content: bytes, locks: ExitStack) -> Path:
+    """A temporary neighbour of the path with the content; a lock, kept until the stack ends, says that its writer lives."""
     if path.is_dir():
         raise IsADirectoryError(EISDIR, "a folder of that name is in the way")
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:40]}.")
-    temporary = Path(name)
+    handle, temporary = _locked_file(path)
     try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content)
+        stream = os.fdopen(handle, "wb")
+    except BaseException:
+        os.close(handle)
+        temporary.unlink(missing_ok=True)
+        raise
+    locks.callback(stream.close)
+    try:
+        stream.write(content)
+        stream.flush()
         temporary.chmod(0o644)
+        if sys.platform == "win32":  # where an open file cannot be moved, and none is swept
+            stream.close()
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
     return temporary
+
+
+def _locked_file(path: Path) -> tuple[int, Path]:
+    """A new file beside the path, and its lock."""
+    while True:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:40]}.", suffix=SUFFIX)
+        if sys.platform == "win32":
+            return handle, Path(name)
+        with suppress(OSError):  # a file system without locks: there nobody sweeps either
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        if os.fstat(handle).st_nlink:
+            return handle, Path(name)
+        os.close(handle)  # swept between its making and its locking
+
+
+def _sweep(folders: Iterable[Path]) -> None:
+    """Remove temporary files whose writers are dead: the system took back their locks."""
+    if sys.platform == "win32":
+        return
+    for folder in sorted(folders):
+        names: list[str] = []
+        with suppress(OSError):  # not there yet, or not to be read
+            names = os.listdir(folder)  # noqa: PTH208
+        for name in filter(_LITTER.fullmatch, names):
+            with suppress(OSError):  # gone, another user's, or its writer lives
+                handle = os.open(folder / name, os.O_RDWR | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+                try:
+                    fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                    if stat.S_ISREG(os.fstat(handle).st_mode):
+                        (folder / name).unlink()
+                finally:
+                    os.close(handle)
 
 
 def write_atomically(path: Path, content: bytes) -> bool:

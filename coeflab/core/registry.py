@@ -1,25 +1,31 @@
-"""Rooms of plugins: one file each, listed without importing, imported on use."""
+"""Rooms of plugins: one file each, listed without importing, imported on use; what others installed never breaks ours."""
 
 from __future__ import annotations
 
 import difflib
 import importlib
 import inspect
+import logging
 import pkgutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cached_property
-from importlib.metadata import entry_points
+from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Generic, TypeVar
 
-from coeflab.core.errors import PluginError, shown
+from coeflab.core.errors import CoeflabError, PluginError, shown
+from coeflab.core.version import VERSION
 
 Port = TypeVar("Port")
+OURS = f"coeflab {VERSION}"
 
 
 class Registry(Generic[Port]):
     """The plugins of one room.
 
     A plugin is a module; its file's name is its name. Packages outside coeflab add theirs through an entry point in
-    the group that is named like the room (``coeflab.fits``).
+    the group that is named like the room (``coeflab.fits``). A name that coeflab ships, or that two packages claim, is
+    refused: the shipped plugin stays, and the log says whose was left out.
 
     Parameters
     ----------
@@ -35,15 +41,58 @@ class Registry(Generic[Port]):
         self.package, self.kind, self._port = package, kind, port
 
     @cached_property
-    def _outside(self) -> dict[str, Any]:
-        """Looked up once: the metadata of every installed package is read for it."""
-        return {point.name: point for point in entry_points(group=self.package)}
+    def _shipped(self) -> frozenset[str]:
+        room = importlib.import_module(self.package)
+        return frozenset(m.name for m in pkgutil.iter_modules(room.__path__) if not m.name.startswith("_"))
+
+    @cached_property
+    def _claims(self) -> tuple[dict[str, EntryPoint], tuple[tuple[str, str], ...]]:
+        """Plugins of other packages by name, and the names refused with the reason.
+
+        Looked up once: the metadata of every installed package is read for it.
+        """
+        claims: dict[str, dict[tuple[str, str], EntryPoint]] = {}
+        for point in entry_points(group=self.package):
+            claims.setdefault(point.name, {})[_distribution(point), point.value] = point
+        kept, refused = {}, []
+        for name, points in sorted(claims.items()):
+            owners = sorted({owner for owner, _ in points})
+            if name in self._shipped:
+                refused += [(name, f"the {self.kind} {shown(name)} of {o} is refused: {OURS} ships one of that name, "
+                                   "which stays") for o in owners]  # fmt: skip
+            elif len(points) > 1:
+                refused.append((name, f"the {self.kind} {shown(name)} is refused: {' and '.join(owners)} claim it"))
+            else:
+                kept[name] = next(iter(points.values()))
+        for _, reason in refused:
+            logging.getLogger("coeflab").warning("%s.", reason)
+        return kept, tuple(refused)
 
     def names(self) -> tuple[str, ...]:
         """Names of all plugins of the room, sorted; nothing is imported."""
-        room = importlib.import_module(self.package)
-        own = {module.name for module in pkgutil.iter_modules(room.__path__) if not module.name.startswith("_")}
-        return tuple(sorted(own | set(self._outside)))
+        return tuple(sorted(self._shipped | set(self._claims[0])))
+
+    def is_shipped(self, name: str) -> bool:
+        """Whether the plugin of that name is coeflab's own."""
+        return name in self._shipped
+
+    def usable(self) -> tuple[str, ...]:
+        """Names of the plugins that can be imported and keep their contract, sorted."""
+        broken = {name for name, _ in self._broken()}
+        return tuple(name for name in self.names() if name not in broken)
+
+    def unusable(self) -> tuple[tuple[str, str], ...]:
+        """Name and reason of every plugin of another package that is refused or broken, sorted by name."""
+        return tuple(sorted((*self._broken(), *self._claims[1])))
+
+    def _broken(self) -> list[tuple[str, str]]:
+        out = []
+        for name in self._claims[0]:
+            try:
+                self.load(name)
+            except PluginError as why:
+                out.append((name, str(why).removesuffix(".")))
+        return out
 
     def load(self, name: str) -> Port:
         """Import one plugin.
@@ -51,19 +100,59 @@ class Registry(Generic[Port]):
         Raises
         ------
         PluginError
-            No plugin has that name (near names are suggested), or the plugin lacks part of its protocol.
+            No plugin has that name (near names are suggested), or the plugin lacks part of its protocol, or the one of
+            another package cannot be imported.
         """
         if name not in self.names():
             near = difflib.get_close_matches(name, self.names(), n=3)
             hint = f"did you mean {' or '.join(near)}? " if near else ""
             known = ", ".join(self.names()) or "none in this release"
-            raise PluginError(f"no {self.kind} is called {shown(name)}: {hint}Known: {known}.")
-        point = self._outside.get(name)
-        plugin = point.load() if point is not None else importlib.import_module(f"{self.package}.{name}")
-        if not isinstance(plugin, self._port):
-            missing = [a for a in _members(self._port) if not hasattr(plugin, a)]
-            raise PluginError(f"the {self.kind} {shown(name)} lacks {', '.join(missing)}.")
+            refused = "".join(f" {reason[0].upper()}{reason[1:]}." for n, reason in self._claims[1] if n == name)
+            raise PluginError(f"no {self.kind} is called {shown(name)}: {hint}Known: {known}.{refused}")
+        point = self._claims[0].get(name)
+        if point is None:
+            plugin: Any = importlib.import_module(f"{self.package}.{name}")
+            owner = ""
+        else:
+            with self.guarded(name, "cannot be imported"):
+                plugin = point.load()
+            owner = f" of {_distribution(point)}"
+        missing = [a for a in _members(self._port) if not hasattr(plugin, a)]
+        if missing or not isinstance(plugin, self._port):
+            raise PluginError(f"the {self.kind} {shown(name)}{owner} lacks {', '.join(missing)}.")
+        if point is not None and not isinstance(plugin.summary, str):  # type: ignore[attr-defined]
+            raise PluginError(f"the {self.kind} {shown(name)}{owner} has a summary that is no text.")
         return plugin
+
+    @contextmanager
+    def guarded(self, name: str, doing: str = "failed") -> Iterator[None]:
+        """Turn whatever a plugin of another package raises into an error with its name; ours raise as they are.
+
+        Parameters
+        ----------
+        name : str
+        doing : str
+            What the message says of it.
+
+        Raises
+        ------
+        PluginError
+            With the plugin, its package and what it raised, which is the cause.
+        """
+        try:
+            yield
+        except (Exception, SystemExit) as why:
+            point = self._claims[0].get(name)
+            if point is None or isinstance(why, CoeflabError):
+                raise
+            what = f"{type(why).__name__}: {shown(why, 200)[1:-1]}" if str(why) else type(why).__name__
+            raise PluginError(f"the {self.kind} {shown(name)} of {_distribution(point)} {doing}: {what}.") from why
+
+
+def _distribution(point: EntryPoint) -> str:
+    if point.dist is None:
+        return "a package without a name"
+    return f"{point.dist.metadata['Name']} {point.dist.version}"
 
 
 def _members(port: type) -> list[str]:

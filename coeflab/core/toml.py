@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import derivative
 from coeflab.core.units import quantity
+from coeflab.core.wording import Verbatim
 
 LARGEST = 1 << 20
 
@@ -65,7 +66,7 @@ class Section:
         return self.raw(key)
 
     def text(self, key: str, default: str | None = None, choices: tuple[str, ...] = ()) -> str:
-        """A text, optionally one of several.
+        """A text, optionally one of several; else the user's own words.
 
         Parameters
         ----------
@@ -80,7 +81,7 @@ class Section:
             raise self.fail(key, shown(value), "a text")
         if choices and value not in choices:
             raise self.fail(key, shown(value), " or ".join(f'"{c}"' for c in choices))
-        return value
+        return value if choices or key not in self.content else Verbatim(value)
 
     def flag(self, key: str, default: bool | None = None) -> bool:
         """True or false."""
@@ -156,7 +157,7 @@ class Section:
         value = self.raw(key, [])
         if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
             raise self.fail(key, shown(value), "a list of texts")
-        return tuple(value)
+        return tuple(map(Verbatim, value))
 
     def section(self, key: str, required: bool = True) -> Section:
         """A sub-table; an empty one where it is absent and not required."""

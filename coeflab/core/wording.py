@@ -1,9 +1,19 @@
-"""Pieces of sentences and records: names in a row, numbers that may be none."""
+"""Pieces of sentences and records: names in a row, numbers that may be none, and the words of users."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from math import isfinite
+
+
+class Verbatim(str):
+    """A text that a user wrote, such as a title or a name: it is shown as it stands and never searched for symbols.
+
+    Readers of files make it; nouns carry it. A text put together from it is a plain one again, in which the renderers
+    find what they were handed of these.
+    """
+
+    __slots__ = ()
 
 
 def listed(names: Sequence[str]) -> str:

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.symbols import LINEAR
+from coeflab.kernels.brief import brief
 from coeflab.kernels.linear_model import fit_linear
 from coeflab.kernels.robust import t_probability
 from coeflab.kernels.terms import Term, design
@@ -66,6 +67,7 @@ class Options:
     printed: tuple[str, ...] = words()
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class AngleUnit:
     """The unit of a that printed coefficients mean.

@@ -11,14 +11,13 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, one_of, parse_options, words
 from coeflab.core.symbols import COMPONENTS
 from coeflab.kernels.least_squares import Array
@@ -98,16 +97,6 @@ def scaled_optimizer(kind: str) -> Optimizer:
         return coefficients.reshape(-1)
 
     return run
-
-
-def _one_thread() -> AbstractContextManager[Any]:
-    """BLAS on one thread: on small matrices several threads are a hundred times slower."""
-    try:
-        threads = import_module("threadpoolctl")
-    except ImportError:
-        return nullcontext()
-    limit: AbstractContextManager[Any] = threads.threadpool_limits(1)
-    return limit
 
 
 def _model(data: JointRows, component: str, terms: tuple[Term, ...], chosen: Options, run: Optimizer) -> (
@@ -215,7 +204,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         raise InputError(shown(unknown[0]), f"some of {', '.join(COMPONENTS)}", column="sparse.components")
     terms = library(variables, chosen.degree, absolute=chosen.absolute == "yes")
     models, settings = [], {"optimizer": chosen.optimizer, "folds": str(chosen.folds), "seed": str(chosen.seed)}
-    with _one_thread():
+    with one_thread():
         for c in components:
             allowed = tuple(t for t in terms if chosen.symmetric == "no" or symmetric(c, t))
             model, settings[c] = _model(joint_rows(tables, variables, c, scaling.length), c, allowed, chosen, run)

@@ -11,6 +11,7 @@ from coeflab.core.delimited import Cells, read_cells, require_unit
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS, MOTIONS
 from coeflab.core.units import Header, factor
+from coeflab.core.wording import Verbatim
 from coeflab.model.campaign import Campaign, TableDeclaration
 from coeflab.model.columns import Array, Columns
 from coeflab.model.force_table import ForceTable
@@ -111,7 +112,7 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         if header.name in table.ignore:
             continue
         if header.name in (*table.labels, UNCERTAIN, POINT):
-            labels[header.name] = cells.texts(header.name)
+            labels[header.name] = list(map(Verbatim, cells.texts(header.name)))
             continue
         kind = _kind(header.name)
         if kind is None:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.surface_mesh import Faces
 
@@ -63,6 +64,7 @@ def decimated(vertices: Array, faces: Faces, target: int) -> tuple[Array, Faces]
     return vertices + middle, faces
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class _Edges:
     """Edges, cheapest first: end vertices, where they collapse to, and the rings of vertices about both ends."""

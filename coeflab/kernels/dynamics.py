@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.motion_law import MotionLaw
 from coeflab.kernels.transforms import rigid_body_force
@@ -19,6 +20,7 @@ FIRST, SECOND = np.triu_indices(6)
 FLAT = 1e-12
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Dynamics:
     """What a march needs to know of vehicles.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 TERMS: dict[str, Callable[[Array], Array]] = {
@@ -23,6 +24,7 @@ TERMS: dict[str, Callable[[Array], Array]] = {
 }
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Family:
     """One form of the curve.

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.kernels.attitude import about_axis, relabelled
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.solids import Surface
 from coeflab.kernels.surface_mesh import mesh_integrals
@@ -15,6 +16,7 @@ from coeflab.kernels.surface_mesh import mesh_integrals
 ALIKE = 0.02
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Piece:
     """A closed surface and what its fits need of it.
@@ -62,6 +64,7 @@ class Piece:
         return np.asarray(np.abs(self.areas @ turn).sum(axis=0) / 2.0)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Fit:
     """A form about its own axes.

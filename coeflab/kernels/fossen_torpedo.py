@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 WATER = 1026.0
@@ -21,6 +22,7 @@ CROSS_FLOW = 1.2108 + (0.5 - 0.4933) / (0.5585 - 0.4933) * (1.0836 - 1.2108)  # 
 FADING = 3.0
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Torpedo:
     """The key ``dynamics`` of a scenario, under HoloOcean's names.

@@ -26,6 +26,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.steady_glide import Polar
 
@@ -34,6 +35,7 @@ FEW_CALLS, CALLS_A_SECOND = 50_000, 1_000
 Rates = Callable[[float, Array], list[float]]
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class GliderBody:
     """What the equations need.

@@ -15,6 +15,7 @@ from enum import StrEnum
 import numpy as np
 from scipy.optimize import brentq
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 LOWEST_ORDER, ORDER_SLACK, STEEPEST = 0.5, 0.1, 60.0
@@ -35,6 +36,7 @@ class Convergence(StrEnum):
     FITTED = "fitted"
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class GridConvergence:
     """What a grid study says about the value on one of its grids.
@@ -168,6 +170,7 @@ def grid_convergence(
     return _three(study, gap)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class _Study:
     """Values and relative sizes, finest first."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.grid_convergence import OUTSIDE, SAME_SIZE, WITHIN, Convergence, GridConvergence
 from coeflab.kernels.least_squares import Array
 
@@ -20,6 +21,7 @@ SEARCHED = (0.05, 8.0)
 FEWEST = 4
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class _Fit:
     """One expansion: its value at vanishing cell size, standard deviation, and values on the grids."""

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.sparse_selection import THRESHOLDS, ZERO, Optimizer, twins
 
@@ -32,6 +33,7 @@ LEVELS = (2.5, 97.5)
 ROUNDING = 1e-12
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Products:
     """Sums over every stretch, which all that follows is made of.
@@ -112,6 +114,7 @@ def multiples(gram: Array) -> dict[int, int]:
     return twins(np.sqrt(np.maximum(level, 0.0))[:, None] * turned.T)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
     """What the products say of every column.

@@ -12,6 +12,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
+
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
@@ -19,6 +21,7 @@ Index = NDArray[np.int64]
 BLOCK = 8192
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Factorised:
     """A factorised design matrix.

@@ -10,12 +10,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import ndtr
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array, Factorised, aicc, factorise, solve
 from coeflab.kernels.robust import FULL_LEVERAGE, bell_mccaffrey, t_factor
 
 DOUBLE_DIGITS = 15.5
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class LinearFit:
     """A fitted linear model.

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.dynamics import Dynamics
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.orders import (
@@ -72,6 +73,7 @@ def march_adaptive(
     return out
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class _At:
     """Where the vehicle is, and what has happened."""
@@ -86,6 +88,7 @@ class _NotFiniteError(ArithmeticError):
     """Rates that are no numbers."""
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class _Phase:
     """One phase and the orders that stand in it."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.wind_axes import body_forces, incidence
 
@@ -26,6 +27,7 @@ REVERSAL = 10.0
 Ints = NDArray[np.int64]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class MotionLaw:
     """Terms of a law as arrays.

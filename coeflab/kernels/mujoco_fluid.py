@@ -11,12 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.ellipsoid import ellipsoid_added_mass
 from coeflab.kernels.least_squares import Array
 
 TINY = 1e-15
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class FluidEllipsoid:
     """One geom with ``fluidshape="ellipsoid"``.

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.operating_steps import (
     HOLDS,
@@ -31,6 +32,7 @@ REACH = 10.0
 NOTHING = 1e-12
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Problem:
     """Equations F(x) = 0 in unknowns with bounds.
@@ -78,6 +80,7 @@ class Problem:
         return Scaled(equations, slopes, low, high, self.target / self.scale, self.weight)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
     """A solution, or the least violation where there is none.

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 Mask = NDArray[np.bool_]
@@ -29,6 +30,7 @@ RESTORING, RETURNING, SELECTING = 150, 10, 60
 REST = 1e-8  # relative size of a gradient that counts as zero
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Scaled:
     """A problem in scaled unknowns.

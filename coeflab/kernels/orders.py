@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.motion_law import Ints
 
@@ -15,6 +16,7 @@ COMPLETE, NOT_FINITE, TOO_FAST, STEP_TOO_SMALL = range(4)
 NEAR = 1e-9
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Orders:
     """Orders of p phases.
@@ -57,6 +59,7 @@ class Orders:
         return int(np.ceil(float(np.sum(self.longest)) / step - NEAR))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Marching:
     """Motions of m members through p phases.

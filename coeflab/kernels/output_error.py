@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.identifiability import dependent_sets, determined
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.output_problem import Problem, weighted
@@ -24,6 +25,7 @@ AT_BOUND = 1e-5
 TIGHT = 1e-11
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Estimate:
     """What the data and the priors say.

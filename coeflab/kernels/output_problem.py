@@ -7,11 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 STEP = 6e-6
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Problem:
     """What is fitted to what.

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.composition import moved
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.panel_geometry import panels_of
@@ -22,6 +23,7 @@ MOST_STEPS = 200
 WORKSPACE = 400 * 2**20
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class PanelSolution:
     """One body on one set of panels.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.surface_mesh import Faces
 
@@ -15,6 +16,7 @@ NEEDLE, GIANT = 2.0, 3.0
 SHARP = np.sqrt(0.5)
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Panels:
     """Triangles and what the influence integrals need of them.

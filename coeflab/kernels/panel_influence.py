@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.panel_geometry import Panels
 
@@ -97,6 +98,7 @@ def influence(panels: Panels) -> tuple[NDArray[np.float32], Array]:
     return angles, layer
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class _Far:
     """Panels as sources with their second moments; products with (x, |x|^2, 1) of the targets."""

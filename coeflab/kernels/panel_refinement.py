@@ -20,6 +20,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 SMOOTH, EDGED = 2.0, 4.0 / 3.0
@@ -29,6 +30,7 @@ SUBSTANTIAL, NOISE = 0.01, 1e-7
 SAFETY, TWO_ONLY, FINEST_ONLY = 1.25, 3.0, 3.0
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Refinement:
     """What a sequence of panel counts says.

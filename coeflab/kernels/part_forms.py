@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.form_fits import Fit, Piece, boxes, cylinders, ellipsoids
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.oriented_box import oriented_box
@@ -18,6 +19,7 @@ ROUND_PLATE, PLATE_SHARED = 0.02, 0.6
 BETTER = 1e-4
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Likeness:
     """A form and the numbers that chose it.

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.steady_glide import Polar, balanced, glide
 
@@ -18,6 +19,7 @@ STEEP = np.radians(40.0)
 NOWHERE = 1.0
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class GlideSpeed:
     """A glide whose speed is known.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.kernels.attitude import relabelled
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.oriented_box import smallest_rectangle
 from coeflab.kernels.silhouette import Outline, convex_outline, mesh_outline
@@ -16,6 +17,7 @@ from coeflab.kernels.surface_mesh import mesh_integrals
 STRIP, ACROSS, PREFERRED = 0.1, 0.3, 0.02
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class PlateFit:
     """Chord and span, m; attitude with the normal as third column; centre, m."""

@@ -14,12 +14,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.transforms import rigid_body_force, skew
 
 ROUNDING = 1e-9
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Trajectory:
     """A motion, one row a time.

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.surface_mesh import Faces, mesh_integrals
 
@@ -20,6 +21,7 @@ NEAR_ROUND = 0.2
 TURNS = 6
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class RoundHull:
     """A body of revolution that fits inside a surface.

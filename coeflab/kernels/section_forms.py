@@ -11,6 +11,7 @@ from functools import cache
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 Curve = Callable[[float], float]
@@ -34,6 +35,7 @@ STEPS_PER_DECADE = 6
 SLENDEREST_RECTANGLE = 100.0
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class SectionIntegrals:
     """Area m^2, centroid (2,) m, and second moments (2, 2) about the centroid m^4, of all contours of a section."""

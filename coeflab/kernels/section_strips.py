@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.ellipsoid import ellipsoid_added_mass
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.section_contour import divided
@@ -29,6 +30,7 @@ ELEMENTS, FEWEST, TOGETHER, MOST_CONTOURS = 120, 24, 360, 40
 SPECK = 1e-4
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Strips:
     """What the sections of a mesh add up to.

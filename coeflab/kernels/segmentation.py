@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.round_hull import RoundHull, round_hull
 from coeflab.kernels.solids import Solid, hull_of, pieces, revolved, surface
@@ -16,6 +17,7 @@ SMALLEST = 2e-4
 INWARD, OUTWARD = 0.94, 1.01
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Segments:
     """Bodies that together fill a solid but for ``unassigned``, m^3, slivers too small to be bodies.

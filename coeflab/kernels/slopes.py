@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.diagnostics import lack_of_fit, levels
 from coeflab.kernels.families import EVEN, ODD, Family, design
 from coeflab.kernels.least_squares import Array, Factorised, Index, aicc, factorise, solve
@@ -26,6 +27,7 @@ TOO_WIDE = "interval over three times the narrowest"
 NO_INTERVAL = "no interval: a single point carries it"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Estimate:
     """One family in one window.
@@ -78,6 +80,7 @@ class Estimate:
         return design(self.terms, x) @ self.coefficients
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Recommendation:
     """The rule's answer; ``value`` is None where no family could be fitted, ``u95`` where only one could."""

@@ -19,6 +19,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from coeflab.kernels.bootstrap import draw_counts
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.propagation import HIGH, LOW
 
@@ -28,6 +29,7 @@ EDGE = 2.0**-40
 DEGREE = 3
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SobolIndices:
     """Indices of g groups with the percentiles 2.275 and 97.725 of a bootstrap over the rows of the design.

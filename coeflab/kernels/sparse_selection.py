@@ -17,6 +17,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.cross_validation import one_standard_error, shuffled_folds
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.terms import Term
@@ -28,6 +29,7 @@ SAME = 1.0 - 1e-9
 ZERO = 1e-12
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Selection:
     """Chosen terms.

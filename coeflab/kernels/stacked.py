@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.cross_validation import constrained_space
 from coeflab.kernels.least_squares import Array, Factorised, Index, factorise
 from coeflab.kernels.linear_model import LinearFit, fit_linear, runs_probability
@@ -22,6 +23,7 @@ OPEN = 1e-7
 ROUNDING = 1e-10
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Freed:
     """The fit without its equations, against them.

@@ -18,11 +18,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 SAMPLES = 1441
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Polar:
     """Forces over V^2; angles in radians.

@@ -23,6 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.settling import growth, settled
 
@@ -32,6 +33,7 @@ SLOWEST = 1e-12
 STILL = 1e-100
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SteadyTurns:
     """Operating points, one row a pair of thrusts.

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from coeflab.kernels.axisymmetric import graded_nodes
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 Hull = Callable[[Array], tuple[Array, Array]]
@@ -35,6 +36,7 @@ _FORE = (
 _AFTER = 2.238361 * _D * (_D - 1.0) ** 4 + 3.106529 * _D**2 * (_D - 1.0) ** 3 + 1.0 - (_D - 1.0) ** 4 * (4.0 * _D + 1.0)
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Appendage:
     """What an appendage adds to the hull, in feet.

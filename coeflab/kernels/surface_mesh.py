@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 Faces = NDArray[np.int64]
 BLOCK = 65536
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class MeshIntegrals:
     """What a closed surface encloses.

@@ -12,11 +12,13 @@ from itertools import product
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 _FACTOR = re.compile(r"\|(dr|ds|db|[uvwpqr])\||(dr|ds|db|[uvwpqr])")
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Term:
     """A product of powers.

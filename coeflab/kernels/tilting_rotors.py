@@ -11,11 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 CONSTANTS = ("net_weight", "mass", "buoyancy_moment", "arm_length", "rotor_height")
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Rotors:
     """What the paper prints of the vehicle in water.

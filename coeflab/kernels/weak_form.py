@@ -19,6 +19,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 
 POWER = 4
@@ -31,6 +32,7 @@ _TWICE = _ONCE.integ(lbnd=-1.0)
 _WHOLE = float(_ONCE(1.0))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Windows:
     """Windows over one time series.

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any, Protocol
 
+from coeflab.kernels.brief import brief
+
 if TYPE_CHECKING:
     from coeflab.model.parameter_file import ParameterFile
 
@@ -32,6 +34,7 @@ BASES: dict[Basis, str] = {
 }
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Compared:
     """One number of ours and what it is held against.
@@ -80,6 +83,7 @@ class Compared:
         return (self.difference if self.at_most else abs(self.difference)) <= self.tolerance
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class ComparedTable:
     """Rows of one published table or figure.
@@ -139,6 +143,7 @@ class Drawing(Protocol):
         """The numbers behind it."""
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Acceptance:
     """A publication reproduced.

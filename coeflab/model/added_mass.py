@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.kernels.brief import brief
 from coeflab.kernels.composition import Definiteness, definiteness, moved
 from coeflab.kernels.transforms import velocity_transfer
 from coeflab.model import noun_tables
@@ -17,6 +18,7 @@ from coeflab.model.frozen import locked
 from coeflab.model.scaling import Scaling
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class AddedMass:
     """M_A in FRD about a named point; acceleration derivatives are its negatives (Xudot = -M_A[0, 0]).

@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import COMPONENTS
+from coeflab.kernels.brief import brief
 from coeflab.model.force_table import AT_REST, ForceTable
 from coeflab.model.joint_rows import joint_name, measured, moving
 from coeflab.model.manoeuvring_terms import SETS, NamedTerm, read_term, read_terms
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class AskedTerms:
     """Terms of a fit.

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Scaling
 from coeflab.model.shape import Shape
@@ -19,6 +20,7 @@ from coeflab.model.shape import Shape
 SAME_VOLUME, SAME_SURFACE = 0.01, 0.03  # printed particulars of one model; sail and planes of a submarine are more
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class MassProperties:
     """Mass properties about the body's reference point.
@@ -54,6 +56,7 @@ class MassProperties:
         return self.mass / unit, self.mass_moment / (unit * scaling.length)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Configuration:
     """One state of appendages.
@@ -123,6 +126,7 @@ class Measured:
         return float(self.printed.replace("?", "0")), float(self.printed.replace("?", "9"))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
     """A body with one or more configurations.

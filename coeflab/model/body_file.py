@@ -9,12 +9,14 @@ from coeflab.core.datums import read_datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import InputFile, read_source, sha256_of
 from coeflab.core.toml import Section, read_toml
+from coeflab.kernels.brief import brief
 from coeflab.model.body import Body, Configuration, Measured
 from coeflab.model.configuration_file import read_configuration
 from coeflab.model.scaling import Scaling, read_scaling
 from coeflab.model.shape import Shape
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class BodyFile:
     """An open body.toml; ``root`` holds the sections of the shape, which its reader takes from there."""

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.symbols import ANGULAR, primed
+from coeflab.kernels.brief import brief
 from coeflab.kernels.propagation import Propagated
 from coeflab.model.coefficient import Coefficient, CoefficientSet
 from coeflab.model.fit_result import FitResult, Sweep
@@ -52,6 +53,7 @@ class BudgetPart:
     share: float | None
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Budget:
     """The budget of one coefficient.

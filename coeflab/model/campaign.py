@@ -14,6 +14,8 @@ from coeflab.core.axes import Axes, parse_axes
 from coeflab.core.datums import Datum, read_datum
 from coeflab.core.provenance import TABLE_KINDS, Source, read_source
 from coeflab.core.toml import Section, read_toml
+from coeflab.core.wording import Verbatim
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.input_uncertainty import InputUncertainty, read_input_uncertainty
 from coeflab.model.scaling import Conditions, Scaling, read_conditions, read_scaling
@@ -21,6 +23,7 @@ from coeflab.model.scaling import Conditions, Scaling, read_conditions, read_sca
 FILE = "campaign.toml"
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Inertia:
     """Mass properties of the towed model, for forces that contain its inertia.
@@ -40,6 +43,7 @@ class Inertia:
     tensor: tuple[float, float, float]
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class TableDeclaration:
     """One ``[[table]]`` of a campaign.
@@ -70,6 +74,7 @@ class TableDeclaration:
     cells: str = ""
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Campaign:
     """A folder of tables from one test or one set of computations."""
@@ -154,12 +159,12 @@ def read_campaign(path: Path) -> Campaign:
     source = root.section("source")
     campaign = Campaign(
         path=path,
-        name=head.text("name", path.parent.name),
+        name=Verbatim(head.text("name", path.parent.name)),
         title=head.text("title"),
         body=head.text("body"),
         importer=head.text("importer", "csv"),
         axes=parse_axes(axes.raw("frame"), path),
-        signs={k: axes.text(k) for k in ("alpha", "beta") if axes.has(k)},
+        signs={k: str(axes.text(k)) for k in ("alpha", "beta") if axes.has(k)},
         datum=read_datum(axes),
         reference_point=axes.point("reference_point"),
         scaling=read_scaling(scaling),

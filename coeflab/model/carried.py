@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.kernels.brief import brief
 from coeflab.model.draws import Uncertain
 from coeflab.model.frozen import locked
 from coeflab.model.inertia import MEASURED, WaterInertia
@@ -19,6 +20,7 @@ Array = NDArray[np.float64]
 FEWEST_MEMBERS, MOST_MEMBERS = 40, 1_000_000
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Question:
     """What is asked for.
@@ -66,6 +68,7 @@ class Question:
             raise InputError(shown(self.kernel), f"one of {', '.join(KERNELS)}", column="--kernel")
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Carried:
     """What came out.

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from coeflab.kernels.brief import brief
+
 
 class Severity(StrEnum):
     """How much a finding matters; only `FAIL` makes the exit code 1."""
@@ -15,6 +17,7 @@ class Severity(StrEnum):
     FAIL = "fail"
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Check:
     """One finding.

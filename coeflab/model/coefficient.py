@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from coeflab.core.datums import Datum
 from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.core.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative
+from coeflab.kernels.brief import brief
 from coeflab.kernels.transforms import derivative_transfer
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Conditions, Scaling
@@ -70,6 +71,7 @@ class Parts:
     input: float | None = None
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Coefficient:
     """One coefficient.
@@ -134,6 +136,7 @@ class Coefficient:
         return replace(self, window=(self.window[0] * longer, self.window[1] * longer))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class CoefficientSet:
     """Coefficients of one body, one scaling, one reference point.

@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.kernels.brief import brief
 
 Array = NDArray[np.float64]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Columns:
     """Columns in SI, by their plain names, in the axes that the campaign declares.

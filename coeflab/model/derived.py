@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.symbols import primed
+from coeflab.kernels.brief import brief
 from coeflab.kernels.propagation import Propagated, propagate, reaches_zero
 from coeflab.kernels.stability import index_gradient, stability_index
 from coeflab.model.coefficient import CoefficientSet
@@ -26,6 +27,7 @@ FAST = "at high speed"
 DRAWS, SEED = 20_000, 1
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Derived:
     """One quantity.

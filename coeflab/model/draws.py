@@ -11,6 +11,7 @@ from scipy.linalg import block_diag
 
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import derivative
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.parameter_file import ParameterFile
 
@@ -21,6 +22,7 @@ NEGATIVE = -1e-8  # eigenvalue of a correlation matrix: rounding of what files p
 UNSTATED = "not varied: no uncertainty is stated"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Uncertain:
     """What is drawn.
@@ -140,6 +142,7 @@ def uncertain(parameters: ParameterFile, used: Iterable[str]) -> Uncertain:
     )  # fmt: skip
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class _Part:
     """Coefficients with one covariance: those of the file, or the terms of a table; ``rows`` are places in the matrix."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.shadows import shadow
@@ -14,6 +15,7 @@ from coeflab.model.shape import Array, Parts, Revolution, Shape
 BOUND = 0.1  # the misfit up to which a simplified body is called an ellipsoid, too
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class EllipsoidMisfit:
     """The ellipsoid over the body, less one.

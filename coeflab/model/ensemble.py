@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.kernels.brief import brief
 from coeflab.kernels.dynamics import Dynamics, ideal_pairs, rigid_body_quadratics
 from coeflab.kernels.rigid_body import rigid_body_inertia
 from coeflab.model.frozen import locked
@@ -17,6 +18,7 @@ Array = NDArray[np.float64]
 SHAPES = {"coefficients": (0,), "added": (6, 6), "ideal": (6, 6, 6), "mass": (), "centre": (3,), "inertia": (3, 3)}
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Ensemble:
     """Members of one vehicle.

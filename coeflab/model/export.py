@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 from coeflab.core.errors import InputError
 from coeflab.core.identifiers import file_stem
+from coeflab.kernels.brief import brief
 from coeflab.model.loss import Loss
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Export:
     """Files by name, and what is lost. Names of files and folders are made of the parameter file's by `file_stem`.

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.units import STANDARD_GRAVITY
+from coeflab.kernels.brief import brief
 from coeflab.kernels.composition import definiteness
 from coeflab.kernels.transforms import skew
 from coeflab.model.force_law import ForceLaw, force_law
@@ -24,6 +25,7 @@ def number(value: float) -> str:
     return repr(float(value) + 0.0)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class ExportedLaw:
     """A law as simulators of second order take it, in FRD about the file's reference point.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.slopes import Estimate, Recommendation
 from coeflab.model import noun_tables
 from coeflab.model.coefficient import CoefficientSet
@@ -17,6 +18,7 @@ from coeflab.model.pooling import Pooling
 Array = NDArray[np.float64]
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class BootstrapInterval:
     """Percentile intervals of one member: pairs and wild, with the share of usable resamples."""
@@ -45,6 +47,7 @@ class LeftOut:
     reason: str
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Sweep:
     """One force component over one motion variable, and the coefficient that it gives.
@@ -124,6 +127,7 @@ class Sweep:
         return low, high
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class FitResult:
     """Coefficients of one campaign, or of several jointly, by one fit.

@@ -10,6 +10,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.domain import half_spaces, inside
 from coeflab.kernels.linear_model import LinearFit
 from coeflab.kernels.terms import Term, design
@@ -28,6 +29,7 @@ class Extrapolation(StrEnum):
     TAPER = "taper"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Domain:
     """Where a model may be read.
@@ -64,6 +66,7 @@ class Domain:
         return np.asarray(inside(self.spaces, points), dtype=bool)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class FittedModel:
     """One response as a linear combination of terms.

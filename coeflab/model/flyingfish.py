@@ -13,6 +13,7 @@ from coeflab.core.delimited import read_cells
 from coeflab.core.errors import shown
 from coeflab.core.files import shipped
 from coeflab.core.toml import Section, read_toml
+from coeflab.kernels.brief import brief
 from coeflab.kernels.tilting_rotors import CONSTANTS, Rotors
 from coeflab.model.frozen import locked
 from coeflab.model.parameter_vehicle import CurveSegment, ParameterCurve, ParameterThruster
@@ -22,6 +23,7 @@ Hand = Literal[-1, 1]
 ROTORS = ("1", "2", "3", "4")
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class FlyingFish:
     """Published data, SI and rad, rotor speeds in rpm.

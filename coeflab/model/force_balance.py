@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS
+from coeflab.kernels.brief import brief
 from coeflab.kernels.identification import Products, products, reliability
 from coeflab.kernels.marine_library import column
 from coeflab.kernels.rigid_body import rigid_body_inertia
@@ -33,6 +34,7 @@ APART, STRETCH = 0.5, 4.0
 NOISE = 0.5  # share of a motion's power: with less of it told twice alike, noise is most of what is seen
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Candidate:
     """A term of the hydrodynamic force.

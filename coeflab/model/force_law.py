@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.kernels.brief import brief
 from coeflab.kernels.kirchhoff import ideal_quadratics
 from coeflab.kernels.terms import Term, parse_suffix
 from coeflab.model.frozen import locked
@@ -24,6 +25,7 @@ Array = NDArray[np.float64]
 SLOWEST = 1e-9
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class LawTerm:
     """One term of the law: coefficient times velocities times a power of the speed.
@@ -60,6 +62,7 @@ class LawTerm:
         return first, second
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class ForceLaw:
     """Terms, and the ideal fluid's quadratics of the products that they leave open.

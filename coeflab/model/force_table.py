@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from coeflab.core.datums import Datum
 from coeflab.core.provenance import InputFile, Source
 from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.kernels.brief import brief
 from coeflab.kernels.transforms import force_transfer, velocity_transfer
 from coeflab.model.frozen import locked, locked_columns
 from coeflab.model.input_uncertainty import InputUncertainty
@@ -49,6 +50,7 @@ class Exclusion:
     uncertain: bool = False
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class ForceTable:
     """Forces that the fluid exerts on a body in steady motion.

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.xacro import Xacro
 from coeflab.core.xml import numbers
+from coeflab.kernels.brief import brief
 from coeflab.kernels.transforms import force_transfer
 from coeflab.model.frozen import locked
 from coeflab.model.gz_link import symmetric
@@ -28,6 +29,7 @@ FRD = np.array([1.0, -1.0, -1.0])
 MATRICES = ("added_mass", "linear_damping", "linear_damping_forward_speed", "quadratic_damping")
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class FossenLink:
     """One link, in FRD about its origin.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.glider_motion import eigenvalues
 from coeflab.kernels.steady_glide import balanced, glide
 from coeflab.model.glider import Glider, GliderPhase
@@ -97,6 +98,7 @@ def steady_glides(glider: Glider, phase: GliderPhase) -> tuple[SteadyGlide, ...]
     return tuple(out)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class GlideRun:
     """A motion of a glider in time.

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from coeflab.core.toml_text import toml_text
+from coeflab.kernels.brief import brief
 from coeflab.kernels.glider_motion import GliderBody, Setting
 from coeflab.kernels.steady_glide import Polar
 from coeflab.model.manoeuvre import Manoeuvre, Phase, Until
@@ -81,6 +82,7 @@ class BuoyancyEngine:
     rate: float
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class StatedPolar:
     """L = (K_L0 + K_L a) V^2, D = (K_D0 + K_D a^2) V^2, M = (K_M0 + K_M a) V^2 - damping V q.
@@ -157,6 +159,7 @@ class GliderPhase:
         return Phase(self.name, {"net_mass": self.net_mass, "position": self.position}, self.lasts, until)
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Glider:
     """A glider and a cycle of it.

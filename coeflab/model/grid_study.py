@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.symbols import LINEAR, MOTIONS
+from coeflab.kernels.brief import brief
 from coeflab.kernels.grid_convergence import GridConvergence, cell_sizes, grid_convergence
 from coeflab.kernels.grid_least_squares import fitted_convergence
 from coeflab.model.force_table import ForceTable
@@ -15,6 +16,7 @@ from coeflab.model.force_table import ForceTable
 AT_REST = 1e-4  # of the largest motion in the table: rounding of a printed angle, not a motion
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class GridStudy:
     """One force component at one setting on several grids.

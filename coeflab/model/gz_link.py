@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.xml import numbers
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 
 Array = NDArray[np.float64]
@@ -34,6 +35,7 @@ CORIOLIS = (
 )  # fmt: skip
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class GzLink:
     """One link and its Hydrodynamics plugin.

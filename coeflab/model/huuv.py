@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from coeflab.core.delimited import read_cells
 from coeflab.core.files import shipped
 from coeflab.core.toml import Section, read_toml
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.steady_turn import COEFFICIENTS
 from coeflab.model.frozen import locked
@@ -20,6 +21,7 @@ DIMENSIONS = {"m": "mass", "mx": "mass", "my": "mass", "inertia": "inertia"}
 MATLAB, TRACKER = "matlab", "tracker"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Turns:
     """Printed turns, one row a pair of commands.
@@ -41,6 +43,7 @@ class Turns:
             object.__setattr__(self, name, locked(getattr(self, name)))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Huuv:
     """Published data, SI and rad, FRD; commands in per cent.

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from math import hypot
 
+from coeflab.kernels.brief import brief
+
 HOW = (
     "Interval: 2.5 to 97.5 percentile of fits to stretches of the series drawn with replacement. It holds their scatter alone; "
     "what a wrong mass, inertia, thrust or choice of terms, or noise that neighbouring rows share, would move is not in it. "
@@ -45,6 +47,7 @@ class Verdict(StrEnum):
     NONE = ""
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class IdentifiedTerm:
     """One candidate.
@@ -121,6 +124,7 @@ class Balanced:
     stretches: int
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Identified:
     """Everything that came out.

@@ -9,6 +9,7 @@ from itertools import accumulate
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.kernels.brief import brief
 from coeflab.kernels.groups import noise_of_groups
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.terms import design
@@ -18,6 +19,7 @@ from coeflab.model.manoeuvring_terms import Equation, NamedTerm, read_term
 Constraint = tuple[Array, Array]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Component:
     """One force component of a joint fit.

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coeflab.core.errors import InputError
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.linear_model import LinearFit
 from coeflab.kernels.stacked import fit_stacked, influence, part_of, spread_by_run
@@ -22,6 +23,7 @@ from coeflab.model.regression import model_of
 NO_CAMPAIGN = "Each campaign left out in turn: not available, as there is one campaign."
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class JointFit:
     """Models of all components.

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import COMPONENTS
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Index
 from coeflab.model.force_table import AT_REST, ForceTable
 from coeflab.model.regression import Area, Rows, collect, response, variable
 from coeflab.model.set_aside import SetAside, joined
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class JointRows:
     """Rows of one response over all tables that have it.

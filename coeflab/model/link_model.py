@@ -12,6 +12,7 @@ from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.identifiers import one_line
 from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.scaling import Conditions, Scaling
@@ -22,6 +23,7 @@ from coeflab.model.stated_form import kept_matrix, stated_coefficients, stated_m
 Array = NDArray[np.float64]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class LinkModel:
     """SI and FRD, about the link's origin.

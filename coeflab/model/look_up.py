@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.parameter_model import ParameterModel
 
@@ -16,6 +17,7 @@ POINTS = {1: 41, 2: 21, 3: 11}
 FEWEST = 5
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class LookUp:
     """One response over a grid that spans the box of its data.

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.kernels.brief import brief
 from coeflab.kernels.kirchhoff import momentum_quadratics
 from coeflab.model.force_law import ForceLaw, LawTerm, force_law
 from coeflab.model.frozen import locked
@@ -27,6 +28,7 @@ LOSSLESS = 1e-9  # rounding of coefficients that are written with 17 digits and 
 ANGLES = {"asin(v/U)": "v", "asin(w/U)": "w"}
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Apart:
     """How far a target is from the parameter file, six components each: forces, or rates of u v w p q r.
@@ -71,6 +73,7 @@ def apart(theirs: Array, ours: Array) -> Apart:
     )
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Loss:
     """What one target makes of one parameter file.

@@ -21,6 +21,7 @@ from coeflab.core.identifiers import one_line
 from coeflab.core.matlab import Assignment, assignments
 from coeflab.core.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
 from coeflab.core.toml import read_text
+from coeflab.kernels.brief import brief
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.units_told import FEET_PER_SECOND, FOOT, SLUG, SLUGS
 from coeflab.model.written_law import sname
@@ -32,6 +33,7 @@ _CHANGED = re.compile(r"^[^%#\n]*\bC_?A\s*\(", re.MULTILINE)
 _ADDED = ("CA", "C_A")
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class MFile:
     """What a file states.
@@ -125,6 +127,7 @@ def _symbol(name: str) -> str:
         return ""
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class MValues:
     """Derivatives as primes, and what told their units.

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 
 Array = NDArray[np.float64]
@@ -29,6 +30,7 @@ QUANTITIES: dict[Quantity, str] = {
 UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Until:
     """A phase ends when a quantity crosses a value, rising or falling.
@@ -47,6 +49,7 @@ class Until:
     value: float
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Phase:
     """Orders that stand until something happens.
@@ -70,6 +73,7 @@ class Phase:
         object.__setattr__(self, "orders", MappingProxyType(dict(self.orders)))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Manoeuvre:
     """Where it starts, and what is ordered.

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import COMPONENTS, PORT_STARBOARD
+from coeflab.kernels.brief import brief
 from coeflab.kernels.terms import Term
 
 SETS: dict[str, tuple[str, ...]] = {
@@ -41,6 +42,7 @@ _NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _SYMBOL = re.compile(r"[A-Z][A-Za-z0-9|]*'?")
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class NamedTerm:
     """A term of one force component, with the name that its coefficient has.
@@ -140,6 +142,7 @@ def read_terms(texts: tuple[str, ...], place: str) -> tuple[NamedTerm, ...]:
     return tuple(found.values())
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Equation:
     """A linear equation between coefficients: the sum of weight times coefficient is ``right``.

@@ -12,6 +12,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.machine import compiles
 from coeflab.core.symbols import CONTROLS
 from coeflab.kernels import march as plain
+from coeflab.kernels.brief import brief
 from coeflab.kernels.dynamics import Dynamics
 from coeflab.kernels.march_adaptive import march_adaptive
 from coeflab.kernels.orders import NEAR, Marching, Orders, ramp
@@ -32,6 +33,7 @@ MOST_STEPS = 5_000_000  # more is a step in the wrong unit
 STILL = np.zeros(3)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Marched:
     """Motions of all members of an ensemble.

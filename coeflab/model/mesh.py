@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.kernels.brief import brief
 from coeflab.kernels.surface_mesh import MeshIntegrals, mesh_integrals
 from coeflab.model.frozen import locked
 
 Array = NDArray[np.float64]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class TriangleMesh:
     """A closed surface of triangles that look outward.

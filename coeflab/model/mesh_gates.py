@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.machine import stage
+from coeflab.kernels.brief import brief
 from coeflab.kernels.mesh_topology import (
     Labels,
     degenerate,
@@ -35,6 +36,7 @@ PLATE = "Describe it as a plate in a body.toml of reader primitives: the formula
 BY_HAND = "Mend it where it was made; repair does not close holes or untangle surfaces."
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SoundMesh:
     """A closed mesh with all faces outward, and what was done or left undone to say so."""

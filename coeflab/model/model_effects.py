@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.kernels.brief import brief
 from coeflab.kernels.propagation import STEP, Propagated, normal_draws, summary_of
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
@@ -22,6 +23,7 @@ ROUNDING = 1e-9
 FEWEST_DRAWS = 100  # fits that came out: 2.5 % tails of two or three
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class ModelEffects:
     """Inputs carried to the numbers of a fit: the coefficients of its models in their order, then those of its set.

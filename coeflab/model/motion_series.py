@@ -12,6 +12,7 @@ from coeflab.core.delimited import Cells, read_cells, require_unit
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.symbols import ANGULAR, CONTROL_COLUMNS, CONTROLS, LINEAR, MOTIONS
 from coeflab.core.units import Header, factor
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.vehicle import THRUST, Vehicle
 
@@ -27,6 +28,7 @@ EXAMPLES = {
 }  # fmt: skip
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class MotionSeries:
     """One motion, SI, FRD, about the reference point of the vehicle.

@@ -9,6 +9,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
+from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.motion_law import BASE, REVERSAL, WIND, MotionLaw
 from coeflab.kernels.terms import parse_suffix
@@ -24,6 +25,7 @@ AHEAD = ("u", REVERSAL, -1.0, 1.0, False)
 Variable = tuple[str, float, float, float, bool]
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class MotionTerm:
     """One term before it becomes a row of arrays.

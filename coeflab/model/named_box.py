@@ -10,10 +10,12 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.toml import read_toml
 from coeflab.core.units import quantity
+from coeflab.kernels.brief import brief
 
 WRITTEN = "NAME=x0:x1,y0:y1,z0:z1 in m, FRD, from the datum"
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class NamedBox:
     """A box along the body's axes; m, FRD, from the datum.

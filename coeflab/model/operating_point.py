@@ -9,6 +9,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.linearisation import Growth
 from coeflab.kernels.operating_point import Found, Problem, solve
 from coeflab.kernels.operating_steps import HOLDS
@@ -77,6 +78,7 @@ class Equation:
     size: float
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class OperatingPoint:
     """Result of `operating_point`.

@@ -12,7 +12,7 @@ from coeflab.core.datums import Datum
 from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.kernels.composition import definiteness
 from coeflab.model.added_mass import AddedMass
-from coeflab.model.schema_types import Finite, Name, Positive, Strict, told
+from coeflab.model.schema_types import Finite, Name, Positive, Strict, Words, told
 from coeflab.model.triangulation import Triangulation
 
 Row = tuple[Finite, Finite, Finite, Finite, Finite, Finite]
@@ -29,7 +29,7 @@ class OtherMethod(Strict):
 class ParameterAddedMass(Strict):
     """M_A, positive, FRD, about the file's reference point; acceleration derivatives are its negatives."""
 
-    body: Annotated[Name, told("whose shape it was computed from")]
+    body: Annotated[Words, told("whose shape it was computed from")]
     method: Annotated[Name, told("how; stated where it was read from somebody's model")]
     density: Annotated[Positive, told("density of the water that the matrix holds for", "kg/m^3")]
     matrix: Annotated[

@@ -35,7 +35,7 @@ from coeflab.model.parameter_versions import (
 )
 from coeflab.model.potential import potential_part
 from coeflab.model.scaling import Conditions, Scaling
-from coeflab.model.schema_types import Finite, Name, Positive, Strict, told
+from coeflab.model.schema_types import Finite, Name, Positive, Strict, Words, told
 
 LARGEST = 16 << 20
 SCHEMA_FILE = Path(__file__).with_name("parameter_file.schema.json")
@@ -45,7 +45,7 @@ class ParameterScaling(Strict):
     """Length of the primes."""
 
     length: Annotated[Positive, told("length L of the primes", "m")]
-    length_name: Annotated[Name, told("which length it is, for example LBP or LOA")]
+    length_name: Annotated[Words, told("which length it is, for example LBP or LOA")]
 
 
 class ParameterConditions(Strict):
@@ -61,7 +61,7 @@ class ParameterPoint(Strict):
 
     point: Annotated[tuple[Finite, Finite, Finite], told("x y z from the datum, in `axes`", "m")]
     datum: Annotated[
-        Name,
+        Words,
         told(
             "id of the point of the body that points are measured from, for example nose, cg or midship; compared letter by letter"
         ),
@@ -107,8 +107,8 @@ class ParameterFile(Strict):
     schema_version: Annotated[str, Field(pattern=r"^1\.\d+$"), told("version of this schema that the file follows")] = (
         SCHEMA_VERSION
     )
-    name: Annotated[Name, told("name of the set of coefficients; exports are named after it")]
-    body: Annotated[Name, told("the vehicle, and in which configuration")]
+    name: Annotated[Words, told("name of the set of coefficients; exports are named after it")]
+    body: Annotated[Words, told("the vehicle, and in which configuration")]
     scaling: Annotated[ParameterScaling, told("the prime system: Y' = Y / (1/2 rho U^2 L^2), N' with L^3")]
     reference_point: Annotated[ParameterPoint, told("where all moments and velocities are taken")]
     conditions: Annotated[ParameterConditions, told("density and speed of the dimensional values")]

@@ -14,6 +14,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative
+from coeflab.kernels.brief import brief
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.parameter_vehicle import CurveSegment, ParameterThruster
 
@@ -21,6 +22,7 @@ EXPECTED = "a coefficient (Yv'), a term of a table (C_S beta), mass, added_mass 
 AXES = "xyz"
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Place:
     """One number of a parameter file.

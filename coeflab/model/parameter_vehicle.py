@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.model.schema_types import Finite, Name, Positive, Strict, told
+from coeflab.model.schema_types import Finite, Name, Positive, Strict, Words, told
 
 Triple = tuple[Finite, Finite, Finite]
 Control = Literal["dr", "ds", "db"]
@@ -94,7 +94,7 @@ class ParameterCurve(Strict):
 class ParameterThruster(Strict):
     """A thruster, fixed or tilting."""
 
-    name: Annotated[Name, told("for commands: `name` and `name.tilt`")]
+    name: Annotated[Words, told("for commands: `name` and `name.tilt`")]
     position: Annotated[Triple, told("from the reference point, x y z, FRD", "m")]
     direction: Annotated[Triple, told("of positive thrust at no tilt, of length one, FRD", "1")]
     curve: Annotated[ParameterCurve, told("thrust over the command; must not fall", "N")]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.symbols import COMPONENTS, MOTIONS, primed
+from coeflab.kernels.brief import brief
 from coeflab.model.check import Check, Severity
 from coeflab.model.force_law import LawTerm, force_law
 from coeflab.model.parameter_file import ParameterFile
@@ -19,6 +20,7 @@ ALIKE = 0.01
 WRONG = "a sign is wrong."
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class _Own:
     """A term of a motion on itself."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from math import isinf, isnan
 
 from coeflab.core.symbols import primed
+from coeflab.kernels.brief import brief
 from coeflab.kernels.groups import Poolability
 from coeflab.model.misfit import UNLIKELY, chance
 from coeflab.model.out_of_sample import OutOfSample
@@ -14,6 +15,7 @@ from coeflab.model.table import coefficient
 DOUBTFUL = 0.1  # not rejected, but one in ten: worth a sentence
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class CampaignShare:
     """One campaign in the fit of one component.
@@ -42,6 +44,7 @@ class CampaignShare:
     left_out: OutOfSample
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Pooling:
     """One component of a joint fit by campaign.

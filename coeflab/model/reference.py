@@ -15,6 +15,7 @@ from coeflab.core.datums import Datum, read_datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.toml import Section, read_toml
 from coeflab.core.units import quantity
+from coeflab.kernels.brief import brief
 from coeflab.model.coefficient import Coefficient, CoefficientSet
 from coeflab.model.frozen import locked
 from coeflab.model.scaling import Scaling, read_scaling
@@ -49,6 +50,7 @@ class PublishedValue:
     value: float | None
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Literature:
     """Published values that may enter a parameter file, with their stated relative uncertainty."""
@@ -59,6 +61,7 @@ class Literature:
     values: tuple[PublishedValue, ...]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Reference:
     """One column of published derivatives, and the stability indices G_h and G_v that its source prints."""
@@ -101,6 +104,7 @@ class Reference:
         return tuple((s.length_name, published.value * s.ratio(symbol, to)) for s in lengths)
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """Ours against one published value.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS
+from coeflab.kernels.brief import brief
 from coeflab.kernels.linear_model import fit_linear
 from coeflab.kernels.terms import Term, design
 from coeflab.kernels.wind_axes import incidence, wind_forces
@@ -43,6 +44,7 @@ class Area:
     length: float
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Rows:
     """Rows of a regression.

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.symbols import ANGULAR, MOTIONS
+from coeflab.kernels.brief import brief
 from coeflab.kernels.linearisation import linearised, modes
 from coeflab.kernels.vehicle_motion import from_euler
 from coeflab.model.approach import along
@@ -25,6 +26,7 @@ SLOWEST, FASTEST, SPEEDS = 0.1, 2.0, 39  # of the file's speed, in steps of 0.05
 CLOSE = 1e-6  # bisection of a speed at which stability changes
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class RootLocus:
     """Eigenvalues of one plane over speed.

@@ -14,6 +14,7 @@ from math import gamma, pi, sqrt
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.kernels.brief import brief
 from coeflab.model.fitted_model import FittedModel
 from coeflab.model.manoeuvring_terms import canonical
 from coeflab.model.table import coefficient
@@ -49,6 +50,7 @@ class Secant:
         )
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Explanation:
     """Whether the range of motion could explain a difference to a value from elsewhere.

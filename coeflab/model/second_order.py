@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.kernels.brief import brief
 from coeflab.model.force_law import ForceLaw, LawTerm
 from coeflab.model.frozen import locked
 
@@ -22,6 +23,7 @@ SURGE = 0
 ACROSS = (1, 2)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SecondOrder:
     """force i = linear[i, j] nu_j + signed[i, j, k] nu_j nu_k + absolute[i, j, k] nu_j abs(nu_k).

@@ -8,12 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.model.force_table import ForceTable
 from coeflab.model.frozen import locked, locked_columns
 
 Array = NDArray[np.float64]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SetAside:
     """Points beside a fit.

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.kernels.axisymmetric import MeridianIntegrals, graded_nodes, meridian_integrals
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.mesh import TriangleMesh
 
@@ -147,6 +148,7 @@ class Box:
 Form = Cylinder | Plate | Ellipsoid | Box
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
     """A named form somewhere on the body.
@@ -175,6 +177,7 @@ class Part:
             raise InputError(f"the pose of part {shown(self.name)}, which mirrors or stretches", "a rotation")
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Parts:
     """A body as simple parts; where they overlap the overlap counts twice."""
@@ -220,6 +223,7 @@ class Parts:
         return float(np.sqrt(total[1] / total[2]))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Revolution:
     """A body of revolution about an axis along x, by quadrature stations.

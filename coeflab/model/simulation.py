@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
+from coeflab.kernels.brief import brief
 from coeflab.model.manoeuvre import Figure, Manoeuvre
 from coeflab.model.trajectory import Trajectory
 from coeflab.model.vehicle import Vehicle
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Simulation:
     """What was asked and what came out.

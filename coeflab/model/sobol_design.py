@@ -8,12 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.sobol import design, exchanged
 from coeflab.model.draws import CORRELATED, Uncertain
 
 Array = NDArray[np.float64]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SobolDesign:
     """Samples A and B, and A with each group of B.

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.propagation import HIGH, LOW
 from coeflab.kernels.quantile_error import quantile_error
 from coeflab.kernels.sobol import SobolIndices
@@ -21,6 +22,7 @@ FEWEST = 20
 EXTRAPOLATED = "extrapolated"
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Spread:
     """One figure over all members.
@@ -55,6 +57,7 @@ class Spread:
     why: str = ""
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Share:
     """What one group of inputs does to one figure.
@@ -79,6 +82,7 @@ class Share:
     total_bounds: tuple[float, float]
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Importance:
     """Where the variance of one figure comes from.

@@ -15,6 +15,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.provenance import InputFile
 from coeflab.core.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.core.version import VERSION
+from coeflab.kernels.brief import brief
 from coeflab.kernels.composition import definiteness
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.parameter_added_mass import ParameterAddedMass
@@ -37,6 +38,7 @@ MODEL_ORIGIN = Datum("origin of the model")
 Term = tuple[tuple[tuple[str, int, bool], ...], float]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class StatedMass:
     """Mass, kg; x_G m, kg m; where they are known transverse inertia, kg m^2, the centre of gravity (3,) from the
@@ -50,6 +52,7 @@ class StatedMass:
     inertia_matrix: Array | None = None
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Stated:
     """What a model file states, in SI and FRD.

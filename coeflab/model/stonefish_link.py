@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.stonefish_fluid import added, raw_drag, weighed
 from coeflab.kernels.transforms import force_transfer, velocity_transfer
 from coeflab.model.force_law import force_law
@@ -23,6 +24,7 @@ DIGITS, ROUNDING = 6, 1e-9
 FORCES = "XYZ"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class StonefishLink:
     """A mesh in water and its drags.
@@ -81,6 +83,7 @@ class StonefishLink:
         return np.asarray(np.hstack([force, torque]) @ force_transfer(-self.centre).T)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class ChosenDrags:
     """A link with drags, and what they are worth.

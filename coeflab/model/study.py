@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.datums import Datum
 from coeflab.core.provenance import InputFile
+from coeflab.kernels.brief import brief
 from coeflab.model.body import Body
 from coeflab.model.budget import Budget
 from coeflab.model.check import Check, Severity
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from coeflab.model.simulation import Simulation
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class PlannedTable:
     """One ``[[table]]``: a campaign (a folder, a campaign.toml or one CSV of it), its fits and their options."""
@@ -41,6 +43,7 @@ class PlannedTable:
     only: str | None = None
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class PlannedJoint:
     """One ``[[joint]]``: one fit over several tables or campaigns."""
@@ -50,6 +53,7 @@ class PlannedJoint:
     options: Mapping[str, Any] = field(default_factory=dict)
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class PlannedParameterFile:
     """One ``[[parameter_file]]``: which campaigns, which literature and whose added mass it holds.
@@ -72,6 +76,7 @@ class PlannedParameterFile:
     method: str = "all"
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class PlannedExport:
     """One ``[[export]]``: every parameter file of the study for one target.
@@ -103,6 +108,7 @@ class PlannedExport:
         return f"{self.place}.{name}"
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class PlannedManoeuvre:
     """One ``[[manoeuvre]]``: a parameter file of the study, the manoeuvre's name and its options.
@@ -130,6 +136,7 @@ class PlannedManoeuvre:
         return f"{self.place}.{name}"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
     """What to do, with paths resolved.
@@ -184,6 +191,7 @@ class Plan:
             object.__setattr__(self, "reference_point", locked(self.reference_point))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Study:
     """Everything that a run found; export and report are two leaves of this one object.

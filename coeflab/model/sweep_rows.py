@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.slopes import is_one_sided
 from coeflab.model.fit_result import LeftOut
 from coeflab.model.force_table import AT_REST, ForceTable
@@ -18,6 +19,7 @@ ASTERN = "does not run ahead (u <= 0): an angle beyond 90 degrees, or degrees de
 NEAR_ZERO = np.sin(np.radians(0.3))  # what is left of a setting of zero when a model is aligned
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SweepRows:
     """Rows of one sweep, with rest rows of the same campaign where a one-sided sweep has none of its own.

@@ -6,7 +6,10 @@ from dataclasses import dataclass
 from html import escape
 from math import isnan
 
+from coeflab.kernels.brief import brief
 
+
+@brief
 @dataclass(frozen=True, slots=True)
 class Table:
     """Text cells with a caption.

@@ -9,6 +9,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.vehicle_motion import euler_angles, rotations
 from coeflab.model import noun_tables
 from coeflab.model.frozen import locked, locked_columns
@@ -27,6 +28,7 @@ class Ended(StrEnum):
     TOO_FAST = "too_fast"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Trajectory:
     """A motion, one row a time.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.kernels.brief import brief
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.mirror_planes import NAMES, mirrors, must_vanish
@@ -34,6 +35,7 @@ APART = 1e-3  # of a sphere's added mass, by what the others induce: as exact as
 NOISE = 2e-3  # what a triangulated surface leaves of entries that symmetry makes vanish
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Triangulation:
     """Added mass by every method that applies, and why the others do not.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import COMPONENTS, CONTROLS
+from coeflab.kernels.brief import brief
 from coeflab.kernels.linearisation import linearised, modes
 from coeflab.kernels.motion_law import WIND
 from coeflab.kernels.transforms import rigid_body_force
@@ -30,6 +31,7 @@ NAMES = {
 }  # fmt: skip
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SteadyMotion:
     """A vehicle with what is given of its motion and commands.

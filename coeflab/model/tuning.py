@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.wording import listed
+from coeflab.kernels.brief import brief
 from coeflab.kernels.output_error import Estimate
 from coeflab.kernels.output_problem import Problem
 from coeflab.model.frozen import locked
@@ -52,6 +53,7 @@ class TunedParameter:
     status: str
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class TunedQuantity:
     """One measured quantity, a value a case; NaN where it was not measured.
@@ -90,6 +92,7 @@ class TunedQuantity:
         return float(np.nanmax(np.abs(self.after - self.measured)))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Tuning:
     """What came of a fit.

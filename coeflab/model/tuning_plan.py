@@ -15,6 +15,7 @@ from coeflab.core.files import located
 from coeflab.core.symbols import CONTROLS
 from coeflab.core.toml import Section, read_toml
 from coeflab.core.units import factor, quantity
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.parameter_file import ParameterFile, read_parameter_file
 from coeflab.model.parameter_places import Place, place, value_at
@@ -27,6 +28,7 @@ FROM_RESIDUALS = "from residuals"
 FIRST_GUESS = 0.1  # of the spread of what was measured: the rounds replace it
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class FreeParameter:
     """A number that is free, at one or several places.
@@ -53,6 +55,7 @@ class FreeParameter:
     high: float
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SteadyCases:
     """Steady turns as they were measured.
@@ -88,6 +91,7 @@ class SteadyCases:
             object.__setattr__(self, name, locked(getattr(self, name)))
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class TuningPlan:
     """What to tune to what.

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.kernels.brief import brief
 from coeflab.model.budget import Budget
 from coeflab.model.coefficient import CoefficientSet
 from coeflab.model.study import Study
@@ -19,6 +20,7 @@ NUMERICAL = ("random", "grid")
 REDUCTION = ("model form", "random and model form")
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Validation:
     """One coefficient computed and measured.

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS
 from coeflab.core.units import STANDARD_GRAVITY
+from coeflab.kernels.brief import brief
 from coeflab.kernels.motion_law import MotionLaw
 from coeflab.kernels.rigid_body import rigid_body_inertia
 from coeflab.kernels.transforms import rigid_body_force
@@ -26,6 +27,7 @@ PLANES = {"horizontal": ("u", "v", "r"), "vertical": ("u", "w", "q")}
 THRUST = "thrust"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Vehicle:
     """What is moved, SI, FRD, about the reference point of its parameter file.

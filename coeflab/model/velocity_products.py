@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from coeflab.core.arithmetic import ArithmeticProblem
+from coeflab.kernels.brief import brief
 
 Product = tuple[tuple[str, int], ...]
 MOST = 4000
@@ -13,6 +14,7 @@ HIGHEST = 12
 NOTHING = 1e-15
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Products:
     """Numbers by product; a product is names with their powers, sorted, ``|v|`` a name of its own.

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.kernels.brief import brief
 from coeflab.kernels.terms import Term, parse_suffix
 from coeflab.model.force_law import force_law
 from coeflab.model.inertia import water_inertia
@@ -18,6 +19,7 @@ from coeflab.model.parameter_file import ParameterFile
 _SPELT = re.compile(r"a(dr|ds|db|[uvwpqr](?!dot))")
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class WrittenTerm:
     """One term of the law.

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.core.yaml import number
+from coeflab.kernels.brief import brief
 from coeflab.kernels.transforms import force_transfer
 from coeflab.model.frozen import locked
 from coeflab.model.xdyn_expressions import settled
@@ -38,6 +39,7 @@ UNITS = {"m": 1.0, "m/s": 1.0, "rad/s": 1.0, "rad": 1.0, "kg/m^3": 1.0, "m/s^2":
          "km/h": 1.0 / 3.6, "deg": np.pi / 180.0, "deg/s": np.pi / 180.0}  # fmt: skip
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Manoeuvring:
     """A ``maneuvering`` model: expressions by name, the point (3,) where its force acts, and its commands."""
@@ -47,6 +49,7 @@ class Manoeuvring:
     commands: tuple[str, ...]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class XdynBody:
     """A body with its hydrodynamic models; points are from the origin of the body frame, m, FRD.

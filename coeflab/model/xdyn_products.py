@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.arithmetic import ArithmeticProblem
 from coeflab.core.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS
+from coeflab.kernels.brief import brief
 from coeflab.kernels.transforms import force_transfer
 from coeflab.model.velocity_products import Products, as_products
 from coeflab.model.xdyn_body import Manoeuvring, XdynBody
@@ -23,6 +24,7 @@ FLOOR = 1e-9
 MARK = "@"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class MultipliedOut:
     """The law as sums of products.

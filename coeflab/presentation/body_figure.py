@@ -16,6 +16,7 @@ from coeflab.model.shape import Parts
 from coeflab.presentation.body_axes import BELOW, LEFT, rulers
 from coeflab.presentation.body_view import BEHIND, Sheet, View
 from coeflab.presentation.document import Figure
+from coeflab.presentation.notation import as_users_wrote
 from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets, picture_surface
 from coeflab.presentation.svg import COLOURS, POINTS, settings, svg_text
 
@@ -39,6 +40,7 @@ TOP = View("top, from above", np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0,
 OBLIQUE = View("from ahead, starboard and above", _oblique())
 
 
+@as_users_wrote
 def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str) -> Figure:
     """Parts solid, coloured by form; the mesh translucent over them, and as an outline.
 

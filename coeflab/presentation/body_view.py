@@ -12,6 +12,7 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from coeflab.kernels import silhouette
+from coeflab.kernels.brief import brief
 from coeflab.kernels.form_facets import normals
 from coeflab.kernels.solids import Surface
 from coeflab.model.shape import Parts
@@ -25,6 +26,7 @@ BEHIND, FILM = 0.45, 0.3
 EDGE_ON = 1e-6
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class View:
     """A direction to look in.
@@ -40,6 +42,7 @@ class View:
     axes: Array
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Sheet:
     """A view at its place on the paper.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 from coeflab.core.symbols import primed
@@ -22,6 +23,7 @@ from coeflab.presentation.document import Document, Section
 from coeflab.presentation.export_section import export_sections
 from coeflab.presentation.in_parallel import begun
 from coeflab.presentation.manoeuvre_section import manoeuvre_sections
+from coeflab.presentation.notation import keeping, users_texts
 from coeflab.presentation.quality_section import quality_sections
 from coeflab.presentation.reproduction import digest_of, reproduction
 from coeflab.presentation.stability_section import in_words, stability_sections
@@ -32,6 +34,12 @@ FEW = 8
 
 def document(study: Study) -> Document:
     """The whole report of a study."""
+    verbatim = users_texts(study)
+    with keeping(verbatim):
+        return replace(_document(study), verbatim=verbatim)
+
+
+def _document(study: Study) -> Document:
     places: set[str] = set()
     own = [anchor(f"campaign {fit.campaign}", places) for fit in study.fits]
     alone = [partial(_alone, study, fit, place, places) for fit, place in zip(study.fits, own, strict=True)]

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.model.table import Table
 
 Range = tuple[float, float]
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Series:
     """Points or a curve of a drawing, as numbers.
@@ -41,6 +43,7 @@ class Series:
     is_curve: bool = False
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Panel:
     """One pair of axes of a drawing, and what stands in it.
@@ -72,6 +75,7 @@ class Panel:
     bars: str = ""
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Layer:
     """Triangles, lines or points of a scene.
@@ -106,6 +110,7 @@ class Layer:
         object.__setattr__(self, "index", locked(self.index, int))
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Axis:
     """One axis of a scene: name, unit, ends, and the values marked on it with their texts."""
@@ -117,6 +122,7 @@ class Axis:
     texts: tuple[str, ...] = ()
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
     """Something to be turned in space; the figure that holds it is what stands where that cannot be.
@@ -138,6 +144,7 @@ class Scene:
     is_body: bool = False
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Figure:
     """A drawing.
@@ -169,6 +176,7 @@ class Figure:
     scene: Scene | None = None
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Section:
     """Paragraphs, then figures, then tables, then subsections.
@@ -194,6 +202,7 @@ class Section:
     code: tuple[str, ...] = ()
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Document:
     """A whole report.
@@ -208,6 +217,8 @@ class Document:
         Sixteen hexadecimal digits of the sha256 over all inputs; empty where there are none.
     works : tuple of (str, str)
         Key and text of every work that it rests on.
+    verbatim : tuple of str
+        Texts of users in it, which renderers set as they stand.
     """
 
     title: str
@@ -216,3 +227,4 @@ class Document:
     name: str = ""
     digest: str = ""
     works: tuple[tuple[str, str], ...] = ()
+    verbatim: tuple[str, ...] = ()

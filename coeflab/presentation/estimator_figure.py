@@ -16,6 +16,7 @@ from coeflab.model.reference import Comparison
 from coeflab.model.table import coefficient
 from coeflab.presentation.bare import strokes
 from coeflab.presentation.document import Figure, Series
+from coeflab.presentation.notation import as_users_wrote
 from coeflab.presentation.panel import BOTTOM, GAP, TOP, drawing, heading, legend, panel
 from coeflab.presentation.plotted import numbers, points, tagged
 from coeflab.presentation.series import Style, family_key, family_name, is_in_degrees, on_axis, styles
@@ -24,6 +25,7 @@ from coeflab.presentation.svg import COLOURS, power_of_ten, settings, svg_text
 SIDESTEP, HEADING = 0.011, 12.0
 
 
+@as_users_wrote
 def estimator_figure(sweep: Sweep, published: tuple[Comparison, ...], anchor: str) -> Figure:
     """Every family in every window, twice: as the rule fits it, and without nuisance terms.
 

@@ -13,6 +13,7 @@ from coeflab.model.fit_result import LeftOut, Sweep
 from coeflab.model.table import coefficient
 from coeflab.presentation.bare import strokes
 from coeflab.presentation.document import Figure, Series
+from coeflab.presentation.notation import as_users_wrote
 from coeflab.presentation.panel import BOTTOM, GAP, TOP, Array, Range, drawing, legend, limits, panel
 from coeflab.presentation.plotted import curve, numbers, points, tagged
 from coeflab.presentation.series import axis_name, family_key, family_name, on_axis, styles
@@ -38,6 +39,7 @@ def recommended_curve(sweep: Sweep, x: Array) -> tuple[Array, Array]:
     return at_rest + value * shape, half * np.abs(shape)
 
 
+@as_users_wrote
 def sweep_figure(sweep: Sweep, anchor: str) -> Figure:
     """Points of a sweep with its curves, and the residuals of the members below."""
     left_out = [p for p in sweep.left_out if np.isfinite(p.y)]

@@ -13,6 +13,7 @@ from coeflab.model.glide import GlideRun, SteadyGlide
 from coeflab.model.glider import Glider
 from coeflab.presentation import plotted
 from coeflab.presentation.document import Figure
+from coeflab.presentation.notation import as_users_wrote
 from coeflab.presentation.panel import BOTTOM, LEGEND_ROW, Array, Range, drawing, legend, limits, panel
 from coeflab.presentation.plotted import numbers, points, tagged
 from coeflab.presentation.series import STYLES, Style
@@ -25,6 +26,7 @@ BALANCED = "in balance of pitch"
 SOLID = Style(COLOURS["a"], "-", "o")
 
 
+@as_users_wrote
 def motion_figure(runs: Sequence[GlideRun], anchor: str) -> Figure:
     """V, x, depth and alpha of up to four gliders over time, one panel each, with the steady glides of the first phases.
 
@@ -64,6 +66,7 @@ def motion_figure(runs: Sequence[GlideRun], anchor: str) -> Figure:
     return Figure(anchor, svg, title, caption, description, tuple(panels))
 
 
+@as_users_wrote
 def polar_figure(glider: Glider, steady: Sequence[SteadyGlide], anchor: str) -> Figure:
     """Speed over the glide angle for the net masses of the phases, the angle of attack, and the steady glides on them."""
     masses = list(dict.fromkeys(p.net_mass for p in glider.phases if p.net_mass))[: len(STYLES)]

@@ -14,6 +14,7 @@ from coeflab.model.meshing import meshed
 from coeflab.presentation.body_figure import MARGIN, SIDE, TOP
 from coeflab.presentation.body_view import Sheet, View
 from coeflab.presentation.document import Figure
+from coeflab.presentation.notation import as_users_wrote
 from coeflab.presentation.part_facets import picture_surface
 from coeflab.presentation.svg import COLOURS, POINTS, settings, svg_text
 
@@ -22,6 +23,7 @@ PANELS = 3000
 WIDTH, TALLEST, GAP, CAPTION = 340.0, 90.0, 12.0, 16.0
 
 
+@as_users_wrote
 def hull_figure(body: Body, anchor: str) -> Figure:
     """Side and top views at one scale.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.solids import Surface
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.meshing import meshed
@@ -20,6 +21,7 @@ SKIN = 0.5
 ROOM = 0.04
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Mark:
     """A point of a body that is known by a name.

@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from coeflab.model.identified import Identified, IdentifiedTerm, Outcome
 from coeflab.model.table import coefficient
 from coeflab.presentation.document import Figure, Panel
+from coeflab.presentation.notation import as_users_wrote
 from coeflab.presentation.panel import tick_texts, ticks
 from coeflab.presentation.plotted import numbers, points
 from coeflab.presentation.svg import COLOURS, POINTS, settings, svg_text
@@ -29,6 +30,7 @@ MARKS: dict[Outcome, dict[str, Any]] = {
 FROM_FILE: dict[str, Any] = {"marker": "D", "markersize": 3.4, "color": COLOURS["b"]}
 
 
+@as_users_wrote
 def identified_figure(found: Identified, anchor: str) -> Figure:
     """One row a candidate: identified and file's value in units of the larger, and the inclusion frequency."""
     rows = list(found.terms)

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from multiprocessing import current_process, get_all_start_methods, get_context
 from typing import TypeVar
 
-from coeflab.core.machine import cores
+from coeflab.core.machine import cores, end_with_parent
 
 Part = TypeVar("Part")
 MOST = 4
@@ -40,8 +40,7 @@ def begun(jobs: Sequence[Callable[[], Part]], sizes: Sequence[int] = ()) -> Iter
         return
     _JOBS.extend(jobs)
     try:
-        # What was there before the copying is not searched for garbage again and again.
-        with ProcessPoolExecutor(workers, get_context("fork"), initializer=gc.freeze) as pool:
+        with ProcessPoolExecutor(workers, get_context("fork"), initializer=_prepare) as pool:
             with warnings.catch_warnings():
                 warnings.filterwarnings("ignore", message=".*fork", category=DeprecationWarning)
                 order = sorted(range(len(jobs)), key=lambda i: -sizes[i] if sizes else i)
@@ -56,6 +55,13 @@ def begun(jobs: Sequence[Callable[[], Part]], sizes: Sequence[int] = ()) -> Iter
             yield results
     finally:
         _JOBS.clear()
+
+
+def _prepare() -> None:
+    """What a copy does first."""
+    end_with_parent()
+    # What was there before the copying is not searched for garbage again and again.
+    gc.freeze()
 
 
 def _done(index: int) -> object:

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
 from coeflab.presentation.document import Figure, Panel
 from coeflab.presentation.panel import BOTTOM, GAP, LEGEND_ROW, Array, drawing, legend, limits, panel
@@ -21,6 +22,7 @@ SCALED = 26.0
 PLAIN = Style(COLOURS["ink"], "-", "o")
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Trace:
     """A curve, or points.
@@ -64,6 +66,7 @@ class Trace:
         }  # fmt: skip
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Plot:
     """One panel.

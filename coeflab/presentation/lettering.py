@@ -11,26 +11,47 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from html import escape
 
-from coeflab.presentation.notation import DOT, HIGH, LEVEL, Factor, Raised, Run, Symbol, cell_runs, runs, unit_runs
+from coeflab.presentation.notation import (
+    DOT,
+    HIGH,
+    LEVEL,
+    Factor,
+    Kept,
+    Raised,
+    Run,
+    Symbol,
+    cell_runs,
+    kept,
+    runs,
+    unit_runs,
+)
 from coeflab.presentation.printable import runs_to_the_left, visible
 
 PRIME = "\u2032"
-KEPT = 1 << 14
+REMEMBERED = 1 << 14
 SMALL = 0.72
 LOWER, HIGHER = 0.22, -0.34
 Part = tuple[str, bool, float]
 
 
-@lru_cache(KEPT)
 def html(text: str) -> str:
     """A sentence or a heading as HTML; every character of a user's is a text."""
-    return _page(text, runs(text))
+    return _html(text, kept())
 
 
-@lru_cache(KEPT)
+@lru_cache(REMEMBERED)
+def _html(text: str, kept: Kept | None) -> str:
+    return _page(text, runs(text, kept))
+
+
 def cell_html(text: str) -> str:
     """A table's cell as HTML."""
-    return _page(text, cell_runs(text))
+    return _cell_html(text, kept())
+
+
+@lru_cache(REMEMBERED)
+def _cell_html(text: str, kept: Kept | None) -> str:
+    return _page(text, cell_runs(text, kept))
 
 
 def unit_html(text: str) -> str:
@@ -38,10 +59,14 @@ def unit_html(text: str) -> str:
     return _page(text, unit_runs(text))
 
 
-@lru_cache(KEPT)
 def label(text: str) -> str:
     """A text in letters alone, for places that know no other: ``v'^3`` is v′³."""
-    return visible("".join(_letters(piece) for piece in cell_runs(text)))
+    return _label(text, kept())
+
+
+@lru_cache(REMEMBERED)
+def _label(text: str, kept: Kept | None) -> str:
+    return visible("".join(_letters(piece) for piece in cell_runs(text, kept)))
 
 
 def unit_label(text: str) -> str:
@@ -49,11 +74,15 @@ def unit_label(text: str) -> str:
     return visible("".join(_letters(piece) for piece in unit_runs(text)))
 
 
-@lru_cache(KEPT)
 def drawn(text: str) -> str:
     """The inside of an SVG ``<text>`` element."""
+    return _drawn(text, kept())
+
+
+@lru_cache(REMEMBERED)
+def _drawn(text: str, kept: Kept | None) -> str:
     out, before = [], 0.0
-    for letters, slanted, level in _joined(part for piece in cell_runs(text) for part in _parts(piece)):
+    for letters, slanted, level in _joined(part for piece in cell_runs(text, kept) for part in _parts(piece)):
         size = SMALL if level else 1.0
         look = ' font-style="italic"' * slanted + f' font-size="{SMALL}em"' * bool(level)
         if level != before:

@@ -11,6 +11,7 @@ from coeflab.model.fitted_model import FittedModel
 from coeflab.presentation.along_figure import along, along_figure
 from coeflab.presentation.curve_figure import curve_figure
 from coeflab.presentation.document import Figure
+from coeflab.presentation.notation import as_users_wrote
 from coeflab.presentation.residual_figure import residual_figure
 from coeflab.presentation.slices_figure import slices_figure, slices_of
 from coeflab.presentation.surface_figure import is_surface, surface_figure
@@ -19,6 +20,7 @@ from coeflab.presentation.variables import moving, symbol_of
 SAME = 1e-9
 
 
+@as_users_wrote
 def model_figures(model: FittedModel, anchor: str) -> tuple[Figure, ...]:
     """Every figure of a model.
 

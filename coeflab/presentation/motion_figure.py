@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from coeflab.core.symbols import CONTROLS
 from coeflab.model.trajectory import Trajectory
 from coeflab.presentation.document import Figure, Series
+from coeflab.presentation.notation import as_users_wrote
 from coeflab.presentation.panel import BOTTOM, LEFT, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
 from coeflab.presentation.plotted import curve, numbers, points, tagged
 from coeflab.presentation.series import STYLES
@@ -155,6 +156,7 @@ def _history(time: Array, series: Mapping[str, Array], anchor: str, name_up: str
     return Figure(anchor, svg, title, f"{', '.join(series)} over time.", description, (shown,))
 
 
+@as_users_wrote
 def motion_figures(trajectory: Trajectory, anchor: str, length: float, what: str = "") -> tuple[Figure, ...]:
     """Tracks and all histories; none of a motion that is no longer than an instant.
 

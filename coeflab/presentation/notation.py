@@ -1,13 +1,20 @@
-"""Symbols in plain text: where a sentence or a cell holds mathematics, and which."""
+"""Symbols in plain text: where a sentence or a cell holds mathematics, and which; what users wrote holds none."""
 
 from __future__ import annotations
 
 import re
 import unicodedata
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass, fields, is_dataclass
+from functools import wraps
+from typing import ParamSpec, TypeVar
 
 from coeflab.core.errors import InputError
 from coeflab.core.symbols import CONTROLS, derivative
+from coeflab.core.wording import Verbatim
+from coeflab.kernels.brief import brief
 
 GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "theta": "θ", "lambda": "λ", "nu": "ν", "rho": "ρ",
@@ -28,6 +35,7 @@ class Factor:
     absolute: bool = False
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Symbol:
     """A letter with what stands below and above it.
@@ -58,7 +66,34 @@ class Raised:
     text: str
 
 
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """Texts of users that are set as they stand wherever a sentence holds them; by their beginnings, as titles are cut."""
+
+    texts: tuple[str, ...]
+    beginnings: re.Pattern[str]
+
+
 Run = str | Symbol | Raised
+Given = ParamSpec("Given")
+Made = TypeVar("Made")
+BEGINNING, SHORT = 20, 4
+# Nouns that a program may make of plain texts as well, and their fields that are words of a user.
+NAMED = (
+    "Plan",
+    "Campaign",
+    "ForceTable",
+    "FitResult",
+    "Body",
+    "Reference",
+    "ParameterFile",
+    "Vehicle",
+    "Glider",
+    "InputFile",
+)
+NAMES = ("name", "title", "campaign", "body", "datum")
+COVER = "\u0436"
+_KEPT: ContextVar[Kept | None] = ContextVar("kept", default=None)
 
 _ANGLES = "|".join(GREEK)
 _VARIABLE = r"(?:d[rsb]|[uvwpqr](?:dot)?)"
@@ -95,31 +130,138 @@ _WORDS = {"+-": "±", "..": "…", "<=": "≤", ">=": "≥", "*": "·", "sqrt ":
 _UNITS = {"deg": "°", "deg/s": "°/s"}
 
 
-def runs(text: str) -> tuple[Run, ...]:
+def users_texts(*nouns: object) -> tuple[str, ...]:
+    """The texts in nouns that a user wrote, and names of files, so far as they could be taken for symbols; sorted."""
+    found: set[str] = set()
+    seen: dict[int, object] = {}
+    waiting = list(nouns)
+    while waiting:
+        noun = waiting.pop()
+        if isinstance(noun, Verbatim):
+            found |= {str(noun), noun.replace("_", " ")}
+        elif isinstance(noun, (str, int, float, complex, type(None), type)) or id(noun) in seen:
+            continue
+        elif isinstance(noun, Mapping):
+            waiting += [*noun, *noun.values()]
+        elif isinstance(noun, (tuple, list)):
+            waiting += [v for v in noun if not isinstance(v, (int, float))]
+        elif is_dataclass(noun) and not type(noun).__module__.startswith("coeflab.kernels."):
+            waiting += [getattr(noun, f.name) for f in fields(noun)]
+        else:
+            waiting += [getattr(noun, name) for name in getattr(type(noun), "model_fields", ())]
+        if type(noun).__name__ in NAMED:
+            waiting += [Verbatim(getattr(noun, name)) for name in NAMES if isinstance(getattr(noun, name, None), str)]
+        seen[id(noun)] = noun
+    return tuple(sorted({t for t in (" ".join(text.split()) for text in found) if _looks_like_symbols(t)}))
+
+
+def _looks_like_symbols(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return any(map(str.isalpha, text)) and (_TOKENS.search(text) is not None or cell_runs(text) != (text,))
+    return False
+
+
+@contextmanager
+def keeping(texts: Iterable[str]) -> Iterator[None]:
+    """Set these texts of users as they stand within the block, in sentences, cells and drawings."""
+    flat = tuple(sorted({" ".join(t.split()) for t in texts} - {""}))
+    before = _KEPT.set(Kept(flat, _beginnings(flat)))
+    try:
+        yield
+    finally:
+        _KEPT.reset(before)
+
+
+def as_users_wrote(make: Callable[Given, Made]) -> Callable[Given, Made]:
+    """Let a maker of drawings set the users' texts in its arguments as they stand, unless a block says which."""
+
+    @wraps(make)
+    def made(*given: Given.args, **more: Given.kwargs) -> Made:
+        if kept() is not None:
+            return make(*given, **more)
+        with keeping(users_texts(*given, *more.values())):
+            return make(*given, **more)
+
+    return made
+
+
+def kept() -> Kept | None:
+    """The texts of users that are set as they stand just now."""
+    return _KEPT.get()
+
+
+def _beginnings(texts: tuple[str, ...]) -> re.Pattern[str]:
+    """Where a text may begin. A short one must be a word of its own, and part of no symbol."""
+    long = sorted({re.escape(t[:BEGINNING]) for t in texts if len(t) >= SHORT}, key=len, reverse=True)
+    short = [rf"(?<![\w|'^]){re.escape(t)}(?![\w|'^])" for t in texts if len(t) < SHORT]
+    return re.compile("|".join([*long, *short]))
+
+
+def _covered(text: str, kept: Kept | None) -> str:
+    """The text, of equal length, with a neutral letter for every one of a user's."""
+    if kept is None or not kept.texts:
+        return text
+    places = [i for i, ch in enumerate(text) if not (ch.isspace() and i and text[i - 1].isspace())]
+    flat = "".join(" " if text[i].isspace() else text[i] for i in places)
+    spans = [(m.start(), m.start() + _longest(m[0], flat[m.start() :], kept)) for m in kept.beginnings.finditer(flat)]
+    if flat.endswith("…"):
+        spans.append((len(flat) - 1 - _last_cut(flat[:-1], kept), len(flat) - 1))
+    out = list(text)
+    for start, end in spans:
+        for i in range(places[start], places[end - 1] + 1) if start < end else ():
+            out[i] = COVER
+    return "".join(out)
+
+
+def _longest(beginning: str, rest: str, kept: Kept) -> int:
+    """How many characters of the rest are a user's text that begins so."""
+    return max(_agreement(t, rest) for t in kept.texts if t.startswith(beginning))
+
+
+def _last_cut(text: str, kept: Kept) -> int:
+    """How many characters at the end of a text that was cut are the beginning of a user's, too short to be found."""
+    return max(
+        (k for k in range(1, BEGINNING) for t in kept.texts if len(t) > k and text.endswith(t[:k].rstrip())), default=0
+    )
+
+
+def _agreement(a: str, b: str) -> int:
+    """How many characters two texts have in common from their beginnings on."""
+    return next((i for i, (x, y) in enumerate(zip(a, b)) if x != y), min(len(a), len(b)))
+
+
+def runs(text: str, kept: Kept | None = None) -> tuple[Run, ...]:
     """A sentence in pieces: plain text with proper minus signs, symbols, exponents.
 
     Parameters
     ----------
     text : str
         For example ``Yv' = -0.0273 at beta = 2 deg``.
+    kept : Kept, optional
+        Texts of users, in which nothing is a symbol.
 
     Returns
     -------
     tuple
         Never two plain pieces in a row. A text with ``$`` or a backslash is somebody's markup: one plain piece.
     """
-    if "$" in text or "\\" in text:
+    covered = _covered(text, kept)
+    if "$" in covered or "\\" in covered:
         return (text,)
     out: list[Run] = []
     at = 0
-    for found in _TOKENS.finditer(text):
+    for found in _TOKENS.finditer(covered):
         out += [text[at : found.start()], *_pieces(found)]
         at = found.end()
     return _joined([*out, text[at:]])
 
 
-def cell_runs(text: str) -> tuple[Run, ...]:
+def cell_runs(text: str, kept: Kept | None = None) -> tuple[Run, ...]:
     """A table's cell in pieces: as `runs`, and a cell that is nothing but a derivative is one without its prime too."""
+    if _covered(text, kept) != text:
+        return runs(text, kept)
     if text == "-":
         return ("\u2013",)
     if text in _UNITS:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.slopes import Estimate
 from coeflab.model.fit_result import Sweep
 from coeflab.presentation.svg import COLOURS
@@ -25,6 +26,7 @@ _AXIS_NAMES = {
 }
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Style:
     """Colour, line and marker of one family; line and marker alone tell it from the others."""

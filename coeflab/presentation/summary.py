@@ -15,6 +15,7 @@ from coeflab.presentation.estimator_figure import estimator_figure
 from coeflab.presentation.figures import sweep_figure
 from coeflab.presentation.model_figure import model_figures
 from coeflab.presentation.model_tables import quality
+from coeflab.presentation.notation import keeping, users_texts
 from coeflab.presentation.reproduction import digest_of
 from coeflab.presentation.stability_section import in_words
 
@@ -23,6 +24,12 @@ MOST_ROWS, MOST_PARAGRAPHS, MOST_NOTES, LONGEST_NOTE, LONGEST_CAPTION = 12, 3, 4
 
 def study_summary(study: Study) -> Document:
     """One page on a study."""
+    verbatim = users_texts(study)
+    with keeping(verbatim):
+        return replace(_study_summary(study), verbatim=verbatim)
+
+
+def _study_summary(study: Study) -> Document:
     sections = (
         _first(content.verdict(study), in_words(study, with_values=False)),
         *_coefficients(study),

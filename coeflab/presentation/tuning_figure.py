@@ -11,9 +11,11 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from coeflab.core.wording import listed
+from coeflab.kernels.brief import brief
 from coeflab.model.table import number
 from coeflab.model.tuning import TunedQuantity, Tuning
 from coeflab.presentation.document import Figure, Panel, Series
+from coeflab.presentation.notation import as_users_wrote
 from coeflab.presentation.panel import BOTTOM, drawing, legend, limits, panel
 from coeflab.presentation.plotted import curve, numbers, points, tagged
 from coeflab.presentation.series import STYLES
@@ -31,6 +33,7 @@ AFTER: dict[str, Any] = {
 BARE: dict[str, Any] = {"linewidth": 0.9, "linestyle": (0, (3.0, 2.2))}
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Groups:
     """Cases as curves: where each lies on the axis, and to which curve it belongs.
@@ -52,6 +55,7 @@ class Groups:
     names: tuple[str, ...]
 
 
+@as_users_wrote
 def agreement_figure(tuning: Tuning, anchor: str) -> Figure:
     """Model against data, one panel a quantity: on the line they agree."""
     title = f"{tuning.name}: model against data, before and after"
@@ -79,6 +83,7 @@ def agreement_figure(tuning: Tuning, anchor: str) -> Figure:
     return Figure(anchor, svg, title, caption, description, tuple(panels))
 
 
+@as_users_wrote
 def curves_figure(tuning: Tuning, groups: Groups, anchor: str) -> Figure:
     """Every quantity over one variable, one curve a group: the data as points, the model before (dashed) and after."""
     title = f"{tuning.name}: {_named(tuning)} over {groups.name_x.partition('  ')[0]}"

@@ -14,6 +14,7 @@ from matplotlib.patches import Patch
 from coeflab.model.carried import Carried
 from coeflab.model.spread import Importance, Spread
 from coeflab.presentation.document import Figure, Series
+from coeflab.presentation.notation import as_users_wrote
 from coeflab.presentation.panel import BOTTOM, WIDTH, Array, drawing, legend, panel, tick_texts, ticks
 from coeflab.presentation.plotted import numbers, points
 from coeflab.presentation.svg import COLOURS, settings, svg_text
@@ -26,6 +27,7 @@ BINS = 24
 Bar = tuple[str, float, tuple[float, float], float | None]
 
 
+@as_users_wrote
 def uncertainty_figures(carried: Carried) -> tuple[tuple[Figure, ...], ...]:
     """A row a figure of the manoeuvre that has an interval: histogram and bars."""
     found = {i.figure: i for i in carried.importances}

@@ -16,6 +16,7 @@ from markupsafe import Markup
 from coeflab.presentation.document import Document
 from coeflab.presentation.embedded import panels_json, scene_json
 from coeflab.presentation.lettering import cell_html, html, unit_html
+from coeflab.presentation.notation import keeping
 from coeflab.presentation.printable import shortened, visible
 
 summary = "one HTML file with tables and figures, for browser and printer"
@@ -51,7 +52,9 @@ def render(document: Document) -> Mapping[str, bytes]:
     style = "\n".join((folder / name).read_text(encoding="utf-8") for name in STYLES)
     script = "\n" + "\n".join((folder / name).read_text(encoding="utf-8") for name in SCRIPTS)
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
-    return {"report.html": template.render(document=document, style=style, script=script, digest=digest).encode()}
+    with keeping(document.verbatim):
+        page = template.render(document=document, style=style, script=script, digest=digest)
+    return {"report.html": page.encode()}
 
 
 def spelled(text: str) -> Markup:

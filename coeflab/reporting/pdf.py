@@ -13,7 +13,7 @@ from coeflab.core.errors import OutputError
 from coeflab.core.version import VERSION
 from coeflab.model.table import Table
 from coeflab.presentation.document import Document, Figure, Section
-from coeflab.presentation.notation import Raised, Run, cell_runs, runs, unit_runs
+from coeflab.presentation.notation import Raised, Run, cell_runs, keeping, kept, runs, unit_runs
 from coeflab.presentation.printable import breakable, glyphs, shortened
 from coeflab.presentation.sheet import plain, size_of
 
@@ -83,6 +83,11 @@ def _compiled(content: Mapping[str, Any], form: Literal["pdf", "png"], ppi: floa
 
 def content(document: Document) -> dict[str, Any]:
     """A document as plain data: texts in pieces, drawings with their colours, columns with their longest cells."""
+    with keeping(document.verbatim):
+        return _content(document)
+
+
+def _content(document: Document) -> dict[str, Any]:
     return {
         "title": _text(shortened(document.title, LONGEST_TITLE)),
         "name": glyphs(shortened(document.title, LONGEST_TITLE)),
@@ -170,12 +175,12 @@ def _word(table: Table, column: int) -> str:
 
 
 def _cell(text: str, unit: bool, folds: bool) -> list[Any]:
-    pieces = [_piece(p) for p in (unit_runs(text) if unit else cell_runs(text))]
+    pieces = [_piece(p) for p in (unit_runs(text) if unit else cell_runs(text, kept()))]
     return pieces if folds else [p.replace(" ", "\u00a0") if isinstance(p, str) else p for p in pieces]
 
 
 def _text(text: str) -> list[Any]:
-    return [_piece(p) for p in runs(text)]
+    return [_piece(p) for p in runs(text, kept())]
 
 
 def _piece(piece: Run) -> Any:

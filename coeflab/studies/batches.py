@@ -17,8 +17,10 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_atomically
+from coeflab.core.machine import one_thread
 from coeflab.core.symbols import CONTROLS
 from coeflab.core.version import VERSION
+from coeflab.kernels.brief import brief
 from coeflab.manoeuvres import MANOEUVRES
 from coeflab.model.drawn_vehicle import drawn
 from coeflab.model.draws import Uncertain, uncertain
@@ -35,6 +37,7 @@ NO_PLAN = "no start"
 ONE_AT_A_TIME = Lock()
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Setup:
     """What every process needs to know, picklable and hashable.
@@ -71,6 +74,7 @@ class Setup:
     kernel: str = "numpy"
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Batch:
     """Figures of some members.
@@ -99,6 +103,7 @@ def prepared(setup: Setup) -> tuple[ParameterFile, Vehicle, Uncertain]:
     return parameters, body, uncertain(parameters, [t.symbol for t in body.terms])
 
 
+@one_thread()
 def figures_of(setup: Setup, deviations: Array) -> list[tuple[tuple[Figure, ...], str]]:
     """Figures of every member and how its motion ended; no figures for one that cannot even start.
 
@@ -145,6 +150,7 @@ def _steered(plan: Manoeuvre) -> tuple[Any, ...]:
     return tuple((tuple((c, p.orders[c]) for c in CONTROLS if c in p.orders), p.longest, p.until) for p in plan.phases)
 
 
+@one_thread()
 def run_batch(setup: Setup, names: Sequence[str], deviations: Array) -> Batch:
     """Values and statuses of the named figures.
 
@@ -173,6 +179,7 @@ def run_batch(setup: Setup, names: Sequence[str], deviations: Array) -> Batch:
     return Batch(np.array(rows, dtype=np.float64), tuple(statuses), tuple(ended))
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Store:
     """Finished batches in a folder of their own run, one file each, with a checksum.

@@ -6,7 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from coeflab.core.machine import one_thread
 from coeflab.core.symbols import primed
+from coeflab.kernels.brief import brief
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Status, transfer_matrix
 from coeflab.model.parameter_file import ParameterFile
 from coeflab.model.scaling import Scaling
@@ -16,6 +18,7 @@ from coeflab.studies.shared_tables import Verdict, shared_tables
 SAME_POINT = 1e-9
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Compared:
     """One coefficient of two files, primed by the first file's length about its point.
@@ -53,6 +56,7 @@ class Compared:
         return abs(self.difference) / self.combined if self.difference is not None and self.combined else None
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """Two parameter files.
@@ -111,6 +115,7 @@ def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
     )  # fmt: skip
 
 
+@one_thread()
 def compare(a: ParameterFile, b: ParameterFile) -> Comparison:
     """Hold the second file against the first.
 

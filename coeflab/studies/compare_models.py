@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.symbols import ANGULAR
+from coeflab.kernels.brief import brief
 from coeflab.kernels.domain import inside
 from coeflab.kernels.extrapolation import clamped
 from coeflab.model.parameter_file import ParameterFile
@@ -22,6 +23,7 @@ MOMENTS = frozenset("KMNlmn")
 SAME = 1e-9
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class ComparedModel:
     """One response over the same variables in two files, in the units, area and length of the first.

@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped, typed
+from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.kernels.brief import brief
 from coeflab.model.acceptance import Acceptance
 from coeflab.model.plan import read_plan
 from coeflab.model.study import Plan, Study
@@ -20,6 +22,7 @@ from coeflab.studies.validate import PLAN, validation, validations
 Progress = Callable[[str], None]
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Report:
     """A document and whether what it tells of fails."""
@@ -53,6 +56,7 @@ def studied(study: str, progress: Progress = lambda _: None) -> Study | Acceptan
     return run(made, progress) if isinstance(made, Plan) else made
 
 
+@one_thread()
 def report_of(found: Study | Acceptance, *, short: bool = False) -> Report:
     """The report of what was computed; figures are drawn on several cores while this process has a single thread.
 
@@ -105,10 +109,11 @@ def written(document: Document, formats: Sequence[str]) -> Mapping[str, bytes]:
     InputError
         No renderer has that name.
     """
-    renderers = [REPORTERS.load(name) for name in dict.fromkeys(formats)]
+    renderers = {name: REPORTERS.load(name) for name in formats}
     files: dict[str, bytes] = {}
-    for renderer in renderers:
-        files.update(renderer.render(document))
+    for name, renderer in renderers.items():
+        with REPORTERS.guarded(name):
+            files.update(renderer.render(document))
     return files
 
 

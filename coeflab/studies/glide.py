@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.files import located
+from coeflab.core.machine import one_thread
+from coeflab.kernels.brief import brief
 from coeflab.kernels.glider_motion import Setting
 from coeflab.model.glide import GlideRun, SteadyGlide, steady_glides
 from coeflab.model.glider import GliderPhase
@@ -21,6 +23,7 @@ ORDERS = ("net_mass [kg]", "position [m]", "phase [-]")
 POLAR = ("net_mass [kg]", "alpha [deg]", "zeta [deg]", "theta [deg]", "V [m/s]", "ahead [m/s]", "sinking [m/s]")
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Flown:
     """One glider.
@@ -36,6 +39,7 @@ class Flown:
     steady: tuple[SteadyGlide, ...]
 
 
+@one_thread()
 def fly(name: str | Path, cycles: int, options: Mapping[str, Any]) -> tuple[Flown, ...]:
     """Fly a glider file, every one of a folder, or a shipped glider.
 

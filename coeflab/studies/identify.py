@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, primed
 from coeflab.fits.sparse import scaled_optimizer
@@ -67,6 +68,7 @@ class Options:
     seed: int = bounded(1, 0, 2**31)
 
 
+@one_thread()
 def identify_from(files: Sequence[Path], parameters: ParameterFile, options: dict[str, object]) -> Identified:
     """Read the series and identify.
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from coeflab.core.errors import InputError
 from coeflab.core.toml import read_text
 from coeflab.core.xml import LARGEST
+from coeflab.kernels.brief import brief
 from coeflab.model.check import Check, Severity
 from coeflab.model.parameter_file import LARGEST as LARGEST_JSON
 from coeflab.model.parameter_file import ParameterFile, read_parameter_file
@@ -22,6 +23,7 @@ DENSITY = "density"
 STAND_IN = 1000.0  # kg/m^3, fresh water; the finding says so
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class ModelFile:
     """A file as read.

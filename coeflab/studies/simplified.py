@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.kernels.brief import brief
 from coeflab.kernels.part_forms import MISFIT, SHARED, Likeness
 from coeflab.model.body import Body
 from coeflab.model.mesh import TriangleMesh
@@ -30,6 +31,7 @@ RULES = (
 )
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SimplifiedPart:
     """A part and the piece of the mesh behind it.
@@ -97,6 +99,7 @@ class SimplifiedPart:
         return tuple(out)
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Simplification:
     """A mesh, the simple parts in its place, and how far they agree.

@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.machine import one_thread
 from coeflab.core.provenance import Source
 from coeflab.kernels import solids
 from coeflab.kernels.attitude import angles, rotation, snapped
+from coeflab.kernels.brief import brief
 from coeflab.kernels.convex_pieces import convex_pieces
 from coeflab.kernels.form_fits import Piece
 from coeflab.kernels.part_forms import Likeness, likeness
@@ -36,6 +38,7 @@ SECTORS = ("starboard", "starboard_bottom", "bottom", "port_bottom", "port", "po
 SLIVERS, REMNANT, HAIR, CHIPS = 2e-4, 0.2, 1e-6, 0.01
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class _Piece:
     """A body of the mesh before it has a form."""
@@ -45,6 +48,7 @@ class _Piece:
     cut: bool
 
 
+@one_thread()
 def simplify(
     body: Body, boxes: Sequence[NamedBox] = (), expected: int | None = None, convex: bool = False
 ) -> Simplification:

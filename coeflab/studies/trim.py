@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.machine import one_thread
 from coeflab.core.symbols import CONTROLS
+from coeflab.kernels.brief import brief
 from coeflab.kernels.linearisation import growth
 from coeflab.kernels.wind_axes import incidence
 from coeflab.model.operating_point import OperatingPoint, Unknown, nearest, operating_point
@@ -22,6 +24,7 @@ Array = NDArray[np.float64]
 STRAIGHT = 1e-9
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Trim:
     """A steady motion with the commands that keep it.
@@ -76,6 +79,7 @@ class Trim:
         return Table("Other solutions", (*headers, "small motions"), rows, (), frozenset({len(headers)}))
 
 
+@one_thread()
 def trim(
     vehicle: Vehicle,
     motion: Mapping[str, float],

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
+from coeflab.core.machine import one_thread
+from coeflab.kernels.brief import brief
 from coeflab.kernels.output_error import Estimate, by_likelihood, estimate
 from coeflab.kernels.output_problem import Problem, problem
 from coeflab.kernels.settling import differences
@@ -32,6 +34,7 @@ UNITS = {"u": ("m/s", 1.0), "v": ("m/s", 1.0), "V": ("m/s", 1.0), "radius": ("m"
          "r": ("deg/s", 180.0 / np.pi), "beta": ("deg", 180.0 / np.pi)}  # fmt: skip
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Tuned:
     """What came out.
@@ -59,6 +62,7 @@ class Tuned:
         }
 
 
+@one_thread()
 def tune(plan: TuningPlan) -> Tuned:
     """Fit, account for it, and make the tuned file.
 

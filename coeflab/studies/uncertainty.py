@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
-from coeflab.core.machine import compiles, cores, stage
+from coeflab.core.machine import compiles, cores, one_thread, stage
 from coeflab.core.version import VERSION
 from coeflab.kernels.sobol import known_share, share_noise, sobol_indices
 from coeflab.manoeuvres import MANOEUVRES
@@ -46,6 +46,7 @@ EACH = (
 LOGGER = logging.getLogger("coeflab.uncertainty")
 
 
+@one_thread()
 def uncertainty(
     parameters: ParameterFile, question: Question, workers: int = 1, scheduler: str = "", store: Path | None = None
 ) -> Carried:

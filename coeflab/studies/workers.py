@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import get_context, parent_process
-from threading import Thread
+from multiprocessing import get_context
 from typing import Any, TypeVar
 
 from coeflab.core.errors import CoeflabError, InputError, shown
+from coeflab.core.machine import end_with_parent
 
 Result = TypeVar("Result")
 PATIENCE = 10.0
@@ -52,7 +52,7 @@ def carried_out(
 def _on_processes(
     work: Callable[..., Result], tasks: Mapping[int, tuple[Any, ...]], workers: int
 ) -> Iterator[tuple[int, Result]]:
-    with _one_thread(), ProcessPoolExecutor(workers, get_context("spawn"), initializer=_ends_with_its_parent) as pool:
+    with _one_thread(), ProcessPoolExecutor(workers, get_context("spawn"), initializer=end_with_parent) as pool:
         waiting: dict[Future[Result], int] = {pool.submit(work, *a): index for index, a in tasks.items()}
         try:
             for done in as_completed(waiting):
@@ -79,18 +79,6 @@ def _one_thread() -> Iterator[None]:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
-
-
-def _ends_with_its_parent() -> None:
-    """A worker whose parent was killed would wait for work for ever."""
-    parent = parent_process()
-
-    def watch() -> None:
-        if parent is not None:
-            parent.join()
-            os._exit(1)
-
-    Thread(target=watch, daemon=True).start()
 
 
 def _on_dask(

@@ -6,13 +6,16 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from coeflab.checks import CHECKS
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import CoeflabError, InputError, shown
+from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.symbols import MOTIONS
+from coeflab.core.wording import Verbatim
 from coeflab.fits import FITS
 from coeflab.model.assemble import assemble
 from coeflab.model.body import Body
 from coeflab.model.budget import Budget, budgets_of, with_budget
+from coeflab.model.check import Check, Severity
 from coeflab.model.coefficient import Coefficient, Status
 from coeflab.model.fit_result import FitResult
 from coeflab.model.force_table import ForceTable
@@ -36,6 +39,7 @@ Progress = Callable[[str], None]
 FEWEST = 3
 
 
+@one_thread()
 def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     """Carry out a plan.
 
@@ -109,9 +113,32 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         refused=refused,
         manoeuvres=manoeuvres_of(plan.manoeuvres, files, progress),
     )
-    findings = [c for name in CHECKS.names() for c in CHECKS.load(name).check(study)]
+    findings = [c for name in CHECKS.names() for c in _findings(name, study)]
     progress(f"{len(findings)} checks")
     return study.with_checks(tuple(findings))
+
+
+def _findings(name: str, study: Study) -> tuple[Check, ...]:
+    """What one check finds; of another package's that raises, the finding is that it did."""
+    try:
+        with CHECKS.guarded(name):
+            found = tuple(CHECKS.load(name).check(study))
+            if not all(isinstance(c, Check) for c in found):
+                raise TypeError("a finding that is no Check")
+    except CoeflabError as why:
+        if CHECKS.is_shipped(name):
+            raise
+        return (
+            Check(name, "every campaign", Severity.WARN, Verbatim(why), "a check that ends with findings",
+                  "What this check looks at was not assessed. Mend or uninstall the package that it comes from."),
+        )  # fmt: skip
+    return found if CHECKS.is_shipped(name) else tuple(map(_in_their_words, found))
+
+
+def _in_their_words(c: Check) -> Check:
+    """Another package's finding: nothing in its texts is taken for a symbol."""
+    said = map(Verbatim, (c.statistic, c.rule, c.comment))
+    return Check(Verbatim(c.name), Verbatim(c.subject), c.severity, *said)
 
 
 def _fitted(
@@ -121,7 +148,8 @@ def _fitted(
     _refuse_several(name, tables)
 
     def once(some: Sequence[ForceTable], by: Scaling) -> FitResult:
-        return FITS.load(name).fit(some, by, options)
+        with FITS.guarded(name):
+            return FITS.load(name).fit(some, by, options)
 
     fit = once(tables, scaling)
     _refuse_starved(fit)
@@ -134,7 +162,7 @@ def _refuse_several(name: str, tables: Sequence[ForceTable]) -> None:
     """Refuse several campaigns in a fit that knows nothing of their intercepts and scatter."""
     campaigns = joint_name(t.campaign for t in tables)
     if len({t.campaign for t in tables}) > 1 and not getattr(FITS.load(name), "joins_campaigns", False):
-        able = [n for n in FITS.names() if getattr(FITS.load(n), "joins_campaigns", False)]
+        able = [n for n in FITS.usable() if getattr(FITS.load(n), "joins_campaigns", False)]
         raise InputError(f"{name} over the campaigns {campaigns}", f"a fit that joins campaigns: {', '.join(able)}",
                          column="fit", advice="Or fit each campaign by itself.")  # fmt: skip
 
@@ -197,12 +225,14 @@ def _inputs(plan: Plan, tables: list[ForceTable], bodies: list[Body]) -> tuple[I
     return tuple(dict.fromkeys(files))
 
 
+@one_thread()
 def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, bytes]:
     """Every file of a study: parameter files, exports and the report, by name. Nothing is written."""
     files: dict[str, bytes] = {}
     report = document(study)
     for name in formats:
-        files.update(REPORTERS.load(name).render(report))
+        with REPORTERS.guarded(name):
+            files.update(REPORTERS.load(name).render(report))
     files.update(parameter_files_rendered(study.parameter_files.values()))
     for made in study.exports:
         files.update(

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from coeflab.core.errors import InputError, PluginError, shown
 from coeflab.core.identifiers import PREFIX, file_stem
+from coeflab.core.machine import one_thread
 from coeflab.exporters import EXPORTERS
 from coeflab.model.export import Export, Refused
 from coeflab.model.force_law import force_law
@@ -20,6 +21,7 @@ from coeflab.presentation.loss_tables import as_text, in_short
 LONGEST = 255
 
 
+@one_thread()
 def export(parameters: ParameterFile, target: str, accelerations: str = MEASURED) -> Export:
     """Render a parameter file for a target and evaluate the target's own law from the rendered files.
 
@@ -40,7 +42,8 @@ def export(parameters: ParameterFile, target: str, accelerations: str = MEASURED
     plugin = EXPORTERS.load(target)
     water = water_inertia(parameters, accelerations)
     given = with_accelerations(parameters, accelerations)
-    files = dict(plugin.render(given if isinstance(plugin, SimulatorExporter) else parameters))
+    with EXPORTERS.guarded(target):
+        files = dict(plugin.render(given if isinstance(plugin, SimulatorExporter) else parameters))
     _refuse_places(files, parameters, target)
     if not isinstance(plugin, SimulatorExporter):
         return Export(parameters.name, target, files, None, plugin.citations)

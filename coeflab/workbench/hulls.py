@@ -8,6 +8,7 @@ from typing import Any
 
 from coeflab.added_mass import ADDED_MASS
 from coeflab.core.errors import InputError
+from coeflab.core.machine import one_thread
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.study import PlannedParameterFile
@@ -21,7 +22,7 @@ FILE = "body.toml"
 def methods() -> tuple[str, ...]:
     """Every method with its presets: ``strip`` and ``strip:lamb``."""
     out = []
-    for name in ADDED_MASS.names():
+    for name in ADDED_MASS.usable():
         out += [name, *(f"{name}:{preset}" for preset in getattr(ADDED_MASS.load(name), "presets", {}))]
     return tuple(out)
 
@@ -53,6 +54,7 @@ def hulls_of(
     return out
 
 
+@one_thread()
 def added_masses(
     body: Body,
     density: float,

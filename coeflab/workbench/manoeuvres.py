@@ -7,6 +7,7 @@ from math import inf
 from typing import Any
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.machine import one_thread
 from coeflab.core.symbols import MOTIONS
 from coeflab.manoeuvres import MANOEUVRES
 from coeflab.model.approach import at_once, undetermined_at_once, unlimited
@@ -88,6 +89,7 @@ def moved(
     return vehicle(parameters, wanted, plane, **how)
 
 
+@one_thread()
 def simulate(
     parameters: ParameterFile,
     manoeuvre: str,

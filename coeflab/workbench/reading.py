@@ -27,13 +27,17 @@ def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
             advice="`coeflab new DIR` writes a commented one.",
         )
     campaign = read_campaign(declaration)
-    return declared(IMPORTERS.load(campaign.importer).read(campaign, planned.only), campaign)
+    with IMPORTERS.guarded(campaign.importer):
+        read = IMPORTERS.load(campaign.importer).read(campaign, planned.only)
+    return declared(read, campaign)
 
 
 def read_body(path: Path) -> Body:
     """A body, by the reader that its body.toml names."""
     head = read_toml(path).section("body")
-    return BODIES.load(head.text("reader", "particulars")).read(path)
+    reader = head.text("reader", "particulars")
+    with BODIES.guarded(reader):
+        return BODIES.load(reader).read(path)
 
 
 def settled(table: ForceTable, plan: Plan) -> ForceTable:

@@ -9,6 +9,7 @@ from pathlib import Path
 from threading import Lock
 
 from coeflab.core.errors import CoeflabError
+from coeflab.kernels.brief import brief
 from coeflab.model.parameter_file import ParameterFile, read_parameter_file
 from coeflab.presentation.printable import shortened
 from coeflab.studies.gallery.places import key_of, place_of
@@ -20,6 +21,7 @@ MOST_FILES, MOST_ENTRIES = 2_000, 200_000
 LONGEST = 300
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class ReportEntry:
     """A report.
@@ -49,6 +51,7 @@ class ReportEntry:
         return f"{self.path} {self.title} {self.study} {self.digest}".casefold()
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class ParameterEntry:
     """A parameter file; attributes as of `ReportEntry`."""
@@ -70,6 +73,7 @@ class ParameterEntry:
         return f"{self.path} {self.name} {self.body} {' '.join(self.symbols)}".casefold()
 
 
+@brief
 @dataclass(frozen=True, slots=True)
 class Listing:
     """Everything that was found; ``more`` when the folder holds more than is read."""
@@ -91,6 +95,7 @@ class Listing:
 Stamp = tuple[int, int]
 
 
+@brief
 @dataclass(slots=True)
 class Shelf:
     """A folder and what was read of it; a file is read again when it changes.

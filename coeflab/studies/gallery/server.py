@@ -19,6 +19,7 @@ from urllib.parse import parse_qs, urlsplit
 
 from coeflab.core.errors import CoeflabError, InputError, OutputError, shown
 from coeflab.core.files import typed
+from coeflab.presentation.notation import keeping, users_texts
 from coeflab.presentation.printable import shortened
 from coeflab.studies import comparison_tables
 from coeflab.studies.compare import compare
@@ -194,7 +195,8 @@ class _Request(BaseHTTPRequestHandler):
             for name, p in zip(names[1:], pairs, strict=True)
         ]
         tables += [comparison_tables.models(p, with_statements=False) for p in pairs]
-        self._page(HTTPStatus.OK, pages.comparison(tables, [s for s in said if s[1]], names))
+        with keeping(users_texts(*found)):
+            self._page(HTTPStatus.OK, pages.comparison(tables, [s for s in said if s[1]], names))
 
     def _file(self, path: Path | None) -> None:
         if path is None:

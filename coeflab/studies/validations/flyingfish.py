@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.machine import one_thread
 from coeflab.kernels.tilting_rotors import CONSTANTS, calibrated, steady_residuals
 from coeflab.model.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.model.flyingfish import FlyingFish, read_flyingfish
@@ -35,6 +36,7 @@ IN_SAMPLE = (
 )
 
 
+@one_thread()
 def acceptance() -> Acceptance:
     """Everything that the paper's Table 1 lets us judge."""
     fish = read_flyingfish()

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from coeflab.core.machine import one_thread
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.parts import plate_coefficient
 from coeflab.kernels.steady_turn import SteadyTurns, coriolis, run, steady_turns
@@ -43,6 +44,7 @@ SIGNS = (
 )
 
 
+@one_thread()
 def acceptance() -> Acceptance:
     """Everything that the paper's equations and its Fig. 17 let us judge."""
     huuv = read_huuv()

@@ -10,6 +10,7 @@ from typing import cast
 import numpy as np
 
 from coeflab.core.files import shipped
+from coeflab.core.machine import one_thread
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.pitch_calibration import GlideSpeed, calibrated, speed_of
 from coeflab.kernels.steady_glide import glide
@@ -48,6 +49,7 @@ CALIBRATED = (
 )
 
 
+@one_thread()
 def acceptance() -> Acceptance:
     """Everything that the paper's text and Table 3 let us judge."""
     flown = fly(shipped("cfd_data") / "thauv", 1, {})
