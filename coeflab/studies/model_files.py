@@ -8,10 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from coeflab.core.errors import InputError
+from coeflab.core.limits import JSON_BYTES, XML_BYTES
 from coeflab.core.toml import read_text
-from coeflab.core.xml import LARGEST
 from coeflab.model.check import Check, Severity
-from coeflab.model.parameter_file import LARGEST as LARGEST_JSON
 from coeflab.model.parameter_file import ParameterFile, read_parameter_file
 from coeflab.model.plausibility import plausibility
 from coeflab.model.plausible_damping import WRONG
@@ -52,7 +51,7 @@ def recognised(path: Path) -> str:
     InputError
         None that is known.
     """
-    text = read_text(path, max(LARGEST, LARGEST_JSON))
+    text = read_text(path, max(XML_BYTES, JSON_BYTES))
     if "\0" in text:
         raise InputError("a zero byte", "UTF-8 text", file=path, advice="Save the file as UTF-8.")
     start = text.lstrip()[:1]

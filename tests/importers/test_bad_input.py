@@ -163,7 +163,7 @@ def test_200_megabytes_of_something_else(write_campaign: Write, kind: str) -> No
 
 
 def test_a_time_series_is_no_table_of_steady_forces(read_table: Read, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("coeflab.core.delimited.MOST_CELLS", 1000)
+    monkeypatch.setattr("coeflab.core.delimited.CSV_CELLS", 1000)
     assert len(read_table(GOOD + "1,1\n" * 500)) == 500
     refused(lambda: read_table(GOOD + "1,1\n" * 501), "line 502", "more than 1000 cells", "Average time series first")
 
