@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, UnitsError, shown
-from coeflab.core.limits import CSV_BLANK_LINES, CSV_CELLS, CSV_LINE, bounded_number
+from coeflab.core.limits import CSV_BLANK_LINES, CSV_CELLS, CSV_LINE
 from coeflab.core.units import Header, parse_header
 
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
@@ -76,11 +76,6 @@ class Cells:
                     column=self.headers[self.position(name)].text,
                     advice=_advice(cell),
                 )
-            if expected := bounded_number(number):
-                raise InputError(
-                    shown(cell), expected, file=self.file, line=self.line(row),
-                    column=self.headers[self.position(name)].text,
-                )  # fmt: skip
             values[row] = number
         return values
 

@@ -55,17 +55,20 @@ GLB_DEEPEST = 40
 MOTION_ROWS = 1_000_000
 MOTION_STEPS = 5_000_000
 
-# Tables printed by `coeflab table`, which are computed piece by piece.
+# A table that `coeflab table` prints, piece by piece.
 TABLE_POINTS = 5_000_000
 
-# A percentile of 20,000 replicates is known to 2 % of its interval's half-width; more only takes time.
+# The 2.5 % percentile of 20,000 replicates is known to 1 % of the half-width of its interval, that of 100,000 members to
+# half a per cent; more takes time and says no more.
 REPLICATES = 20_000
-DRAWN_ROWS = 20_000_000  # replicates times points of one form, of 16 bytes each
+MEMBERS = 100_000
 
 # Numbers of people. A length enters by its fifth power, and products of several such are divided by each other; doubles end
 # at 1e308. The universe is 1e27 m wide and an atom 1e-10 m; nothing that floats leaves these bounds in SI.
 LARGEST_NUMBER = 1e18
 SMALLEST_POSITIVE = 1e-18
+# Of a part of a body, m.
+SHORTEST_PART, LONGEST_PART = 1e-6, 1e4
 # Of parameter files, whose coefficients may be those of high powers of small angles.
 LARGEST_STORED = 1e100
 # Motions that a vehicle is given or was measured in, m/s and rad/s: ten times those of any body in water.
@@ -99,5 +102,5 @@ def require_rows(rows: float, column: str, advice: str) -> None:
     InputError
     """
     if not rows <= MOTION_ROWS:
-        found = f"{rows:,.0f} rows of a motion" if math.isfinite(rows) else shown(rows)
+        found = f"{rows:.3g} rows of a motion" if math.isfinite(rows) else shown(rows)
         raise InputError(found, f"at most {MOTION_ROWS:,}", column=column, advice=advice)

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import REPLICATES
 from coeflab.core.options import bounded, one_of, parse_options, words
 from coeflab.core.symbols import COMPONENTS
 from coeflab.kernels.least_squares import Array
@@ -76,7 +77,7 @@ class Options:
     intercepts: str = one_of("yes", "yes", "no")
     optimizer: str = one_of("stlsq", "stlsq", "sr3")
     folds: int = bounded(5, 2, 20)
-    ensembles: int = bounded(100, 0, 100_000)
+    ensembles: int = bounded(100, 0, REPLICATES)
     seed: int = bounded(1, 0, 2**31)
 
 

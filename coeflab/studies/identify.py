@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.limits import REPLICATES
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, primed
 from coeflab.fits.sparse import scaled_optimizer
@@ -61,7 +62,7 @@ class Options:
     symmetric: str = one_of("yes", "yes", "no")
     added_mass: str = one_of("known", "known", "fit")
     optimizer: str = one_of("stlsq", "stlsq", "sr3")
-    resamples: int = bounded(200, 20, 100_000)
+    resamples: int = bounded(200, 20, REPLICATES)
     seed: int = bounded(1, 0, 2**31)
 
 

@@ -91,6 +91,16 @@ def read_model_file(path: Path, density: float | None = None) -> ModelFile:
     if kind == OWN:
         parameters = read_parameter_file(path)
         return ModelFile(kind, parameters, plausibility(parameters))
+    try:
+        return _imported(path, kind, density)
+    except InputError as why:
+        if why.file is None:
+            why.file = path
+        raise
+
+
+def _imported(path: Path, kind: str, density: float | None) -> ModelFile:
+    """The file by its importer."""
     importer = PARAMETER_IMPORTERS.load(kind)
     findings: list[Check] = []
     stands_in = False
