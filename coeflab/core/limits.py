@@ -7,9 +7,7 @@ parameter files with hulls of 100,000 facets and meshes of millions of faces are
 
 from __future__ import annotations
 
-import math
-
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import InputError
 
 # Text. Python's own parsers take 20 to 200 bytes of memory for a byte of text.
 TOML_BYTES = 1 << 20
@@ -102,5 +100,4 @@ def require_rows(rows: float, column: str, advice: str) -> None:
     InputError
     """
     if not rows <= MOTION_ROWS:
-        found = f"{rows:.3g} rows of a motion" if math.isfinite(rows) else shown(rows)
-        raise InputError(found, f"at most {MOTION_ROWS:,}", column=column, advice=advice)
+        raise InputError(f"{rows:.3g} rows of a motion", f"at most {MOTION_ROWS:,}", column=column, advice=advice)
