@@ -68,7 +68,9 @@ class Myring:
                 raise InputError(f"{getattr(self, name):g} m", "a length above zero", column=name)
         within_reach("Myring hull", nose=self.nose, tail=self.tail, diameter=self.diameter)
         if not 0.0 <= self.middle <= LONGEST_PART:
-            raise InputError(f"{self.middle:g} m", f"a length of zero or more, at most {LONGEST_PART:g} m", column="middle")
+            raise InputError(
+                f"{self.middle:g} m", f"a length of zero or more, at most {LONGEST_PART:g} m", column="middle"
+            )
         for name, whole in (("nose_offset", self.nose), ("tail_offset", self.tail)):
             if not 0.0 <= getattr(self, name) < whole:
                 raise InputError(

@@ -136,7 +136,9 @@ def test_what_is_counted_before_it_is_parsed(tmp_path: Path) -> None:
     refused("2001 keys in one object", what=lambda: parse_json(json.dumps(dict.fromkeys(map(str, range(2001)), 0))))
     refused("integer of 4,301 digits", what=lambda: parse_json("9" * 4301))
     refused("number of 20000 letters", what=lambda: parse_yaml("a: " + "1:" * 9999 + "11"))
-    many = "".join(f'<property xmlns="http://www.ros.org/wiki/xacro" name="p{k}" value="{"x" * 60_000}"/>' for k in range(1))
+    many = "".join(
+        f'<property xmlns="http://www.ros.org/wiki/xacro" name="p{k}" value="{"x" * 60_000}"/>' for k in range(1)
+    )
     unfolding = Xacro(parse_xml(f"<robot>{many}</robot>"))
     refused("unfold to", what=lambda: [unfolding.text(f"${{p0}}{k}") for k in range(200)])
 
@@ -178,7 +180,11 @@ def test_motions_of_too_many_rows(coeflab: Run, option: tuple[str, ...], said: s
 def test_replicates_have_a_bound_that_the_plan_is_named_for(coeflab: Run, tmp_path: Path) -> None:
     coeflab("new", "s")
     plan = tmp_path / "s" / "plan.toml"
-    plan.write_text(plan.read_text().replace("# replicates = 2000", "replicates = 1000000").replace("# [table.options.slope", "[table.options.slope"))
+    plan.write_text(
+        plan.read_text()
+        .replace("# replicates = 2000", "replicates = 1000000")
+        .replace("# [table.options.slope", "[table.options.slope")
+    )
     done = coeflab("run", plan)
     assert done.returncode == 2
     for text in ("plan.toml", "replicates", '"1000000"', "100 to 20000"):

@@ -55,7 +55,5 @@ def test_spoilt_files_are_read_or_refused(name: str, tmp_path: Path) -> None:
             read_model_file(path)
             outcomes.add("read")
         except CoeflabError as why:
-            assert name in str(why)
-            assert len(str(why)) < 2000
-            outcomes.add("refused")
+            outcomes.add("refused" if name in str(why) and len(str(why)) < 2000 else f"refused badly: {why}")
     assert outcomes == {"read", "refused"}
