@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.limits import LONGEST_PART
 from coeflab.core.toml import Section
 from coeflab.kernels.axisymmetric import graded_nodes
 from coeflab.model.body import Body, Configuration
 from coeflab.model.body_file import open_body_file
-from coeflab.model.shape import Revolution
+from coeflab.model.shape import Revolution, within_reach
 
 summary = "a Myring hull from the lengths of nose, middle body and tail, diameter, exponent and tail angle"
 citations = ("myring1976", "prestero2001")
@@ -65,8 +66,11 @@ class Myring:
         for name in ("nose", "tail", "diameter"):
             if not getattr(self, name) > 0.0:
                 raise InputError(f"{getattr(self, name):g} m", "a length above zero", column=name)
-        if not self.middle >= 0.0:
-            raise InputError(f"{self.middle:g} m", "a length of zero or more", column="middle")
+        within_reach("Myring hull", nose=self.nose, tail=self.tail, diameter=self.diameter)
+        if not 0.0 <= self.middle <= LONGEST_PART:
+            raise InputError(
+                f"{self.middle:g} m", f"a length of zero or more, at most {LONGEST_PART:g} m", column="middle"
+            )
         for name, whole in (("nose_offset", self.nose), ("tail_offset", self.tail)):
             if not 0.0 <= getattr(self, name) < whole:
                 raise InputError(

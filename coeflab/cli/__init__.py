@@ -85,6 +85,31 @@ def _root(
     pass
 
 
+def _ready_to_print() -> None:
+    """See to standard streams that are closed, or that cannot write every letter.
+
+    A closed stream is opened on nothing, so that no file of ours takes its number; without a standard output there is nowhere
+    to print, which is said. A letter that the console's encoding lacks is written as its code.
+    """
+    for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+        stream = getattr(sys, name)
+        if stream is not None:
+            if mode == "w" and hasattr(stream, "reconfigure"):
+                stream.reconfigure(errors="backslashreplace")
+            continue
+        try:
+            os.fstat(number)
+        except OSError:
+            while os.open(os.devnull, os.O_RDWR) < number:
+                pass
+        setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115, PTH123 - it stays open to the end
+        if name == "stdout":
+            typer.echo(
+                "error: found a closed standard output; expected one to print to (>/dev/null discards).", err=True
+            )
+            sys.exit(2)
+
+
 def main() -> None:
     """Run the command line: exit code 0 fine, 1 a check failed, 2 wrong input.
 
@@ -97,6 +122,7 @@ def main() -> None:
     from coeflab.core.errors import CoeflabError
     from coeflab.presentation.printable import visible
 
+    _ready_to_print()
     try:
         app()
     except SystemExit as ended:

@@ -16,8 +16,15 @@ def command(
 ) -> None:
     """Carry out a plan: fit its tables, check them, write report, parameter files and tables."""
     from coeflab.cli.carry_out import carry_out
+    from coeflab.core.errors import InputError
     from coeflab.core.files import typed
     from coeflab.model.plan import read_plan
 
     plan = typed(plan)
-    carry_out(read_plan(plan / "plan.toml" if plan.is_dir() else plan), out, json)
+    file = plan / "plan.toml" if plan.is_dir() else plan
+    try:
+        carry_out(read_plan(file), out, json)
+    except InputError as why:
+        if why.file is None:  # an option of a fit, which knows nothing of files
+            why.file = file
+        raise

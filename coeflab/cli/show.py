@@ -115,6 +115,10 @@ def _plain(content: Table) -> None:
 def json_object(content: dict[str, Any]) -> None:
     """One JSON object on standard output."""
     written = json.dumps(content, indent=2, allow_nan=False, ensure_ascii=False)
+    try:
+        written.encode(sys.stdout.encoding or "utf-8")
+    except UnicodeEncodeError:  # JSON has codes of its own for letters that the console lacks
+        written = json.dumps(content, indent=2, allow_nan=False)
     typer.echo("".join(ch if ch.isprintable() or ch == "\n" else json.dumps(ch)[1:-1] for ch in written))
 
 

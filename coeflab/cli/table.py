@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from coeflab.cli import show
+from coeflab.core.limits import TABLE_POINTS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 EXAMPLE = "coeflab table reports/huuv/huuv.parameters.json --alpha=-20:20:1 --beta=0"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
-LARGEST = 5_000_000
 CHUNK = 65_536
 VALUES = "low:high:step, a number, or numbers with commas"
 
@@ -122,7 +122,7 @@ def wanted(arguments: list[str]) -> dict[str, NDArray[np.float64]]:
         name = name[2:]
         if name in out:
             raise InputError(f"{shown('--' + name)} twice", "every variable once")
-        out[name] = _values(name, text, LARGEST // points)
+        out[name] = _values(name, text, TABLE_POINTS // points)
         points *= len(out[name])
     return out
 
@@ -147,7 +147,7 @@ def _values(name: str, text: str, most: int) -> NDArray[np.float64]:
         count = (high - low) / step + 1.0
     if not count <= most + 1e-6:
         raise InputError(
-            f"a grid of more than {LARGEST:,} points", "a coarser one", column=f"--{name}",
+            f"a grid of more than {TABLE_POINTS:,} points", "a coarser one", column=f"--{name}",
             advice="Take a larger step or fewer values.",
         )  # fmt: skip
     if not ranged:

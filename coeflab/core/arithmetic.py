@@ -7,7 +7,8 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-DEEPEST = 60
+from coeflab.core.limits import ARITHMETIC_DEEPEST
+
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?)(?![A-Za-z_])"
     r"|(?P<name>[A-Za-z]\w*(?:\.[A-Za-z]\w*)*)|(?P<sign>\.?[*/^]|[-+(),]))",
@@ -111,7 +112,7 @@ class _Reading:
         return -value if negative else value
 
     def _atom(self, depth: int) -> Any:
-        if depth > DEEPEST:
+        if depth > ARITHMETIC_DEEPEST:
             raise ArithmeticProblem("brackets that are too deep")
         if self._take("("):
             return self._closed(depth)[0]

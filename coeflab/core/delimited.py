@@ -12,11 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, UnitsError, shown
+from coeflab.core.limits import CSV_BLANK_LINES, CSV_CELLS, CSV_LINE
 from coeflab.core.units import Header, parse_header
 
-LONGEST_LINE = 1 << 16
-MOST_CELLS = 2_000_000
-MOST_BLANK_LINES = 1000
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
@@ -96,7 +94,7 @@ def _lines(path: Path) -> Iterator[str]:
         if not path.is_file():
             raise InputError("no such file", "a CSV file", file=path)
         with path.open("rb") as stream:
-            for number, raw in enumerate(iter(lambda: stream.readline(LONGEST_LINE), b""), start=1):
+            for number, raw in enumerate(iter(lambda: stream.readline(CSV_LINE), b""), start=1):
                 yield _decoded(raw, path, number)
     except OSError as why:
         raise InputError(str(why.strerror or why), "a readable file", file=path) from None
@@ -112,7 +110,7 @@ def _decoded(raw: bytes, path: Path, number: int) -> str:
         line = raw.decode("utf-8-sig" if number == 1 else "utf-8")
     except UnicodeDecodeError as why:
         # A line cut at its longest may end inside a character.
-        if len(raw) < LONGEST_LINE or why.start < len(raw) - 3:
+        if len(raw) < CSV_LINE or why.start < len(raw) - 3:
             raise InputError(
                 f"the byte 0x{raw[why.start]:02x}", "UTF-8 text", file=path, line=number, advice=advice
             ) from None
@@ -122,8 +120,8 @@ def _decoded(raw: bytes, path: Path, number: int) -> str:
             "a carriage return as the end of a line", "line ends LF or CRLF", file=path, line=number,
             advice="Save the file with Unix or Windows line ends.",
         )  # fmt: skip
-    if len(raw) >= LONGEST_LINE:
-        raise InputError(f"a line longer than {LONGEST_LINE} bytes", "a CSV table", file=path, line=number)
+    if len(raw) >= CSV_LINE:
+        raise InputError(f"a line longer than {CSV_LINE} bytes", "a CSV table", file=path, line=number)
     return line
 
 
@@ -207,13 +205,13 @@ def _rows(lines: Iterator[str], path: Path, header_line: int, width: int) -> lis
                 f"{len(row)} cell{'s' * (len(row) != 1)}", f"{width} as in the header", file=path, line=line,
                 advice=advice,
             )  # fmt: skip
-        if len(rows) * width >= MOST_CELLS:
+        if len(rows) * width >= CSV_CELLS:
             raise InputError(
-                f"more than {MOST_CELLS} cells", "a table of steady forces, one row a setting", file=path, line=line,
+                f"more than {CSV_CELLS} cells", "a table of steady forces, one row a setting", file=path, line=line,
                 advice="Average time series first.",
             )  # fmt: skip
         blank = 0 if row else blank + 1
-        if blank > MOST_BLANK_LINES:
+        if blank > CSV_BLANK_LINES:
             raise InputError(f"{blank} empty lines", "rows of numbers", file=path, line=line, advice="Remove them.")
         rows.append(tuple(cell.strip() for cell in row))
 

@@ -20,7 +20,11 @@ SHOWN, LONGEST = 60, 400
 
 def shown(text: object, longest: int = SHOWN) -> str:
     """Quote a found value, on one line and cut to a readable length."""
-    flat = str(text).encode("unicode_escape").decode("ascii") if not str(text).isprintable() else str(text)
+    try:
+        whole = str(text)
+    except ValueError:  # Python writes no integer of more than 4,300 digits
+        whole = "an integer of thousands of digits"
+    flat = whole if whole.isprintable() else whole[: longest + 1].encode("unicode_escape").decode("ascii")
     return f'"{flat if len(flat) <= longest else flat[:longest] + "..."}"'
 
 

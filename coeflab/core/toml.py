@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 import difflib
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -12,11 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import INTEGER_DIGITS, TOML_BYTES, TOML_NAMES_IN_A_KEY, TOML_TABLES, positive_number
 from coeflab.core.symbols import derivative
 from coeflab.core.units import quantity
 from coeflab.core.wording import Verbatim
 
-LARGEST = 1 << 20
+_NAME = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_NAME}(?:[ \t]*+\.[ \t]*+{_NAME}){{{TOML_NAMES_IN_A_KEY},}}")
+_LONG_INTEGER = re.compile(rf"[0-9_]{{{INTEGER_DIGITS + 1},}}+")
 
 
 class Section:
@@ -116,8 +120,8 @@ class Section:
     def positive(self, key: str, dimension: str) -> float:
         """A required number above zero."""
         value = self.quantity(key, dimension)
-        if not value > 0.0:
-            raise self.fail(key, f"{shown(self.raw(key))}", "a value above zero")
+        if expected := positive_number(value):
+            raise self.fail(key, f"{shown(self.raw(key))}", expected)
         return value
 
     def optional_positive(self, key: str, dimension: str) -> float | None:
@@ -187,7 +191,7 @@ class Section:
                 )
 
 
-def read_text(path: Path, largest: int = LARGEST) -> str:
+def read_text(path: Path, largest: int = TOML_BYTES) -> str:
     """A small text file.
 
     Raises
@@ -234,9 +238,27 @@ def read_toml(path: Path) -> Section:
         Not readable, or not TOML; the parser's line and column are passed on.
     """
     text = read_text(path)
+    _within_bounds(text, path)
     try:
         return Section(tomllib.loads(text), path)
     except tomllib.TOMLDecodeError as why:
         raise InputError(f"a TOML error ({why})", "valid TOML", file=path) from None
     except RecursionError:
         raise InputError("too deep nesting", "valid TOML", file=path) from None
+    except ValueError:
+        match = _LONG_INTEGER.search(text)
+        line = text.count("\n", 0, match.start()) + 1 if match else None
+        expected = f"at most {INTEGER_DIGITS:,} digits"
+        raise InputError("an integer of thousands of digits", expected, file=path, line=line) from None
+
+
+def _within_bounds(text: str, path: Path) -> None:
+    """Refuse what would cost time and memory to parse."""
+    match = _LONG_KEY.search(text)
+    if match:
+        line = text.count("\n", 0, match.start()) + 1
+        expected = f"at most {TOML_NAMES_IN_A_KEY} names between dots"
+        raise InputError("a dotted key of many names", expected, file=path, line=line)
+    tables = text.count("\n[")
+    if tables > TOML_TABLES:
+        raise InputError(f"{tables:,} tables", f"at most {TOML_TABLES:,}", file=path)

@@ -12,6 +12,7 @@ from tokenize import TokenError
 from typing import Any
 
 from coeflab.core.errors import InputError, UnitsError, shown
+from coeflab.core.limits import bounded_number
 
 STANDARD_GRAVITY = 9.80665  # m/s^2, 3rd General Conference on Weights and Measures (1901)
 SI = {
@@ -151,4 +152,6 @@ def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key:
         number = float(value) if abs(value) < sys.float_info.max else math.inf
     if not math.isfinite(number):
         raise InputError(shown(value), "a finite number", file=file, column=key)
+    if out := bounded_number(number):
+        raise InputError(shown(value), out, file=file, column=key)
     return number

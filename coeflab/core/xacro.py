@@ -10,10 +10,9 @@ from xml.etree.ElementTree import Element
 
 from coeflab.core.arithmetic import ArithmeticProblem, evaluate
 from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import XACRO_DEEPEST, XACRO_TEXT, XACRO_WHOLE
 
 SPACE = "{http://www.ros.org/wiki/xacro}"
-LONGEST = 1 << 16
-DEEPEST = 30
 _PIECE = re.compile(r"\$\{([^{}]*)\}|\$\(arg\s+(\w+)\s*\)")
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _FUNCTIONS = {"sin": math.sin, "cos": math.cos, "sqrt": math.sqrt, "radians": math.radians}
@@ -36,7 +35,7 @@ class Xacro(Mapping[str, float]):
         self._twice = {name for name, value in properties if self._raw[name] != value}
         self._arguments = {e.get("name", ""): e.get("default", "") for e in root.iter(f"{SPACE}arg")}
         self._done: dict[tuple[int, str], str] = {}
-        self._depth = 0
+        self._depth = self._letters = 0
 
     def text(self, raw: str) -> str:
         """A text with every expression replaced by its value.
@@ -47,8 +46,10 @@ class Xacro(Mapping[str, float]):
             A name that the document does not define or defines twice, an expression that is no arithmetic, properties that need each other,
             or more than 64 KiB of text.
         """
-        if self._depth > DEEPEST:
-            raise InputError(f"properties in properties, more than {DEEPEST} deep", "plain properties", file=self._file)
+        if self._depth > XACRO_DEEPEST:
+            raise InputError(
+                f"properties in properties, more than {XACRO_DEEPEST} deep", "plain properties", file=self._file
+            )
         self._depth += 1
         out, at = [], 0
         for piece in _PIECE.finditer(raw):
@@ -56,8 +57,13 @@ class Xacro(Mapping[str, float]):
             at = piece.end()
         self._depth -= 1
         joined = "".join([*out, raw[at:]])
-        if len(joined) > LONGEST:
-            raise InputError(f"{len(joined)} characters", f"at most {LONGEST} in one text", file=self._file)
+        if len(joined) > XACRO_TEXT:
+            raise InputError(f"{len(joined)} characters", f"at most {XACRO_TEXT} in one text", file=self._file)
+        self._letters += len(joined)
+        if self._letters > XACRO_WHOLE:
+            raise InputError(
+                f"properties that unfold to {self._letters} characters", f"at most {XACRO_WHOLE}", file=self._file
+            )
         return joined
 
     def _value(self, expression: str | None, argument: str | None) -> str:

@@ -7,11 +7,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import XML_BYTES, XML_DEEPEST, XML_ELEMENTS, bounded_number
 from coeflab.core.toml import read_text
 
-LARGEST = 8 << 20
-DEEPEST = 200
-MOST = 100_000
 _DECLARED = re.compile(r"<!\s*(DOCTYPE|ENTITY|ELEMENT|ATTLIST|NOTATION)", re.IGNORECASE)
 _NO_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
@@ -52,10 +50,10 @@ class _Bounded(ElementTree.TreeBuilder):
     def start(self, tag: str, attrs: dict[str, str], /) -> ElementTree.Element:
         self._depth += 1
         self._count += 1
-        if self._depth > DEEPEST:
-            raise InputError(f"elements more than {DEEPEST} deep", "a model file", file=self._file)
-        if self._count > MOST:
-            raise InputError(f"more than {MOST} elements", "a model file", file=self._file)
+        if self._depth > XML_DEEPEST:
+            raise InputError(f"elements more than {XML_DEEPEST} deep", "a model file", file=self._file)
+        if self._count > XML_ELEMENTS:
+            raise InputError(f"more than {XML_ELEMENTS} elements", "a model file", file=self._file)
         return super().start(tag, attrs)
 
     def end(self, tag: str, /) -> ElementTree.Element:
@@ -70,7 +68,7 @@ def read_xml(path: Path) -> ElementTree.Element:
     ------
     InputError
     """
-    return parse_xml(read_text(path, LARGEST), path)
+    return parse_xml(read_text(path, XML_BYTES), path)
 
 
 def once(parent: ElementTree.Element | None, file: Path | str | None = None) -> None:
@@ -132,6 +130,8 @@ def numbers(text: str | None, count: tuple[int, ...], where: str, file: Path | s
             raise InputError(shown(word), "a number", file=file, column=where) from None
         if value - value != 0.0:
             raise InputError(shown(word), "a finite number", file=file, column=where)
+        if expected := bounded_number(value):
+            raise InputError(shown(word), expected, file=file, column=where)
         out.append(value)
     if len(out) not in count:
         raise InputError(f"{len(out)} numbers", f"{' or '.join(map(str, count))}", file=file, column=where)

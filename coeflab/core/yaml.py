@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import YAML_BYTES, YAML_DEEPEST, YAML_NODES, YAML_NUMBER_LETTERS
 from coeflab.core.toml import read_text
 
-DEEPEST = 60
-MOST = 20_000
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 
 
@@ -29,20 +28,23 @@ def parse_yaml(text: str, file: Path | str | None = None) -> dict[str, Any]:
     try:
         for count, event in enumerate(yaml.parse(text, Loader=yaml.SafeLoader)):
             line = event.start_mark.line + 1
-            if count > MOST:
-                raise InputError(f"more than {MOST} keys and values", "a model file", file=file, line=line)
+            if count > YAML_NODES:
+                raise InputError(f"more than {YAML_NODES} keys and values", "a model file", file=file, line=line)
             if isinstance(event, yaml.AliasEvent):
                 raise InputError("an alias", "YAML without aliases", file=file, line=line)
             if getattr(event, "tag", None) is not None:
                 raise InputError(f"the tag {shown(event.tag)}", "YAML without tags", file=file, line=line)
+            if isinstance(event, yaml.ScalarEvent) and event.implicit[0] and _is_long_number(event.value):
+                found = f"a number of {len(event.value)} letters"
+                raise InputError(found, f"at most {YAML_NUMBER_LETTERS}", file=file, line=line)
             if isinstance(event, yaml.CollectionEndEvent):
                 stack.pop()
                 continue
             if isinstance(event, yaml.NodeEvent) and stack and stack[-1][0] is not None:
                 _count_key(stack[-1], event, file, line)
             if isinstance(event, yaml.CollectionStartEvent):
-                if len(stack) == DEEPEST:
-                    raise InputError("deep nesting", f"at most {DEEPEST} levels", file=file, line=line)
+                if len(stack) == YAML_DEEPEST:
+                    raise InputError("deep nesting", f"at most {YAML_DEEPEST} levels", file=file, line=line)
                 stack.append([set() if isinstance(event, yaml.MappingStartEvent) else None, True])
         content = yaml.load(text, Loader=yaml.SafeLoader)
     except yaml.YAMLError as why:
@@ -54,6 +56,10 @@ def parse_yaml(text: str, file: Path | str | None = None) -> dict[str, Any]:
     if not isinstance(content, dict):
         raise InputError("no mapping at the top", "keys and values", file=file)
     return content
+
+
+def _is_long_number(text: str) -> bool:
+    return len(text) > YAML_NUMBER_LETTERS and text[0] in "+-.0123456789"
 
 
 def _count_key(keys: list[Any], event: Any, file: Path | str | None, line: int) -> None:
@@ -76,7 +82,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
     InputError
         As `parse_yaml` and `coeflab.core.toml.read_text`.
     """
-    return parse_yaml(read_text(path), path)
+    return parse_yaml(read_text(path, YAML_BYTES), path)
 
 
 def number(value: Any) -> float | None:

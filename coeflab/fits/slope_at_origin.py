@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.limits import REPLICATES
 from coeflab.core.options import bounded, parse_options
 from coeflab.kernels import families, slopes
-from coeflab.kernels.bootstrap import draw_counts, pairs, percentile_interval, wild
+from coeflab.kernels.bootstrap import drawn_counts, pairs, percentile_interval, wild
 from coeflab.kernels.diagnostics import levels
 from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.model.fit_result import BootstrapInterval, FitResult, Sensitivity, Sweep
@@ -49,7 +50,7 @@ class Options:
         Largest drift or attack angle that any window may reach, degrees.
     """
 
-    replicates: int = bounded(2000, 100, 1_000_000)
+    replicates: int = bounded(2000, 100, REPLICATES)
     seed: int = bounded(1, 0, 2**31)
     largest_angle: float = bounded(90.0, 1.0, 90.0)
 
@@ -59,8 +60,8 @@ def _bootstrap(recommendation: slopes.Recommendation, y: Array, options: Options
     for k, e in enumerate(recommendation.members):
         seed = options.seed * 1009 + k
         rows = e.rows
-        counts = draw_counts(len(rows), options.replicates, seed)
-        by_pairs = pairs(e.factorised, y[rows, None], counts)[:, e.target, 0]
+        drawn = drawn_counts(len(rows), options.replicates, seed)
+        by_pairs = np.concatenate([pairs(e.factorised, y[rows, None], c)[:, e.target, 0] for c in drawn])
         by_signs = wild(e.factorised, e.coefficients, e.residuals, options.replicates, seed + 500)[:, e.target]
         low, high, usable = percentile_interval(by_pairs)
         wild_low, wild_high, _ = percentile_interval(by_signs)

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import REPLICATES
 from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, one_of, parse_options, words
 from coeflab.core.symbols import COMPONENTS
@@ -75,7 +76,7 @@ class Options:
     intercepts: str = one_of("yes", "yes", "no")
     optimizer: str = one_of("stlsq", "stlsq", "sr3")
     folds: int = bounded(5, 2, 20)
-    ensembles: int = bounded(100, 0, 100_000)
+    ensembles: int = bounded(100, 0, REPLICATES)
     seed: int = bounded(1, 0, 2**31)
 
 

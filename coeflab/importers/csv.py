@@ -9,6 +9,7 @@ import numpy as np
 
 from coeflab.core.delimited import Cells, read_cells, require_unit
 from coeflab.core.errors import InputError, UnitsError, shown
+from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS, MOTIONS
 from coeflab.core.units import Header, factor
 from coeflab.core.wording import Verbatim
@@ -81,10 +82,11 @@ def _factor(header: Header, kind: _Kind, cells: Cells) -> float:
 def _values(cells: Cells, header: Header, kind: _Kind) -> Array:
     with np.errstate(over="ignore"):
         values = cells.numbers(header.name) * _factor(header, kind, cells)
-    if np.any(np.isinf(values)):
-        row = int(np.flatnonzero(np.isinf(values))[0])
+    wild = np.abs(values) > LARGEST_NUMBER
+    if np.any(wild):
+        row = int(np.flatnonzero(wild)[0])
         raise InputError(
-            shown(cells.texts(header.name)[row]), "a number that SI units can hold", file=cells.file,
+            shown(cells.texts(header.name)[row]), f"a number of at most {LARGEST_NUMBER:g} in SI units", file=cells.file,
             line=cells.line(row), column=header.text,
         )  # fmt: skip
     return values

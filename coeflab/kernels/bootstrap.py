@@ -6,6 +6,7 @@ QR solution of each replicate within 1e-10.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import combinations_with_replacement
 
 import numpy as np
@@ -15,11 +16,28 @@ from coeflab.kernels.robust import FULL_LEVERAGE, hangs_on_one_point
 
 LEAST_PIVOT = 1e-9
 BLOCK = 128
+TOGETHER = 8_000_000  # rows times replicates that are held at once, 64 MB an array
+
+
+def pieces(n: int, replicates: int) -> list[int]:
+    """Sizes of the pieces in which so many replicates of n rows are made: one, unless they would not fit into memory."""
+    most = max(1, TOGETHER // max(n, 1))
+    return [min(most, replicates - start) for start in range(0, replicates, most)]
 
 
 def draw_counts(n: int, replicates: int, seed: int) -> Array:
     """How often each of n rows is drawn in each replicate, shape (replicates, n)."""
-    drawn = np.random.default_rng(seed).integers(0, n, size=(replicates, n))
+    return _counts(np.random.default_rng(seed), n, replicates)
+
+
+def drawn_counts(n: int, replicates: int, seed: int) -> Iterator[Array]:
+    """`draw_counts` in `pieces`, for many rows."""
+    rng = np.random.default_rng(seed)
+    return (_counts(rng, n, size) for size in pieces(n, replicates))
+
+
+def _counts(rng: np.random.Generator, n: int, replicates: int) -> Array:
+    drawn = rng.integers(0, n, size=(replicates, n))
     counts = np.empty((replicates, n))
     for start in range(0, replicates, BLOCK):
         some = drawn[start : start + BLOCK]
@@ -114,9 +132,10 @@ def wild(f: Factorised, coefficients: Array, residuals: Array, replicates: int, 
     (B, p) array
         NaN for a coefficient that a point of leverage 1 moves.
     """
-    signs = np.random.default_rng(seed).integers(0, 2, size=(replicates, len(residuals))) * 2.0 - 1.0
+    rng, n = np.random.default_rng(seed), len(residuals)
     room = np.sqrt(np.where(f.leverage < FULL_LEVERAGE, 1.0 - f.leverage, np.inf))
-    moved = np.asarray(coefficients + (signs * (residuals / room)) @ f.estimator.T)
+    signs = (rng.integers(0, 2, size=(size, n)) * 2.0 - 1.0 for size in pieces(n, replicates))
+    moved = np.vstack([coefficients + (s * (residuals / room)) @ f.estimator.T for s in signs])
     moved[:, hangs_on_one_point(f)] = np.nan
     return moved
 

@@ -177,13 +177,14 @@ def identify(p: Products, optimizer: Optimizer, *, seed: int, resamples: int) ->
     columns, stretches = p.gram.shape[1], len(p.total)
     threshold = _threshold(p, optimizer)
     rng = np.random.default_rng(seed)
-    draws = [p.taken(rng.integers(0, stretches, stretches)) for _ in range(resamples)]
+    # Which stretches each resample takes; the sums of all of them at once would not fit into memory.
+    draws = [rng.integers(0, stretches, stretches) for _ in range(resamples)]
     counts = np.zeros(columns)
     for d in draws:
-        counts[_support(d, optimizer, threshold)] += 1.0
+        counts[_support(p.taken(d), optimizer, threshold)] += 1.0
     frequency = counts / resamples
     chosen = [int(j) for j in np.flatnonzero(frequency >= SELDOM)]
-    again = np.array([d.solved(chosen) for d in draws])
+    again = np.array([p.taken(d).solved(chosen) for d in draws])
     while chosen:
         sure = np.abs(p.solved(chosen)) / np.maximum(np.std(again, axis=0), np.finfo(float).tiny)
         without = _without(p, chosen)
@@ -191,7 +192,7 @@ def identify(p: Products, optimizer: Optimizer, *, seed: int, resamples: int) ->
         if np.min(sure) >= SURE and not np.any(spare):
             break
         chosen.pop(int(np.argmin(np.where(spare, without, 1.0)) if np.any(spare) else np.argmin(sure)))
-        again = np.array([d.solved(chosen) for d in draws])
+        again = np.array([p.taken(d).solved(chosen) for d in draws])
     coefficients, low, high = np.full((3, columns), np.nan)
     values = p.solved(chosen)
     coefficients[chosen] = values

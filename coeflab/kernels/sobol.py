@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
-from coeflab.kernels.bootstrap import draw_counts
+from coeflab.kernels.bootstrap import drawn_counts
 from coeflab.kernels.brief import brief
 from coeflab.kernels.least_squares import Array
 from coeflab.kernels.propagation import HIGH, LOW
@@ -111,8 +111,8 @@ def sobol_indices(
     a, b, mixed = a - middle, b - middle, mixed - middle
     moments = np.vstack([(a + b) / 2.0, (a**2 + b**2) / 2.0, b * (mixed - a), (mixed - a), 0.5 * (mixed - a) ** 2])
     first, total = _of_moments(np.mean(moments, axis=1)[None], groups)
-    counts = draw_counts(rows, replicates, seed)
-    many = _of_moments(counts @ moments.T / rows, groups)
+    counted = np.vstack([counts @ moments.T for counts in drawn_counts(rows, replicates, seed)])
+    many = _of_moments(counted / rows, groups)
     bounds = [np.nanpercentile(m, [LOW, HIGH], axis=0) for m in many]
     return SobolIndices(first[0], total[0], bounds[0], bounds[1], rows)
 

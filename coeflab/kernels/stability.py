@@ -19,13 +19,16 @@ def stability_index(
     [Zw'(Mq' - xG'm')], the limit of high speed without restoring moment.
     """
     lever = moment_slope * (np.asarray(force_rate) - mass)
-    return np.asarray(1.0 - lever / (force_slope * (np.asarray(moment_rate) - mass_moment)))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        return np.asarray(1.0 - lever / (force_slope * (np.asarray(moment_rate) - mass_moment)))
 
 
 def index_gradient(
     force_slope: float, moment_slope: float, force_rate: float, moment_rate: float, mass: float, mass_moment: float
 ) -> Array:
-    """Derivatives of the index by its first four arguments, shape (4,)."""
-    a, b = force_rate - mass, moment_rate - mass_moment
-    product = moment_slope * a / (force_slope * b)
-    return np.array([product / force_slope, -a / (force_slope * b), -moment_slope / (force_slope * b), product / b])
+    """Derivatives of the index by its first four arguments, shape (4,); not finite where a denominator is zero."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        slope, lever = np.float64(force_slope), np.float64(moment_slope)
+        a, b = force_rate - mass, np.float64(moment_rate - mass_moment)
+        product = lever * a / (slope * b)
+        return np.array([product / slope, -a / (slope * b), -lever / (slope * b), product / b])

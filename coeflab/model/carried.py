@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import MEMBERS
 from coeflab.kernels.brief import brief
 from coeflab.model.draws import Uncertain
 from coeflab.model.frozen import locked
@@ -17,7 +18,7 @@ from coeflab.model.marching import KERNELS
 from coeflab.model.spread import Importance, Spread
 
 Array = NDArray[np.float64]
-FEWEST_MEMBERS, MOST_MEMBERS = 40, 1_000_000
+FEWEST_MEMBERS = 40
 
 
 @brief
@@ -57,9 +58,9 @@ class Question:
     kernel: str = "auto"
 
     def __post_init__(self) -> None:
-        if not FEWEST_MEMBERS <= self.members <= MOST_MEMBERS:
+        if not FEWEST_MEMBERS <= self.members <= MEMBERS:
             raise InputError(
-                f"{self.members} members", f"{FEWEST_MEMBERS} to {MOST_MEMBERS:,}", column="--members",
+                f"{self.members} members", f"{FEWEST_MEMBERS} to {MEMBERS:,}", column="--members",
                 advice="A percentile of fewer is no interval." if self.members < FEWEST_MEMBERS else "",
             )  # fmt: skip
         if self.seed < 0:

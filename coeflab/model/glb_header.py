@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.json import parse_json
+from coeflab.core.limits import GLB_DEEPEST, GLB_NODES, JSON_BYTES
 
-LARGEST_JSON = 32 << 20
-MOST_NODES = 10_000
 COMPONENT_BYTES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
 COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 PACKED = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_mesh_quantization")
@@ -34,7 +33,7 @@ def glb_faces(path: Path) -> int:
         if words[1] != 2 or head[16:20] != b"JSON":
             found = f"version {words[1]}" if words[1] != 2 else "no description behind the header"
             raise InputError(found, "a GLB of version 2 that begins with its description", file=path)
-        if words[2] != size or words[3] > min(size - 20, LARGEST_JSON):
+        if words[2] != size or words[3] > min(size - 20, JSON_BYTES):
             raise InputError(
                 f"{size} bytes behind a header that counts {words[2]}, {words[3]} of them description",
                 "a whole GLB",
@@ -44,7 +43,7 @@ def glb_faces(path: Path) -> int:
         described = stream.read(words[3])
         stored = int.from_bytes(stream.read(8)[:4], "little")
     try:
-        return _faces(json.loads(described), stored, path)
+        return _faces(parse_json(described.decode("utf-8"), path, "a whole GLB"), stored, path)
     except (ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError) as why:
         raise InputError(f"a broken description ({type(why).__name__})", "a whole GLB", file=path) from None
 
@@ -74,14 +73,19 @@ def _faces(scene: dict[str, Any], stored: int, path: Path) -> int:
 
 def _require_tree(nodes: list[Any], path: Path) -> None:
     """No node has two parents or is its own ancestor."""
-    if len(nodes) > MOST_NODES:
-        raise InputError(f"{len(nodes)} nodes", f"at most {MOST_NODES}", file=path, advice="Join the parts.")
+    if len(nodes) > GLB_NODES:
+        raise InputError(f"{len(nodes)} nodes", f"at most {GLB_NODES}", file=path, advice="Join the parts.")
     children = [c for n in nodes for c in n.get("children", [])]
     roots = set(range(len(nodes))) - set(children)
-    reached, waiting = 0, list(roots)
+    reached, depth, level = 0, 0, list(roots)
     if len(children) == len(set(children)):
-        while waiting:
-            waiting += nodes[waiting.pop()].get("children", [])
-            reached += 1
+        while level:
+            depth += 1
+            if depth > GLB_DEEPEST:
+                raise InputError(
+                    f"nodes more than {GLB_DEEPEST} deep", "a flatter GLB", file=path, advice="Join the parts."
+                )
+            reached += len(level)
+            level = [c for n in level for c in nodes[n].get("children", [])]
     if reached != len(nodes):
         raise InputError("nodes that are no tree", "a GLB whose nodes have one parent each", file=path)

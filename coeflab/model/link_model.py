@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.identifiers import one_line
+from coeflab.core.limits import positive_number
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
@@ -90,8 +91,8 @@ def link_file(
         A density or length that is not above zero; the numbers make no parameter file.
     """
     for what, value in (("density", link.density), (link.length_name, link.length)):
-        if value is not None and not value > 0.0:
-            raise InputError(f"{what} {value:g}", "above zero", file=path)
+        if value is not None and (expected := positive_number(value)):
+            raise InputError(f"{what} {value:g}", expected, file=path)
     notes = list(link.notes)
     if length:
         scaling = Scaling(length, "given length")

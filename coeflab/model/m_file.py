@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from coeflab.core.arithmetic import ArithmeticProblem, evaluate
 from coeflab.core.errors import InputError, shown
 from coeflab.core.identifiers import one_line
+from coeflab.core.limits import M_FILE_BYTES, bounded_number, positive_number
 from coeflab.core.matlab import Assignment, assignments
 from coeflab.core.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
 from coeflab.core.toml import read_text
@@ -26,7 +27,6 @@ from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.units_told import FEET_PER_SECOND, FOOT, SLUG, SLUGS
 from coeflab.model.written_law import sname
 
-LARGEST = 1 << 18
 LENGTHS = ("L", "Lpp", "LBP", "LOA", "Loa", "L_auv", "length")
 DENSITIES, GRAVITIES, MASSES = ("rho", "rho_water"), ("g", "g_mu"), ("m", "mass")
 _CHANGED = re.compile(r"^[^%#\n]*\bC_?A\s*\(", re.MULTILINE)
@@ -72,7 +72,7 @@ def read_m_file(path: Path) -> MFile:
     InputError
         No derivative, or one that is no plain arithmetic or has two values; NaN or Inf in any place.
     """
-    text = read_text(path, LARGEST)
+    text = read_text(path, M_FILE_BYTES)
     lines = assignments(text)
     adds = any("m2c(" in a.expression or a.target.split(".")[-1] in _ADDED for a in lines)
     out = MFile({}, {}, {}, adds, _CHANGED.search(text) is not None)
@@ -108,6 +108,8 @@ def _value(a: Assignment, symbol: str, names: dict[str, float], path: Path) -> f
             ) from None  # fmt: skip
         names.pop(a.target, None)
         return None
+    if symbol and (expected := bounded_number(names[a.target])):
+        raise InputError(f"{a.target} = {names[a.target]:g}", expected, file=path, line=a.line)
     return names[a.target]
 
 
@@ -196,11 +198,11 @@ def foreign_values(found: MFile, path: Path, density: float | None = None) -> MV
             advice="Add it, in the units of the file, or give it in kg/m^3 (--density 1025).",
         )  # fmt: skip
     si = density if rho is None and density is not None else (rho or 0.0) * mass_unit / length_unit**3
-    if not si > 0.0:
-        raise InputError(f"rho = {rho:g}", "a density above zero", file=path)
+    if expected := positive_number(si):
+        raise InputError(f"rho = {rho:g}", expected.replace("value", "density"), file=path)
     name, length = found.named(*LENGTHS) or ("1 m", 1.0 / length_unit)
-    if not length > 0.0:
-        raise InputError(f"{name} = {length:g}", "a length above zero", file=path)
+    if expected := positive_number(length * length_unit):
+        raise InputError(f"{name} = {length:g}", expected.replace("value", "length"), file=path)
     primed = rho is not None and any(
         math.isclose(found.numbers[f"r{k}"], 0.5 * rho * length**k, rel_tol=1e-9)
         for k in range(2, 6)

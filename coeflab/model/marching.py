@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.limits import MOTION_STEPS, require_rows
 from coeflab.core.machine import compiles
 from coeflab.core.symbols import CONTROLS
 from coeflab.kernels import march as plain
@@ -29,7 +30,7 @@ KERNELS = ("auto", "numpy", "compiled")
 ENDED = (Ended.COMPLETE, Ended.NOT_FINITE, Ended.TOO_FAST, Ended.STEP_TOO_SMALL)
 # A quarter of the fastest mode's time, of which the scheme stands 2.8, and the time for a twentieth of a length.
 PER_MODE, PER_LENGTH = 0.25, 0.05
-MOST_STEPS = 5_000_000  # more is a step in the wrong unit
+WIDER = "Take more time between rows: --record, or a shorter manoeuvre."
 STILL = np.zeros(3)
 
 
@@ -146,14 +147,18 @@ def march(
     compiled = _compiled(kernel)
     chosen = _step(ensemble, dynamics, orders, start, step)
     every = 1
+    duration = float(np.sum(orders.longest))
     if record > 0.0:
+        require_rows(duration / record, "record", WIDER)
         every = max(1, int(np.ceil(record / chosen - NEAR)))
         chosen = record / every
-    if orders.steps(chosen) > MOST_STEPS:
+    count = duration / chosen
+    if count > MOTION_STEPS:
         raise InputError(
-            f"{orders.steps(chosen):,} steps of {chosen:.3g} s", f"at most {MOST_STEPS:,}", column="step",
+            f"{count:,.0f} steps of {chosen:.3g} s", f"at most {MOTION_STEPS:,}", column="step",
             advice="The vehicle is stiff or the manoeuvre long; the adaptive integrator takes longer steps.",
         )  # fmt: skip
+    require_rows(count / every, "record", WIDER)
     if compiled:
         from coeflab.kernels.march_compiled import march as run
     else:
@@ -177,6 +182,7 @@ def march_by_tolerance(
     orders, start = _arrays(ensemble, (manoeuvre,))
     if record <= 0.0:
         record = min(manoeuvre.duration / 100.0, 0.1 * vehicle.length / max(vehicle.speed, NEAR))
+    require_rows(float(np.sum(orders.longest)) / record, "record", WIDER)
     dynamics = ensemble.dynamics(np.asarray(current, dtype=np.float64))
     found = march_adaptive(dynamics, orders, start[0], record, _fastest(ensemble, start), tolerance)
     return Marched(ensemble, (manoeuvre,), orders, found, 0.0)

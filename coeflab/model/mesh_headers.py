@@ -62,7 +62,7 @@ def stl_faces(path: Path) -> int:
         )
     text = _text(path).lower()
     facets = text.count(b"endfacet")
-    corners = sum(1 for _ in re.finditer(rb"^\s*vertex\s", text, re.MULTILINE))
+    corners = sum(1 for _ in re.finditer(rb"^[ \t]*vertex\s", text, re.MULTILINE))
     if corners != 3 * facets or not text.rstrip().rpartition(b"\n")[2].strip().startswith(b"endsolid"):
         raise InputError(
             f"{corners} vertices in {facets} finished facets",
@@ -76,8 +76,8 @@ def stl_faces(path: Path) -> int:
 def obj_faces(path: Path) -> int:
     """Faces of an OBJ; a face of n corners counts n - 2."""
     text = _text(path)
-    faces = sum(max(len(f[1].split()) - 2, 0) for f in re.finditer(rb"^\s*f\s+(.*)$", text, re.MULTILINE))
-    if not faces or not re.search(rb"^\s*v\s", text, re.MULTILINE):
+    faces = sum(max(len(f[1].split()) - 2, 0) for f in re.finditer(rb"^[ \t]*f[ \t]+(.*)$", text, re.MULTILINE))
+    if not faces or not re.search(rb"^[ \t]*v\s", text, re.MULTILINE):
         raise InputError("no vertices and faces", "an OBJ with lines v and f", file=path)
     if CORNER_ZERO.search(text):
         require_corners(path)

@@ -16,7 +16,10 @@ from pydantic import Field, ValidationError, model_validator
 
 from coeflab.core.datums import Datum
 from coeflab.core.errors import CoeflabError, InputError, shown
+from coeflab.core.json import parse_json
+from coeflab.core.limits import JSON_BYTES
 from coeflab.core.toml import read_text
+from coeflab.core.wording import repeated
 from coeflab.model import noun_tables
 from coeflab.model.parameter_added_mass import ParameterAddedMass
 from coeflab.model.parameter_coefficient import ParameterCoefficient, ParameterCovariance
@@ -37,7 +40,6 @@ from coeflab.model.potential import potential_part
 from coeflab.model.scaling import Conditions, Scaling
 from coeflab.model.schema_types import Finite, Name, Positive, Strict, Words, told
 
-LARGEST = 16 << 20
 SCHEMA_FILE = Path(__file__).with_name("parameter_file.schema.json")
 
 
@@ -131,7 +133,7 @@ class ParameterFile(Strict):
     @model_validator(mode="after")
     def _consistent(self) -> ParameterFile:
         symbols = [c.symbol for c in self.coefficients]
-        twice = sorted({s for s in symbols if symbols.count(s) > 1})
+        twice = repeated(symbols)
         if twice:
             raise ValueError(f"{', '.join(twice)} stands more than once")
         primes = Scaling(self.scaling.length, self.scaling.length_name)
@@ -146,13 +148,12 @@ class ParameterFile(Strict):
         if unknown:
             raise ValueError(f"the covariance names {', '.join(unknown)}, which are no coefficients")
         named = [t.name for t in self.thrusters] + [c.control for c in self.surfaces]
-        again = sorted({n for n in named if named.count(n) > 1})
+        again = repeated(named)
         if again:
             raise ValueError(f"{', '.join(again)} stands more than once")
         tables = [(m.response, m.names) for m in self.models]
-        for response, names in tables:
-            if tables.count((response, names)) > 1:
-                raise ValueError(f"{response} over {', '.join(names)} stands more than once")
+        for response, names in repeated(tables):
+            raise ValueError(f"{response} over {', '.join(names)} stands more than once")
         strange = too_new(self, self.schema_version)
         if strange:
             raise ValueError(strange)
@@ -240,31 +241,14 @@ def read_parameter_file(path: Path) -> ParameterFile:
     InputError
         Not JSON (with line and column), or the first thing that breaks the schema.
     """
-
-    def refuse(token: str) -> float:
-        raise ValueError(f"{token} is no JSON number")
-
-    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        found = dict(pairs)
-        if len(found) < len(pairs):
-            keys = [k for k, _ in pairs]
-            raise ValueError(f"{shown(max(keys, key=keys.count))} twice in one object")
-        return found
-
-    text = read_text(path, LARGEST)
-    try:
-        content = json.loads(text, parse_constant=refuse, object_pairs_hook=once)
-    except json.JSONDecodeError as why:
-        raise InputError(why.msg, "JSON", file=path, line=why.lineno, column=f"character {why.colno}") from None
-    except RecursionError:
-        raise InputError("too deep nesting", "a parameter file in JSON", file=path) from None
-    except ValueError as why:
-        raise InputError(str(why).partition(";")[0], "a parameter file in JSON", file=path) from None
+    text = read_text(path, JSON_BYTES)
+    content = parse_json(text, path, "a parameter file in JSON")
     if not isinstance(content, dict):
         raise InputError(f"a {type(content).__name__}", "an object", file=path, column="file")
     version = readable(content.get("schema_version"), path)
+    del content  # a large file's content is held once only
     try:
-        return _validated(content, version)
+        return _validated(text, version)
     except ValidationError as why:
         first = why.errors()[0]
         place = ".".join(str(p) for p in first["loc"]) or "file"
@@ -281,10 +265,10 @@ def read_parameter_file(path: Path) -> ParameterFile:
         raise InputError(str(why), "a valid parameter file", file=path) from None
 
 
-def _validated(content: dict[str, Any], version: str) -> ParameterFile:
+def _validated(text: str, version: str) -> ParameterFile:
     """The file; of a later version without the keys that nobody here knows and that say nothing."""
     try:
-        return ParameterFile.model_validate_json(json.dumps(content))
+        return ParameterFile.model_validate_json(text)
     except ValidationError as why:
         if not is_later(version, SCHEMA_VERSION):
             raise
@@ -293,4 +277,4 @@ def _validated(content: dict[str, Any], version: str) -> ParameterFile:
         ]
         if not unknown:
             raise
-    return ParameterFile.model_validate_json(json.dumps(without(content, unknown)))
+    return ParameterFile.model_validate_json(json.dumps(without(json.loads(text), unknown)))

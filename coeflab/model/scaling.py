@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from coeflab.core.errors import InputError, ScalingMismatchError
+from coeflab.core.limits import positive_number
 from coeflab.core.symbols import derivative
 from coeflab.core.toml import Section
 
@@ -33,8 +34,8 @@ class Conditions:
     def __post_init__(self) -> None:
         for name in ("density", "speed", "viscosity", "reynolds"):
             value = getattr(self, name)
-            if value is not None and not value > 0.0:
-                raise InputError(f"{name} = {value:g}", "a value above zero", column=f"conditions.{name}")
+            if value is not None and (expected := positive_number(value)):
+                raise InputError(f"{name} = {value:g}", expected, column=f"conditions.{name}")
 
     def reynolds_on(self, length: float) -> float | None:
         """Reynolds number on a length, or the one that the source states where the viscosity is not known."""
@@ -57,8 +58,10 @@ class Scaling:
     length_name: str
 
     def __post_init__(self) -> None:
-        if not self.length > 0.0:
-            raise InputError(f"length = {self.length:g} m", "a length above zero", column="scaling.length")
+        if expected := positive_number(self.length):
+            raise InputError(
+                f"length = {self.length:g} m", expected.replace("value", "length"), column="scaling.length"
+            )
 
     def __str__(self) -> str:
         return f"{self.length_name} {self.length:.6g} m"

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import LONGEST_PART, SHORTEST_PART
 from coeflab.kernels.axisymmetric import MeridianIntegrals, graded_nodes, meridian_integrals
 from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
@@ -15,15 +16,20 @@ from coeflab.model.mesh import TriangleMesh
 
 Array = NDArray[np.float64]
 STATIONS = 64  # graded to both ends, where radii change most
-SMALLEST, LARGEST = 1e-6, 1e4
 
 
-def _positive(form: str, **dimensions: float) -> None:
+def within_reach(form: str, **dimensions: float) -> None:
+    """Refuse dimensions of a form that no body has, m.
+
+    Raises
+    ------
+    InputError
+    """
     for name, value in dimensions.items():
-        if not SMALLEST <= value <= LARGEST:
+        if not SHORTEST_PART <= value <= LONGEST_PART:
             found = f"{name.replace('_', ' ')} = {value:g} m of a {form}"
-            expected = f"a length above zero, from {SMALLEST:g} to {LARGEST:g} m"
-            raise InputError(found, expected, column=name, advice="Is the unit right?" if value > LARGEST else "")
+            expected = f"a length above zero, from {SHORTEST_PART:g} to {LONGEST_PART:g} m"
+            raise InputError(found, expected, column=name, advice="Is the unit right?" if value > LONGEST_PART else "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +40,7 @@ class Cylinder:
     length: float
 
     def __post_init__(self) -> None:
-        _positive("cylinder", radius=self.radius, length=self.length)
+        within_reach("cylinder", radius=self.radius, length=self.length)
 
     @property
     def volume(self) -> float:
@@ -61,7 +67,7 @@ class Plate:
     span: float
 
     def __post_init__(self) -> None:
-        _positive("plate", chord=self.chord, span=self.span)
+        within_reach("plate", chord=self.chord, span=self.span)
 
     @property
     def aspect(self) -> float:
@@ -92,7 +98,7 @@ class Ellipsoid:
     z: float
 
     def __post_init__(self) -> None:
-        _positive("ellipsoid", semi_axis_x=self.x, semi_axis_y=self.y, semi_axis_z=self.z)
+        within_reach("ellipsoid", semi_axis_x=self.x, semi_axis_y=self.y, semi_axis_z=self.z)
 
     @property
     def axes(self) -> Array:
@@ -123,7 +129,7 @@ class Box:
     height: float
 
     def __post_init__(self) -> None:
-        _positive("box", length=self.length, width=self.width, height=self.height)
+        within_reach("box", length=self.length, width=self.width, height=self.height)
 
     @property
     def sides(self) -> Array:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core import limits
 from coeflab.core.errors import InputError, shown
 from coeflab.core.symbols import COMPONENTS, CONTROLS
 from coeflab.kernels.brief import brief
@@ -94,7 +95,14 @@ class SteadyMotion:
             return np.concatenate([faster[columns], turned[leaning]])
 
         scale = np.array([speed if i < 3 else speed / craft.length for i in columns] + [1.0] * len(leaning))
-        return modes(linearised(rates, np.concatenate([nu[columns], lean[leaning]]), scale))
+        slopes = linearised(rates, np.concatenate([nu[columns], lean[leaning]]), scale)
+        if not np.isfinite(slopes).all():
+            raise InputError(
+                "rates of small motions that are not finite",
+                "a motion and coefficients whose forces are",
+                column="motion",
+            )
+        return modes(slopes)
 
 
 def steady_motion(vehicle: Vehicle, motion: Mapping[str, float], commands: Mapping[str, float]) -> SteadyMotion:
@@ -120,6 +128,11 @@ def steady_motion(vehicle: Vehicle, motion: Mapping[str, float], commands: Mappi
     strange = sorted(set(motion) - set(MOTION))
     if strange:
         raise InputError(shown(strange[0]), f"some of {', '.join(MOTION)}", column="motion")
+    for name, value in motion.items():
+        if not abs(value) <= limits.FASTEST:
+            raise InputError(
+                f"{name} = {value:g} {MOTION[name]}", f"at most {limits.FASTEST:g} either way", column=name
+            )
     speed = max(abs(motion.get("u", 0.0)), vehicle.speed)
     unknowns = [_motion(vehicle, name, motion, speed) for name in MOTION]
     orders = command_unknowns(vehicle, speed)

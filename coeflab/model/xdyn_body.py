@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import bounded_number
 from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.core.yaml import number
 from coeflab.kernels.brief import brief
@@ -33,7 +34,6 @@ ADDED = "added mass matrix at the center of gravity and projected in the body fr
 DAMPING = "damping matrix at the center of gravity projected in the body frame"
 HERE = "hydrodynamic forces calculation point in body frame"
 BUOYANCY = "buoyancy"
-LARGEST = 1e15
 POWERS = {"linear damping": 1, "quadratic damping": 2}
 UNITS = {"m": 1.0, "m/s": 1.0, "rad/s": 1.0, "rad": 1.0, "kg/m^3": 1.0, "m/s^2": 1.0, "ft": 0.3048, "knot": 1852.0 / 3600.0,
          "km/h": 1.0 / 3.6, "deg": np.pi / 180.0, "deg/s": np.pi / 180.0}  # fmt: skip
@@ -145,7 +145,7 @@ class Reading:
         """``{value: 1, unit: m}`` in SI."""
         found = self.mapping(parent, key)
         value, unit = number(found.get("value")), str(found.get("unit"))
-        if value is None or abs(value) > LARGEST or unit not in UNITS:
+        if value is None or bounded_number(value) or unit not in UNITS:
             raise self.fail(shown(found), f"{{value: number, unit: one of {', '.join(UNITS)}}}", key)
         return value * UNITS[unit]
 
@@ -161,7 +161,7 @@ class Reading:
         for k in range(1, 7):
             row = found.get(f"row {k}")
             values = [number(v) for v in row] if isinstance(row, list) else []
-            if len(values) != 6 or not all(v is not None and abs(v) <= LARGEST for v in values):
+            if len(values) != 6 or any(v is None or bounded_number(v) for v in values):
                 raise self.fail(shown(row), "six numbers", f"row {k} of the {key}")
             rows.append(values)
         return np.array(rows, dtype=np.float64)

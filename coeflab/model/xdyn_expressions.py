@@ -11,8 +11,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from coeflab.core.arithmetic import ArithmeticProblem, evaluate
+from coeflab.core.limits import ARITHMETIC_DEEPEST
 
-DEEPEST = 60
 _STRAY = re.compile(
     r"(?P<sign>(?:^|[-+*/^(])\s*[-+](?![\d.])"
     r"|(?:^|[-+*/(])\s*[-+][\d.]+(?:[eE][-+]?\d+)?\s*\^)"
@@ -50,8 +50,8 @@ def settled(
     def settle(name: str, above: tuple[str, ...]) -> None:
         if name in known:
             return
-        if name in above or len(above) > DEEPEST:
-            raise ArithmeticProblem(f"{name}, which needs itself or more than {DEEPEST} others in a row")
+        if name in above or len(above) > ARITHMETIC_DEEPEST:
+            raise ArithmeticProblem(f"{name}, which needs itself or more than {ARITHMETIC_DEEPEST} others in a row")
         text = expressions[name]
         stray = _STRAY.search(text)
         if stray is not None:

@@ -12,6 +12,7 @@ from coeflab.core.arithmetic import ArithmeticProblem
 from coeflab.core.datums import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.identifiers import one_line
+from coeflab.core.limits import positive_number
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.core.yaml import number, read_yaml
@@ -51,8 +52,8 @@ def read(path: Path) -> ParameterFile:
         No YAML, tags, aliases, several bodies, an expression that is no sum of products of velocities.
     """
     body = xdyn_body(read_yaml(path), path)
-    if not body.density > 0.0:
-        raise InputError(f"density rho {body.density:g}", "above zero", file=path)
+    if expected := positive_number(body.density):
+        raise InputError(f"density rho {body.density:g}", expected, file=path)
     try:
         law = multiplied_out(body)
         stated = _stated(body, law, path)

@@ -53,7 +53,7 @@ def _at_rest(study: Study) -> Table:
             rows.append(
                 (
                     s.campaign, f"{s.component}'", s.variable + "'", coefficient(value), at_zero,
-                    f"{100.0 * abs(value) / largest:.1f} %", angle, ABSENT if half is None else coefficient(half),
+                    f"{100.0 * abs(value) / largest:.1f} %" if largest > 0.0 else ABSENT, angle, ABSENT if half is None else coefficient(half),
                 )
             )  # fmt: skip
     headers = (

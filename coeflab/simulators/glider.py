@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import require_rows
 from coeflab.core.options import bounded, parse_options
 from coeflab.kernels.glider_motion import Leg, Setting, legs, march, momentum, velocity
 from coeflab.model.glider import Glider
@@ -23,7 +24,6 @@ from coeflab.model.trajectory import Ended, Trajectory
 summary = "vertical-plane glider with a sliding mass and a buoyancy engine: dive-and-surface cycles in time"
 citations = ("leonard_graver2001", "thauv")
 
-MOST_ROWS = 1_000_000
 Array = NDArray[np.float64]
 
 
@@ -110,11 +110,7 @@ def _check(manoeuvre: Manoeuvre, step: float) -> None:
         raise InputError(
             "a start with sway, roll or yaw", "a start in the vertical plane, heading north", column="glider"
         )
-    rows = manoeuvre.duration / step
-    if rows > MOST_ROWS:
-        raise InputError(
-            f"{rows:.3g} rows", f"at most {MOST_ROWS:,}", column="glider.step", advice="Take a larger step."
-        )
+    require_rows(manoeuvre.duration / step, "glider.step", "Take a larger step.")
 
 
 def _statements(vehicle: Glider, alpha: Array, outside: NDArray[np.bool_], u: Array) -> tuple[str, ...]:

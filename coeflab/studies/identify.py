@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
+from coeflab.core.limits import REPLICATES
 from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.symbols import COMPONENTS, CONTROLS, MOTIONS, primed
@@ -64,7 +65,7 @@ class Options:
     added_mass: str = one_of("known", "known", "fit")
     accelerations: str = one_of(MEASURED, *ACCELERATIONS)
     optimizer: str = one_of("stlsq", "stlsq", "sr3")
-    resamples: int = bounded(200, 20, 100_000)
+    resamples: int = bounded(200, 20, REPLICATES)
     seed: int = bounded(1, 0, 2**31)
 
 

@@ -8,11 +8,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from coeflab.core.errors import InputError
+from coeflab.core.limits import JSON_BYTES, XML_BYTES
 from coeflab.core.toml import read_text
-from coeflab.core.xml import LARGEST
 from coeflab.kernels.brief import brief
 from coeflab.model.check import Check, Severity
-from coeflab.model.parameter_file import LARGEST as LARGEST_JSON
 from coeflab.model.parameter_file import ParameterFile, read_parameter_file
 from coeflab.model.plausibility import plausibility
 from coeflab.model.plausible_damping import WRONG
@@ -54,7 +53,7 @@ def recognised(path: Path) -> str:
     InputError
         None that is known.
     """
-    text = read_text(path, max(LARGEST, LARGEST_JSON))
+    text = read_text(path, max(XML_BYTES, JSON_BYTES))
     if "\0" in text:
         raise InputError("a zero byte", "UTF-8 text", file=path, advice="Save the file as UTF-8.")
     start = text.lstrip()[:1]
@@ -94,6 +93,16 @@ def read_model_file(path: Path, density: float | None = None) -> ModelFile:
     if kind == OWN:
         parameters = read_parameter_file(path)
         return ModelFile(kind, parameters, plausibility(parameters))
+    try:
+        return _imported(path, kind, density)
+    except InputError as why:
+        if why.file is None:
+            why.file = path
+        raise
+
+
+def _imported(path: Path, kind: str, density: float | None) -> ModelFile:
+    """The file by its importer."""
     importer = PARAMETER_IMPORTERS.load(kind)
     findings: list[Check] = []
     stands_in = False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -15,6 +16,7 @@ from coeflab.core.machine import end_with_parent
 
 Result = TypeVar("Result")
 PATIENCE = 10.0
+_ADDRESS = re.compile(r"(?:(?:tcp|tls|ws|wss)://)?(?:\[[0-9A-Fa-f:.%]+\]|[^\s:/\[\]]+):(?P<port>[0-9]{1,5})")
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
@@ -90,6 +92,13 @@ def _on_dask(
         raise InputError(
             "--scheduler without distributed", "the extra", column="--scheduler", advice='pip install "coeflab[dask]"'
         ) from None
+    address = _ADDRESS.fullmatch(scheduler)
+    # A client that fails on the text of its address goes on waiting for 20 s.
+    if address is None or not 0 < int(address["port"]) < 1 << 16:
+        raise InputError(
+            f"no Dask scheduler at {shown(scheduler)}, which is no address", "the address of one that runs, such as "
+            "tcp://host:8786", column="--scheduler",
+        )  # fmt: skip
     connect: Any = distributed.Client
     finished: Any = distributed.as_completed
     try:

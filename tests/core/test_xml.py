@@ -46,7 +46,7 @@ def test_size_and_encoding_are_bounded(tmp_path: Path, monkeypatch: pytest.Monke
     with pytest.raises(InputError, match="UTF-8"):
         read_xml(path)
     path.write_text("<a>" + "x" * 200 + "</a>", encoding="utf-8")
-    monkeypatch.setattr(xml, "LARGEST", 100)
+    monkeypatch.setattr(xml, "XML_BYTES", 100)
     with pytest.raises(InputError, match="at most 100 bytes"):
         read_xml(path)
 
