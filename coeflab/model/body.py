@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source
 from coeflab.model.frozen import locked
+from coeflab.model.mesh_section import MeshSource
 from coeflab.model.scaling import Scaling
 from coeflab.model.shape import Shape
 
@@ -140,6 +141,8 @@ class Body:
         The length that primes are made with, where the file names one.
     measured : tuple of Measured
         Acceleration derivatives from elsewhere, to be shown beside computed ones.
+    mesh : MeshSource, optional
+        Where the shape's parts stand for a mesh: that mesh.
     """
 
     name: str
@@ -153,6 +156,7 @@ class Body:
     shape: Shape | None = None
     scaling: Scaling | None = None
     measured: tuple[Measured, ...] = ()
+    mesh: MeshSource | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))

@@ -16,19 +16,26 @@ from coeflab.model.mirror_planes import NAMES, mirrors, must_vanish
 from coeflab.model.shape import Ellipsoid, Part, Parts, Shape
 
 Array = NDArray[np.float64]
-RULE = (
-    "ellipsoids, one alone or so far apart that they hardly feel each other, by Lamb's closed form, which is exact; else the "
-    "panel method; else, for parts among which are plates or none that touch, and for a mesh like one plate, their closed "
+EXACT = "ellipsoids, one alone or so far apart that they hardly feel each other, by Lamb's closed form, which is exact"
+ELSE = (
+    "the panel method; else, for parts among which are plates or none that touch, and for a mesh like one plate, their closed "
     "forms with corrected ends; else strips with Lamb's end correction; else the ellipsoid of equal volume and proportions; "
     "what calls itself a rough guide comes last: strips of a short body, an ellipsoid whose projected areas or second moments "
     "of volume are off by over 10 %, a mesh as one plate"
 )
+RULE = f"{EXACT}; else {ELSE}"
+OF_MESH = f"for parts that stand for a mesh, the panel method on that mesh; else {ELSE}, parts that are poor stand-ins"
 CAUTION = (
     "NONE OF THE METHODS SHOWN IS GOOD FOR THIS BODY: {} is a rough guide; compare them all, or describe the body by parts, thin ones "
     "as plates (coeflab simplify, or a body.toml of reader primitives), for the method primitives"
 )
+CAUTION_PARTS = (
+    "NONE OF THE METHODS SHOWN IS GOOD FOR THIS BODY: {} is a rough guide, as parts are poor stand-ins for a mesh: {}. Take the panel "
+    "method on the mesh itself, or replace these parts"
+)
 ORDER = ("panel", "primitives", "strip:lamb", "ellipsoid", "primitives:huuv", "strip")
 ROUNDING = 1e-12
+ALLOWANCE = 1.5  # added mass goes with the areas of a form to the power 3/2
 SILENT = 1e-6  # of the largest diagonal entry: a motion that moves no water
 APART = 1e-3  # of a sphere's added mass, by what the others induce: as exact as the panel method gets
 NOISE = 2e-3  # what a triangulated surface leaves of entries that symmetry makes vanish
@@ -48,6 +55,10 @@ class Triangulation:
         About the body's reference point.
     refused : mapping of method to str
     citations : tuple of str
+    original : Body, optional
+        The mesh, where the body's parts stand for one.
+    on_mesh : tuple of str
+        Methods that took it in their place.
     """
 
     body: Body
@@ -55,6 +66,24 @@ class Triangulation:
     results: tuple[AddedMass, ...]
     refused: Mapping[str, str]
     citations: tuple[str, ...]
+    original: Body | None = None
+    on_mesh: tuple[str, ...] = ()
+
+    @property
+    def shape(self) -> Shape:
+        """The body's, or that of the mesh for which its parts stand."""
+        return (self.original or self.body).require_shape()
+
+    @property
+    def _parts(self) -> Parts | None:
+        """The parts, where some stand for pieces of a mesh."""
+        shape = self.body.require_shape()
+        return shape if isinstance(shape, Parts) and shape.stand_ins else None
+
+    @property
+    def rule(self) -> str:
+        """`RULE`, or `OF_MESH` where parts stand for a mesh: forms that stand in are never exact."""
+        return RULE if self._parts is None else OF_MESH
 
     @property
     def recommended(self) -> AddedMass:
@@ -65,7 +94,7 @@ class Triangulation:
         InputError
             None of them is.
         """
-        alone, order = _ellipsoids(self.body.require_shape()), ORDER
+        alone, order = () if self._parts else _ellipsoids(self.body.require_shape()), ORDER
         if alone and _felt(alone) < APART:
             exact = ("ellipsoid", "primitives") if len(alone) == 1 else ("primitives",)
             order = (*exact, *(m for m in ORDER if m not in exact))
@@ -78,8 +107,12 @@ class Triangulation:
                 f"no added mass of {shown(self.body.name)} that is a kinetic energy", "a symmetric, positive matrix"
             )
         if found.rough:
-            found = replace(found, statements=(CAUTION.format(found.method), *found.statements))
+            found = replace(found, statements=(self._caution(found), *found.statements))
         return self._symmetric(found)
+
+    def _caution(self, found: AddedMass) -> str:
+        rough = self._parts.rough if self._parts is not None and found.method not in self.on_mesh else ()
+        return CAUTION_PARTS.format(found.method, "; ".join(rough)) if rough else CAUTION.format(found.method)
 
     def _symmetric(self, found: AddedMass) -> AddedMass:
         """Without the small entries that symmetry makes vanish and a mesh does not quite."""
@@ -94,7 +127,7 @@ class Triangulation:
     def caution(self) -> str:
         """What must be said of the recommended one where it is only a rough guide; else nothing."""
         found = self.recommended
-        return CAUTION.format(found.method) if found.rough else ""
+        return self._caution(found) if found.rough else ""
 
     @property
     def ordered(self) -> tuple[AddedMass, ...]:
@@ -108,7 +141,9 @@ class Triangulation:
 
         The size is the entry itself on the diagonal, the root of both its diagonal entries off it; NaN where fewer than
         two methods have it or the recommended one has not. A zero on the diagonal, or what rounding makes of it, is silence
-        and not a value.
+        and not a value. Methods that all compute the same stand-ins for a mesh share what these miss: where none of them is
+        the panel method on the mesh, the range is at least 3/2 of the worst error of their forms, and there is none
+        where one of these is a poor stand-in.
         """
         stack = np.array([r.matrix for r in self.results])
         diagonal = np.einsum("nii->ni", stack)
@@ -121,19 +156,23 @@ class Triangulation:
         high = np.max(np.where(speaks, stack, -np.inf), axis=0)
         low = np.min(np.where(speaks, stack, np.inf), axis=0)
         known = (speaks.sum(axis=0) > 1) & (size > 0.0)
-        return np.where(known, np.where(known, high - low, 0.0) / np.where(size > 0.0, size, 1.0), np.nan)
+        apart = np.where(known, np.where(known, high - low, 0.0) / np.where(size > 0.0, size, 1.0), np.nan)
+        if self._parts is None or "panel" in self.on_mesh or self.recommended.method in self.on_mesh:
+            return apart
+        least = ALLOWANCE * max(f.worst for f in self._parts.stand_ins)
+        return np.full((6, 6), np.nan) if self._parts.rough else np.maximum(apart, least)
 
     @property
     def mirror_planes(self) -> tuple[str, ...]:
         """Names of the shape's planes of symmetry."""
-        return tuple(n for n, holds in zip(NAMES, mirrors(self.body.require_shape()), strict=True) if holds)
+        return tuple(n for n, holds in zip(NAMES, mirrors(self.shape), strict=True) if holds)
 
     def vanishing(self) -> tuple[NDArray[np.bool_], dict[str, float]]:
         """Entries that symmetry makes vanish, (6, 6) of booleans, and the largest of them by method.
 
         Largest over the root of both diagonal entries.
         """
-        zero = must_vanish(self.body.require_shape(), self.body.reference_point)
+        zero = must_vanish(self.shape, self.body.reference_point)
         left = {}
         for r in self.results:
             diagonal = np.diag(r.matrix)

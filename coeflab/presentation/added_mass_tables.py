@@ -10,7 +10,7 @@ from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.table import ABSENT, Table, coefficient, number
-from coeflab.model.triangulation import RULE, Triangulation
+from coeflab.model.triangulation import Triangulation
 
 SHOWN = ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot", "Yrdot", "Zqdot")
 TRANSLATIONS, MARK, WIDEST = "uvw", "*", 10.0
@@ -63,7 +63,7 @@ def sound(mesh: TriangleMesh) -> str:
 
 def derivatives(found: Triangulation) -> Table:
     """Acceleration derivatives in SI, over the displaced mass, and their spread over the methods."""
-    mass = found.density * found.body.require_shape().volume
+    mass = found.density * found.shape.volume
     spread = found.spread
     rows = []
     for symbol in SHOWN:
@@ -83,7 +83,7 @@ def derivatives(found: Triangulation) -> Table:
 
 def remarks(found: Triangulation) -> tuple[str, ...]:
     """Which method is recommended and why, how far it can be trusted, and what each assumed."""
-    notes = [f"{MARK} recommended: {found.recommended.method}, by the rule: {RULE}"]
+    notes = [f"{MARK} recommended: {found.recommended.method}, by the rule: {found.rule}"]
     notes += [found.caution] if found.caution else []
     notes += _verdicts(found)
     notes += [f"{r.method}: {'; '.join(r.statements)}" for r in found.results if r.statements]
