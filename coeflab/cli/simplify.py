@@ -69,6 +69,6 @@ def command(
         show.text(f"  {folder / file}: {'written' if new else 'unchanged'}")
     if found.shape.rough:
         show.text(
-            f"A rough guide to the mesh, which added-mass therefore takes itself ({MESH}): {'; '.join(found.shape.rough)}"
+            f"Rough stand-ins: {'; '.join(found.shape.rough)}. added-mass computes the mesh, {MESH}, beside them."
         )
     show.text(f"Look at overlay.svg, correct body.toml, then: coeflab added-mass {folder}")

@@ -15,7 +15,7 @@ from coeflab.model.mesh import TriangleMesh
 Array = NDArray[np.float64]
 STATIONS = 64  # graded to both ends, where radii change most
 SMALLEST, LARGEST = 1e-6, 1e4
-POOR, OTHER = 0.05, "other"
+POOR, OTHER = 0.1, "other"
 THIN = 0.05  # of the shorter side: up to here the panel method leaves a body to the formulas of plates
 
 
@@ -206,17 +206,25 @@ class StandIn:
             "volume": self.volume,
         }
 
+    def over(self, bound: float) -> tuple[str, ...]:
+        """Which errors are larger, in words."""
+        return tuple(f"{name} {100.0 * e:+.1f} %" for name, e in self.counting.items() if abs(e) > bound)
+
     @property
-    def worst(self) -> float:
-        """The largest of them in size."""
-        return max(abs(e) for e in self.counting.values())
+    def worst(self) -> str:
+        """The largest error that counts, in words."""
+        return max(((abs(e), f"{name} {100.0 * e:+.0f} %") for name, e in self.counting.items()))[1]
+
+    @property
+    def likeness(self) -> str:
+        """Misfit of a solid, thickness of a plate, in words."""
+        return f"thickness {self.thickness:.2g}" if self.misfit is None else f"misfit {self.misfit:.2g}"
 
     @property
     def poor(self) -> tuple[str, ...]:
-        """What makes it a poor stand-in, in words: no likeness, or an error over 5 %."""
-        measure = f"thickness {self.thickness:.2g}" if self.misfit is None else f"misfit {self.misfit:.2g}"
-        like = [f"class other ({measure}, shares {self.shared:.0%} of the volume)"] if self.kind == OTHER else []
-        return (*like, *(f"{name} {100.0 * e:+.1f} %" for name, e in self.counting.items() if abs(e) > POOR))
+        """What makes it a poor stand-in, in words: class other, or an error over 10 %."""
+        like = f"class other ({self.likeness}, shares {self.shared:.0%} of the volume)"
+        return (*((like,) if self.kind == OTHER else ()), *self.over(POOR))
 
     @property
     def rough(self) -> tuple[str, ...]:

@@ -24,6 +24,10 @@ ELSE = (
     "of volume are off by over 10 %, a mesh as one plate"
 )
 RULE = f"{EXACT}; else {ELSE}"
+UNCHECKED = (
+    "NOT CHECKED: the parts stand for a mesh, and {} computes the parts; what they miss of the mesh only the panel method on the mesh "
+    "tells (--method all, with the mesh that [mesh] of body.toml names)"
+)
 OF_MESH = f"for parts that stand for a mesh, the panel method on that mesh; else {ELSE}, parts that are poor stand-ins"
 CAUTION = (
     "NONE OF THE METHODS SHOWN IS GOOD FOR THIS BODY: {} is a rough guide; compare them all, or describe the body by parts, thin ones "
@@ -35,7 +39,6 @@ CAUTION_PARTS = (
 )
 ORDER = ("panel", "primitives", "strip:lamb", "ellipsoid", "primitives:huuv", "strip")
 ROUNDING = 1e-12
-ALLOWANCE = 1.5  # added mass goes with the areas of a form to the power 3/2
 SILENT = 1e-6  # of the largest diagonal entry: a motion that moves no water
 APART = 1e-3  # of a sphere's added mass, by what the others induce: as exact as the panel method gets
 NOISE = 2e-3  # what a triangulated surface leaves of entries that symmetry makes vanish
@@ -106,13 +109,17 @@ class Triangulation:
             raise InputError(
                 f"no added mass of {shown(self.body.name)} that is a kinetic energy", "a symmetric, positive matrix"
             )
-        if found.rough:
-            found = replace(found, statements=(self._caution(found), *found.statements))
-        return self._symmetric(found)
+        caution = self._caution(found)
+        return self._symmetric(replace(found, statements=(caution, *found.statements)) if caution else found)
 
     def _caution(self, found: AddedMass) -> str:
-        rough = self._parts.rough if self._parts is not None and found.method not in self.on_mesh else ()
-        return CAUTION_PARTS.format(found.method, "; ".join(rough)) if rough else CAUTION.format(found.method)
+        """What must be said first: none is good, or the parts that it is of were not held against their mesh."""
+        parts = None if "panel" in self.on_mesh or found.method in self.on_mesh else self._parts
+        if parts is not None and parts.rough:
+            return CAUTION_PARTS.format(found.method, "; ".join(parts.rough))
+        if found.rough:
+            return CAUTION.format(found.method)
+        return "" if parts is None else UNCHECKED.format(found.method)
 
     def _symmetric(self, found: AddedMass) -> AddedMass:
         """Without the small entries that symmetry makes vanish and a mesh does not quite."""
@@ -125,9 +132,8 @@ class Triangulation:
 
     @property
     def caution(self) -> str:
-        """What must be said of the recommended one where it is only a rough guide; else nothing."""
-        found = self.recommended
-        return self._caution(found) if found.rough else ""
+        """What must be said of the recommended one where it is only a rough guide, or not checked; else nothing."""
+        return self._caution(self.recommended)
 
     @property
     def ordered(self) -> tuple[AddedMass, ...]:
@@ -141,9 +147,8 @@ class Triangulation:
 
         The size is the entry itself on the diagonal, the root of both its diagonal entries off it; NaN where fewer than
         two methods have it or the recommended one has not. A zero on the diagonal, or what rounding makes of it, is silence
-        and not a value. Methods that all compute the same stand-ins for a mesh share what these miss: where none of them is
-        the panel method on the mesh, the range is at least 3/2 of the worst error of their forms, and there is none
-        where one of these is a poor stand-in.
+        and not a value. Where parts stand for a mesh and no panel method took that mesh there is no range: the methods share
+        what the parts miss, and their agreement says nothing of it.
         """
         stack = np.array([r.matrix for r in self.results])
         diagonal = np.einsum("nii->ni", stack)
@@ -156,11 +161,9 @@ class Triangulation:
         high = np.max(np.where(speaks, stack, -np.inf), axis=0)
         low = np.min(np.where(speaks, stack, np.inf), axis=0)
         known = (speaks.sum(axis=0) > 1) & (size > 0.0)
-        apart = np.where(known, np.where(known, high - low, 0.0) / np.where(size > 0.0, size, 1.0), np.nan)
-        if self._parts is None or "panel" in self.on_mesh or self.recommended.method in self.on_mesh:
-            return apart
-        least = ALLOWANCE * max(f.worst for f in self._parts.stand_ins)
-        return np.full((6, 6), np.nan) if self._parts.rough else np.maximum(apart, least)
+        if self._parts is not None and "panel" not in self.on_mesh and self.recommended.method not in self.on_mesh:
+            known = np.zeros_like(known)
+        return np.where(known, np.where(known, high - low, 0.0) / np.where(size > 0.0, size, 1.0), np.nan)
 
     @property
     def mirror_planes(self) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from coeflab.model.table import ABSENT, Table, number
 
 Array = NDArray[np.float64]
 TOLD = np.radians(0.05)
-POOR_VOLUME, DECIMALS = 0.02, 4
+POOR, POOR_VOLUME, DECIMALS = 0.05, 0.02, 4
 MESH, KEPT_FACES = "mesh.ply", 200_000
 RULES = (
     "A thin body (mean thickness under 0.2 of the shorter of mean chord and span) is a plate of the area that it "
@@ -92,8 +92,8 @@ class SimplifiedPart:
 
     @property
     def poor(self) -> tuple[str, ...]:
-        """What makes it a poor stand-in, in words."""
-        return self.part.fit.poor if self.part.fit is not None else ()
+        """What is off by more than 5 %, in words; of a plate only the area along its normal counts."""
+        return self.part.fit.over(POOR) if self.part.fit is not None else ()
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -130,6 +130,9 @@ def added_masses(
             break
     if not results:
         raise InputError(f"no method that applies to {body.name}", f"a body for one of {', '.join(methods())}")
+    if original is not None:
+        parts, *printed = body.configurations
+        body = replace(body, configurations=(parts, original.configurations[0], *printed))
     return Triangulation(body, density, tuple(results), refused, tuple(cited), original, tuple(on_mesh))
 
 
@@ -147,7 +150,5 @@ def _file(body: Body) -> str:
 
 def _stood_in(found: AddedMass, shape: Parts) -> AddedMass:
     """What was computed of parts that stand for a mesh: as rough as they are."""
-    said = f"parts stand for a mesh, forms off by {100.0 * max(f.worst for f in shape.stand_ins):.1f} % at most"
-    if shape.rough:
-        said = f"parts stand for a mesh, a rough guide to it: {'; '.join(shape.rough)}"
+    said = "parts stand for a mesh" + (f", a rough guide to it: {'; '.join(shape.rough)}" if shape.rough else "")
     return replace(found, statements=(*found.statements, said), rough=found.rough or bool(shape.rough))
