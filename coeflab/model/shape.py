@@ -181,16 +181,15 @@ class StandIn:
     def __post_init__(self) -> None:
         if self.kind not in (*CLASSES.values(), OTHER):
             raise InputError(shown(self.kind), f"one of {', '.join((*CLASSES.values(), OTHER))}", column="class")
-        numbers = {"volume": self.volume, "length": self.length, "areas": min(self.areas)}
-        for name, value in numbers.items():
-            if not -1.0 <= value < np.inf or not np.all(np.isfinite(self.areas)):
-                raise InputError(f"{value:g}", "an error of form over piece, less one: -1 or more", column=name)
+        for name, errors in (("volume", (self.volume,)), ("length", (self.length,)), ("areas", self.areas)):
+            for value in errors:
+                if not -1.0 <= value < np.inf:
+                    raise InputError(f"{value:g}", "an error of form over piece, less one: -1 or more", column=name)
         if not 0.0 <= self.shared <= 1.0:
             raise InputError(f"{self.shared:g}", "a share from 0 to 1", column="shared")
         if (self.misfit is None) == (self.thickness is None):
-            raise InputError(
-                "misfit and thickness", "the misfit of a solid, or the thickness of a plate", column="misfit"
-            )
+            found = "neither misfit nor thickness" if self.misfit is None else "both misfit and thickness"
+            raise InputError(found, "the misfit of a solid, or the thickness of a plate", column="misfit")
         for name, measure in (("misfit", self.misfit), ("thickness", self.thickness)):
             if measure is not None and not 0.0 <= measure < np.inf:
                 raise InputError(f"{measure:g}", "a number of at least zero", column=name)

@@ -26,7 +26,7 @@ ELSE = (
 RULE = f"{EXACT}; else {ELSE}"
 UNCHECKED = (
     "NOT CHECKED: the parts stand for a mesh, and {} computes the parts; what they miss of the mesh only the panel method on the mesh "
-    "tells (--method all, with the mesh that [mesh] of body.toml names)"
+    "tells"
 )
 OF_MESH = f"for parts that stand for a mesh, the panel method on that mesh; else {ELSE}, parts that are poor stand-ins"
 CAUTION = (

@@ -20,7 +20,7 @@ from coeflab.model.table import ABSENT, Table, number
 
 Array = NDArray[np.float64]
 TOLD = np.radians(0.05)
-POOR, POOR_VOLUME, DECIMALS = 0.05, 0.02, 4
+POOR, POOR_VOLUME, DECIMALS = 0.05, 0.02, 6
 MESH, KEPT_FACES = "mesh.ply", 200_000
 RULES = (
     "A thin body (mean thickness under 0.2 of the shorter of mean chord and span) is a plate of the area that it "
