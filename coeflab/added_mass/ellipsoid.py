@@ -18,6 +18,8 @@ citations = ("lamb1932", "carlson1995")
 
 EQUIVALENT = "equivalent ellipsoid: the body's length and volume, breadth over depth by its second moments"
 
+STANDS_IN = "Lamb's values of the ellipsoid that stands for the mesh"
+
 
 def _axes(shape: Shape) -> NDArray[np.float64]:
     bc = 3.0 * shape.volume / (2.0 * np.pi * shape.length)
@@ -43,7 +45,7 @@ def added_mass(body: Body, density: float) -> AddedMass:
     Notes
     -----
     Length (of the parts that displace water) and volume are the body's; breadth over depth is the root of the ratio of
-    its second moments of volume along y and z, and the centre is its centre of volume. A body that is a single ellipsoid is taken as it is, in its own pose, and the result is exact.
+    its second moments of volume along y and z, and the centre is its centre of volume. A body that is a single ellipsoid is taken as it is, in its own pose, and the result is exact, unless it stands for a mesh.
     Of any other the misfit is told (`coeflab.model.ellipsoid_misfit`); where it is over a tenth the result is rough.
     Lamb, Hydrodynamics (1932), sections 114-115 and 121 a.
     """
@@ -55,7 +57,7 @@ def added_mass(body: Body, density: float) -> AddedMass:
     axes, centre, turn, rough = _axes(shape), shape.centre_of_volume, np.eye(3), False
     if isinstance(shape, Parts) and len(shape.parts) == 1 and isinstance(shape.parts[0].form, Ellipsoid):
         axes, turn = shape.parts[0].form.axes, shape.parts[0].rotation
-        said = ["the body is an ellipsoid: exact"]
+        said = [STANDS_IN if shape.stand_ins else "the body is an ellipsoid: exact"]
     else:
         misfit = ellipsoid_misfit(shape, axes)
         rough = misfit.rough

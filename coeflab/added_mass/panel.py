@@ -32,6 +32,7 @@ from coeflab.model.meshing import meshed
 summary = "triangular panels on the surface, potential formulation, Richardson extrapolation with an error estimate"
 citations = ("newman1977", "hess1967", "vanoosterom1983", "wilton1984", "roache1998", "cohensteiner2003")
 reproducible: Mapping[str, str] = {"kernel": "numpy"}
+takes_surface = True
 
 Array = NDArray[np.float64]
 FEWEST, MOST = 1_000, 32_000

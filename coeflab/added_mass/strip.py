@@ -23,6 +23,7 @@ from coeflab.model.shape import Revolution, Shape, as_revolution
 summary = "sections along x, exact for circles, by boundary elements for any shape; end correction none or lamb"
 citations = ("newman1977", "bryson1954", "lamb1932")
 presets: Mapping[str, Mapping[str, str]] = {"lamb": {"end_correction": "lamb"}}
+takes_surface = True
 
 NONE = "sections only: nothing along {}the axis, ends not corrected"
 POOR, SLENDER, COARSE, ROUNDING = 0.005, 3.0, 80, 1e-6

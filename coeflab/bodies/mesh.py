@@ -7,20 +7,14 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from coeflab.core.axes import parse_axes
-from coeflab.core.errors import UnitsError
-from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.toml import Section
 from coeflab.core.units import factor
 from coeflab.model.body import Body, Configuration
 from coeflab.model.body_file import open_body_file
 from coeflab.model.mesh import TriangleMesh
-from coeflab.model.mesh_file import load
-from coeflab.model.mesh_gates import examined
 from coeflab.model.mesh_particulars import UNITS, computed, likely_unit, require_plausible
-from coeflab.model.mesh_repair import repaired
+from coeflab.model.mesh_section import mesh_source
 
 summary = "a closed mesh (STL, OBJ, PLY, GLB) with declared unit and axes, refused unless sound"
 citations = ("eberly2002",)
@@ -31,14 +25,6 @@ STATED = (
     ("breadth", 1, ("breadth", "beam", "width")),
     ("depth", 2, ("depth", "height")),
 )
-
-
-def _unit(section: Section) -> float:
-    name = section.text("unit")
-    try:
-        return factor(name, "length")
-    except UnitsError as why:
-        raise section.fail("unit", why.found, why.expected, 'Name the unit of the file: "m", "mm", "ft" ...') from None
 
 
 def _require_size(mesh: TriangleMesh, unit: float, lengths: dict[str, float], section: Section) -> tuple[str, ...]:
@@ -92,12 +78,6 @@ def _near(found: float, stated: float) -> bool:
     return abs(found / stated - 1.0) <= FAR
 
 
-def _placed(vertices: NDArray[np.float64], unit: float, section: Section) -> NDArray[np.float64]:
-    axes = parse_axes(section.raw("axes"), section.file, section.key("axes"))
-    origin = section.point("origin") if section.has("origin") else np.zeros(3)
-    return np.asarray(unit * vertices @ axes.rotation.T + origin)
-
-
 def read(path: Path) -> Body:
     """Read a body.toml whose shape is a mesh file.
 
@@ -114,18 +94,13 @@ def read(path: Path) -> Body:
     """
     opened = open_body_file(path, "mesh")
     section = opened.root.section("mesh")
-    file = path.parent / section.text("path")
-    unit, repair = _unit(section), section.flag("repair", False)
-    parse_axes(section.raw("axes"), section.file, section.key("axes"))
-    raw = load(file)
-    sound = repaired(*raw, file) if repair else examined(*raw, file)
-    shape = TriangleMesh(_placed(sound.vertices, unit, section), sound.faces)
-    section.finish()
-    body = opened.body(shape, computed(shape, sound.statements))
-    said = _require_size(shape, unit, dict(body.lengths), section)
-    said += _require_volume(shape, unit, body.configurations[1:], section)
+    source = mesh_source(section, path.parent)
+    shape, statements = source.read()
+    body = opened.body(shape, computed(shape, statements))
+    said = _require_size(shape, source.unit, dict(body.lengths), section)
+    said += _require_volume(shape, source.unit, body.configurations[1:], section)
     return dataclasses.replace(
         body,
-        configurations=(computed(shape, sound.statements + said), *body.configurations[1:]),
-        files=(*body.files, InputFile(f"{body.name}/{file.name}", sha256_of(file))),
+        configurations=(computed(shape, statements + said), *body.configurations[1:]),
+        files=(*body.files, source.input_file(body.name)),
     )

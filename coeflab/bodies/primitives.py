@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,8 @@ from coeflab.core.toml import Section
 from coeflab.kernels.attitude import rotation
 from coeflab.model.body import Body, Configuration
 from coeflab.model.body_file import open_body_file
-from coeflab.model.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate
+from coeflab.model.mesh_section import mesh_source
+from coeflab.model.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, StandIn
 
 summary = "named cylinders, plates, spheroids, ellipsoids, spheres and boxes from a body.toml, each with its pose"
 citations = ("fossen2011",)
@@ -50,6 +52,24 @@ def _made(kind: str, values: list[float]) -> Form:
     return Ellipsoid(*values)
 
 
+def _fit(section: Section) -> StandIn:
+    def number(key: str) -> float:
+        return section.quantity(key, "none")
+
+    raw = section.raw("areas")
+    if not isinstance(raw, list) or len(raw) != 3:
+        raise section.fail("areas", shown(raw), "three errors [x, y, z] of projected areas")
+    areas = section.triple("areas", "none")
+    optional = {key: number(key) if section.has(key) else None for key in ("misfit", "thickness")}
+    kind, shared = section.text("class"), number("shared")
+    volume, length = number("volume"), number("length")
+    section.finish()
+    try:
+        return StandIn(kind, shared, volume, areas, length, **optional)
+    except InputError as why:
+        raise section.fail(why.column or "class", why.found, why.expected, why.advice) from None
+
+
 def _part(section: Section) -> Part:
     name, form = section.text("name"), _form(section)
     centre = section.point("centre")
@@ -61,8 +81,12 @@ def _part(section: Section) -> Part:
             "[roll, pitch, yaw] of at most 360 deg each",
             'A bare number is in rad: write degrees as "90 deg".',
         )
+    fit = _fit(section.section("fit")) if section.has("fit") else None
     section.finish()
-    return Part(name, form, centre, rotation(*turn))
+    try:
+        return Part(name, form, centre, rotation(*turn), fit)
+    except InputError as why:
+        raise section.fail("fit", why.found, why.expected, why.advice) from None
 
 
 def read(path: Path) -> Body:
@@ -94,4 +118,13 @@ def read(path: Path) -> Body:
         centre_of_buoyancy=shape.centre_of_volume,
         mass=None,
     )
-    return opened.body(shape, computed)
+    source = mesh_source(opened.root.section("mesh"), path.parent) if opened.root.has("mesh") else None
+    if source is not None and not source.file.is_file():
+        raise InputError(
+            f"no file {shown(source.file.name)}", "the mesh that the parts stand for", file=path, column="mesh.path",
+            advice="Put it back, or delete [mesh]: results are then as rough as the parts.",
+        )  # fmt: skip
+    body = opened.body(shape, computed)
+    if source is None:
+        return body
+    return replace(body, mesh=source, files=(*body.files, source.input_file(body.name)))

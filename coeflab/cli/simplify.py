@@ -28,7 +28,7 @@ def command(
     force: bool = typer.Option(False, "--force", help="Replace files that differ."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Write a body.toml of simple parts in place of a mesh, with an overlay as SVG and GLB.
+    """Write a body.toml of simple parts in place of a mesh, the mesh itself, and an overlay as SVG and GLB.
 
     Cuts off the boxes, then separates shells, then cuts appendages from a round hull; with --split convex it cuts
     further what no form fits.
@@ -39,6 +39,7 @@ def command(
     from coeflab.model.named_box import parse_box, read_boxes
     from coeflab.presentation.body_figure import body_figure
     from coeflab.presentation.body_scene import body_scene
+    from coeflab.studies.simplified import MESH
     from coeflab.studies.simplify import simplify
     from coeflab.studies.simplify_source import mesh_body
 
@@ -51,6 +52,7 @@ def command(
     figure = body_figure(Verbatim(name), found.shape, found.mesh, "overlay")
     files = {
         "body.toml": found.part_file(),
+        MESH: found.mesh_file(),
         "overlay.svg": figure.svg.encode(),
         "overlay.glb": body_scene(name, found.shape, found.mesh),
     }
@@ -66,4 +68,8 @@ def command(
     show.table(found.total_table())
     for file, new in changed.items():
         show.text(f"  {folder / file}: {'written' if new else 'unchanged'}")
+    if found.shape.rough:
+        show.text(
+            f"Rough stand-ins: {'; '.join(found.shape.rough)}. added-mass computes the mesh, {MESH}, beside them."
+        )
     show.text(f"Look at overlay.svg, correct body.toml, then: coeflab added-mass {folder}")

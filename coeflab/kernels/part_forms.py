@@ -38,6 +38,10 @@ class Likeness:
         False where no form is good, and the one of least misfit stands in.
     reason : str
         The test that held, or why none did, in words and numbers.
+    shared : float
+        Share of the volume within the form; of a plate within its outline.
+    misfit : float, optional
+        Of a solid form.
     """
 
     form: str
@@ -46,6 +50,8 @@ class Likeness:
     centre: Array
     clear: bool
     reason: str
+    shared: float
+    misfit: float | None = None
 
     @property
     def kind(self) -> str:
@@ -77,7 +83,7 @@ def likeness(of: Solid) -> Likeness:
         reason = f"mean thickness {thickness:.3f} of the shorter of mean chord and span, under {THIN:g}"
         if within < PLATE_SHARED:
             reason += f"; only {within:.0%} of the volume within its outline, under {PLATE_SHARED:.0%}"
-        return Likeness("plate", sides[:2], flat.rotation, flat.centre, within >= PLATE_SHARED, reason)
+        return Likeness("plate", sides[:2], flat.rotation, flat.centre, within >= PLATE_SHARED, reason, within)
     fit, misfit = min(best, key=lambda scored: round(scored[1] / BETTER))
     shared = (of ^ form_solid(fit.form, fit.sizes, fit.rotation, piece.centre)).volume() / piece.volume
     clear = misfit <= MISFIT and shared >= SHARED
@@ -86,7 +92,7 @@ def likeness(of: Solid) -> Likeness:
     )
     if not clear:
         reason += f"; bounds {MISFIT:g} and {SHARED:.0%}"
-    return Likeness(fit.form, fit.sizes, fit.rotation, piece.centre, clear, reason)
+    return Likeness(fit.form, fit.sizes, fit.rotation, piece.centre, clear, reason, shared, misfit)
 
 
 def _thin(of: Solid, piece: Piece, turn: Array) -> PlateFit | None:

@@ -53,3 +53,29 @@ def facets_outline(flat: Array) -> Outline:
     from manifold3d import CrossSection, FillRule
 
     return CrossSection(list(flat), FillRule.Positive)
+
+
+def ring(points: Array) -> Outline:
+    """The outline along (n, 2) points, counter-clockwise."""
+    from manifold3d import CrossSection
+
+    return CrossSection([points])
+
+
+def hatched(outline: Outline, apart: float, wide: float) -> Outline:
+    """Stripes within an outline, rising to the right.
+
+    Parameters
+    ----------
+    outline : Outline
+    apart, wide : float
+        From one stripe to the next along x, and their width along it, in units of the outline.
+    """
+    from manifold3d import CrossSection
+
+    low_x, low_y, high_x, high_y = outline.bounds()
+    tall = high_y - low_y
+    first, last = int(np.floor((low_x - tall) / apart)), int(np.ceil(high_x / apart))
+    stripe = np.array([[0.0, low_y], [wide, low_y], [wide + tall, high_y], [tall, high_y]])
+    stripes = [stripe + np.array([k * apart, 0.0]) for k in range(first, last + 1)]
+    return outline ^ CrossSection(stripes)

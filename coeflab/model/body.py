@@ -14,6 +14,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source
 from coeflab.kernels.brief import brief
 from coeflab.model.frozen import locked
+from coeflab.model.mesh_section import MeshSource
 from coeflab.model.scaling import Scaling
 from coeflab.model.shape import Shape
 
@@ -148,6 +149,8 @@ class Body:
         The length that primes are made with, where the file names one.
     measured : tuple of Measured
         Acceleration derivatives from elsewhere, to be shown beside computed ones.
+    mesh : MeshSource, optional
+        Where the shape's parts stand for a mesh: that mesh.
     """
 
     name: str
@@ -161,6 +164,7 @@ class Body:
     shape: Shape | None = None
     scaling: Scaling | None = None
     measured: tuple[Measured, ...] = ()
+    mesh: MeshSource | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))

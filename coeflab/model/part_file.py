@@ -10,12 +10,14 @@ import numpy as np
 
 from coeflab.kernels.attitude import angles
 from coeflab.model.body import Body
-from coeflab.model.shape import Box, Cylinder, Form, Part, Parts, Plate
+from coeflab.model.shape import Box, Cylinder, Form, Part, Parts, Plate, StandIn
 
 FIGURES, WIDTH = 12, 118  # digits that outlast rounding, and a line of an editor
 
 
-def part_file(body: Body, shape: Parts, opening: tuple[str, ...], remarks: Mapping[str, tuple[str, ...]]) -> bytes:
+def part_file(
+    body: Body, shape: Parts, opening: tuple[str, ...], remarks: Mapping[str, tuple[str, ...]], mesh: str = ""
+) -> bytes:
     """A body.toml.
 
     Parameters
@@ -27,6 +29,8 @@ def part_file(body: Body, shape: Parts, opening: tuple[str, ...], remarks: Mappi
         Comment lines at the top.
     remarks : mapping of str to tuple of str
         Comment lines over each part, by its name.
+    mesh : str
+        Name of the file beside it, m, FRD, from the datum, for which the parts stand; none where empty.
     """
     lines = [*_comments(opening), "[body]"]
     lines += [f"name = {_text(body.name)}", f"title = {_text(body.title)}", 'reader = "primitives"']
@@ -41,6 +45,8 @@ def part_file(body: Body, shape: Parts, opening: tuple[str, ...], remarks: Mappi
     if body.scaling is not None:
         lines += ["", "[prime]", f"length = {_number(body.scaling.length)}"]
         lines.append(f"length_name = {_text(body.scaling.length_name)}")
+    if mesh:
+        lines += ["", "[mesh]", f"path = {_text(mesh)}", 'unit = "m"', 'axes = "FRD"']
     for part in shape.parts:
         lines += ["", *_comments(remarks.get(part.name, ())), *_part(part)]
     return ("\n".join(lines) + "\n").encode()
@@ -54,7 +60,16 @@ def _part(part: Part) -> list[str]:
     turned = [float(np.round(np.degrees(a), 9)) + 0.0 for a in angles(part.rotation)]
     if any(turned):
         lines.append("rotation = [" + ", ".join(f'"{a:g} deg"' for a in turned) + "]")
+    if part.fit is not None:
+        lines.append(f"fit = {_fit(part.fit)}")
     return lines
+
+
+def _fit(fit: StandIn) -> str:
+    own = ("misfit", fit.misfit) if fit.misfit is not None else ("thickness", fit.thickness or 0.0)
+    numbers = {own[0]: own[1], "shared": fit.shared, "volume": fit.volume, "length": fit.length}
+    said = ", ".join(f"{key} = {_number(value)}" for key, value in numbers.items())
+    return f'{{class = "{fit.kind}", {said}, areas = {_numbers(np.array(fit.areas))}}}'
 
 
 def written(form: Form) -> tuple[str, dict[str, float]]:

@@ -16,6 +16,8 @@ from coeflab.model.mesh import TriangleMesh
 
 Array = NDArray[np.float64]
 STATIONS = 64  # graded to both ends, where radii change most
+POOR, OTHER = 0.1, "other"
+THIN = 0.05  # of the shorter side: up to here the panel method leaves a body to the formulas of plates
 
 
 def within_reach(form: str, **dimensions: float) -> None:
@@ -152,6 +154,91 @@ class Box:
 
 
 Form = Cylinder | Plate | Ellipsoid | Box
+CLASSES = {Cylinder: "cylinder", Plate: "plate", Ellipsoid: "ellipsoid", Box: "box"}
+
+
+@dataclass(frozen=True, slots=True)
+class StandIn:
+    """How well a form stands for the piece of a mesh in whose place it is; errors are form over piece, less one.
+
+    Attributes
+    ----------
+    kind : str
+        The form that the piece is like, or ``other``: it is like none, and the nearest stands in.
+    shared : float
+        Share of the piece's volume that lies within the form, of a plate within its outline.
+    volume, length : float
+        Errors; a plate has no volume: -1.
+    areas : (float, float, float)
+        Errors of the areas projected along the part's own axes.
+    misfit : float, optional
+        Of a solid: error of the length, plus errors of the areas over their sum.
+    thickness : float, optional
+        Of a plate: mean thickness of the piece over the shorter side.
+    """
+
+    kind: str
+    shared: float
+    volume: float
+    areas: tuple[float, float, float]
+    length: float
+    misfit: float | None = None
+    thickness: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.kind not in (*CLASSES.values(), OTHER):
+            raise InputError(shown(self.kind), f"one of {', '.join((*CLASSES.values(), OTHER))}", column="class")
+        for name, errors in (("volume", (self.volume,)), ("length", (self.length,)), ("areas", self.areas)):
+            for value in errors:
+                if not -1.0 <= value < np.inf:
+                    raise InputError(f"{value:g}", "an error of form over piece, less one: -1 or more", column=name)
+        if not 0.0 <= self.shared <= 1.0:
+            raise InputError(f"{self.shared:g}", "a share from 0 to 1", column="shared")
+        if (self.misfit is None) == (self.thickness is None):
+            found = "neither misfit nor thickness" if self.misfit is None else "both misfit and thickness"
+            raise InputError(found, "the misfit of a solid, or the thickness of a plate", column="misfit")
+        for name, measure in (("misfit", self.misfit), ("thickness", self.thickness)):
+            if measure is not None and not 0.0 <= measure < np.inf:
+                raise InputError(f"{measure:g}", "a number of at least zero", column=name)
+
+    @property
+    def counting(self) -> dict[str, float]:
+        """The errors that count: of a plate the area along its normal, which its added mass goes with."""
+        if self.thickness is not None:
+            return {"A z": self.areas[2]}
+        return {
+            **dict(zip(("A x", "A y", "A z"), self.areas, strict=True)),
+            "length": self.length,
+            "volume": self.volume,
+        }
+
+    def over(self, bound: float) -> tuple[str, ...]:
+        """Which errors are larger, in words."""
+        return tuple(f"{name} {100.0 * e:+.1f} %" for name, e in self.counting.items() if abs(e) > bound)
+
+    @property
+    def worst(self) -> str:
+        """The largest error that counts, in words."""
+        return max(((abs(e), f"{name} {100.0 * e:+.0f} %") for name, e in self.counting.items()))[1]
+
+    @property
+    def likeness(self) -> str:
+        """Misfit of a solid, thickness of a plate, in words."""
+        return f"thickness {self.thickness:.2g}" if self.misfit is None else f"misfit {self.misfit:.2g}"
+
+    @property
+    def poor(self) -> tuple[str, ...]:
+        """What makes it a poor stand-in, in words: class other, or an error over 10 %."""
+        like = f"class other ({self.likeness}, shares {self.shared:.0%} of the volume)"
+        return (*((like,) if self.kind == OTHER else ()), *self.over(POOR))
+
+    @property
+    def rough(self) -> tuple[str, ...]:
+        """Why formulas of the form are only a rough guide to the piece: `poor`, or a plate for a piece that is not thin."""
+        if self.thickness is None or self.thickness <= THIN:
+            return self.poor
+        thick = f"a plate without thickness for a piece of mean thickness {self.thickness:.2g} of the shorter side"
+        return (*self.poor, thick)
 
 
 @brief
@@ -167,12 +254,15 @@ class Part:
         m, FRD, from the datum.
     rotation : (3, 3) array
         Components along the part's own axes to those along the body's.
+    fit : StandIn, optional
+        Where the part stands for a piece of a mesh: how well. Without it the part is what its maker says it is.
     """
 
     name: str
     form: Form
     centre: Array
     rotation: Array
+    fit: StandIn | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "centre", locked(self.centre))
@@ -181,6 +271,11 @@ class Part:
         proper = turn.shape == (3, 3) and np.allclose(turn @ turn.T, np.eye(3), atol=1e-9) and np.linalg.det(turn) > 0.0
         if not proper:
             raise InputError(f"the pose of part {shown(self.name)}, which mirrors or stretches", "a rotation")
+        if self.fit is not None and self.fit.kind not in (CLASSES[type(self.form)], OTHER):
+            raise InputError(
+                f"the fit of a {self.fit.kind} for part {shown(self.name)}, a {CLASSES[type(self.form)]}",
+                "the fit of this form", column="fit", advice="Delete the fit of a part whose form you change.",
+            )  # fmt: skip
 
 
 @brief
@@ -197,6 +292,16 @@ class Parts:
         twice = sorted({n for n in names if names.count(n) > 1})
         if twice:
             raise InputError(f"two parts called {shown(twice[0])}", "one name for each part")
+
+    @property
+    def stand_ins(self) -> tuple[StandIn, ...]:
+        """The fits of the parts that stand for pieces of a mesh."""
+        return tuple(p.fit for p in self.parts if p.fit is not None)
+
+    @property
+    def rough(self) -> tuple[str, ...]:
+        """Which parts are only a rough guide to their pieces of a mesh, and why."""
+        return tuple(f"{p.name}: {', '.join(p.fit.rough)}" for p in self.parts if p.fit is not None and p.fit.rough)
 
     @property
     def volume(self) -> float:

@@ -17,16 +17,26 @@ from coeflab.model.mirror_planes import NAMES, mirrors, must_vanish
 from coeflab.model.shape import Ellipsoid, Part, Parts, Shape
 
 Array = NDArray[np.float64]
-RULE = (
-    "ellipsoids, one alone or so far apart that they hardly feel each other, by Lamb's closed form, which is exact; else the "
-    "panel method; else, for parts among which are plates or none that touch, and for a mesh like one plate, their closed "
+EXACT = "ellipsoids, one alone or so far apart that they hardly feel each other, by Lamb's closed form, which is exact"
+ELSE = (
+    "the panel method; else, for parts among which are plates or none that touch, and for a mesh like one plate, their closed "
     "forms with corrected ends; else strips with Lamb's end correction; else the ellipsoid of equal volume and proportions; "
     "what calls itself a rough guide comes last: strips of a short body, an ellipsoid whose projected areas or second moments "
     "of volume are off by over 10 %, a mesh as one plate"
 )
+RULE = f"{EXACT}; else {ELSE}"
+UNCHECKED = (
+    "NOT CHECKED: the parts stand for a mesh, and {} computes the parts; what they miss of the mesh only the panel method on the mesh "
+    "tells"
+)
+OF_MESH = f"for parts that stand for a mesh, the panel method on that mesh; else {ELSE}, parts that are poor stand-ins"
 CAUTION = (
     "NONE OF THE METHODS SHOWN IS GOOD FOR THIS BODY: {} is a rough guide; compare them all, or describe the body by parts, thin ones "
     "as plates (coeflab simplify, or a body.toml of reader primitives), for the method primitives"
+)
+CAUTION_PARTS = (
+    "NONE OF THE METHODS SHOWN IS GOOD FOR THIS BODY: {} is a rough guide, as parts are poor stand-ins for a mesh: {}. Take the panel "
+    "method on the mesh itself, or replace these parts"
 )
 ORDER = ("panel", "primitives", "strip:lamb", "ellipsoid", "primitives:huuv", "strip")
 ROUNDING = 1e-12
@@ -50,6 +60,10 @@ class Triangulation:
         About the body's reference point.
     refused : mapping of method to str
     citations : tuple of str
+    original : Body, optional
+        The mesh, where the body's parts stand for one.
+    on_mesh : tuple of str
+        Methods that took it in their place.
     """
 
     body: Body
@@ -57,6 +71,24 @@ class Triangulation:
     results: tuple[AddedMass, ...]
     refused: Mapping[str, str]
     citations: tuple[str, ...]
+    original: Body | None = None
+    on_mesh: tuple[str, ...] = ()
+
+    @property
+    def shape(self) -> Shape:
+        """The body's, or that of the mesh for which its parts stand."""
+        return (self.original or self.body).require_shape()
+
+    @property
+    def _parts(self) -> Parts | None:
+        """The parts, where some stand for pieces of a mesh."""
+        shape = self.body.require_shape()
+        return shape if isinstance(shape, Parts) and shape.stand_ins else None
+
+    @property
+    def rule(self) -> str:
+        """`RULE`, or `OF_MESH` where parts stand for a mesh: forms that stand in are never exact."""
+        return RULE if self._parts is None else OF_MESH
 
     @property
     def recommended(self) -> AddedMass:
@@ -67,7 +99,7 @@ class Triangulation:
         InputError
             None of them is.
         """
-        alone, order = _ellipsoids(self.body.require_shape()), ORDER
+        alone, order = () if self._parts else _ellipsoids(self.body.require_shape()), ORDER
         if alone and _felt(alone) < APART:
             exact = ("ellipsoid", "primitives") if len(alone) == 1 else ("primitives",)
             order = (*exact, *(m for m in ORDER if m not in exact))
@@ -79,9 +111,17 @@ class Triangulation:
             raise InputError(
                 f"no added mass of {shown(self.body.name)} that is a kinetic energy", "a symmetric, positive matrix"
             )
+        caution = self._caution(found)
+        return self._symmetric(replace(found, statements=(caution, *found.statements)) if caution else found)
+
+    def _caution(self, found: AddedMass) -> str:
+        """What must be said first: none is good, or the parts that it is of were not held against their mesh."""
+        parts = None if "panel" in self.on_mesh or found.method in self.on_mesh else self._parts
+        if parts is not None and parts.rough:
+            return CAUTION_PARTS.format(found.method, "; ".join(parts.rough))
         if found.rough:
-            found = replace(found, statements=(CAUTION.format(found.method), *found.statements))
-        return self._symmetric(found)
+            return CAUTION.format(found.method)
+        return "" if parts is None else UNCHECKED.format(found.method)
 
     def _symmetric(self, found: AddedMass) -> AddedMass:
         """Without the small entries that symmetry makes vanish and a mesh does not quite."""
@@ -94,9 +134,8 @@ class Triangulation:
 
     @property
     def caution(self) -> str:
-        """What must be said of the recommended one where it is only a rough guide; else nothing."""
-        found = self.recommended
-        return CAUTION.format(found.method) if found.rough else ""
+        """What must be said of the recommended one where it is only a rough guide, or not checked; else nothing."""
+        return self._caution(self.recommended)
 
     @property
     def ordered(self) -> tuple[AddedMass, ...]:
@@ -110,7 +149,8 @@ class Triangulation:
 
         The size is the entry itself on the diagonal, the root of both its diagonal entries off it; NaN where fewer than
         two methods have it or the recommended one has not. A zero on the diagonal, or what rounding makes of it, is silence
-        and not a value.
+        and not a value. Where parts stand for a mesh and no panel method took that mesh there is no range: the methods share
+        what the parts miss, and their agreement says nothing of it.
         """
         stack = np.array([r.matrix for r in self.results])
         diagonal = np.einsum("nii->ni", stack)
@@ -123,19 +163,21 @@ class Triangulation:
         high = np.max(np.where(speaks, stack, -np.inf), axis=0)
         low = np.min(np.where(speaks, stack, np.inf), axis=0)
         known = (speaks.sum(axis=0) > 1) & (size > 0.0)
+        if self._parts is not None and "panel" not in self.on_mesh and self.recommended.method not in self.on_mesh:
+            known = np.zeros_like(known)
         return np.where(known, np.where(known, high - low, 0.0) / np.where(size > 0.0, size, 1.0), np.nan)
 
     @property
     def mirror_planes(self) -> tuple[str, ...]:
         """Names of the shape's planes of symmetry."""
-        return tuple(n for n, holds in zip(NAMES, mirrors(self.body.require_shape()), strict=True) if holds)
+        return tuple(n for n, holds in zip(NAMES, mirrors(self.shape), strict=True) if holds)
 
     def vanishing(self) -> tuple[NDArray[np.bool_], dict[str, float]]:
         """Entries that symmetry makes vanish, (6, 6) of booleans, and the largest of them by method.
 
         Largest over the root of both diagonal entries.
         """
-        zero = must_vanish(self.body.require_shape(), self.body.reference_point)
+        zero = must_vanish(self.shape, self.body.reference_point)
         left = {}
         for r in self.results:
             diagonal = np.diag(r.matrix)

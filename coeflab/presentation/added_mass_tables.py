@@ -10,10 +10,10 @@ from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.table import ABSENT, Table, coefficient, number
-from coeflab.model.triangulation import RULE, Triangulation
+from coeflab.model.triangulation import Triangulation
 
 SHOWN = ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot", "Yrdot", "Zqdot")
-TRANSLATIONS, MARK, WIDEST = "uvw", "*", 10.0
+TRANSLATIONS, MARK, WIDEST, SMALLEST = "uvw", "*", 10.0, 1e-3
 
 
 def particulars(body: Body) -> Table:
@@ -63,7 +63,7 @@ def sound(mesh: TriangleMesh) -> str:
 
 def derivatives(found: Triangulation) -> Table:
     """Acceleration derivatives in SI, over the displaced mass, and their spread over the methods."""
-    mass = found.density * found.body.require_shape().volume
+    mass = found.density * found.shape.volume
     spread = found.spread
     rows = []
     for symbol in SHOWN:
@@ -71,7 +71,11 @@ def derivatives(found: Triangulation) -> Table:
         ratios = [number(-v / mass, 3) if mass and symbol[1] in TRANSLATIONS else ABSENT for v in values]
         i, j = COMPONENTS.index(symbol[0]), "uvwpqr".index(symbol[1])
         rows.append(
-            (symbol, *(c for pair in zip([number(v) for v in values], ratios) for c in pair), _apart(spread[i, j]))
+            (
+                symbol,
+                *(c for pair in zip([number(v) for v in values], ratios) for c in pair),
+                _apart(spread[i, j], found.original is not None),
+            )
         )
     headers = ("SI", *(cell for r in found.results for cell in (_marked(r, found), "/m")), "spread")
     note = (
@@ -83,7 +87,7 @@ def derivatives(found: Triangulation) -> Table:
 
 def remarks(found: Triangulation) -> tuple[str, ...]:
     """Which method is recommended and why, how far it can be trusted, and what each assumed."""
-    notes = [f"{MARK} recommended: {found.recommended.method}, by the rule: {RULE}"]
+    notes = [f"{MARK} recommended: {found.recommended.method}, by the rule: {found.rule}"]
     notes += [found.caution] if found.caution else []
     notes += _verdicts(found)
     notes += [f"{r.method}: {'; '.join(r.statements)}" for r in found.results if r.statements]
@@ -91,10 +95,15 @@ def remarks(found: Triangulation) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _apart(spread: float) -> str:
-    """A spread in per cent; over tenfold it says only that the methods have nothing in common there."""
+def _apart(spread: float, stood_in: bool) -> str:
+    """A spread in per cent; over tenfold it says only that the methods have nothing in common there.
+
+    Methods that compute stand-ins and a mesh never agree to nothing, whatever the last digit says.
+    """
     if np.isnan(spread):
         return ABSENT
+    if stood_in and spread < SMALLEST:
+        return f"< {100.0 * SMALLEST:g} %"
     return f"{100.0 * spread:.1f} %" if spread <= WIDEST else f"> {100.0 * WIDEST:.0f} %"
 
 

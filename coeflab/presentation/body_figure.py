@@ -7,17 +7,19 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
+from matplotlib.legend_handler import HandlerBase
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
+from matplotlib.patches import Patch, PathPatch, Polygon
 from numpy.typing import NDArray
 
+from coeflab.kernels import silhouette
 from coeflab.model.mesh import TriangleMesh
-from coeflab.model.shape import Parts
+from coeflab.model.shape import OTHER, Part, Parts
 from coeflab.presentation.body_axes import BELOW, LEFT, rulers
-from coeflab.presentation.body_view import BEHIND, Sheet, View
+from coeflab.presentation.body_view import BEHIND, HATCH, STRIPE, Sheet, View, outline_path
 from coeflab.presentation.document import Figure
 from coeflab.presentation.notation import as_users_wrote
-from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets, picture_surface
+from coeflab.presentation.part_facets import COLOUR_OF, POOR, form_name, is_poor, part_facets, picture_surface
 from coeflab.presentation.svg import COLOURS, POINTS, settings, svg_text
 
 Array = NDArray[np.float64]
@@ -93,7 +95,7 @@ def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str)
                 rulers(sheet, points)
         _legend(axes, shape, mesh is not None)
         svg = svg_text(figure, anchor, title, _description(shape, mesh))
-    return Figure(anchor, svg, title, _caption(mesh), _description(shape, mesh))
+    return Figure(anchor, svg, title, _caption(shape, mesh), _description(shape, mesh))
 
 
 def _scale(size: Array) -> float:
@@ -112,9 +114,10 @@ def _placed(axes: Axes, view: View, points: Array, corner: tuple[float, float], 
 
 
 def _labels(sheet: Sheet, shape: Parts, between: tuple[float, float]) -> None:
-    """Names of the largest parts over and under the view, in their order from left to right, with lines to the parts."""
+    """Names of the poor stand-ins and of the largest parts over and under the view, in their order from left to right, with lines to the parts."""
     size = [float(np.prod(np.sort(np.ptp(part_facets(p).reshape(-1, 3), axis=0))[1:])) for p in shape.parts]
-    chosen = sorted(sorted(range(len(size)), key=lambda i: (-size[i], i))[:LABELLED])
+    chosen = sorted(sorted(range(len(size)), key=lambda i: (not is_poor(shape.parts[i]), -size[i], i))[:LABELLED])
+    names = {i: _marked(shape.parts[i]) for i in chosen}
     at = {i: sheet.on_paper(shape.parts[i].centre) for i in chosen}
     middle = sum(between) / 2.0
     for baseline, foot, row in (
@@ -122,11 +125,19 @@ def _labels(sheet: Sheet, shape: Parts, between: tuple[float, float]) -> None:
         (between[1] - 15.0, between[1] - 7.0, [i for i in chosen if at[i][1] < middle]),
     ):
         row.sort(key=lambda i: (at[i][0], i))
-        widths = [LETTER * len(shape.parts[i].name) + 10.0 for i in row]
+        widths = [LETTER * len(names[i]) + 10.0 for i in row]
         for i, x in zip(row, _spread([float(at[i][0]) for i in row], widths), strict=True):
             sheet.axes.plot([x, at[i][0]], [foot, at[i][1]], color=COLOURS["ink"], linewidth=0.6, zorder=3)
             sheet.axes.plot(*at[i], marker="o", markersize=2.4, color=COLOURS["ink"], zorder=3)
-            sheet.axes.text(x, baseline, shape.parts[i].name, ha="center", fontsize=8.5)
+            sheet.axes.text(x, baseline, names[i], ha="center", fontsize=8.5)
+
+
+def _marked(part: Part) -> str:
+    """The name, with what is wrong with a poor stand-in."""
+    fit = part.fit
+    if fit is None or not fit.poor:
+        return part.name
+    return f"{part.name}: {OTHER}, {fit.likeness}" if fit.kind == OTHER else f"{part.name}: {fit.worst}"
 
 
 def _spread(wanted: list[float], widths: list[float]) -> list[float]:
@@ -142,11 +153,36 @@ def _spread(wanted: list[float], widths: list[float]) -> list[float]:
     return out
 
 
+class _Poor(Patch):
+    """The sample of a poor stand-in."""
+
+
+class _Stripes(HandlerBase):
+    """Draws it: an outline with stripes, as in the views."""
+
+    def create_artists(self, *given: Any) -> list[Any]:
+        """Matplotlib gives legend, handle, descents, width, height, size of the letters and the transform."""
+        _, handle, across, down, width, height, _, place = given
+        corners = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]) - (across, down)
+        frame = silhouette.ring(corners)
+        stripes = outline_path(silhouette.hatched(frame, HATCH, STRIPE))
+        edge = Polygon(corners, transform=place)
+        edge.update_from(handle)
+        edge.set_transform(place)
+        return (
+            [edge, PathPatch(stripes, facecolor=COLOURS["ink"], edgecolor="none", transform=place)]
+            if stripes
+            else [edge]
+        )
+
+
 def _legend(axes: Axes, shape: Parts, with_mesh: bool) -> None:
     forms = {form_name(p.form) for p in shape.parts}
     handles: list[Any] = [
         Patch(facecolor=COLOURS[c], edgecolor="none", label=f) for f, c in COLOUR_OF.items() if f in forms
     ]
+    if any(is_poor(p) for p in shape.parts):
+        handles.append(_Poor(edgecolor=COLOURS["ink"], facecolor="none", linewidth=1.2, label="poor stand-in"))
     if with_mesh:
         handles.append(Line2D([], [], color=COLOURS["ink"], linewidth=0.9, label="outline of the mesh"))
         bare = Patch(facecolor=COLOURS["band"], alpha=BEHIND, edgecolor="none", label="mesh that no part covers")
@@ -160,18 +196,25 @@ def _legend(axes: Axes, shape: Parts, with_mesh: bool) -> None:
         borderpad=0.0,
         borderaxespad=0.0,
         handlelength=1.6,
+        columnspacing=1.4,
+        handler_map={_Poor: _Stripes()},
     )
 
 
-def _caption(mesh: TriangleMesh | None) -> str:
+def _caption(shape: Parts, mesh: TriangleMesh | None) -> str:
+    marked = " Striped: a poor stand-in for its piece of the mesh." if any(map(is_poor, shape.parts)) else ""
     if mesh is None:
-        return "The parts of the body, coloured by form, in orthographic views at one scale; the oblique one is larger."
+        return (
+            "The parts of the body, coloured by form, in orthographic views at one scale; the oblique one is larger."
+            + marked
+        )
     return (
         "Simple parts (solid, coloured by form) under the translucent mesh with its outline: grey without colour is mesh "
         "outside the parts, full colour beyond the outline is part outside the mesh. A plate seen from its edge is a line."
+        + marked
     )
 
 
 def _description(shape: Parts, mesh: TriangleMesh | None) -> str:
-    parts = ", ".join(f"{p.name} ({form_name(p.form)})" for p in shape.parts)
+    parts = ", ".join(f"{p.name} ({form_name(p.form)}{POOR if is_poor(p) else ''})" for p in shape.parts)
     return f"Side, front, top and oblique views of {parts}" + (" with the outline of the mesh." if mesh else ".")

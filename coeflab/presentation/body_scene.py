@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from coeflab.model.mesh import TriangleMesh
 from coeflab.model.shape import Parts
-from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets, picture_surface
+from coeflab.presentation.part_facets import COLOUR_OF, POOR, form_name, is_poor, part_facets, picture_surface
 from coeflab.presentation.svg import COLOURS
 
 Array = NDArray[np.float64]
@@ -39,16 +39,21 @@ def body_scene(name: str, shape: Parts, mesh: TriangleMesh | None = None) -> byt
 
     Notes
     -----
-    Vertices are in FRD, m, from the datum; the root node turns them to glTF's axes. Nodes carry form and volume in
-    ``extras``, the root unit and axes. Faces have no normals, so viewers shade them flat, as glTF asks.
+    Vertices are in FRD, m, from the datum; the root node turns them to glTF's axes. Nodes carry form, volume and, of poor
+    stand-ins, which are dark, what is off in ``extras``, the root unit and axes. Faces have no normals, so viewers shade them flat, as glTF asks.
     """
     out = _Scene()
-    forms = dict.fromkeys(form_name(p.form) for p in shape.parts)
-    material = {f: out.material(f, COLOURS[COLOUR_OF[f]], 1.0) for f in forms}
+    kinds = dict.fromkeys((form_name(p.form), is_poor(p)) for p in shape.parts)
+    material = {
+        (form, poor): out.material(f"{form}{POOR if poor else ''}", COLOURS["ink" if poor else COLOUR_OF[form]], 1.0)
+        for form, poor in kinds
+    }
     for part in shape.parts:
-        facets = part_facets(part)
-        kind = form_name(part.form)
-        out.node(part.name, *_triangles(facets), material[kind], {"form": kind, "volume_m3": part.form.volume})
+        form, poor = form_name(part.form), is_poor(part)
+        told: dict[str, Any] = {"form": form, "volume_m3": part.form.volume}
+        if part.fit is not None:
+            told |= {"class": part.fit.kind, "poor": list(part.fit.poor)}
+        out.node(part.name, *_triangles(part_facets(part)), material[form, poor], told)
     if mesh is not None:
         vertices, faces = picture_surface(mesh)
         taken = {p.name for p in shape.parts}

@@ -16,7 +16,7 @@ from coeflab.kernels.brief import brief
 from coeflab.kernels.form_facets import normals
 from coeflab.kernels.solids import Surface
 from coeflab.model.shape import Parts
-from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets
+from coeflab.presentation.part_facets import COLOUR_OF, form_name, is_poor, part_facets
 from coeflab.presentation.svg import COLOURS
 
 Array = NDArray[np.float64]
@@ -24,6 +24,7 @@ LIGHT = np.array([-0.35, 0.65, 0.67]) / np.linalg.norm([-0.35, 0.65, 0.67])
 SHADES, SHADE = (0.15, 0.3, 0.45, 0.6, 0.75, 0.9), 0.1
 BEHIND, FILM = 0.45, 0.3
 EDGE_ON = 1e-6
+PALE, HATCH, STRIPE = 0.5, 8.0, 2.0  # the last two in points
 
 
 @brief
@@ -82,7 +83,8 @@ class Sheet:
             self._fill(outline, "band", BEHIND)
         depth = [round(float(p.centre @ self.view.axes[2]), 9) for p in shape.parts]
         for i in sorted(range(len(depth)), key=lambda i: (depth[i], i)):
-            self._part(part_facets(shape.parts[i]), COLOUR_OF[form_name(shape.parts[i].form)])
+            part = shape.parts[i]
+            self._part(part_facets(part), COLOUR_OF[form_name(part.form)], is_poor(part))
         if outline is not None:
             self._fill(outline, "band", FILM)
             self._line(outline, "ink", 0.9)
@@ -93,13 +95,20 @@ class Sheet:
         self._fill(outline, "band", BEHIND)
         self._line(outline, "ink", 0.9)
 
-    def _part(self, facets: Array, colour: str) -> None:
+    def _part(self, facets: Array, colour: str, poor: bool) -> None:
         whole = silhouette.convex_outline(facets.reshape(-1, 3), self.frame)
         if whole.area() <= EDGE_ON * (self.scale * self.extent) ** 2:
             ends = self.on_paper(facets.reshape(-1, 3))
             along = ends @ np.linalg.eigh(np.cov(ends.T))[1][:, 1]
             far = ends[[int(np.argmin(along)), int(np.argmax(along))]]
             self.axes.plot(*far.T, color=COLOURS[colour], linewidth=2.2, solid_capstyle="butt", zorder=2)
+            if poor:
+                self.axes.plot(*far.T, color=COLOURS["ink"], linewidth=2.2, linestyle=(0.0, (1.0, 1.5)), zorder=2)
+            return
+        if poor:
+            self._fill(whole, colour, PALE)
+            self._fill(silhouette.hatched(whole, HATCH, STRIPE), "ink", 1.0)
+            self._line(whole, "ink", 1.6)
             return
         self._fill(whole, colour, 1.0)
         outward = normals(facets) @ self.view.axes.T
@@ -110,17 +119,19 @@ class Sheet:
                 self._fill(silhouette.facets_outline(seen @ self.frame.T), "ink", SHADE)
         self._line(whole, colour, 0.8)
 
-    def _path(self, outline: Any) -> Path | None:
-        rings = [np.round(ring + self.move, 2) for ring in silhouette.polygons(outline)]
-        return Path.make_compound_path(*(Path(np.vstack([r, r[:1]]), closed=True) for r in rings)) if rings else None
-
     def _fill(self, outline: Any, colour: str, alpha: float) -> None:
-        path = self._path(outline)
+        path = outline_path(outline, self.move)
         if path is not None:
             self.axes.add_patch(PathPatch(path, facecolor=COLOURS[colour], edgecolor="none", alpha=alpha, zorder=2))
 
     def _line(self, outline: Any, colour: str, width: float) -> None:
-        path = self._path(outline)
+        path = outline_path(outline, self.move)
         if path is not None:
             style: dict[str, Any] = {"facecolor": "none", "edgecolor": COLOURS[colour], "linewidth": width}
             self.axes.add_patch(PathPatch(path, zorder=2, **style))
+
+
+def outline_path(outline: Any, move: Array | tuple[float, float] = (0.0, 0.0)) -> Path | None:
+    """An outline as a path, moved by so much; None where there is none."""
+    rings = [np.round(ring + move, 2) for ring in silhouette.polygons(outline)]
+    return Path.make_compound_path(*(Path(np.vstack([r, r[:1]]), closed=True) for r in rings)) if rings else None

@@ -13,7 +13,7 @@ from coeflab.model.mesh import TriangleMesh
 from coeflab.model.meshing import meshed
 from coeflab.model.shape import Parts, Shape
 from coeflab.presentation.document import Axis, Layer, Scene
-from coeflab.presentation.part_facets import COLOUR_OF, form_name, part_facets
+from coeflab.presentation.part_facets import COLOUR_OF, POOR, form_name, is_poor, part_facets
 
 Array = NDArray[np.float64]
 FACES = 3000
@@ -87,15 +87,16 @@ def _at(place: Array) -> str:
 
 
 def _parts(shape: Parts) -> tuple[Layer, ...]:
-    """One layer a form, so that a form is one entry of the legend."""
-    forms: dict[str, list[Array]] = {}
+    """One layer a form, so that a form is one entry of the legend; poor stand-ins apart, and dark."""
+    forms: dict[tuple[str, bool], list[Array]] = {}
     for part in shape.parts:
-        forms.setdefault(form_name(part.form), []).append(part_facets(part))
+        forms.setdefault((form_name(part.form), is_poor(part)), []).append(part_facets(part))
     out = []
-    for form, facets in forms.items():
+    for (form, poor), facets in forms.items():
         corners = np.concatenate(facets)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
         places, index = np.unique(np.round(corners, 9), axis=0, return_inverse=True)
-        out.append(Layer(form, COLOUR_OF[form], places, index.reshape(-1, 3)))
+        name, colour = (f"{form}{POOR}", "ink") if poor else (form, COLOUR_OF[form])
+        out.append(Layer(name, colour, places, index.reshape(-1, 3)))
     return tuple(out)
 
 

@@ -13,11 +13,17 @@ from coeflab.model.shape import Box, Cylinder, Form, Part, Plate
 Array = NDArray[np.float64]
 MOST_FACES = 20_000
 COLOUR_OF = {"cylinder": "a", "plate": "b", "ellipsoid": "c", "box": "d"}
+POOR = ", a poor stand-in"
 
 
 def form_name(form: Form) -> str:
     """``cylinder``, ``plate``, ``ellipsoid`` or ``box``."""
     return type(form).__name__.lower()
+
+
+def is_poor(part: Part) -> bool:
+    """Whether it is a poor stand-in for its piece of a mesh, which every picture marks."""
+    return part.fit is not None and bool(part.fit.poor)
 
 
 def part_facets(part: Part) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,16 +10,19 @@ from numpy.typing import NDArray
 
 from coeflab.kernels.brief import brief
 from coeflab.kernels.part_forms import MISFIT, SHARED, Likeness
+from coeflab.kernels.solids import simplified, solid, surface
 from coeflab.model.body import Body
 from coeflab.model.mesh import TriangleMesh
+from coeflab.model.mesh_section import ply
 from coeflab.model.part_file import part_file, written
 from coeflab.model.shadows import shadow
-from coeflab.model.shape import Part, Parts
+from coeflab.model.shape import Part, Parts, Plate, StandIn
 from coeflab.model.table import ABSENT, Table, number
 
 Array = NDArray[np.float64]
 TOLD = np.radians(0.05)
-POOR, POOR_VOLUME = 0.05, 0.02
+POOR, POOR_VOLUME, DECIMALS = 0.05, 0.02, 6
+MESH, KEPT_FACES = "mesh.ply", 200_000
 RULES = (
     "A thin body (mean thickness under 0.2 of the shorter of mean chord and span) is a plate of the area that it "
     "projects along its normal and of the span at the middle of it, hence of its aspect ratio; it has no thickness: volume and edges are left out.",
@@ -77,12 +80,22 @@ class SimplifiedPart:
         longest = int(np.argmax(self.extents)) if self.part.form.volume else 1
         return float(2.0 * self.part.form.half_extents(np.eye(3))[longest] / self.extents[longest] - 1.0)
 
+    def with_fit(self) -> SimplifiedPart:
+        """The same with the quality of the fit in the part."""
+        like, (x, y, z) = self.likeness, (_written(e) for e in self.projected_errors)
+        form = self.part.form
+        thickness = None
+        if isinstance(form, Plate):
+            thickness = _written(self.volume / (form.chord * form.span * min(form.chord, form.span)))
+        misfit = None if like.misfit is None else _written(like.misfit)
+        shared, volume, length = (_written(v) for v in (like.shared, self.volume_error, self.length_error))
+        fit = StandIn(like.kind, min(shared, 1.0), volume, (x, y, z), length, misfit, thickness)
+        return replace(self, part=replace(self.part, fit=fit))
+
     @property
     def poor(self) -> tuple[str, ...]:
         """What is off by more than 5 %, in words; of a plate only the area along its normal counts."""
-        errors = dict(zip(("A x", "A y", "A z"), self.projected_errors, strict=True)) | {"length": self.length_error}
-        kept = errors if self.part.form.volume else {"A z": errors["A z"]}
-        return tuple(f"{name} {_percent(e)}" for name, e in kept.items() if abs(e) > POOR)
+        return self.part.fit.over(POOR) if self.part.fit is not None else ()
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -183,7 +196,7 @@ class Simplification:
             {
                 "name": p.part.name, "form": written(p.part.form)[0], "sizes": written(p.part.form)[1],
                 "centre": p.part.centre.tolist(), "rotation": p.part.rotation.tolist(),
-                "mesh_volume": p.volume, "volume": p.part.form.volume, "volume_error": p.volume_error,
+                "mesh_volume": p.volume, "misfit": p.likeness.misfit, "shared": p.likeness.shared, "volume": p.part.form.volume, "volume_error": p.volume_error,
                 "projected_area_errors": p.projected_errors.tolist(), "length_error": p.length_error,
                 "class": p.likeness.kind, "stand_in": not p.likeness.clear, "look_at": list(p.poor),
                 "remarks": list(p.remarks),
@@ -211,17 +224,26 @@ class Simplification:
             "the overlay, and correct here what is wrong.",
             "Lengths in m, FRD, from the datum. Along its own axes a cylinder or spheroid lies along x; a plate has its "
             "chord along x, its span along y, its normal along z. rotation = [roll, pitch, yaw].",
+            "fit: how well the form stands for its piece of the mesh; class other is like none. volume, areas (projected along "
+            "the part's own axes) and length: form over piece, less one. Delete the fit of a part that you correct; "
+            "what has none counts as you describe it.",
+            "mesh: what the parts stand for. Panel method and strips take it in their place; delete it where the parts are to "
+            "be another body than the mesh.",
             *RULES,
             *self.statements,
         )
-        remarks = {}
-        for p in self.parts:
-            v, (x, y, z) = _percent(p.volume_error), (_percent(e) for e in p.projected_errors)
-            errors = (
-                f"errors: volume {v}; projected area along its x {x}, y {y}, z {z}; length {_percent(p.length_error)}"
-            )
-            remarks[p.part.name] = (*p.remarks, errors)
-        return part_file(self.body, self.shape, opening, remarks)
+        return part_file(self.body, self.shape, opening, {p.part.name: p.remarks for p in self.parts}, MESH)
+
+    def mesh_file(self) -> bytes:
+        """The mesh for which the parts stand, as PLY; above 200,000 faces decimated to that many."""
+        if len(self.mesh.faces) <= KEPT_FACES:
+            return ply(self.mesh.vertices, self.mesh.faces)
+        return ply(*surface(simplified(solid(self.mesh.vertices, self.mesh.faces), KEPT_FACES)[0]))
+
+
+def _written(value: float) -> float:
+    """As the file gives it."""
+    return round(float(value), DECIMALS) + 0.0
 
 
 def _percent(share: float) -> str:

@@ -24,10 +24,10 @@ from coeflab.model.mesh import TriangleMesh
 from coeflab.model.meshing import meshed
 from coeflab.model.named_box import NamedBox
 from coeflab.model.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate
-from coeflab.studies.simplified import Simplification, SimplifiedPart
+from coeflab.studies.simplified import KEPT_FACES, Simplification, SimplifiedPart
 
 Array = NDArray[np.float64]
-MOST_FACES, KEPT_FACES, DRAWN_FACES = 1_000_000, 200_000, 20_000
+MOST_FACES, DRAWN_FACES = 1_000_000, 20_000
 SNAP, SNAP_CUT = np.radians(0.3), np.radians(2.0)
 SNAP_OFFSET = 5e-4
 ROUNDING = 1e-9
@@ -223,7 +223,7 @@ def _part(piece: _Piece, like: Likeness, length: float) -> SimplifiedPart:
     form: Form = FORMS[like.form](*sizes)
     part = Part(piece.name, form, np.asarray(np.round(centre, decimals) + 0.0), turn)
     own = Piece.of(solids.surface(piece.solid))
-    return SimplifiedPart(part, like, own.volume, own.projected(turn), own.extents(turn), piece.cut, turned)
+    return SimplifiedPart(part, like, own.volume, own.projected(turn), own.extents(turn), piece.cut, turned).with_fit()
 
 
 def _named(parts: list[SimplifiedPart]) -> tuple[SimplifiedPart, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,8 @@ from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
+from coeflab.model.mesh_particulars import computed
+from coeflab.model.shape import Parts
 from coeflab.model.study import PlannedParameterFile
 from coeflab.model.triangulation import Triangulation
 from coeflab.workbench.reading import read_body
@@ -65,6 +68,9 @@ def added_masses(
 ) -> Triangulation:
     """Run one method, or all that apply.
 
+    Where parts stand for a mesh that their file names, the methods that take a surface (panel, strip) take that mesh;
+    what others compute of the parts is as rough as these are stand-ins for it.
+
     Parameters
     ----------
     body : Body
@@ -88,12 +94,14 @@ def added_masses(
         raise InputError(
             f"a density of {density:g} kg/m^3", f"a value above zero, at most {DENSEST:g}", column="density"
         )
-    body.require_shape()
+    shape = body.require_shape()
     if given and method == "all":
         raise InputError(f"options {', '.join(given)} for all methods", "one --method that they are for")
+    original = _original(body)
     results: list[AddedMass] = []
     refused: dict[str, str] = {}
     cited: dict[str, None] = {}
+    on_mesh: list[str] = []
     for name in methods() if method == "all" else (method,):
         plugin_name, _, preset = name.partition(":")
         plugin: Any = ADDED_MASS.load(plugin_name)
@@ -102,16 +110,47 @@ def added_masses(
             raise InputError(f'the unknown preset "{preset}" of {plugin_name}', f"one of {', '.join(known) or 'none'}")
         options = dict(getattr(plugin, "reproducible", {}) if reproducible else {})
         options |= {**(known[preset] if preset else {}), **(given or {})}
-        try:
-            found = plugin.added_mass(body, density, options) if options else plugin.added_mass(body, density)
-        except InputError as why:
-            if method != "all":
-                raise
-            if not preset:
-                refused[name] = why.found
-            continue
-        results.append(found)
-        cited |= dict.fromkeys(plugin.citations)
+        subjects = [body]
+        if original is not None and getattr(plugin, "takes_surface", False):
+            subjects = [original, body] if method == "all" else [original]
+        for subject in subjects:
+            try:
+                found = plugin.added_mass(subject, density, options) if options else plugin.added_mass(subject, density)
+            except InputError as why:
+                if method != "all":
+                    raise
+                if not preset:
+                    refused.setdefault(f"{name} on the mesh" if subject is original else name, why.found)
+                continue
+            if subject is original:
+                on_mesh.append(found.method)
+                found = replace(found, statements=(f"on the mesh {_file(body)}", *found.statements))
+            elif isinstance(shape, Parts) and shape.stand_ins:
+                found = _stood_in(found, shape)
+            results.append(found)
+            cited |= dict.fromkeys(plugin.citations)
+            break
     if not results:
         raise InputError(f"no method that applies to {body.name}", f"a body for one of {', '.join(methods())}")
-    return Triangulation(body, density, tuple(results), refused, tuple(cited))
+    if original is not None:
+        parts, *printed = body.configurations
+        body = replace(body, configurations=(parts, original.configurations[0], *printed))
+    return Triangulation(body, density, tuple(results), refused, tuple(cited), original, tuple(on_mesh))
+
+
+def _original(body: Body) -> Body | None:
+    """The mesh for which the parts of a body stand, as a body with the same names, datum and reference point."""
+    if body.mesh is None:
+        return None
+    surface, said = body.mesh.read()
+    return replace(body, shape=surface, mesh=None, configurations=(computed(surface, said), *body.configurations[1:]))
+
+
+def _file(body: Body) -> str:
+    return body.mesh.file.name if body.mesh is not None else ""
+
+
+def _stood_in(found: AddedMass, shape: Parts) -> AddedMass:
+    """What was computed of parts that stand for a mesh: as rough as they are."""
+    said = "parts stand for a mesh" + (f", a rough guide to it: {'; '.join(shape.rough)}" if shape.rough else "")
+    return replace(found, statements=(*found.statements, said), rough=found.rough or bool(shape.rough))

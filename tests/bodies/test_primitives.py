@@ -10,7 +10,7 @@ import pytest
 from coeflab.bodies.primitives import rotation
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.model.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate, Revolution, as_revolution
+from coeflab.model.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate, Revolution, StandIn, as_revolution
 from coeflab.workbench import read_body
 
 HEAD = """[body]
@@ -164,3 +164,61 @@ def test_dimensions_that_cannot_be(form: type, size: float) -> None:
 def test_a_mirror_is_no_pose() -> None:
     with pytest.raises(InputError, match='the pose of part "p"'):
         Part("p", Box(1, 1, 1), np.zeros(3), np.diag([1.0, 1.0, -1.0]))
+
+
+FIT = '{class = "cylinder", misfit = 0.02, shared = 0.95, volume = 0.001, length = -0.01, areas = [-0.12, 0.0, 0.01]}'
+
+
+def test_a_fit_is_data(tmp_path: Path) -> None:
+    """How well a part stands for a piece of a mesh: read, kept, and judged."""
+    fit = read(tmp_path, f"{HULL}fit = {FIT}\n").parts[0].fit
+    assert fit == StandIn("cylinder", 0.95, 0.001, (-0.12, 0.0, 0.01), -0.01, 0.02)
+    assert fit.poor == ("A x -12.0 %",)
+    assert fit.worst == "A x -12 %"
+    other = read(tmp_path, f"{HULL}fit = {FIT.replace('cylinder', 'other').replace('-0.12', '0.0')}\n").parts[0].fit
+    assert other.poor == ("class other (misfit 0.02, shares 95% of the volume)",)
+    assert read(tmp_path, HULL).parts[0].fit is None
+
+
+def test_a_thick_plate_is_rough_and_a_thin_one_is_not() -> None:
+    thin = StandIn("plate", 0.99, -1.0, (-1.0, -1.0, 0.0), -0.2, thickness=0.04)
+    assert (thin.poor, thin.rough) == ((), ())
+    thick = StandIn("plate", 0.99, -1.0, (-1.0, -1.0, 0.0), -0.2, thickness=0.08)
+    assert thick.poor == ()
+    assert thick.rough == ("a plate without thickness for a piece of mean thickness 0.08 of the shorter side",)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (
+            ('"cylinder"', '"box"'),
+            r'part\[0\].fit": found the fit of a box for part "hull", a cylinder.*Delete the fit',
+        ),
+        (('"cylinder"', '"good"'), r'fit.class": found "good"; expected one of cylinder, plate, ellipsoid, box, other'),
+        (("shared = 0.95", "shared = 1.2"), r'fit.shared": found 1.2; expected a share from 0 to 1'),
+        (("misfit = 0.02", "misfit = -1"), r'fit.misfit": found -1; expected a number of at least zero'),
+        (("misfit = 0.02, ", ""), r'fit.misfit": found neither misfit nor thickness'),
+        (("misfit", "thickness = 0.1, misfit"), r'fit.misfit": found both misfit and thickness'),
+        (("volume = 0.001", "volume = -1.1"), r'fit.volume": found -1.1; expected an error of form over piece'),
+        (("areas = [-0.12, 0.0, 0.01]", "areas = [-0.12, 0.0]"), r'fit.areas": found .*; expected three errors'),
+        (("areas = [-0.12, 0.0, 0.01]", "areas = [-3, 0.0, nan]"), r'fit.areas"'),
+        (("length = -0.01", 'length = "1 m"'), r'fit.length"'),
+        (("length = -0.01", "length = -0.01, colour = 3"), r'fit.colour": found an unknown key'),
+    ],
+)
+def test_fits_that_cannot_be(tmp_path: Path, change: tuple[str, str], said: str) -> None:
+    with pytest.raises(InputError, match=said):
+        read(tmp_path, f"{HULL}fit = {FIT.replace(*change)}\n")
+
+
+def test_the_mesh_that_parts_stand_for_must_be_there(tmp_path: Path) -> None:
+    table = '[mesh]\npath = "mesh.ply"\nunit = "m"\naxes = "FRD"\n'
+    with pytest.raises(InputError, match=r'"mesh.path": found no file "mesh.ply".*delete \[mesh\]'):
+        read(tmp_path, table + HULL)
+    (tmp_path / "mesh.ply").write_bytes(b"not looked into before it is needed")
+    assert len(read(tmp_path, table + HULL).parts) == 1
+    body = read_body(tmp_path / "body.toml")
+    assert [f.name for f in body.files] == ["b/body.toml", "b/mesh.ply"]
+    with pytest.raises(InputError, match=r"mesh\.unit"):
+        read(tmp_path, table.replace('"m"', '"kg"') + HULL)

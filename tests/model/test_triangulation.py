@@ -12,8 +12,8 @@ from coeflab.core.datums import Datum
 from coeflab.core.files import shipped
 from coeflab.model.added_mass import AddedMass
 from coeflab.model.body import Body
-from coeflab.model.shape import Ellipsoid, Part, Parts
-from coeflab.model.triangulation import APART, RULE, Triangulation, _felt
+from coeflab.model.shape import Ellipsoid, Part, Parts, StandIn
+from coeflab.model.triangulation import APART, OF_MESH, RULE, Triangulation, _felt
 from coeflab.presentation.added_mass_tables import derivatives
 from coeflab.workbench import read_body
 from coeflab.workbench.hulls import added_masses
@@ -107,3 +107,46 @@ def test_what_spheres_feel_is_within_the_estimate() -> None:
     assert bound == pytest.approx(0.024)
     assert bound > APART
     assert change == pytest.approx([-bound, bound / 2.0, bound / 2.0], abs=0.15 * bound)
+
+
+FIT = StandIn("ellipsoid", 0.99, 0.0, (0.01, 0.0, 0.0), 0.0, 0.01)
+WORSE = replace(FIT, kind="other", misfit=0.447)
+
+
+def standing(fit: StandIn) -> Body:
+    """A sphere that stands for a piece of a mesh."""
+    one = spheres(0.0)
+    return replace(one, shape=Parts(tuple(replace(p, fit=fit) for p in one.require_shape().parts)))
+
+
+@pytest.mark.parametrize(("fit", "rough"), [(FIT, False), (WORSE, True)])
+def test_a_stand_in_is_never_exact(fit: StandIn, rough: bool) -> None:
+    """An ellipsoid of misfit .45 was "exact, spread 0.0 %": nothing compares it with what it stands for."""
+    found = added_masses(standing(fit), RHO)
+    assert added_masses(spheres(0.0), RHO).recommended.statements[0].startswith("the body is an ellipsoid: exact")
+    assert not any("exact;" in s or s.endswith("exact") for r in found.results for s in r.statements)
+    assert all(r.rough == rough for r in found.results)
+    assert "exact" not in found.rule
+    assert found.rule == OF_MESH
+    assert np.all(np.isnan(found.spread))
+    assert {row[-1] for row in derivatives(found).rows} == {"-"}
+    said = (
+        "as parts are poor stand-ins for a mesh: s0: class other (misfit 0.45"
+        if rough
+        else "NOT CHECKED: the parts stand"
+    )
+    assert said in found.caution
+    assert found.recommended.statements[0] == found.caution
+    assert found.caution in derivatives(found).notes
+
+
+def test_the_panel_method_on_the_mesh_comes_before_its_stand_ins() -> None:
+    body = standing(WORSE)
+    results = tuple(
+        AddedMass(factor * np.eye(6), np.zeros(3), "d", "b", m, (), None, m != "panel")
+        for m, factor in (("ellipsoid", 3.0), ("primitives", 3.0), ("panel", 1.0))
+    )
+    found = Triangulation(body, RHO, results, {}, (), spheres(0.0), ("panel",))
+    assert (found.recommended.method, found.caution) == ("panel", "")
+    assert np.diag(found.spread) == pytest.approx(2.0)
+    assert found.shape is found.original.shape

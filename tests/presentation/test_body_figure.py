@@ -6,20 +6,23 @@ import io
 import json
 import re
 import struct
+from dataclasses import replace
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure as Drawing
 
+from coeflab.kernels import silhouette
 from coeflab.kernels.attitude import rotation
 from coeflab.kernels.solids import box, surface
 from coeflab.model.mesh import TriangleMesh
-from coeflab.model.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate
+from coeflab.model.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate, StandIn
 from coeflab.presentation.body_axes import rulers, ticks
 from coeflab.presentation.body_figure import FRONT, OBLIQUE, SIDE, TOP, _spread, body_figure
 from coeflab.presentation.body_scene import body_scene
 from coeflab.presentation.body_view import Sheet
+from coeflab.presentation.hull_scene import hull_scene
 from coeflab.presentation.svg import COLOURS
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -171,3 +174,49 @@ def test_axes_carry_metres_and_grow_as_the_body_says() -> None:
         assert (across[1.0] > across[0.0]) == (view is SIDE)
         assert abs(across[1.0] - across[0.0]) == pytest.approx(100.0)
         assert up[1.0] < up[0.0] < up[-1.0]
+
+
+OTHER = StandIn("other", 0.34, 0.0, (-0.86, 0.0, -0.55), 0.0, 0.447)
+OFF = StandIn("box", 0.9, 0.0, (-0.2, 0.0, 0.0), 0.0, 0.06)
+GOOD = StandIn("cylinder", 0.99, 0.0, (0.01, 0.0, 0.0), 0.0, 0.01)
+STANDING = Parts(
+    tuple(replace(p, fit=fit) if fit else p for p, fit in zip(SHAPE.parts, (GOOD, OTHER, None, OFF), strict=True))
+)
+
+
+def test_poor_stand_ins_are_marked_by_more_than_colour() -> None:
+    figure = body_figure("b", STANDING, mesh(), "overlay")
+    root = ET.fromstring(figure.svg)
+    texts = {"".join(t.itertext()) for t in root.iter(f"{SVG}text")}
+    assert {"hull", "mast: other, misfit 0.45", "pod: A x −20 %", "poor stand-in"} <= texts
+    assert "Striped: a poor stand-in" in figure.caption
+    assert "mast (ellipsoid, a poor stand-in)" in figure.description
+    plain = body_figure("b", SHAPE, mesh(), "overlay")
+    assert "poor stand-in" not in plain.svg + plain.caption
+    inked = [f'fill: var(--fig-ink, {COLOURS["ink"]})"' in line for line in figure.svg.split("<path")]
+    assert sum(inked) >= 2 * 4 + 1
+    assert figure.svg == body_figure("b", STANDING, mesh(), "overlay").svg
+
+
+def test_stripes_cover_their_share_of_an_outline() -> None:
+    square = silhouette.ring(np.array([[0.0, 0.0], [80.0, 0.0], [80.0, 80.0], [0.0, 80.0]]))
+    striped = silhouette.hatched(square, 8.0, 2.0)
+    assert striped.area() == pytest.approx(0.25 * square.area(), rel=1e-6)
+    assert (striped ^ square).area() == pytest.approx(striped.area(), rel=1e-9)
+
+
+def test_poor_stand_ins_are_dark_in_space() -> None:
+    content = scene_content(body_scene("b", STANDING, mesh()))
+    materials = [m["name"] for m in content["materials"]]
+    assert {"cylinder", "ellipsoid, a poor stand-in", "plate", "box, a poor stand-in"} <= set(materials)
+    mast = next(n for n in content["nodes"] if n["name"] == "mast")
+    assert mast["extras"]["class"] == "other"
+    assert mast["extras"]["poor"][0].startswith("class other (misfit 0.45")
+    layers = {layer.name: layer.colour for layer in hull_scene("b", STANDING, ()).layers}
+    assert layers["ellipsoid, a poor stand-in"] == "ink"
+    assert layers["cylinder"] == "a"
+
+
+def scene_content(content: bytes) -> dict:
+    length = struct.unpack("<I", content[12:16])[0]
+    return json.loads(content[20 : 20 + length])

@@ -95,17 +95,22 @@ def test_the_file_holds_exactly_the_parts(tmp_path: Path) -> None:
     found = simplify(made)
     path = tmp_path / "body.toml"
     path.write_bytes(found.part_file())
+    (tmp_path / "mesh.ply").write_bytes(found.mesh_file())
     again = read(path)
     assert again.source.kind == "computed"
     assert "b/b.stl, sha256 " + "0" * 64 in again.source.how_obtained
     assert again.reference_point == pytest.approx([-1.0, 0.0, 0.0])
     assert again.scaling == Scaling(4.0, "length")
     for p, q in zip(again.shape.parts, found.shape.parts, strict=True):
-        assert (p.name, p.form) == (q.name, q.form)
+        assert (p.name, p.form, p.fit) == (q.name, q.form, q.fit)
+        assert p.fit is not None
         assert np.array_equal(p.centre, q.centre)
         assert p.rotation == pytest.approx(q.rotation, abs=1e-12)
-    text = path.read_text()
-    assert text.count("# errors: volume") == len(found.parts)
+    assert path.read_text().count("fit = {class = ") == len(found.parts)
+    surface_again, said = again.mesh.read()
+    assert said == ()
+    assert surface_again.integrals.volume == pytest.approx(found.mesh.volume, rel=1e-14)
+    assert np.array_equal(np.unique(surface_again.vertices, axis=0), np.unique(found.mesh.vertices, axis=0))
     assert found.part_file() == simplify(made).part_file()
 
 
@@ -154,6 +159,11 @@ def test_what_is_like_nothing_is_said() -> None:
     found = simplify(body(duct))
     assert "other, as no form is good; a" in found.parts[0].remarks[0]
     assert found.part_table().rows[0][1].startswith("other (")
+    fit = found.parts[0].part.fit
+    assert fit.kind == "other"
+    assert fit.misfit == pytest.approx(found.parts[0].likeness.misfit, abs=5e-5)
+    assert fit.areas == pytest.approx(tuple(found.parts[0].projected_errors), abs=5e-5)
+    assert found.shape.rough[0].startswith("hull: class other (misfit 0.66")
     said = found.as_json()["parts"][0]
     assert (said["class"], said["stand_in"]) == ("other", True)
     assert f"LOOK AT hull: {', '.join(said['look_at'])}" in found.part_table().notes
