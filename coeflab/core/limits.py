@@ -69,7 +69,7 @@ SMALLEST_POSITIVE = 1e-18
 SHORTEST_PART, LONGEST_PART = 1e-6, 1e4
 # Of parameter files, whose coefficients may be those of high powers of small angles.
 LARGEST_STORED = 1e100
-# Motions that a vehicle is given or was measured in, m/s and rad/s: ten times those of any body in water.
+# Steady motions that `trim` is asked for, m/s and rad/s: ten times those of any body in water.
 FASTEST = 1e3
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.delimited import Cells, read_cells, require_unit
 from coeflab.core.errors import InputError, UnitsError, shown
-from coeflab.core.limits import FASTEST, LARGEST_NUMBER
+from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.symbols import ANGULAR, CONTROL_COLUMNS, CONTROLS, LINEAR, MOTIONS
 from coeflab.core.units import Header, factor
 from coeflab.kernels.brief import brief
@@ -158,12 +158,11 @@ def _values(cells: Cells, header: Header, kind: str, vehicle: Vehicle, name: str
             ) from None
     with np.errstate(over="ignore"):
         values = cells.numbers(header.name) * scale
-    most = FASTEST if kind in ("speed", "rate") else LARGEST_NUMBER
-    wild = np.flatnonzero(np.abs(values) > most)
+    wild = np.flatnonzero(np.abs(values) > LARGEST_NUMBER)
     if len(wild):
         row = int(wild[0])
         raise InputError(
-            shown(cells.texts(header.name)[row]), f"a finite number of at most {most:g} in SI", file=cells.file,
+            shown(cells.texts(header.name)[row]), f"a finite number of at most {LARGEST_NUMBER:g} in SI", file=cells.file,
             line=cells.line(row), column=header.text,
         )  # fmt: skip
     wrong = np.flatnonzero(~np.isfinite(values))
