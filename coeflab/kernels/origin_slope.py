@@ -1,0 +1,389 @@
+"""A calibrated slope at the origin, without a choice of form or window.
+
+One model for the whole sweep, x divided by its largest size, t = x / max|x|:
+``y = a + s t + e t^2 + q t|t| + c t^3 + g(t) + noise``. The slope s is free. The sizes of e, q, c and of the smooth
+remainder g are unknown, in units of the noise, on a logarithmic grid from "nothing" to 1e5. g is one of several Gaussian
+processes: a power series (3rd order upwards), integrated white noise whose curvature grows with |t|^p (Wahba 1990;
+Kimeldorf & Wahba 1970) or starts at an onset angle (stall, separation); odd, or free to differ between the two sides;
+scatter that grows with |t|. Given the sizes everything is closed form (Student); the slope is the mixture over the sizes, weighted by
+restricted marginal likelihood to a power below one, because no member is the truth (Gruenwald & van Ommen 2017).
+A priori the largest of the curved sizes is log-uniform and the others lie anywhere below it.
+One point may be wrong: each row's deletion is a further member of the mixture, by bordering, without a second fit.
+
+Every constant was chosen on the simulated truths of ``tests/coverage``, none on a measured body.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import product
+
+import numpy as np
+from scipy import special
+
+from coeflab.kernels.least_squares import Array
+
+NOTHING = 0.1
+SIZES = (NOTHING, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5)
+COARSE = (NOTHING, 1e1, 1e3, 1e5)
+NUISANCE = ((NOTHING, 3.0), (1e1, 1.0), (1e4, 1.0))
+REMAINDER = (3.0, 10.0, 30.0, 1e2, 1e3, 1e4, 1e5)
+SCATTER = (3.0, 10.0)
+NO_REMAINDER, NOTHING_CURVED, QUADRATIC_ODDS = 3.0, 2.5, 0.4
+ODD = {"series": 5.0, "p0": 0.3, "p1": 1.0, "p3": 1.0, "on.25": 0.7, "on.4": 0.7, "on.55": 0.7, "on.7": 0.7}
+SIDES = {"series": 2.5, "p1": 0.7, "on.25": 0.5, "on.55": 0.5}
+GROWING, SETTING, COMMON = 0.3, 0.3, 0.5
+POWER, TAIL = 0.6, 0.022
+WRONG, REMOVE = 0.005, 0.5
+DECAY, ORDERS = 0.8, 16
+ROUNDING, WEIGHTLESS, KEPT = 3e-8, 1e-10, 256
+STATED_FREEDOM = 2.0
+
+
+class Status(StrEnum):
+    """What the data say about the slope."""
+
+    OK = "ok"
+    WRONG_POINT = "a wrong point was left out"
+    OPEN = "the sign is open"
+    TOO_FEW = "too few settings"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Member:
+    """One remainder, all its sizes (j) by all sizes of the polynomial terms (k); p columns, n rows."""
+
+    name: str
+    odd: bool
+    sizes: Array
+    root: Array  # (j, n, n) inverse Cholesky factor of noise + remainder
+    columns: Array  # (j, p, n) whitened columns
+    inverse: Array  # (j, k, p, p)
+    precision: Array  # (k, p) of the polynomial terms
+    log_prior: Array  # (j, k)
+    log_det: Array  # (j, k)
+    slope_variance: Array  # (j, k)
+    leverage: Array  # (j, k, n) diagonal of the residual projection
+    slope_by_row: Array  # (j, k, n)
+    checkable: Array  # (j, k, n)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Design:
+    """Everything that depends on the settings alone; campaigns that share them share it.
+
+    Attributes
+    ----------
+    x : (n,) array
+        Regressor.
+    largest : float
+        Largest |x|.
+    variance : (n,) array
+        Noise variance of each row, relative.
+    flat : int
+        Columns without a prior.
+    """
+
+    x: Array
+    largest: float
+    variance: Array
+    flat: int
+    settings: Array
+    to_raw: Array
+    basis: Array
+    members: tuple[_Member, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Slopes:
+    """Slopes of many campaigns at the same settings.
+
+    Attributes
+    ----------
+    value, lower, upper, sd, noise : (b,) array
+        Median, ends of the 95 % interval, standard deviation, standard deviation of one reading.
+    wrong : (b, n) array
+        Probability that the row is wrong.
+    without : (b, n) array
+        Mean slope without the row; NaN where too few rows remain.
+    """
+
+    value: Array
+    lower: Array
+    upper: Array
+    sd: Array
+    noise: Array
+    wrong: Array
+    without: Array
+    weights: Array
+
+    @property
+    def u95(self) -> Array:
+        """Half the 95 % interval."""
+        return 0.5 * (self.upper - self.lower)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OriginSlope:
+    """The slope of one campaign, with what an expert asks of it.
+
+    Attributes
+    ----------
+    value, lower, upper, u95, sd : float
+        NaN where the status is `Status.TOO_FEW`.
+    status : Status
+    reason : str
+    notes : tuple of str
+        Duplicates, mirror images, one-sided sweep.
+    noise, pure_error : float
+        Standard deviation of one reading: by the model, and by replicates alone (NaN without).
+    wrong, without : (n,) array
+        Per row: probability that it is wrong; slope without it (with it, for a row that was left out).
+    used : (n,) boolean array
+        Rows that carry the value: neither repeated nor left out.
+    with_all : float
+        Slope with every row, wrong or not.
+    shares : dict
+        Parts of the secant to the largest |x|: linear, v|v|, cubic, smooth remainder; they add up to one.
+    """
+
+    value: float
+    lower: float
+    upper: float
+    u95: float
+    sd: float
+    status: Status
+    reason: str
+    notes: tuple[str, ...]
+    noise: float
+    pure_error: float
+    wrong: Array
+    without: Array
+    used: Array
+    with_all: float
+    shares: dict[str, float]
+    design: Design | None
+    y: Array
+    weights: Array
+
+
+def _remainder(name: str, odd: bool, a: Array, b: Array) -> Array:
+    """Covariance (len a, len b) of a remainder, one at |t| = 1."""
+    if name == "series":
+        u = DECAY * np.multiply.outer(a, b)
+        out: Array = sum(u**k for k in range(3, ORDERS, 2)) / sum(DECAY**k for k in range(3, ORDERS, 2))
+        return out if odd else out + sum(u**k for k in range(4, ORDERS, 2)) / sum(DECAY**k for k in range(4, ORDERS, 2))
+    p, onset = (int(name[1:]), 0.0) if name[0] == "p" else (0, float(name[2:]))
+    u, v = (np.maximum(np.abs(t) - onset, 0.0) / (1.0 - onset) for t in (a[:, None], b[None, :]))
+    m, k = np.minimum(u, v), 2 * p + 1
+    size = (u * v / k - (u + v) * m / (k + 1) + m * m / (k + 2)) * m**k / (1.0 / k - 2.0 / (k + 1) + 1.0 / (k + 2))
+    sides = np.sign(a)[:, None] * np.sign(b)[None, :]
+    return np.asarray(size * (sides if odd else sides > 0.0))
+
+
+def _log_prior(remainder: Array | None, curved: Array, odds: float) -> Array:
+    """(j, k): the decade of the largest size is uniform, "nothing" apart; within it all are alike but for v|v|."""
+    sizes = np.broadcast_to(np.log10(curved), (1 if remainder is None else len(remainder), *curved.shape))
+    if remainder is not None:
+        sizes = np.concatenate([sizes, np.broadcast_to(np.log10(remainder)[:, None, None], (*sizes.shape[:2], 1))], 2)
+    decade = np.clip(np.floor(sizes.max(2) + 0.01), -1.0, 5.0)
+    weight = np.where(curved[:, 0] > NOTHING, QUADRATIC_ODDS, 1.0) * np.ones(decade.shape)
+    for d in np.unique(decade):
+        weight[decade == d] *= (NOTHING_CURVED if d < 0.0 else 1.0) / weight[decade == d].sum()
+    return np.asarray(np.log(odds * weight))
+
+
+def _members(t: Array, variance: Array, even: bool, one_sided: bool, settings: Array, stated: bool) -> list[tuple]:
+    same = settings[:, None] == settings[None, :]
+    out = [("none", True, np.zeros(1), np.zeros((len(t), len(t))), NO_REMAINDER)]
+    out += [(name, True, np.array(REMAINDER), _remainder(name, True, t, t), w) for name, w in ODD.items()]
+    out += [(name, False, np.array(REMAINDER), _remainder(name, False, t, t), w) for name, w in SIDES.items() if even]
+    out += [("growing scatter", True, np.array(SCATTER), np.diag(t * t), GROWING)]
+    if same.sum() > len(t):
+        out += [("scatter of settings", True, np.array(SCATTER), same.astype(float), SETTING)]
+    if stated:
+        out += [("common scatter", True, np.array(SCATTER), np.eye(len(t)), COMMON)]
+    return out
+
+
+def prepare(
+    x: Array, variance: Array | None = None, *, symmetric: bool = False, settings: Array | None = None
+) -> Design:
+    """Factorise a sweep.
+
+    Parameters
+    ----------
+    x : (n,) array
+        Regressor, as v' = sin(beta).
+    variance : (n,) array, optional
+        Stated variance of each row; only its ratios count here.
+    symmetric : bool
+        The body is symmetric: no even part.
+    settings : (n,) array, optional
+        Rows of one label are replicates of one setting; equal x without it.
+
+    Returns
+    -------
+    Design
+    """
+    x = np.asarray(x, float)
+    largest = float(np.abs(x).max())
+    t, n = x / largest, len(x)
+    ratios = np.ones(n) if variance is None else variance
+    labels = np.unique(np.round(t, 9) if settings is None else settings, return_inverse=True)[1]
+    one_sided = not t.min() < 0.0 < t.max()
+    even = not symmetric and not one_sided
+    raw = np.stack([np.ones(n), t, *([t * t] if even else []), t * np.abs(t), t**3], 1)
+    p = raw.shape[1]
+    to_raw = np.linalg.inv(np.linalg.cholesky(raw.T @ raw + 1e-4 * np.eye(p)).T)
+    basis = raw @ to_raw
+    members = []
+    specifications = _members(t, ratios, even, one_sided, labels, variance is not None)
+    total = sum(s[4] for s in specifications)
+    for name, odd, sizes, kernel, odds in specifications:
+        polynomial = SIZES if name == "none" else COARSE
+        nuisance = NUISANCE if even or one_sided else ((np.inf, 1.0),)
+        grid = np.array(list(product(range(len(nuisance)), polynomial, polynomial)))
+        first = np.array(nuisance)[grid[:, 0].astype(int)]
+        precision = np.zeros((len(grid), p))
+        if even or one_sided:
+            precision[:, 2 if even else 0] = first[:, 0] ** -2.0
+        precision[:, -2:] = grid[:, 1:] ** -2.0
+        log_prior = _log_prior(None if name == "none" else sizes, grid[:, 1:], odds / total)
+        log_prior = log_prior + np.log(first[:, 1] / sum(w for _, w in nuisance))
+        factor = np.linalg.cholesky(np.diag(ratios) + sizes[:, None, None] ** 2 * kernel)
+        root = np.linalg.solve(factor, np.broadcast_to(np.eye(n), factor.shape))
+        a = root @ basis
+        prior = to_raw.T @ (precision[:, :, None] * to_raw)
+        normal = (np.swapaxes(a, 1, 2) @ a)[:, None] + prior
+        inverse = np.linalg.inv(normal)
+        c = inverse @ (np.swapaxes(a, 1, 2) @ root)[:, None]
+        a4 = a[:, None]
+        c += inverse @ (np.swapaxes(a4, 2, 3) @ (root[:, None] - a4 @ c) - prior @ c)
+        left = root[:, None] - a4 @ c
+        leverage = (left * left).sum(2) + np.einsum("jkpn,kp->jkn", (to_raw @ c) ** 2, precision)
+        scale = np.where(precision > 0.0, -np.log(np.where(precision > 0.0, precision, 1.0)), 0.0).sum(1)
+        log_det = 2.0 * np.log(np.einsum("jii->ji", factor)).sum(1)[:, None] + scale + np.linalg.slogdet(normal)[1]
+        members.append(
+            _Member(
+                name, odd, sizes, root, np.ascontiguousarray(np.swapaxes(a, 1, 2)), inverse, precision, log_prior,
+                log_det, np.einsum("p,jkpq,q->jk", to_raw[1], inverse, to_raw[1]), leverage,
+                np.einsum("p,jkpn->jkn", to_raw[1], c),
+                leverage > WEIGHTLESS * (root * root).sum(1)[:, None],
+            )
+        )  # fmt: skip
+    return Design(x, largest, ratios, 1 if one_sided else 2, labels, to_raw, basis, tuple(members))
+
+
+def _quantiles(log_weight: Array, mean: Array, scale: Array, freedom: Array) -> tuple[Array, Array, Array, Array]:
+    """Lower, median, upper (b, 3) and mean, standard deviation, kept weights of Student mixtures (b, c)."""
+    keep = np.argpartition(-log_weight, min(KEPT, mean.shape[1]) - 1, axis=1)[:, :KEPT]
+    log_weight, mean, scale, freedom = (np.take_along_axis(z, keep, 1) for z in (log_weight, mean, scale, freedom))
+    w = special.softmax(log_weight, axis=1)
+    middle = (w * mean).sum(1)
+    sd = np.sqrt((w * (scale**2 + (mean - middle[:, None]) ** 2)).sum(1))
+    goal = np.array([TAIL, 0.5, 1.0 - TAIL])
+    reach = 12.0 * np.maximum(1.0, special.stdtrit(freedom.min(), 1.0 - TAIL) / 4.0) * sd
+    low, high = np.repeat((middle - reach)[:, None], 3, 1), np.repeat((middle + reach)[:, None], 3, 1)
+    for _ in range(30):
+        z = 0.5 * (low + high)
+        below = special.stdtr(freedom[:, None], (z[..., None] - mean[:, None]) / scale[:, None])
+        right = (w[:, None] * below).sum(2) < goal
+        low, high = np.where(right, z, low), np.where(right, high, z)
+    return 0.5 * (low + high), middle, sd, keep
+
+
+def estimate_many(design: Design, y: Array, stated: float | None = None, *, deletions: bool = True) -> Slopes:
+    """Slopes of many campaigns at one design.
+
+    Parameters
+    ----------
+    design : Design
+    y : (b, n) array
+        Readings of each campaign.
+    stated : float, optional
+        Variance of a row of unit relative variance; scatter beyond it widens, scatter below it does not narrow.
+    deletions : bool
+        Let one row be wrong.
+
+    Returns
+    -------
+    Slopes
+    """
+    y = np.atleast_2d(np.asarray(y, float))
+    b, n = y.shape
+    size = np.abs(y - np.median(y, axis=1, keepdims=True)).max(1)
+    size = np.where(size > 0.0, size, 1.0)
+    start = y / size[:, None] @ np.linalg.pinv(design.basis).T
+    rest = y / size[:, None] - start @ design.basis.T
+    nu = n - design.flat + (0.0 if stated is None else STATED_FREEDOM)
+    floor = np.full(b, n * ROUNDING**2) + (0.0 if stated is None else STATED_FREEDOM * stated / size**2)
+    least = 0.0 if stated is None else stated / size**2
+    deletions = deletions and n - design.flat >= 3
+    to_slope = design.to_raw[1]
+
+    def log_density(freedom: float) -> float:
+        return float(special.gammaln(freedom / 2.0) - freedom / 2.0 * np.log(np.pi))
+
+    main, gone = [], []
+    for m in design.members:
+        whitened = np.swapaxes(m.root @ rest.T, 1, 2)[:, None]
+        across = np.swapaxes(m.columns, 1, 2)[:, None]
+        precision = m.precision[:, None]
+        d = np.zeros((1, 1, b, len(to_slope)))
+        for _ in range(2):  # the second pass refines the first: sizes of 1e5 leave six digits otherwise
+            left = whitened - d @ m.columns[:, None]
+            terms = (start + d) @ design.to_raw.T
+            d = d + (left @ across - (terms * precision) @ design.to_raw) @ m.inverse
+        left = whitened - d @ m.columns[:, None]
+        terms = (start + d) @ design.to_raw.T
+        squares = (left * left).sum(-1) + (terms * terms * precision).sum(-1) + floor
+        mean = (start + d) @ to_slope
+        weight = m.log_prior[..., None] + POWER * (
+            log_density(nu) - 0.5 * m.log_det[..., None] - 0.5 * nu * np.log(squares)
+        )
+        variance = np.maximum(squares / nu, least)
+        main.append([z.reshape(-1, b) for z in (weight, mean, variance * m.slope_variance[..., None], variance)])
+        if deletions:
+            error = left @ m.root[:, None]
+            step = error / m.leverage[:, :, None]
+            after = np.maximum(squares[..., None] - error * step, floor[:, None])
+            likelihood = log_density(nu - 1.0) - 0.5 * (m.log_det[..., None] + np.log(m.leverage))[:, :, None]
+            weight_i = m.log_prior[..., None, None] + POWER * (likelihood - 0.5 * (nu - 1.0) * np.log(after))
+            weight_i = np.where(m.checkable[:, :, None], weight_i, -np.inf)
+            mean_i = mean[..., None] - m.slope_by_row[:, :, None] * step
+            ratio = m.slope_variance[..., None] + m.slope_by_row**2 / m.leverage
+            variance_i = np.maximum(after / (nu - 1.0), np.reshape(least, (-1, 1))) * ratio[:, :, None]
+            top = np.maximum(weight_i.max(1), -1e300)
+            w = np.exp(weight_i - top[:, None])
+            total = np.maximum(w.sum(1), 1e-300)
+            centre = (w * mean_i).sum(1) / total
+            spread = (w * (variance_i + (mean_i - centre[:, None]) ** 2)).sum(1) / total
+            gone.append((top + np.log(total), centre, spread))
+    weight, mean, variance, noise = (np.concatenate(z).T for z in zip(*main))
+    evidence = special.logsumexp(weight, axis=1)
+    noise = np.sqrt((special.softmax(weight, axis=1) * noise).sum(1)) * size
+    scale, freedom = np.sqrt(variance), np.full(mean.shape, float(nu))
+    wrong, without = np.zeros((b, n)), np.full((b, n), np.nan)
+    if deletions:
+        weight_i, mean_i, variance_i = (np.concatenate(z) for z in zip(*gone))
+        each = special.logsumexp(weight_i, axis=0)
+        odds = np.concatenate(
+            [(evidence + n * np.log1p(-WRONG))[:, None], each + POWER * np.log(0.5) + np.log(WRONG)], 1
+        )  # a wrong reading lies anywhere within the range
+        odds -= special.logsumexp(odds, axis=1, keepdims=True)
+        wrong = np.exp(odds[:, 1:])
+        without = (np.exp(weight_i - each) * mean_i).sum(0) * (size / design.largest)[:, None]
+        flat = [z.transpose(1, 0, 2).reshape(b, -1) for z in (weight_i - each + odds[:, 1:], mean_i, variance_i)]
+        weight = np.concatenate([weight - evidence[:, None] + odds[:, :1], flat[0]], 1)
+        mean, scale = np.concatenate([mean, flat[1]], 1), np.concatenate([scale, np.sqrt(flat[2])], 1)
+        freedom = np.concatenate([freedom, np.full(flat[1].shape, nu - 1.0)], 1)
+    ends, _, sd, _ = _quantiles(weight, mean, scale, freedom)
+    unit = size / design.largest
+    ends = ends * unit[:, None]
+    return Slopes(
+        ends[:, 1], ends[:, 0], ends[:, 2], sd * unit, noise, wrong, without,
+        special.softmax(np.concatenate([z[0] for z in main]).T, axis=1),
+    )  # fmt: skip
