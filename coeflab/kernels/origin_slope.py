@@ -28,18 +28,19 @@ from coeflab.kernels.least_squares import Array
 NOTHING = 0.1
 SIZES = (NOTHING, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5)
 COARSE = (NOTHING, 1e1, 1e3, 1e5)
-NUISANCE = ((NOTHING, 3.0), (1e1, 1.0), (1e4, 1.0))
+NUISANCE = ((NOTHING, 5.0), (3.0, 1.0), (1e2, 1.0), (1e4, 1.0))
 REMAINDER = (3.0, 10.0, 30.0, 1e2, 1e3, 1e4, 1e5)
 SCATTER = (3.0, 10.0)
-NO_REMAINDER, NOTHING_CURVED, QUADRATIC_ODDS = 3.0, 2.5, 0.4
+NO_REMAINDER, NOTHING_CURVED, QUADRATIC_ODDS = 10.0, 1.5, 0.45
 ODD = {"series": 5.0, "p0": 0.3, "p1": 1.0, "p3": 1.0, "on.25": 0.7, "on.4": 0.7, "on.55": 0.7, "on.7": 0.7}
 SIDES = {"series": 2.5, "p1": 0.7, "on.25": 0.5, "on.55": 0.5}
 GROWING, SETTING, COMMON = 0.3, 0.3, 0.5
-POWER, TAIL = 0.6, 0.022
+POWER, TAIL = 0.5, 0.028
 WRONG, REMOVE = 0.005, 0.5
 DECAY, ORDERS = 0.8, 16
 ROUNDING, WEIGHTLESS, KEPT = 3e-8, 1e-10, 256
 STATED_FREEDOM = 2.0
+TABLE = np.sin(0.5 * np.pi * np.linspace(-1.0, 1.0, 2001)[1:-1])
 
 
 class Status(StrEnum):
@@ -287,10 +288,21 @@ def _quantiles(log_weight: Array, mean: Array, scale: Array, freedom: Array) -> 
     goal = np.array([TAIL, 0.5, 1.0 - TAIL])
     reach = 12.0 * np.maximum(1.0, special.stdtrit(freedom.min(), 1.0 - TAIL) / 4.0) * sd
     low, high = np.repeat((middle - reach)[:, None], 3, 1), np.repeat((middle + reach)[:, None], 3, 1)
-    for _ in range(30):
+    most = freedom.max()
+    tables = [special.stdtr(nu, TABLE * np.sqrt(nu / (1.0 - TABLE**2))) for nu in (most, most - 1.0)]
+    first = (freedom == most)[:, None]
+
+    def below(z: Array) -> Array:
+        u = (z[..., None] - mean[:, None]) / scale[:, None]
+        u /= np.sqrt(freedom[:, None] + u * u)
+        share = np.interp(u, TABLE, tables[0])
+        if not first.all():
+            share = np.where(first, share, np.interp(u, TABLE, tables[1]))
+        return np.asarray((w[:, None] * share).sum(2))
+
+    for _ in range(22):
         z = 0.5 * (low + high)
-        below = special.stdtr(freedom[:, None], (z[..., None] - mean[:, None]) / scale[:, None])
-        right = (w[:, None] * below).sum(2) < goal
+        right = below(z) < goal
         low, high = np.where(right, z, low), np.where(right, high, z)
     return 0.5 * (low + high), middle, sd, keep
 
