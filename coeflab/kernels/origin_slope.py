@@ -40,6 +40,7 @@ WRONG, REMOVE = 0.005, 0.5
 DECAY, ORDERS = 0.8, 16
 ROUNDING, WEIGHTLESS, KEPT = 3e-8, 1e-10, 256
 STATED_FREEDOM = 2.0
+FEWEST, MOST_LIKELY = 5, 100
 TABLE = np.sin(0.5 * np.pi * np.linspace(-1.0, 1.0, 2001)[1:-1])
 
 
@@ -238,8 +239,7 @@ def prepare(
     even = not symmetric and not one_sided
     raw = np.stack([np.ones(n), t, *([t * t] if even else []), t * np.abs(t), t**3], 1)
     p = raw.shape[1]
-    to_raw = np.linalg.inv(np.linalg.cholesky(raw.T @ raw + 1e-4 * np.eye(p)).T)
-    basis = raw @ to_raw
+    to_raw, basis = np.eye(p), raw
     members = []
     specifications = _members(t, ratios, even, one_sided, labels, variance is not None)
     total = sum(s[4] for s in specifications)
@@ -259,14 +259,17 @@ def prepare(
         a = root @ basis
         prior = to_raw.T @ (precision[:, :, None] * to_raw)
         normal = (np.swapaxes(a, 1, 2) @ a)[:, None] + prior
-        inverse = np.linalg.inv(normal)
+        scales = 1.0 / np.sqrt(np.einsum("jkpp->jkp", normal))
+        both = scales[..., :, None] * scales[..., None, :]
+        inverse = both * np.linalg.inv(both * normal)
         c = inverse @ (np.swapaxes(a, 1, 2) @ root)[:, None]
         a4 = a[:, None]
         c += inverse @ (np.swapaxes(a4, 2, 3) @ (root[:, None] - a4 @ c) - prior @ c)
         left = root[:, None] - a4 @ c
         leverage = (left * left).sum(2) + np.einsum("jkpn,kp->jkn", (to_raw @ c) ** 2, precision)
         scale = np.where(precision > 0.0, -np.log(np.where(precision > 0.0, precision, 1.0)), 0.0).sum(1)
-        log_det = 2.0 * np.log(np.einsum("jii->ji", factor)).sum(1)[:, None] + scale + np.linalg.slogdet(normal)[1]
+        scale = scale - 2.0 * np.log(scales).sum(2)
+        log_det = 2.0 * np.log(np.einsum("jii->ji", factor)).sum(1)[:, None] + scale + np.linalg.slogdet(both * normal)[1]
         members.append(
             _Member(
                 name, odd, sizes, root, np.ascontiguousarray(np.swapaxes(a, 1, 2)), inverse, precision, log_prior,
@@ -399,3 +402,183 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
         ends[:, 1], ends[:, 0], ends[:, 2], sd * unit, noise, wrong, without,
         special.softmax(np.concatenate([z[0] for z in main]).T, axis=1),
     )  # fmt: skip
+
+
+def _joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, Array, Array]:
+    """Mixture mean (1 + m) and covariance of the slope dy/dt and the curve at ``at``, mean polynomial terms (p,)."""
+    t, to = design.x / design.largest, np.asarray(at, float) / design.largest
+    p, nu = design.to_raw.shape[0], len(t) - design.flat
+    even = [to * to] if p == 5 else []
+    basis = np.vstack([np.eye(p)[1], np.stack([np.ones(len(to)), to, *even, to * np.abs(to), to**3], 1)]) @ design.to_raw
+    where = [(m, j, k) for m in design.members for j in range(len(m.log_prior)) for k in range(m.log_prior.shape[1])]
+    best = np.argsort(weights)[::-1][:MOST_LIKELY]
+    mean, second, terms = np.zeros(len(basis)), np.zeros((len(basis), len(basis))), np.zeros(p)
+    for share, c in zip(weights[best] / weights[best].sum(), best):
+        m, j, k = where[c]
+        root, columns, precision = m.root[j], m.columns[j].T, m.precision[k]
+        cross, own = np.zeros((len(basis), len(t))), np.zeros((len(basis), len(basis)))
+        if m.name in ODD:
+            cross[1:] = m.sizes[j] ** 2 * _remainder(m.name, m.odd, to, t)
+            own[1:, 1:] = m.sizes[j] ** 2 * _remainder(m.name, m.odd, to, to)
+        cross = cross @ root.T
+        b = np.zeros(p)
+        for _ in range(2):
+            slack = columns.T @ (root @ y - columns @ b) - design.to_raw.T @ (precision * (design.to_raw @ b))
+            b = b + m.inverse[j, k] @ slack
+        left, raw = root @ y - columns @ b, design.to_raw @ b
+        variance = (left @ left + precision @ raw**2) / nu
+        rest = basis - cross @ columns
+        centre = basis @ b + cross @ left
+        spread = variance * (rest @ m.inverse[j, k] @ rest.T + own - cross @ cross.T)
+        mean, terms = mean + share * centre, terms + share * raw
+        second = second + share * (spread + np.outer(centre, centre))
+    return mean, second - np.outer(mean, mean), terms
+
+
+def _shares(design: Design, y: Array, weights: Array) -> dict[str, float]:
+    end = design.largest * np.array([-1.0, 1.0])
+    mean, _, terms = _joint(design, y, weights, np.array([0.0, *end]))
+    if design.flat == 1:
+        sign = np.sign(design.x[np.argmax(np.abs(design.x))])
+        secant = sign * ((mean[3] if sign > 0.0 else mean[2]) - mean[1])
+    else:
+        secant = 0.5 * (mean[3] - mean[2])
+    parts = [mean[0], terms[-2], terms[-1], secant - mean[0] - terms[-2] - terms[-1]]
+    names = ("linear", "v|v|", "cubic", "remainder")
+    return {n: float(v / secant) if secant else np.nan for n, v in zip(names, parts)}
+
+
+def _copies(rows: Array) -> tuple[Array, bool]:
+    """Rows that repeat an earlier one exactly; whether every row off zero has its exact mirror image."""
+    first = np.unique(rows, axis=0, return_index=True)[1]
+    again = np.ones(len(rows), bool)
+    again[first] = False
+    seen = {(float(r[0]), float(r[1])) for r in rows}
+    off = rows[rows[:, 0] != 0.0]
+    return again, len(off) > 2 and all((-float(r[0]), -float(r[1])) in seen for r in off)
+
+
+def estimate(
+    x: Array, y: Array, se: Array | None = None, *, symmetric: bool = False, groups: Array | None = None
+) -> OriginSlope:
+    """Slope of one campaign at x = 0.
+
+    Parameters
+    ----------
+    x, y : (n,) array
+        Regressor and force.
+    se : (n,) array, optional
+        Stated standard errors; those that are not positive are replaced by the median.
+    symmetric : bool
+        The body is symmetric: no even part.
+    groups : (n,) array, optional
+        Rows of one label are replicates of one setting; equal x without it.
+
+    Returns
+    -------
+    OriginSlope
+
+    Raises
+    ------
+    ValueError
+        Lengths differ or a number is not finite.
+    """
+    x, y = np.asarray(x, float), np.asarray(y, float)
+    if x.shape != y.shape or x.ndim != 1 or not np.isfinite([x, y]).all():
+        raise ValueError(f"x and y must be finite and of one length, found shapes {x.shape} and {y.shape}")
+    variance, stated = None, None
+    if se is not None and (usable := np.isfinite(se) & (np.asarray(se) > 0.0)).any():
+        middle = float(np.median(np.asarray(se)[usable]))
+        variance, stated = np.clip(np.where(usable, se, middle) / middle, 1e-2, 1e2) ** 2, middle**2
+    again, mirrored = _copies(np.stack([x, y] if variance is None else [x, y, variance], 1))
+    used = ~again
+    notes = []
+    if again.any():
+        notes.append(f"{int(again.sum())} rows repeat an earlier row exactly and count once")
+    if mirrored:
+        notes.append("every row has its exact mirror image: the mirrored half is no new data, U95 widened by sqrt 2")
+    if not len(x) or not x.min() < 0.0 < x.max():
+        notes.append("one-sided sweep: even and odd parts cannot be told apart")
+    wrong, without, with_all, reason = np.zeros(len(x)), np.full(len(x), np.nan), np.nan, ""
+    left_out: list[int] = []
+    while True:
+        kept = np.flatnonzero(used)
+        if len(np.unique(x[kept])) < 3 or not np.any(x):
+            nan = float("nan")
+            reason = f"{len(np.unique(x[kept]))} different settings, at least 3 are needed"
+            return OriginSlope(
+                nan, nan, nan, nan, nan, Status.TOO_FEW, reason, tuple(notes), nan, nan, wrong, without, used, nan,
+                {}, None, y[kept], np.zeros(0),
+            )  # fmt: skip
+        design = prepare(
+            x[kept],
+            None if variance is None else variance[kept],
+            symmetric=symmetric,
+            settings=None if groups is None else np.asarray(groups)[kept],
+        )
+        many = estimate_many(design, y[kept], stated)
+        wrong[kept], without[kept] = many.wrong[0], many.without[0]
+        worst = int(kept[np.argmax(many.wrong[0])])
+        if wrong[worst] <= REMOVE or len(left_out) >= max(1, len(x) // 6) or len(kept) <= FEWEST:
+            break
+        if not left_out:
+            with_all = float(estimate_many(design, y[kept], stated, deletions=False).value[0])
+        without[worst] = many.value[0]
+        used[worst] = False
+        left_out.append(worst)
+    value, widen = float(many.value[0]), np.sqrt(2.0) if mirrored else 1.0
+    lower, upper = (value + widen * (float(end[0]) - value) for end in (many.lower, many.upper))
+    status = Status.WRONG_POINT if left_out else Status.OPEN if lower < 0.0 < upper else Status.OK
+    if left_out:
+        rows = ", ".join(str(i) for i in left_out)
+        reason = f"rows {rows} (from 0) do not fit the others; with them the value is {with_all:.4g}"
+    elif status is Status.OPEN:
+        reason = "the 95 % interval contains zero"
+    replicate = np.bincount(design.settings)
+    means = np.bincount(design.settings, y[kept]) / replicate
+    freedom = len(kept) - len(replicate)
+    pure = float(np.sqrt(np.sum((y[kept] - means[design.settings]) ** 2) / freedom)) if freedom else float("nan")
+    return OriginSlope(
+        value, lower, upper, 0.5 * (upper - lower), widen * float(many.sd[0]), status, reason, tuple(notes),
+        float(many.noise[0]), pure, wrong, without, used, with_all if left_out else value,
+        _shares(design, y[kept], many.weights[0]), design, y[kept], many.weights[0],
+    )  # fmt: skip
+
+
+def curve(slope: OriginSlope, at: Array) -> tuple[Array, Array]:
+    """The fitted curve at ``at`` and the half-width of its 95 % band, (m,) each; NaN without a value."""
+    if slope.design is None:
+        return np.full(len(at), np.nan), np.full(len(at), np.nan)
+    mean, covariance, _ = _joint(slope.design, slope.y, slope.weights, at)
+    factor = special.stdtrit(len(slope.y) - slope.design.flat, 0.975)
+    return mean[1:], factor * np.sqrt(np.maximum(np.diag(covariance)[1:], 0.0))
+
+
+def next_points(slope: OriginSlope, count: int, candidates: Array | None = None) -> tuple[Array, Array]:
+    """The x whose measurement would narrow the slope most, best first, and the slope's U95 after each, (count,).
+
+    Posterior variances of the present mixture; one after the other, each with one more reading at the present noise.
+    Without ``candidates`` any x within the measured range; empty without a value.
+    """
+    if slope.design is None:
+        return np.zeros(0), np.zeros(0)
+    d = slope.design
+    low, high = (min(0.0, d.x.min()), max(0.0, d.x.max())) if d.flat == 1 else (-d.largest, d.largest)
+    at = np.linspace(low, high, 73) if candidates is None else np.asarray(candidates, float)
+    _, c, _ = _joint(d, slope.y, slope.weights, at)
+    start, chosen, after = c[0, 0], [], []
+    for _ in range(count):
+        gain = c[0, 1:] ** 2 / (np.diag(c)[1:] + slope.noise**2)
+        i = int(np.argmax(gain)) + 1
+        c = c - np.outer(c[:, i], c[i]) / (c[i, i] + slope.noise**2)
+        chosen.append(at[i - 1])
+        after.append(slope.u95 * np.sqrt(max(c[0, 0], 0.0) / start))
+    return np.array(chosen), np.array(after)
+
+
+def by_largest(
+    x: Array, y: Array, caps: Sequence[float], se: Array | None = None, *, symmetric: bool = False
+) -> tuple[tuple[float, OriginSlope], ...]:
+    """The slope had the sweep ended at each of ``caps`` (largest |x|)."""
+    inside = [(c, np.abs(x) <= c * (1.0 + 1e-9)) for c in caps]
+    return tuple((c, estimate(x[i], y[i], None if se is None else se[i], symmetric=symmetric)) for c, i in inside)
