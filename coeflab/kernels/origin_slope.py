@@ -19,11 +19,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import product
+from typing import Any
 
 import numpy as np
 from scipy import special
 
-from coeflab.kernels.least_squares import Array
+from coeflab.kernels.least_squares import Array, Index
 
 NOTHING = 0.1
 SIZES = (NOTHING, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5)
@@ -66,7 +67,6 @@ class _Member:
     precision: Array  # (k, p) of the polynomial terms
     log_prior: Array  # (j, k)
     log_det: Array  # (j, k)
-    slope_variance: Array  # (j, k)
     leverage: Array  # (j, k, n) diagonal of the residual projection
     slope_by_row: Array  # (j, k, n)
     checkable: Array  # (j, k, n)
@@ -92,9 +92,8 @@ class Design:
     largest: float
     variance: Array
     flat: int
-    settings: Array
-    to_raw: Array
-    basis: Array
+    settings: Index
+    terms: Array
     members: tuple[_Member, ...]
 
 
@@ -175,7 +174,7 @@ def _remainder(name: str, odd: bool, a: Array, b: Array) -> Array:
     """Covariance (len a, len b) of a remainder, one at |t| = 1."""
     if name == "series":
         u = DECAY * np.multiply.outer(a, b)
-        out: Array = sum(u**k for k in range(3, ORDERS, 2)) / sum(DECAY**k for k in range(3, ORDERS, 2))
+        out: Array = np.sum([u**k for k in range(3, ORDERS, 2)], axis=0) / sum(DECAY**k for k in range(3, ORDERS, 2))
         return out if odd else out + sum(u**k for k in range(4, ORDERS, 2)) / sum(DECAY**k for k in range(4, ORDERS, 2))
     p, onset = (int(name[1:]), 0.0) if name[0] == "p" else (0, float(name[2:]))
     u, v = (np.maximum(np.abs(t) - onset, 0.0) / (1.0 - onset) for t in (a[:, None], b[None, :]))
@@ -183,6 +182,10 @@ def _remainder(name: str, odd: bool, a: Array, b: Array) -> Array:
     size = (u * v / k - (u + v) * m / (k + 1) + m * m / (k + 2)) * m**k / (1.0 / k - 2.0 / (k + 1) + 1.0 / (k + 2))
     sides = np.sign(a)[:, None] * np.sign(b)[None, :]
     return np.asarray(size * (sides if odd else sides > 0.0))
+
+
+def _terms(t: Array, even: bool) -> Array:
+    return np.stack([np.ones(len(t)), t, *([t * t] if even else []), t * np.abs(t), t**3], 1)
 
 
 def _log_prior(remainder: Array | None, curved: Array, odds: float) -> Array:
@@ -197,7 +200,7 @@ def _log_prior(remainder: Array | None, curved: Array, odds: float) -> Array:
     return np.asarray(np.log(odds * weight))
 
 
-def _members(t: Array, variance: Array, even: bool, one_sided: bool, settings: Array, stated: bool) -> list[tuple]:
+def _specifications(t: Array, even: bool, settings: Index, stated: bool) -> list[Any]:
     same = settings[:, None] == settings[None, :]
     out = [("none", True, np.zeros(1), np.zeros((len(t), len(t))), NO_REMAINDER)]
     out += [(name, True, np.array(REMAINDER), _remainder(name, True, t, t), w) for name, w in ODD.items()]
@@ -234,14 +237,13 @@ def prepare(
     largest = float(np.abs(x).max())
     t, n = x / largest, len(x)
     ratios = np.ones(n) if variance is None else variance
-    labels = np.unique(np.round(t, 9) if settings is None else settings, return_inverse=True)[1]
+    labels = np.unique(np.round(t, 9) if settings is None else settings, return_inverse=True)[1].astype(np.int64)
     one_sided = not t.min() < 0.0 < t.max()
     even = not symmetric and not one_sided
-    raw = np.stack([np.ones(n), t, *([t * t] if even else []), t * np.abs(t), t**3], 1)
-    p = raw.shape[1]
-    to_raw, basis = np.eye(p), raw
+    terms = _terms(t, even)
+    p = terms.shape[1]
     members = []
-    specifications = _members(t, ratios, even, one_sided, labels, variance is not None)
+    specifications = _specifications(t, even, labels, variance is not None)
     total = sum(s[4] for s in specifications)
     for name, odd, sizes, kernel, odds in specifications:
         polynomial = SIZES if name == "none" else COARSE
@@ -256,8 +258,8 @@ def prepare(
         log_prior = log_prior + np.log(first[:, 1] / sum(w for _, w in nuisance))
         factor = np.linalg.cholesky(np.diag(ratios) + sizes[:, None, None] ** 2 * kernel)
         root = np.linalg.solve(factor, np.broadcast_to(np.eye(n), factor.shape))
-        a = root @ basis
-        prior = to_raw.T @ (precision[:, :, None] * to_raw)
+        a = root @ terms
+        prior = precision[:, :, None] * np.eye(p)
         normal = (np.swapaxes(a, 1, 2) @ a)[:, None] + prior
         scales = 1.0 / np.sqrt(np.einsum("jkpp->jkp", normal))
         both = scales[..., :, None] * scales[..., None, :]
@@ -266,23 +268,23 @@ def prepare(
         a4 = a[:, None]
         c += inverse @ (np.swapaxes(a4, 2, 3) @ (root[:, None] - a4 @ c) - prior @ c)
         left = root[:, None] - a4 @ c
-        leverage = (left * left).sum(2) + np.einsum("jkpn,kp->jkn", (to_raw @ c) ** 2, precision)
+        leverage = (left * left).sum(2) + np.einsum("jkpn,kp->jkn", c * c, precision)
         scale = np.where(precision > 0.0, -np.log(np.where(precision > 0.0, precision, 1.0)), 0.0).sum(1)
         scale = scale - 2.0 * np.log(scales).sum(2)
-        log_det = 2.0 * np.log(np.einsum("jii->ji", factor)).sum(1)[:, None] + scale + np.linalg.slogdet(both * normal)[1]
+        log_det = (
+            2.0 * np.log(np.einsum("jii->ji", factor)).sum(1)[:, None] + scale + np.linalg.slogdet(both * normal)[1]
+        )
         members.append(
             _Member(
                 name, odd, sizes, root, np.ascontiguousarray(np.swapaxes(a, 1, 2)), inverse, precision, log_prior,
-                log_det, np.einsum("p,jkpq,q->jk", to_raw[1], inverse, to_raw[1]), leverage,
-                np.einsum("p,jkpn->jkn", to_raw[1], c),
-                leverage > WEIGHTLESS * (root * root).sum(1)[:, None],
+                log_det, leverage, c[:, :, 1], leverage > WEIGHTLESS * (root * root).sum(1)[:, None],
             )
         )  # fmt: skip
-    return Design(x, largest, ratios, 1 if one_sided else 2, labels, to_raw, basis, tuple(members))
+    return Design(x, largest, ratios, 1 if one_sided else 2, labels, terms, tuple(members))
 
 
-def _quantiles(log_weight: Array, mean: Array, scale: Array, freedom: Array) -> tuple[Array, Array, Array, Array]:
-    """Lower, median, upper (b, 3) and mean, standard deviation, kept weights of Student mixtures (b, c)."""
+def _quantiles(log_weight: Array, mean: Array, scale: Array, freedom: Array) -> tuple[Array, Array]:
+    """Lower, median, upper (b, 3) and standard deviation (b,) of Student mixtures (b, c)."""
     keep = np.argpartition(-log_weight, min(KEPT, mean.shape[1]) - 1, axis=1)[:, :KEPT]
     log_weight, mean, scale, freedom = (np.take_along_axis(z, keep, 1) for z in (log_weight, mean, scale, freedom))
     w = special.softmax(log_weight, axis=1)
@@ -307,7 +309,47 @@ def _quantiles(log_weight: Array, mean: Array, scale: Array, freedom: Array) -> 
         z = 0.5 * (low + high)
         right = below(z) < goal
         low, high = np.where(right, z, low), np.where(right, high, z)
-    return 0.5 * (low + high), middle, sd, keep
+    return 0.5 * (low + high), sd
+
+
+def _log_density(freedom: float) -> float:
+    return float(special.gammaln(freedom / 2.0) - freedom / 2.0 * np.log(np.pi))
+
+
+def _evaluate(
+    m: _Member, start: Array, rest: Array, nu: float, floor: Array, least: Array, deletions: bool
+) -> tuple[list[Array], list[Array]]:
+    """Log weight, slope, its variance, noise variance (jk, b); the first three again without each row (j, b, n)."""
+    b = len(start)
+    whitened, across = np.swapaxes(m.root @ rest.T, 1, 2)[:, None], np.swapaxes(m.columns, 1, 2)[:, None]
+    precision = m.precision[:, None]
+    d = np.zeros((1, 1, *start.shape))
+    for _ in range(2):  # the second pass refines the first: sizes of 1e5 leave six digits otherwise
+        left = whitened - d @ m.columns[:, None]
+        d = d + (left @ across - (start + d) * precision) @ m.inverse
+    left, terms = whitened - d @ m.columns[:, None], start + d
+    squares = (left * left).sum(-1) + (terms * terms * precision).sum(-1) + floor
+    mean, unit_variance = terms[..., 1], m.inverse[:, :, 1, 1]
+    likelihood = _log_density(nu) - 0.5 * m.log_det[..., None] - 0.5 * nu * np.log(squares)
+    weight, variance = m.log_prior[..., None] + POWER * likelihood, np.maximum(squares / nu, least)
+    main = [z.reshape(-1, b) for z in (weight, mean, variance * unit_variance[..., None], variance)]
+    if not deletions:
+        return main, []
+    error = left @ m.root[:, None]
+    step = error / m.leverage[:, :, None]
+    after = np.maximum(squares[..., None] - error * step, floor[:, None])
+    likelihood = _log_density(nu - 1.0) - 0.5 * (m.log_det[..., None] + np.log(m.leverage))[:, :, None]
+    weight = m.log_prior[..., None, None] + POWER * (likelihood - 0.5 * (nu - 1.0) * np.log(after))
+    weight = np.where(m.checkable[:, :, None], weight, -np.inf)
+    slope = mean[..., None] - m.slope_by_row[:, :, None] * step
+    ratio = unit_variance[..., None] + m.slope_by_row**2 / m.leverage
+    variance = np.maximum(after / (nu - 1.0), least[:, None]) * ratio[:, :, None]
+    top = np.maximum(weight.max(1), -1e300)
+    w = np.exp(weight - top[:, None])
+    total = np.maximum(w.sum(1), 1e-300)
+    centre = (w * slope).sum(1) / total
+    spread = (w * (variance + (slope - centre[:, None]) ** 2)).sum(1) / total
+    return main, [top + np.log(total), centre, spread]
 
 
 def estimate_many(design: Design, y: Array, stated: float | None = None, *, deletions: bool = True) -> Slopes:
@@ -331,52 +373,15 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
     b, n = y.shape
     size = np.abs(y - np.median(y, axis=1, keepdims=True)).max(1)
     size = np.where(size > 0.0, size, 1.0)
-    start = y / size[:, None] @ np.linalg.pinv(design.basis).T
-    rest = y / size[:, None] - start @ design.basis.T
+    start = y / size[:, None] @ np.linalg.pinv(design.terms).T
+    rest = y / size[:, None] - start @ design.terms.T
     nu = n - design.flat + (0.0 if stated is None else STATED_FREEDOM)
     floor = np.full(b, n * ROUNDING**2) + (0.0 if stated is None else STATED_FREEDOM * stated / size**2)
-    least = 0.0 if stated is None else stated / size**2
+    least = np.zeros(b) if stated is None else stated / size**2
     deletions = deletions and n - design.flat >= 3
-    to_slope = design.to_raw[1]
 
-    def log_density(freedom: float) -> float:
-        return float(special.gammaln(freedom / 2.0) - freedom / 2.0 * np.log(np.pi))
-
-    main, gone = [], []
-    for m in design.members:
-        whitened = np.swapaxes(m.root @ rest.T, 1, 2)[:, None]
-        across = np.swapaxes(m.columns, 1, 2)[:, None]
-        precision = m.precision[:, None]
-        d = np.zeros((1, 1, b, len(to_slope)))
-        for _ in range(2):  # the second pass refines the first: sizes of 1e5 leave six digits otherwise
-            left = whitened - d @ m.columns[:, None]
-            terms = (start + d) @ design.to_raw.T
-            d = d + (left @ across - (terms * precision) @ design.to_raw) @ m.inverse
-        left = whitened - d @ m.columns[:, None]
-        terms = (start + d) @ design.to_raw.T
-        squares = (left * left).sum(-1) + (terms * terms * precision).sum(-1) + floor
-        mean = (start + d) @ to_slope
-        weight = m.log_prior[..., None] + POWER * (
-            log_density(nu) - 0.5 * m.log_det[..., None] - 0.5 * nu * np.log(squares)
-        )
-        variance = np.maximum(squares / nu, least)
-        main.append([z.reshape(-1, b) for z in (weight, mean, variance * m.slope_variance[..., None], variance)])
-        if deletions:
-            error = left @ m.root[:, None]
-            step = error / m.leverage[:, :, None]
-            after = np.maximum(squares[..., None] - error * step, floor[:, None])
-            likelihood = log_density(nu - 1.0) - 0.5 * (m.log_det[..., None] + np.log(m.leverage))[:, :, None]
-            weight_i = m.log_prior[..., None, None] + POWER * (likelihood - 0.5 * (nu - 1.0) * np.log(after))
-            weight_i = np.where(m.checkable[:, :, None], weight_i, -np.inf)
-            mean_i = mean[..., None] - m.slope_by_row[:, :, None] * step
-            ratio = m.slope_variance[..., None] + m.slope_by_row**2 / m.leverage
-            variance_i = np.maximum(after / (nu - 1.0), np.reshape(least, (-1, 1))) * ratio[:, :, None]
-            top = np.maximum(weight_i.max(1), -1e300)
-            w = np.exp(weight_i - top[:, None])
-            total = np.maximum(w.sum(1), 1e-300)
-            centre = (w * mean_i).sum(1) / total
-            spread = (w * (variance_i + (mean_i - centre[:, None]) ** 2)).sum(1) / total
-            gone.append((top + np.log(total), centre, spread))
+    parts = [_evaluate(m, start, rest, nu, floor, least, deletions) for m in design.members]
+    main, gone = [p[0] for p in parts], [p[1] for p in parts]
     weight, mean, variance, noise = (np.concatenate(z).T for z in zip(*main))
     evidence = special.logsumexp(weight, axis=1)
     noise = np.sqrt((special.softmax(weight, axis=1) * noise).sum(1)) * size
@@ -395,7 +400,7 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
         weight = np.concatenate([weight - evidence[:, None] + odds[:, :1], flat[0]], 1)
         mean, scale = np.concatenate([mean, flat[1]], 1), np.concatenate([scale, np.sqrt(flat[2])], 1)
         freedom = np.concatenate([freedom, np.full(flat[1].shape, nu - 1.0)], 1)
-    ends, _, sd, _ = _quantiles(weight, mean, scale, freedom)
+    ends, sd = _quantiles(weight, mean, scale, freedom)
     unit = size / design.largest
     ends = ends * unit[:, None]
     return Slopes(
@@ -407,9 +412,8 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
 def _joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, Array, Array]:
     """Mixture mean (1 + m) and covariance of the slope dy/dt and the curve at ``at``, mean polynomial terms (p,)."""
     t, to = design.x / design.largest, np.asarray(at, float) / design.largest
-    p, nu = design.to_raw.shape[0], len(t) - design.flat
-    even = [to * to] if p == 5 else []
-    basis = np.vstack([np.eye(p)[1], np.stack([np.ones(len(to)), to, *even, to * np.abs(to), to**3], 1)]) @ design.to_raw
+    p, nu = design.terms.shape[1], len(t) - design.flat
+    basis = np.vstack([np.eye(p)[1], _terms(to, p == 5)])
     where = [(m, j, k) for m in design.members for j in range(len(m.log_prior)) for k in range(m.log_prior.shape[1])]
     best = np.argsort(weights)[::-1][:MOST_LIKELY]
     mean, second, terms = np.zeros(len(basis)), np.zeros((len(basis), len(basis))), np.zeros(p)
@@ -423,14 +427,13 @@ def _joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, 
         cross = cross @ root.T
         b = np.zeros(p)
         for _ in range(2):
-            slack = columns.T @ (root @ y - columns @ b) - design.to_raw.T @ (precision * (design.to_raw @ b))
-            b = b + m.inverse[j, k] @ slack
-        left, raw = root @ y - columns @ b, design.to_raw @ b
-        variance = (left @ left + precision @ raw**2) / nu
+            b = b + m.inverse[j, k] @ (columns.T @ (root @ y - columns @ b) - precision * b)
+        left = root @ y - columns @ b
+        variance = (left @ left + precision @ b**2) / nu
         rest = basis - cross @ columns
         centre = basis @ b + cross @ left
         spread = variance * (rest @ m.inverse[j, k] @ rest.T + own - cross @ cross.T)
-        mean, terms = mean + share * centre, terms + share * raw
+        mean, terms = mean + share * centre, terms + share * b
         second = second + share * (spread + np.outer(centre, centre))
     return mean, second - np.outer(mean, mean), terms
 
@@ -491,7 +494,7 @@ def estimate(
         middle = float(np.median(np.asarray(se)[usable]))
         variance, stated = np.clip(np.where(usable, se, middle) / middle, 1e-2, 1e2) ** 2, middle**2
     again, mirrored = _copies(np.stack([x, y] if variance is None else [x, y, variance], 1))
-    used = ~again
+    used = np.logical_not(again)
     notes = []
     if again.any():
         notes.append(f"{int(again.sum())} rows repeat an earlier row exactly and count once")

@@ -95,9 +95,7 @@ FAMILIES = {
     "late kink": sums((-0.028, line), (-0.08, kink(0.12)), slope=-0.028),
     "offset": sums((0.0008, one), (-0.02, line), (-0.08, vv), slope=-0.02),
     "asymmetric": sums((-0.02, line), (-0.03, square), (-0.1, cube), (-0.05, starboard), slope=-0.02),
-    "even part": sums(
-        (0.0003, one), (-0.025, line), (0.02, square), (-0.04, vv), (0.1, lambda v: v**4), slope=-0.025
-    ),
+    "even part": sums((0.0003, one), (-0.025, line), (0.02, square), (-0.04, vv), (0.1, lambda v: v**4), slope=-0.025),
 }
 POLYNOMIAL = ("linear", "cubic", "v|v|", "v|v| + v3", "small slope", "opposed signs")
 STUDY = ("tanh", "stall", "onset")
@@ -142,7 +140,9 @@ def study_u95(x: Array, y: Array) -> float:
     columns = np.stack([np.ones(n), t, *([t**2] if x.min() < 0.0 < x.max() else [])], 1)
     covariance = np.eye(n) * (1.0 + 1e-9) + np.einsum("ki,iab->kab", sizes**2, kernels)
     factor = np.linalg.cholesky(covariance)
-    both = np.linalg.solve(factor, np.broadcast_to(np.column_stack([columns, y]), (len(sizes), n, columns.shape[1] + 1)))
+    both = np.linalg.solve(
+        factor, np.broadcast_to(np.column_stack([columns, y]), (len(sizes), n, columns.shape[1] + 1))
+    )
     white, target = both[:, :, :-1], both[:, :, -1:]
     normal = np.swapaxes(white, 1, 2) @ white
     b = np.linalg.solve(normal, np.swapaxes(white, 1, 2) @ target)
