@@ -29,7 +29,7 @@ from coeflab.kernels.least_squares import Array, Index
 NOTHING = 0.1
 SIZES = (NOTHING, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5)
 COARSE = (NOTHING, 1e1, 1e3, 1e5)
-NUISANCE = ((NOTHING, 5.0), (3.0, 1.0), (1e2, 1.0), (1e4, 1.0))
+NUISANCE = ((NOTHING, 1.5), (3.0, 2.0), (1e2, 1.0), (1e4, 1.0))
 REMAINDER = (3.0, 10.0, 30.0, 1e2, 1e3, 1e4, 1e5)
 SCATTER = (3.0, 10.0)
 NO_REMAINDER, NOTHING_CURVED, QUADRATIC_ODDS = 9.0, 1.5, 0.5
@@ -141,7 +141,7 @@ class OriginSlope:
     noise, pure_error : float
         Standard deviation of one reading: by the model, and by replicates alone (NaN without).
     wrong, without : (n,) array
-        Per row: probability that it is wrong; slope without it (with it, for a row that was left out).
+        Per row: probability that it is wrong; slope without it.
     used : (n,) boolean array
         Rows that carry the value: neither repeated nor left out.
     with_all : float
@@ -323,10 +323,9 @@ def _evaluate(
     b = len(start)
     whitened, across = np.swapaxes(m.root @ rest.T, 1, 2)[:, None], np.swapaxes(m.columns, 1, 2)[:, None]
     precision = m.precision[:, None]
-    d = np.zeros((1, 1, *start.shape))
-    for _ in range(2):  # the second pass refines the first: sizes of 1e5 leave six digits otherwise
-        left = whitened - d @ m.columns[:, None]
-        d = d + (left @ across - (start + d) * precision) @ m.inverse
+    d = (whitened @ across - start * precision) @ m.inverse
+    left = whitened - d @ m.columns[:, None]
+    d += (left @ across - (start + d) * precision) @ m.inverse  # without this sizes of 1e5 leave six digits
     left, terms = whitened - d @ m.columns[:, None], start + d
     squares = (left * left).sum(-1) + (terms * terms * precision).sum(-1) + floor
     mean, unit_variance = terms[..., 1], m.inverse[:, :, 1, 1]
@@ -526,10 +525,10 @@ def estimate(
             break
         if not left_out:
             with_all = float(estimate_many(design, y[kept], stated, deletions=False).value[0])
-        without[worst] = many.value[0]
         used[worst] = False
         left_out.append(worst)
     value, widen = float(many.value[0]), np.sqrt(2.0) if mirrored else 1.0
+    without[left_out] = value
     lower, upper = (value + widen * (float(end[0]) - value) for end in (many.lower, many.upper))
     status = Status.WRONG_POINT if left_out else Status.OPEN if lower < 0.0 < upper else Status.OK
     if left_out:

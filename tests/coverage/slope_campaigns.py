@@ -21,7 +21,7 @@ from coeflab.kernels.origin_slope import estimate_many, prepare
 
 NOISE = (0.03, 0.01, 0.001, 0.0001, 0.00001)
 DESIGNS = ("even", "uneven", "one-sided", "replicated")
-ROUNDS, CAMPAIGNS, STUDIED = 20, 50, 2
+ROUNDS, CAMPAIGNS, STUDIED = 20, 50, 1
 TABLE = Path(__file__).with_name("slope_table.csv")
 Curve = Callable[[Array], Array]
 
