@@ -105,6 +105,8 @@ class Slopes:
     ----------
     value, lower, upper, sd, noise : (b,) array
         Median, ends of the 95 % interval, standard deviation, standard deviation of one reading.
+    mean : (b,) array
+        Mean if no row is wrong, the like of ``without``.
     wrong : (b, n) array
         Probability that the row is wrong.
     without : (b, n) array
@@ -116,6 +118,7 @@ class Slopes:
     upper: Array
     sd: Array
     noise: Array
+    mean: Array
     wrong: Array
     without: Array
     weights: Array
@@ -383,7 +386,8 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
     main, gone = [p[0] for p in parts], [p[1] for p in parts]
     weight, mean, variance, noise = (np.concatenate(z).T for z in zip(*main))
     evidence = special.logsumexp(weight, axis=1)
-    noise = np.sqrt((special.softmax(weight, axis=1) * noise).sum(1)) * size
+    weights = special.softmax(weight, axis=1)
+    noise, middle = np.sqrt((weights * noise).sum(1)) * size, (weights * mean).sum(1)
     scale, freedom = np.sqrt(variance), np.full(mean.shape, float(nu))
     wrong, without = np.zeros((b, n)), np.full((b, n), np.nan)
     if deletions:
@@ -403,8 +407,7 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
     unit = size / design.largest
     ends = ends * unit[:, None]
     return Slopes(
-        ends[:, 1], ends[:, 0], ends[:, 2], sd * unit, noise, wrong, without,
-        special.softmax(np.concatenate([z[0] for z in main]).T, axis=1),
+        ends[:, 1], ends[:, 0], ends[:, 2], sd * unit, noise, middle * unit, wrong, without, weights,
     )  # fmt: skip
 
 
@@ -529,7 +532,7 @@ def estimate(
         left_out.append(worst)
     value, widen = float(many.value[0]), np.sqrt(2.0) if mirrored else 1.0
     without[left_out] = value
-    lower, upper = (value + widen * (float(end[0]) - value) for end in (many.lower, many.upper))
+    lower, upper = (float(value + widen * (end[0] - value)) for end in (many.lower, many.upper))
     status = Status.WRONG_POINT if left_out else Status.OPEN if lower < 0.0 < upper else Status.OK
     if left_out:
         rows = ", ".join(str(i) for i in left_out)

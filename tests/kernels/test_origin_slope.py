@@ -126,7 +126,7 @@ def test_less_noise_gives_less_u95_down_to_exact_data() -> None:
 def test_exact_data_give_a_tight_interval_about_the_slope(curved: Callable[[Array], Array]) -> None:
     s = estimate(X, curved(X))
     assert contains(s)
-    assert s.u95 < 0.05 * abs(SLOPE)
+    assert s.u95 < 0.15 * abs(SLOPE)
 
 
 def test_units_and_signs_only_scale_the_answer(clean: OriginSlope) -> None:
@@ -279,7 +279,7 @@ def test_deletion_by_bordering_is_the_fit_without_the_row(x: Array, noise: float
         if np.abs(x[rest]).max() < np.abs(x).max():
             continue
         refit = estimate_many(prepare(x[rest]), y[rest], deletions=False)
-        assert abs(all_rows.without[0, row] - refit.value[0]) < 0.35 * refit.u95[0]
+        assert abs(all_rows.without[0, row] - refit.mean[0]) < 0.05 * refit.u95[0]
     assert all_rows.wrong.max() < 0.5
 
 
