@@ -1,16 +1,17 @@
 """A calibrated slope at the origin, without a choice of form or window.
 
 One model for the whole sweep, x divided by its largest size, t = x / max|x|:
-``y = a + s t + e t^2 + q t|t| + c t^3 + g(t) + noise``. The slope s is free. The sizes of e, q, c and of the smooth
-remainder g are unknown, in units of the noise, on a logarithmic grid from "nothing" to 1e5. g is one of several Gaussian
-processes: a power series (3rd order upwards), integrated white noise whose curvature grows with |t|^p (Wahba 1990;
-Kimeldorf & Wahba 1970) or starts at an onset angle (stall, separation); odd, or free to differ between the two sides;
-scatter that grows with |t|. Given the sizes everything is closed form (Student); the slope is the mixture over the sizes, weighted by
-restricted marginal likelihood to a power below one, because no member is the truth (Gruenwald & van Ommen 2017).
-A priori the largest of the curved sizes is log-uniform and the others lie anywhere below it.
-One point may be wrong: each row's deletion is a further member of the mixture, by bordering, without a second fit.
+``y = a + s t + e t^2 + q t|t| + c t^3 + g(t) + noise``. The slope s is free, and so is a unless the sweep is one-sided.
+The sizes of the other terms and of the smooth remainder g are unknown, in units of the noise, on a logarithmic grid
+from "nothing" to 1e5. g is one of several Gaussian processes: a power series from t^3 upwards; integrated white noise
+(Wahba 1990; Kimeldorf & Wahba 1970) whose curvature grows with |t|^p or starts at an onset (stall, separation), odd or
+free to differ between the sides; or scatter that grows with |t|. Given the sizes all is closed form (Student). The slope
+is the mixture over the sizes, weighted by restricted marginal likelihood to a power below one, because no member is the
+truth (Gruenwald & van Ommen 2017). A priori the decade of the largest curved size is uniform and the other sizes lie
+anywhere below it. One row may be wrong: its deletion is a further member, by bordering, without a second fit.
 
-Every constant was chosen on the simulated truths of ``tests/coverage``, none on a measured body.
+The constants, the ends of the interval included, were chosen on simulated truths of the kind in ``tests/coverage``,
+none on a measured body.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from scipy import special
 
 from coeflab.kernels.least_squares import Array, Index
 
+# Sizes in units of the noise; pairs and products with them are prior odds.
 NOTHING = 0.1
 SIZES = (NOTHING, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5)
 COARSE = (NOTHING, 1e1, 1e3, 1e5)
@@ -36,9 +38,12 @@ NO_REMAINDER, NOTHING_CURVED, QUADRATIC_ODDS = 9.0, 1.5, 0.5
 ODD = {"series": 5.0, "p0": 0.3, "p1": 1.0, "p3": 1.0, "on.25": 0.7, "on.4": 0.7, "on.55": 0.7, "on.7": 0.7}
 SIDES = {"series": 2.5, "p1": 0.7, "on.25": 0.5, "on.55": 0.5}
 GROWING, SETTING, COMMON = 0.3, 0.3, 0.5
-POWER, TAIL = 0.45, 0.0245
+# Power of the likelihood, and the tail left out at each end: the two that calibrate.
+POWER, TAIL = 0.45, 0.03
+# Prior probability that a row is wrong, and the posterior one at which it is left out.
 WRONG, REMOVE = 0.005, 0.5
 DECAY, ORDERS = 0.8, 16
+# Smallest noise (of the largest force), leverage that is rounding, members kept for the quantiles.
 ROUNDING, WEIGHTLESS, KEPT = 3e-8, 1e-10, 256
 STATED_FREEDOM = 2.0
 FEWEST, MOST_LIKELY = 5, 100
