@@ -40,8 +40,9 @@ SIDES = {"series": 2.5, "p1": 0.7, "on.25": 0.5, "on.55": 0.5}
 GROWING, SETTING, COMMON = 0.3, 0.3, 0.5
 # Power of the likelihood, and the tail left out at each end: the two that calibrate.
 POWER, TAIL = 0.45, 0.03
-# Prior probability that a row is wrong, and the posterior one at which it is left out.
-WRONG, REMOVE = 0.005, 0.5
+# Prior probability that a row is wrong, and the posterior one (flattened by the power) at which it is left out: none of
+# 2,048 clean campaigns lost a row, 93 % of the readings that were off by over five standard deviations were named.
+WRONG, REMOVE = 0.005, 0.1
 DECAY, ORDERS = 0.8, 16
 # Smallest noise (of the largest force), leverage that is rounding, members kept for the quantiles.
 ROUNDING, WEIGHTLESS, KEPT = 3e-8, 1e-10, 256
