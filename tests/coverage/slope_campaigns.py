@@ -208,7 +208,7 @@ def main(work: Path, count: int) -> None:
             done = run_round(design, number, CAMPAIGNS, STUDIED, tuple(FAMILIES))
             np.save(work / "part.npy", done)
             (work / "part.npy").rename(path)
-    rounds = {d: [np.load(p) for p in sorted(work.glob(f"{d}_*.npy"))[:count]] for d in DESIGNS}
+    rounds = {d: [np.load(work / f"{d}_{i}.npy") for i in range(count)] for d in DESIGNS}
     rows = table(rounds)
     lines = [",".join(rows[0]), *(",".join(str(v) for v in row.values()) for row in rows)]
     TABLE.write_text("\n".join(lines) + "\n")
