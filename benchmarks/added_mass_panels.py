@@ -21,11 +21,11 @@ from pathlib import Path
 
 import numpy as np
 
-from coeflab.added_mass import panel, strip
+from coeflab.bodies.added_mass import panel, strip
+from coeflab.bodies.closed_forms import ellipsoid_added_mass
+from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.shape import Ellipsoid, Part, Parts
 from coeflab.core.files import shipped
-from coeflab.kernels.ellipsoid import ellipsoid_added_mass
-from coeflab.model.meshing import meshed
-from coeflab.model.shape import Ellipsoid, Part, Parts
 from coeflab.workbench import read_body
 
 AXES = np.array([6.0, 1.0, 1.0])

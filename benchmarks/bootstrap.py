@@ -17,8 +17,9 @@ import time
 import numpy as np
 import statsmodels.api as sm
 
-from coeflab.kernels.bootstrap import draw_counts, pairs
-from coeflab.kernels.least_squares import Array, factorise
+from coeflab.core.types import Array
+from coeflab.fits.statistics.diagnostics import draw_counts, pairs
+from coeflab.fits.statistics.least_squares import factorise
 
 REPLICATES = 10_000
 SHARE = 10

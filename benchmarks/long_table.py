@@ -18,7 +18,8 @@ import time
 
 import numpy as np
 
-from coeflab.kernels.least_squares import Array, factorise, solve
+from coeflab.core.types import Array
+from coeflab.fits.statistics.least_squares import factorise, solve
 
 ROWS, TERMS = 1_000_000, 20
 REPEATS = 5

@@ -23,11 +23,11 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
-from coeflab.added_mass import strip
-from coeflab.bodies import mesh
-from coeflab.bodies.groves import meridian
-from coeflab.kernels.solids import box, solid, surface
-from coeflab.model.meshing import meshed
+from coeflab.bodies.added_mass import strip
+from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.mesh.solids import box, solid, surface
+from coeflab.bodies.readers import mesh
+from coeflab.bodies.readers.groves import meridian
 
 REPEATS = 9
 FACES, MANY = 100_000, 1_000_000

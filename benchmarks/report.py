@@ -19,8 +19,8 @@ from typing import TypeVar
 import matplotlib as mpl
 import numpy as np
 
-from coeflab.presentation.document import Section
-from coeflab.studies.documents import report_of, studied, written
+from coeflab.published.documents import report_of, studied, written
+from coeflab.report.document import Section
 
 mpl.use("Agg")
 ROUNDS = 5

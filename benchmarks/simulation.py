@@ -25,15 +25,24 @@ from scipy.integrate import solve_ivp
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from coeflab.exporters import xdyn  # noqa: E402
-from coeflab.kernels.single_rates import rates_of_one  # noqa: E402
-from coeflab.model.ensemble import Ensemble, alone  # noqa: E402
-from coeflab.model.manoeuvre import Manoeuvre, Phase  # noqa: E402
-from coeflab.model.marching import march  # noqa: E402
-from coeflab.model.vehicle import Vehicle, vehicle  # noqa: E402
-from coeflab.simulators import rigid_body  # noqa: E402
+from coeflab.formats.xdyn import write as xdyn  # noqa: E402
+from coeflab.motion.dynamics import rates_of_one  # noqa: E402
+from coeflab.motion.manoeuvre import (  # noqa: E402
+    Manoeuvre,
+    Phase,
+)
+from coeflab.motion.marching import (  # noqa: E402
+    Ensemble,
+    alone,
+    march,
+)
+from coeflab.motion.simulators import rigid_body  # noqa: E402
+from coeflab.motion.vehicle import (  # noqa: E402
+    Vehicle,
+    vehicle,
+)
 from tests.consumers.lxdyn_environment import PYTHON  # noqa: E402
-from tests.exporters.massed import torpedo  # noqa: E402
+from tests.formats.massed import torpedo  # noqa: E402
 
 REPEATS, STEP, RUDDER = 5, 0.02, 0.15
 SHORT, LONG, OFTEN, MEMBERS = 10.0, 60.0, 50, 1000

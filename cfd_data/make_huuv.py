@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from coeflab.core.files import shipped, write_atomically
-from coeflab.model.huuv import read_huuv
-from coeflab.model.huuv_parameters import parameter_file
+from coeflab.published.huuv.model import parameter_file, read_huuv
 
 if __name__ == "__main__":
     write_atomically(shipped("cfd_data") / "huuv" / "huuv.parameters.json", parameter_file(read_huuv()).to_json())

@@ -11,9 +11,10 @@ import pytest
 from hypothesis import settings
 
 from coeflab.core.files import shipped
-from coeflab.model.force_table import ForceTable
-from coeflab.model.plan import read_plan
-from coeflab.model.study import PlannedTable, Study
+from coeflab.study.plan import read_plan
+from coeflab.study.study import Study
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import read_tables, run
 
 # How long an example takes says how busy the machine is, not whether it is right.

@@ -120,7 +120,7 @@ def main() -> None:
     """
     os.environ.update(dict.fromkeys(THREADS, "1"))
     from coeflab.core.errors import CoeflabError
-    from coeflab.presentation.printable import visible
+    from coeflab.report.printable import visible
 
     _ready_to_print()
     try:

@@ -28,11 +28,11 @@ def command(
 
     With one method any further --option VALUE goes to it: --method panel --panels 9000 (see coeflab formats panel).
     """
+    from coeflab.bodies.simplify.source import mesh_body
     from coeflab.cli.fit import further
-    from coeflab.core.citations import work
-    from coeflab.model import noun_tables
-    from coeflab.presentation import added_mass_tables as tables
-    from coeflab.studies.simplify_source import mesh_body
+    from coeflab.core.provenance import work
+    from coeflab.report.tables import added_mass as tables
+    from coeflab.report.tables import nouns as noun_tables
     from coeflab.workbench.hulls import added_masses
 
     with show.narrated():

@@ -1,22 +1,29 @@
-"""The JSON contract of the command line."""
+"""The JSON contract of the command line.
+
+A body's particulars for machines.
+"""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
-from coeflab.core.symbols import primed
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core.wording import finite
-from coeflab.model.acceptance import Acceptance
-from coeflab.model.coefficient import Coefficient
-from coeflab.model.export import Export
-from coeflab.model.fitted_model import FittedModel
-from coeflab.model.inertia import WaterInertia
-from coeflab.model.loss import Loss
-from coeflab.model.manoeuvre import Figure
-from coeflab.model.pooling import Pooling
-from coeflab.model.simulation import Simulation
-from coeflab.model.study import Study
+from coeflab.fits.results.fit_result import Pooling
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.formats.export import Export
+from coeflab.formats.loss import Loss
+from coeflab.law.coefficient import Coefficient
+from coeflab.law.symbols import primed
+from coeflab.motion.manoeuvre import Figure, Simulation
+from coeflab.report.acceptance import Acceptance
+from coeflab.study.study import Study
+from coeflab.vehicle.inertia import WaterInertia
 
 
 def coefficient(c: Coefficient, scaling: str) -> dict[str, Any]:
@@ -235,3 +242,27 @@ def acceptance(found: Acceptance) -> dict[str, Any]:
         "statements": list(found.statements),
         "citations": list(found.citations),
     }  # fmt: skip
+
+
+def body_json(body: Body, density: float) -> dict[str, Any]:
+    """Volumes, centres, areas and inertia of the displaced water by configuration, SI, FRD; None where not known."""
+    out: dict[str, Any] = {"body": body.name, "datum": str(body.datum), "density": density}
+    if isinstance(body.shape, TriangleMesh):
+        out |= {"faces": len(body.shape.faces), "extents": body.shape.extents.tolist()}
+    out["configurations"] = [
+        {
+            "name": c.name,
+            "title": c.title,
+            "volume": c.volume,
+            "wetted_surface": c.wetted_surface,
+            "centre_of_buoyancy": _listed(c.centre_of_buoyancy),
+            "projected_areas": _listed(c.projected_areas),
+            "displaced_inertia": _listed(c.displaced_inertia(density)),
+        }
+        for c in body.configurations
+    ]
+    return out
+
+
+def _listed(values: NDArray[np.float64] | None) -> list[Any] | None:
+    return None if values is None else list(values.tolist())

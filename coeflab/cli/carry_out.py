@@ -10,7 +10,8 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.model.study import Plan, Study
+    from coeflab.study.study import Plan, Study
+
 
 REPORTS = "reports"
 
@@ -45,8 +46,10 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
 
 def summarise(study: Study) -> None:
     """Comparison, coefficients, fitted models and grave findings."""
-    from coeflab.model import noun_tables
-    from coeflab.presentation import joint_tables, model_tables, tables
+    from coeflab.report.tables import models as joint_tables
+    from coeflab.report.tables import models as model_tables
+    from coeflab.report.tables import nouns as noun_tables
+    from coeflab.report.tables import results as tables
 
     show.text(study.plan.title)
     show.text()
@@ -73,8 +76,8 @@ def summarise(study: Study) -> None:
 
 def findings(study: Study) -> None:
     """Warnings and failures; the rest is counted."""
-    from coeflab.model.check import Severity
-    from coeflab.presentation import tables
+    from coeflab.core.table import Severity
+    from coeflab.report.tables import results as tables
 
     grave = {Severity.FAIL, Severity.WARN}
     show.table(tables.checks(study.with_checks(tuple(c for c in study.checks if c.severity in grave))))

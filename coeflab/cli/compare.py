@@ -10,7 +10,8 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.studies.compare import Comparison
+    from coeflab.vehicle.comparison import Comparison
+
 
 EXAMPLE = "coeflab compare a.parameters.json b.parameters.json"
 
@@ -26,8 +27,8 @@ def command(
     means that at 95 % of its points the difference is inside the combined 95 % half-width. Exit code 1 where two files of
     one body are apart.
     """
-    from coeflab.model.parameter_file import read_parameter_file
-    from coeflab.studies.compare import compare
+    from coeflab.vehicle.comparison import compare
+    from coeflab.vehicle.parameter_file import read_parameter_file
 
     found = compare(read_parameter_file(first), read_parameter_file(second))
     if json:
@@ -81,8 +82,8 @@ def as_json(found: Comparison) -> dict[str, Any]:
 
 
 def _print(found: Comparison) -> None:
-    from coeflab.studies import comparison_tables
-    from coeflab.studies.shared_tables import Verdict
+    from coeflab.report.tables import models as comparison_tables
+    from coeflab.vehicle.comparison import Verdict
 
     for table in (comparison_tables.coefficients(found), comparison_tables.models(found)):
         show.table(table)

@@ -23,9 +23,9 @@ def command(
     """Write what a simulator loads, prove it by the simulator's own force law, and say what is lost."""
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import write_all
-    from coeflab.core.identifiers import file_stem
-    from coeflab.model.parameter_file import read_parameter_file
-    from coeflab.presentation import loss_tables
+    from coeflab.core.wording import file_stem
+    from coeflab.report.tables import formats as loss_tables
+    from coeflab.vehicle.parameter_file import read_parameter_file
     from coeflab.workbench.exports import export
 
     parameters = read_parameter_file(file)

@@ -11,8 +11,9 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.model.study import Study
-    from coeflab.presentation.document import Figure
+    from coeflab.report.document import Figure
+    from coeflab.study.study import Study
+
 
 EXAMPLE = "coeflab fit suboff_roddy_2 --symbol Yv"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
@@ -47,9 +48,9 @@ def command(
     from coeflab.core.files import located
     from coeflab.core.units import quantity
     from coeflab.core.wording import Verbatim
-    from coeflab.model.plan import table_at
-    from coeflab.model.scaling import Scaling
-    from coeflab.model.study import Plan, PlannedJoint
+    from coeflab.law.scaling import Scaling
+    from coeflab.study.plan import table_at
+    from coeflab.study.study import Plan, PlannedJoint
     from coeflab.workbench import run
 
     if help_options:
@@ -144,10 +145,10 @@ def _draw(study: Study, symbols: list[str], file: Path) -> None:
     """All figures of the fits in one file; of sweeps those of the wanted symbols, where any are."""
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_atomically
-    from coeflab.presentation.estimator_figure import estimator_figure
-    from coeflab.presentation.figures import sweep_figure
-    from coeflab.presentation.model_figure import distinct, model_figures
-    from coeflab.presentation.sheet import sheet
+    from coeflab.report.figures.estimator import estimator_figure
+    from coeflab.report.figures.model import distinct, model_figures
+    from coeflab.report.figures.sheet import sheet
+    from coeflab.report.figures.sweep import sweep_figure
 
     rows: list[tuple[Figure, ...]] = []
     for fit in study.fits:
@@ -162,8 +163,8 @@ def _draw(study: Study, symbols: list[str], file: Path) -> None:
 
 
 def _diagnose(study: Study) -> None:
-    from coeflab.presentation import model_tables
-    from coeflab.presentation.model_figure import distinct
+    from coeflab.report.figures.model import distinct
+    from coeflab.report.tables import models as model_tables
 
     models = distinct([m for f in study.fits for m in f.models])
     if not models:
@@ -177,8 +178,11 @@ def _diagnose(study: Study) -> None:
 
 def _print(study: Study, symbols: list[str]) -> None:
     from coeflab.cli.carry_out import findings
-    from coeflab.model import noun_tables
-    from coeflab.presentation import budget_tables, joint_tables, model_tables, tables
+    from coeflab.report.tables import budget as budget_tables
+    from coeflab.report.tables import models as joint_tables
+    from coeflab.report.tables import models as model_tables
+    from coeflab.report.tables import nouns as noun_tables
+    from coeflab.report.tables import results as tables
 
     show.table(tables.coefficients(study))
     models = tuple(m for f in study.fits for m in f.models)

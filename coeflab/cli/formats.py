@@ -10,7 +10,8 @@ from coeflab.cli import show
 
 if TYPE_CHECKING:
     from coeflab.core.registry import Registry
-    from coeflab.model.table import Table
+    from coeflab.core.table import Table
+
 
 EXAMPLE = "coeflab formats surface"
 
@@ -20,12 +21,12 @@ def command(
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """List everything that can be plugged in: importers, fits, exporters, checks, reports, validations."""
-    from coeflab.model.table import Table
+    from coeflab.core.table import Table
 
     found, broken = _chosen(name)
     rows = [(room.kind, plugin, room.load(plugin).summary) for room, plugin in found]
     if not name:
-        from coeflab.studies.validate import validations
+        from coeflab.published import validations
 
         rows += [("validation", v, f"coeflab validate {v}") for v in validations()]
     ours = len(rows)
@@ -50,7 +51,7 @@ def explain(room: Registry[Any], plugin: str) -> None:
 def options_of(room: Registry[Any], plugin: str) -> Table:
     """Every option of a plugin: what it takes, its default, what it means. No rows where it has none."""
     from coeflab.core.options import described
-    from coeflab.model.table import Table
+    from coeflab.core.table import Table
 
     kind = getattr(room.load(plugin), "Options", None)
     with room.guarded(plugin, "has options that cannot be read"):
@@ -96,16 +97,15 @@ def _chosen(name: str) -> tuple[list[tuple[Registry[Any], str]], list[tuple[Regi
 
 
 def _rooms() -> tuple[Registry[Any], ...]:
-    from coeflab.added_mass import ADDED_MASS
-    from coeflab.bodies import BODIES
-    from coeflab.checks import CHECKS
-    from coeflab.exporters import EXPORTERS
+    from coeflab.bodies.added_mass import ADDED_MASS
+    from coeflab.bodies.readers import BODIES
     from coeflab.fits import FITS
-    from coeflab.importers import IMPORTERS
-    from coeflab.manoeuvres import MANOEUVRES
-    from coeflab.parameter_importers import PARAMETER_IMPORTERS
-    from coeflab.reporting import REPORTERS
-    from coeflab.simulators import SIMULATORS
+    from coeflab.formats import EXPORTERS, PARAMETER_IMPORTERS
+    from coeflab.motion.manoeuvres import MANOEUVRES
+    from coeflab.motion.simulators import SIMULATORS
+    from coeflab.report.formats import REPORTERS
+    from coeflab.study.checks import CHECKS
+    from coeflab.tables.importers import IMPORTERS
 
     return (
         IMPORTERS,

@@ -10,7 +10,8 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.studies.glide import Flown
+    from coeflab.workbench.glide import Flown
+
 
 EXAMPLE = "coeflab glide thauv"
 
@@ -28,9 +29,9 @@ def command(
     Write CSV and figures with --out. Exit code 1 when a motion ended early.
     """
     from coeflab.core.files import write_all
-    from coeflab.model.trajectory import Ended
-    from coeflab.presentation import glide_tables
-    from coeflab.studies.glide import files, fly
+    from coeflab.motion.trajectory import Ended
+    from coeflab.report.tables import motion as glide_tables
+    from coeflab.workbench.glide import files, fly
 
     flown = fly(glider, cycles, {"step": step})
     made = {} if out is None else files(flown)

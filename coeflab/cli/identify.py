@@ -10,7 +10,8 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.model.identified import Identified
+    from coeflab.motion.identify.identified import Identified
+
 
 EXAMPLE = "coeflab identify zigzag.csv turning_circle.csv --params vehicle.parameters.json"
 
@@ -45,9 +46,9 @@ def command(
     The rigid body is taken from the file; the terms of the force are chosen by sparse regression in the weak form. Says
     which terms the series cannot tell. Exit code 1 when nothing was identified.
     """
-    from coeflab.model.parameter_file import read_parameter_file
-    from coeflab.presentation import identified_tables
-    from coeflab.studies.identify import identify_from
+    from coeflab.motion.identify.identify import identify_from
+    from coeflab.report.tables import motion as identified_tables
+    from coeflab.vehicle.parameter_file import read_parameter_file
 
     options: dict[str, object] = {
         "terms": terms, "form": "weak" if weak else "derivative", "symmetric": "no" if asymmetric else "yes",
@@ -73,8 +74,8 @@ def command(
 
 def as_json(found: Identified) -> dict[str, Any]:
     """Every candidate with its values, absent ones null, and the works that the method rests on."""
-    from coeflab.core.citations import work
-    from coeflab.studies.identify import citations
+    from coeflab.core.provenance import work
+    from coeflab.motion.identify.identify import citations
 
     return {
         "name": found.name,
@@ -108,9 +109,9 @@ def _write(found: Identified, folder: Path) -> list[Path]:
     import json
 
     from coeflab.core.files import write_all
-    from coeflab.presentation.identified_figure import identified_figure
-    from coeflab.presentation.identified_tables import terms_csv
-    from coeflab.presentation.sheet import sheet
+    from coeflab.report.figures.identified import identified_figure
+    from coeflab.report.figures.sheet import sheet
+    from coeflab.report.tables.motion import terms_csv
 
     content = {
         f"{found.name}.identified.csv": terms_csv(found),

@@ -24,7 +24,7 @@ def command(
 
     Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
     """
-    from coeflab.studies.simplify_source import names_body
+    from coeflab.bodies.simplify.source import names_body
 
     if names_body(table):
         _body(table, unit, axes, repair, density, json)
@@ -37,10 +37,10 @@ def command(
 
 
 def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: bool) -> None:
-    from coeflab.model.mesh import TriangleMesh
-    from coeflab.presentation import added_mass_tables
-    from coeflab.presentation.body_json import body_json
-    from coeflab.studies.simplify_source import mesh_body
+    from coeflab.bodies.mesh.mesh import TriangleMesh
+    from coeflab.bodies.simplify.source import mesh_body
+    from coeflab.cli.as_json import body_json
+    from coeflab.report.tables import added_mass as added_mass_tables
 
     if not 0.0 < density < float("inf"):
         raise InputError(f"a density of {density:g} kg/m^3", "a value above zero", column="--density")
@@ -57,10 +57,10 @@ def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: b
 
 
 def _tables(table: str, json: bool) -> None:
-    from coeflab.core.citations import work
     from coeflab.core.files import located
-    from coeflab.model.study import PlannedTable
-    from coeflab.presentation import tables
+    from coeflab.core.provenance import work
+    from coeflab.report.tables import results as tables
+    from coeflab.tables.importers import PlannedTable
     from coeflab.workbench import read_tables
 
     path = located(table, "cfd_data")

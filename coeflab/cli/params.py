@@ -27,8 +27,8 @@ def check(
     The exit code is 1 where a finding fails, and 2 where the file cannot be read, whatever its format.
     """
     from coeflab.core.errors import InputError
-    from coeflab.presentation import model_file_tables
-    from coeflab.studies.model_files import read_model_file
+    from coeflab.formats.model_files import read_model_file
+    from coeflab.report.tables import formats as model_file_tables
 
     if density is not None and not 0.0 < density < float("inf"):
         raise InputError(f"{density:g}", "a density above zero", column="--density")
@@ -53,7 +53,7 @@ def check(
 @app.command(epilog="Example: coeflab params schema > parameter_file.md")
 def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schema.")) -> None:
     """Print what every field of a parameter file means, its unit, and since which version it exists."""
-    from coeflab.model import parameter_file
-    from coeflab.presentation.schema_page import schema_page
+    from coeflab.report.tables.formats import schema_page
+    from coeflab.vehicle import parameter_file
 
     show.lines((parameter_file.schema() if json else schema_page()).decode().removesuffix("\n"))

@@ -27,8 +27,8 @@ def command(
     from coeflab.cli.carry_out import REPORTS
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
-    from coeflab.reporting import REPORTERS
-    from coeflab.studies.documents import only, report_of, studied, written
+    from coeflab.published.documents import only, report_of, studied, written
+    from coeflab.report.formats import REPORTERS
 
     formats = [name.strip() for name in to.split(",") if name.strip()]
     if not formats:

@@ -18,7 +18,7 @@ def command(
     from coeflab.cli.carry_out import carry_out
     from coeflab.core.errors import InputError
     from coeflab.core.files import typed
-    from coeflab.model.plan import read_plan
+    from coeflab.study.plan import read_plan
 
     plan = typed(plan)
     file = plan / "plan.toml" if plan.is_dir() else plan

@@ -24,7 +24,7 @@ def command(
     import signal
     from threading import Thread
 
-    from coeflab.studies.gallery.server import GalleryServer
+    from coeflab.report.gallery.server import GalleryServer
 
     # A shell that starts a command in the background has it ignore Ctrl-C.
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.presentation.printable import visible
+from coeflab.report.printable import visible
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from coeflab.model.table import Table
+    from coeflab.core.table import Table
+
 
 SLOW = 2.0
 ACCELERATIONS = (

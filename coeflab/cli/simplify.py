@@ -33,15 +33,14 @@ def command(
     Cuts off the boxes, then separates shells, then cuts appendages from a round hull; with --split convex it cuts
     further what no form fits.
     """
+    from coeflab.bodies.simplify.simplified import MESH
+    from coeflab.bodies.simplify.simplify import parse_box, read_boxes, simplify
+    from coeflab.bodies.simplify.source import mesh_body
     from coeflab.core.errors import InputError, OutputError, shown
     from coeflab.core.files import write_all
     from coeflab.core.wording import Verbatim
-    from coeflab.model.named_box import parse_box, read_boxes
-    from coeflab.presentation.body_figure import body_figure
-    from coeflab.presentation.body_scene import body_scene
-    from coeflab.studies.simplified import MESH
-    from coeflab.studies.simplify import simplify
-    from coeflab.studies.simplify_source import mesh_body
+    from coeflab.report.figures.body import body_figure
+    from coeflab.report.figures.body_scene import body_scene
 
     if split not in ("", "convex"):
         raise InputError(shown(split), "convex, or no --split", column="--split")

@@ -10,7 +10,8 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.model.simulation import Simulation
+    from coeflab.motion.manoeuvre import Simulation
+
 
 EXAMPLE = "coeflab simulate reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
@@ -43,12 +44,12 @@ def command(
     """
     from coeflab.cli.fit import further
     from coeflab.core.errors import InputError, shown
-    from coeflab.model.parameter_file import read_parameter_file
-    from coeflab.workbench.manoeuvres import simulate
+    from coeflab.motion.simulation import simulate
+    from coeflab.vehicle.parameter_file import read_parameter_file
 
     if help_options:
         from coeflab.cli.formats import explain
-        from coeflab.manoeuvres import MANOEUVRES
+        from coeflab.motion.manoeuvres import MANOEUVRES
 
         explain(MANOEUVRES, manoeuvre)
         return
@@ -102,7 +103,7 @@ def current_of(text: str) -> dict[str, float]:
 
 
 def _print(made: Simulation, written: list[Path]) -> None:
-    from coeflab.presentation.motion_tables import figure_table
+    from coeflab.report.tables.motion import figure_table
 
     name = f"{made.manoeuvre.name.replace('_', ' ')} of {made.vehicle.name}"
     show.table(figure_table(made.figures, name, made.vehicle.length))
@@ -117,9 +118,9 @@ def _print(made: Simulation, written: list[Path]) -> None:
 def _write(made: Simulation, folder: Path, to: str) -> list[Path]:
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
-    from coeflab.presentation.motion_figure import motion_figures
-    from coeflab.presentation.motion_tables import motion_csv, motion_parquet
-    from coeflab.presentation.sheet import sheet
+    from coeflab.report.figures.motion import motion_figures
+    from coeflab.report.figures.sheet import sheet
+    from coeflab.report.tables.motion import motion_csv, motion_parquet
 
     name = made.manoeuvre.name
     try:

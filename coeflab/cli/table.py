@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from coeflab.model.parameter_model import ParameterModel
+    from coeflab.vehicle.parameter_model import ParameterModel
+
 
 EXAMPLE = "coeflab table reports/huuv/huuv.parameters.json --alpha=-20:20:1 --beta=0"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
@@ -40,9 +41,9 @@ def command(
     """
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import write_atomically
-    from coeflab.core.symbols import FLOW_ANGLES
-    from coeflab.model.parameter_file import read_parameter_file
-    from coeflab.model.parameter_model import chosen
+    from coeflab.law.symbols import FLOW_ANGLES
+    from coeflab.vehicle.parameter_file import read_parameter_file
+    from coeflab.vehicle.parameter_model import chosen
 
     if str(params).startswith("--"):
         raise InputError(shown(params), "the parameter file first, then --NAME=VALUES")
@@ -164,7 +165,7 @@ def _lines(models: tuple[ParameterModel, ...], given: dict[str, NDArray[np.float
     """The CSV in pieces: header, then rows, the last variable fastest."""
     import numpy as np
 
-    from coeflab.model.parameter_model import ANGLE_OF, from_angles
+    from coeflab.vehicle.parameter_model import ANGLE_OF, from_angles
 
     units = dict.fromkeys(ANGLE_OF, "rad") | {v.name: v.unit for m in models for v in m.variables}
     yield (

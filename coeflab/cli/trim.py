@@ -10,7 +10,8 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.studies.trim import Trim
+    from coeflab.motion.trim.trim import Trim
+
 
 AXES = {"speed": "u", "sway": "v", "heave": "w"}
 EXAMPLE = "coeflab trim vehicle.parameters.json --speed 1.5 --yaw-rate 3"
@@ -53,9 +54,9 @@ def command(
     found too, or are zero where no motion is named. Says whether the solution is the only one, whether small motions
     about it die out, and where there is none, which equation stays violated (exit code 1).
     """
-    from coeflab.model.parameter_file import read_parameter_file
-    from coeflab.model.vehicle import vehicle
-    from coeflab.studies.trim import trim
+    from coeflab.motion.trim.trim import trim
+    from coeflab.motion.vehicle import vehicle
+    from coeflab.vehicle.parameter_file import read_parameter_file
 
     given = {"speed": speed, "sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch}
     motion = {AXES.get(k, k): _measured(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v}
@@ -117,7 +118,7 @@ def _si(name: str, value: float, option: str) -> float:
     from math import isfinite, radians
 
     from coeflab.core.errors import InputError, shown
-    from coeflab.core.symbols import CONTROLS
+    from coeflab.law.symbols import CONTROLS
 
     if not isfinite(value):
         raise InputError(shown(value), "a finite number", column=option)

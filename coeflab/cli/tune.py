@@ -11,7 +11,8 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.studies.tune import Tuned
+    from coeflab.workbench.tune import Tuned
+
 
 EXAMPLE = "coeflab tune cfd_data/huuv/tune.toml"
 
@@ -28,9 +29,9 @@ def command(
     fit did not come to an end.
     """
     from coeflab.cli.carry_out import REPORTS
-    from coeflab.model.tuning_plan import read_tuning_plan
-    from coeflab.presentation import tuning_tables
-    from coeflab.studies.tune import tune, write
+    from coeflab.motion.tune.plan import read_tuning_plan
+    from coeflab.report.tables import motion as tuning_tables
+    from coeflab.workbench.tune import tune, write
 
     with show.progress(json) as say:
         say(f"tuning {plan}")

@@ -10,7 +10,8 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.model.carried import Carried
+    from coeflab.motion.uncertainty.carried import Carried
+
 
 EXAMPLE = "coeflab uncertainty reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag --sobol"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
@@ -50,13 +51,13 @@ def command(
     """
     from coeflab.cli.fit import further
     from coeflab.cli.simulate import current_of, listed
-    from coeflab.model.carried import Question
-    from coeflab.model.parameter_file import read_parameter_file
-    from coeflab.studies.uncertainty import uncertainty
+    from coeflab.motion.uncertainty.carried import Question
+    from coeflab.motion.uncertainty.uncertainty import uncertainty
+    from coeflab.vehicle.parameter_file import read_parameter_file
 
     if help_options:
         from coeflab.cli.formats import explain
-        from coeflab.manoeuvres import MANOEUVRES
+        from coeflab.motion.manoeuvres import MANOEUVRES
 
         explain(MANOEUVRES, manoeuvre)
         return
@@ -78,7 +79,7 @@ def command(
 
 
 def _print(made: Carried, written: list[Path]) -> None:
-    from coeflab.presentation import uncertainty_tables
+    from coeflab.report.tables import uncertainty as uncertainty_tables
 
     if made.undetermined:
         name = f"{made.question.manoeuvre.replace('_', ' ')} of {made.vehicle}"
@@ -97,9 +98,9 @@ def _print(made: Carried, written: list[Path]) -> None:
 
 def _write(made: Carried, folder: Path) -> list[Path]:
     from coeflab.core.files import write_all
-    from coeflab.presentation.sheet import sheet
-    from coeflab.presentation.uncertainty_figure import uncertainty_figures
-    from coeflab.presentation.uncertainty_tables import members_csv
+    from coeflab.report.figures.sheet import sheet
+    from coeflab.report.figures.uncertainty import uncertainty_figures
+    from coeflab.report.tables.uncertainty import members_csv
 
     name = made.question.manoeuvre
     content = {f"{name}_members.csv": members_csv(made)}
@@ -113,7 +114,7 @@ def _write(made: Carried, folder: Path) -> list[Path]:
 def as_json(made: Carried) -> dict[str, Any]:
     """Figures in SI with intervals, shares of the variance, ranking and statements; absent values null."""
     from coeflab.cli.as_json import accelerations
-    from coeflab.presentation.uncertainty_tables import ranking
+    from coeflab.report.tables.uncertainty import ranking
 
     q = made.question
     return {

@@ -10,7 +10,8 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.model.acceptance import Acceptance
+    from coeflab.report.acceptance import Acceptance
+
 
 EXAMPLE = "coeflab validate suboff"
 
@@ -22,8 +23,8 @@ def command(
 ) -> None:
     """Hold shipped tables against published derivatives, or reproduce a published vehicle; write what comes out."""
     from coeflab.cli.carry_out import REPORTS, carry_out
-    from coeflab.model.acceptance import Acceptance
-    from coeflab.studies.validate import validation
+    from coeflab.published import validation
+    from coeflab.report.acceptance import Acceptance
 
     with show.progress(json) as say:
         say(f"computing {name}")
@@ -36,8 +37,9 @@ def command(
 
 def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
     from coeflab.core.files import write_all
-    from coeflab.presentation import acceptance_document, acceptance_tables
-    from coeflab.studies.documents import report_of, written
+    from coeflab.published.documents import report_of, written
+    from coeflab.report import acceptance as acceptance_tables
+    from coeflab.report.sections import acceptance as acceptance_document
     from coeflab.workbench.exports import parameter_files_rendered
 
     files = parameter_files_rendered(found.parameter_files) | dict(written(report_of(found).document, ["html"]))

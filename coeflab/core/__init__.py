@@ -1,1 +1,1 @@
-"""Floor 0: errors, axes, units, symbols, provenance, citations, registry."""
+"""Errors, units, axes, provenance, citations, the registry of plugins: what every subject needs."""

@@ -1,4 +1,7 @@
-"""Where a number comes from: files by their sha256, sources by their citation."""
+"""Where a number comes from: files by their sha256, sources by their citation.
+
+Works that formulas and data come from; reports print those that were used.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
-from coeflab.core.toml import Section
+from coeflab.core.text.toml import Section
 
 TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic")
 BODY_KINDS = (*TABLE_KINDS, "computed")
@@ -19,7 +22,7 @@ class Source:
     Attributes
     ----------
     citation : str
-        Key in `coeflab.core.citations` or free text.
+        Key in `coeflab.core.provenance` or free text.
     place : str
         Pages or table in the source.
     how_obtained : str
@@ -77,3 +80,126 @@ def sha256_of(path: Path) -> str:
         for block in iter(lambda: stream.read(1 << 20), b""):
             digest.update(block)
     return digest.hexdigest()
+
+
+UNNAMED = "of which the copy read here names no authors, journal or year"
+
+WORKS: dict[str, str] = {
+    "sname1950": "SNAME, Nomenclature for Treating the Motion of a Submerged Body Through a Fluid, "
+    "Technical and Research Bulletin 1-5, 1950.",
+    "gertler1967": "M. Gertler, G. R. Hagen, Standard Equations of Motion for Submarine Simulation, NSRDC 2510, 1967.",
+    "feldman1979": "J. Feldman, DTNSRDC Revised Standard Submarine Equations of Motion, DTNSRDC/SPD-0393-09, 1979.",
+    "imo_msc137": "IMO, Standards for Ship Manoeuvrability, resolution MSC.137(76), 2002, and its explanatory notes, "
+    "MSC/Circ.1053.",
+    "ittc_free_running": "ITTC, Free Running Model Tests, recommended procedure 7.5-02-06-01, revision 03, 2008.",
+    "ittc_roll_decay": "ITTC, Numerical Estimation of Roll Damping, recommended procedure 7.5-02-07-04.5, revision 00, 2011.",
+    "roddy1990": "R. F. Roddy, Investigation of the Stability and Control Characteristics of Several Configurations of "
+    "the DARPA SUBOFF Model (DTRC Model 5470) from Captive-Model Experiments, DTRC/SHD-1298-08, 1990.",
+    "groves1989": "N. C. Groves, T. T. Huang, M. S. Chang, Geometric Characteristics of DARPA SUBOFF Models, "
+    "DTRC/SHD-1298-01, 1989.",
+    "steady_cfd": "Calculation of Linear Damping Coefficients by Numerical Simulation of Steady State Experiments, "
+    f"{UNNAMED}; Table 4 (steady CFD, PMM CFD 2012, experiment 1990).",
+    "coeflab_cfd": "coeflab, Steady RANS of the SUBOFF bare hull, made for this project with OpenFOAM 1912, 2026.",
+    "hairer1996": "E. Hairer, G. Wanner, Solving Ordinary Differential Equations II: Stiff and Differential-Algebraic "
+    "Problems, 2nd edition, Springer, 1996, section IV.2.",
+    "hindmarsh1983": "A. C. Hindmarsh, ODEPACK, a systematized collection of ODE solvers, in R. S. Stepleman et al. (editors), "
+    "Scientific Computing, IMACS, North-Holland, 1983.",
+    "fossen2011": "T. I. Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, Wiley, 2011.",
+    "mackinnon1985": "J. G. MacKinnon, H. White, Some heteroskedasticity-consistent covariance matrix estimators with "
+    "improved finite sample properties, J. Econometrics 29, 1985.",
+    "bell2002": "R. M. Bell, D. F. McCaffrey, Bias reduction in standard errors for linear regression with multi-stage "
+    "samples, Survey Methodology 28(2), 2002.",
+    "imbens2016": "G. W. Imbens, M. Kolesar, Robust standard errors in small samples: some practical advice, "
+    "Rev. Economics and Statistics 98(4), 2016.",
+    "davidson2008": "R. Davidson, E. Flachaire, The wild bootstrap, tamed at last, J. Econometrics 146, 2008.",
+    "hurvich1989": "C. M. Hurvich, C.-L. Tsai, Regression and time series model selection in small samples, "
+    "Biometrika 76, 1989.",
+    "ittc_uncertainty": "ITTC, Uncertainty Analysis in CFD, Verification and Validation, recommended procedure 7.5-03-01-01, 2008, "
+    "and Uncertainty Analysis for Manoeuvring Predictions based on Captive Manoeuvring Tests, 7.5-02-06-04, 2014.",
+    "tj_flyingfish": "Modeling and operating point analysis for aquatic translational motion of a cross-medium vehicle "
+    f"(TJ-FlyingFish), {UNNAMED}; equations 13-18, 25-56 and Table 1.",
+    "thauv": "Analysis of a New Twin Hybrid Autonomous Underwater Vehicle (THAUV), Applied Sciences 13(3), 1551, 2023, "
+    "doi 10.3390/app13031551 (the copy read here names no authors); equations 5, 9-30 and Table 3.",
+    "leonard_graver2001": "N. E. Leonard, J. G. Graver, Model-based feedback control of autonomous underwater gliders, IEEE J. "
+    "Oceanic Engineering 26(4), 2001.",
+    "huuv2025": "T. Talarczyk, M. Morawski, M. Malec, M. Garncarz, Identification of Motion Model Parameters for a Small "
+    "Hybrid-Propelled Unmanned Underwater Vehicle (HUUV), Technical Transactions, e2025031, 2025, doi 10.37705/TechTrans/e2025031.",
+    "allen1974": "D. M. Allen, The relationship between variable selection and data augmentation and a method for "
+    "prediction, Technometrics 16, 1974.",
+    "huuv_synthetic": "coeflab, Synthetic table of a vehicle like the HUUV, made for this project from stated coefficients by "
+    "cfd_data/make_synthetic_huuv.py, 2026; neither measured nor computed by CFD.",
+    "roache1998": "P. J. Roache, Verification and Validation in Computational Science and Engineering, Hermosa, 1998.",
+    "celik2008": "I. B. Celik, U. Ghia, P. J. Roache, C. J. Freitas, H. Coleman, P. E. Raad, Procedure for Estimation and "
+    "Reporting of Uncertainty Due to Discretization in CFD Applications, J. Fluids Engineering 130, 078001, 2008.",
+    "eca2014": "L. Eca, M. Hoekstra, A procedure for the estimation of the numerical uncertainty of CFD calculations based "
+    "on grid refinement studies, J. Computational Physics 262, 2014.",
+    "oberkampf2010": "W. L. Oberkampf, C. J. Roy, Verification and Validation in Scientific Computing, Cambridge, 2010.",
+    "asme_vv20": "ASME V&V 20-2009, Standard for Verification and Validation in Computational Fluid Dynamics and Heat "
+    "Transfer, 2009.",
+    "jcgm100": "JCGM 100:2008, Evaluation of measurement data: Guide to the expression of uncertainty in measurement, and "
+    "JCGM 101:2008, Propagation of distributions using a Monte Carlo method.",
+    "chow1960": "G. C. Chow, Tests of equality between sets of coefficients in two linear regressions, Econometrica "
+    "28(3), 1960.",
+    "tipton2015": "E. Tipton, J. E. Pustejovsky, Small-sample adjustments for tests of moderators and model fit using "
+    "robust variance estimation in meta-regression, J. Educational and Behavioral Statistics 40(6), 2015.",
+    "brunton2016": "S. L. Brunton, J. L. Proctor, J. N. Kutz, Discovering governing equations from data by sparse "
+    "identification of nonlinear dynamical systems, PNAS 113(15), 2016.",
+    "kaptanoglu2022": "A. A. Kaptanoglu, B. M. de Silva, U. Fasel, K. Kaheman, A. J. Goldschmidt, J. Callaham, C. B. Delahunt, "
+    "Z. G. Nicolaou, K. Champion, J.-C. Loiseau, J. N. Kutz, S. L. Brunton, PySINDy: A comprehensive Python package for robust sparse system "
+    "identification, J. Open Source Software 7(69), 2022.",
+    "fasel2022": "U. Fasel, J. N. Kutz, B. W. Brunton, S. L. Brunton, Ensemble-SINDy: Robust sparse model discovery in the low-data, "
+    "high-noise limit, with active learning and control, Proc. Royal Society A 478, 2022.",
+    "messenger2021": "D. A. Messenger, D. M. Bortz, Weak SINDy: Galerkin-based data-driven model selection, Multiscale Modeling "
+    "and Simulation 19(3), 2021.",
+    "gurevich2019": "D. R. Gurevich, P. A. K. Reinbold, R. O. Grigoriev, Robust and optimal sparse regression for nonlinear PDE "
+    "models, Chaos 29, 2019.",
+    "soderstrom1983": "T. Soderstrom, P. Stoica, Instrumental Variable Methods for System Identification, Springer, 1983.",
+    "chen2008": "J. Chen, Z. Chen, Extended Bayesian information criteria for model selection with large model spaces, "
+    "Biometrika 95(3), 2008.",
+    "lamb1932": "H. Lamb, Hydrodynamics, 6th edition, Cambridge, 1932, sections 114, 115 and 121 a.",
+    "carlson1995": "B. C. Carlson, Numerical computation of real or complex elliptic integrals, Numerical Algorithms 10, "
+    "1995.",
+    "newman1977": "J. N. Newman, Marine Hydrodynamics, MIT Press, 1977, sections 4.13-4.16.",
+    "myring1976": "D. F. Myring, A theoretical study of body drag in subcritical axisymmetric flow, Aeronautical Quarterly "
+    "27(3), 1976.",
+    "prestero2001": "T. Prestero, Verification of a Six-Degree of Freedom Simulation Model for the REMUS Autonomous "
+    "Underwater Vehicle, MSc thesis, MIT and WHOI, 2001.",
+    "hess1967": "J. L. Hess, A. M. O. Smith, Calculation of potential flow about arbitrary bodies, Progress in Aeronautical "
+    "Sciences 8, 1967.",
+    "vanoosterom1983": "A. van Oosterom, J. Strackee, The solid angle of a plane triangle, IEEE Trans. Biomedical "
+    "Engineering 30, 1983.",
+    "wilton1984": "D. R. Wilton, S. M. Rao, A. W. Glisson, D. H. Schaubert, O. M. Al-Bundak, C. M. Butler, Potential integrals for uniform and linear source distributions on polygonal and "
+    "polyhedral domains, IEEE Trans. Antennas and Propagation 32, 1984.",
+    "cohensteiner2003": "D. Cohen-Steiner, J.-M. Morvan, Restricted Delaunay triangulations and normal cycle, Symposium on "
+    "Computational Geometry, 2003.",
+    "eberly2002": "D. Eberly, Polyhedral Mass Properties (Revisited), Geometric Tools, 2002.",
+    "bryson1954": "A. E. Bryson, Evaluation of the inertia coefficients of the cross-section of a slender body, "
+    "J. Aeronautical Sciences 21, 1954.",
+    "coeflab_plates": "coeflab, Added mass of rectangular plates at eleven aspects from 1 to 10, computed for this project with a "
+    "lattice of doublets, extrapolated, to 1e-4, 2026.",
+    "mss": "T. I. Fossen, T. Perez, Marine Systems Simulator (MSS), 2004, VESSELS/npsauv.m and VESSELS/navalvessel.m, "
+    "github.com/cybergalactic/MSS.",
+    "python_vehicle_simulator": "T. I. Fossen, Python Vehicle Simulator, as of 2026, src/python_vehicle_simulator/vehicles/remus100.py "
+    "and lib/mainLoop.py, github.com/cybergalactic/PythonVehicleSimulator.",
+    "gz_sim": "Open Source Robotics Foundation, Gazebo Sim, src/systems/hydrodynamics/Hydrodynamics.cc and HydrodynamicsUtils.hh, commit 42d1720 of 2026, "
+    "github.com/gazebosim/gz-sim.",
+    "uuv_simulator": "M. M. M. Manhaes, S. A. Scherer, M. Voss, L. R. Douat, T. Rauschenbach, UUV Simulator: A Gazebo-based package for underwater intervention and "
+    "multi-robot simulation, OCEANS 2016; HydrodynamicModel.cc, commit bea0a1b, github.com/uuvsimulator/uuv_simulator.",
+    "xdyn": "Sirehna, Naval Group, xdyn 26.8, as of 2026, a lightweight time-domain ship simulator, github.com/naval-group/lxdyn; "
+    "force laws read in xdyn/core and xdyn/force_models.",
+    "mujoco": "E. Todorov, T. Erez, Y. Tassa, MuJoCo: A physics engine for model-based control, IROS 2012; documentation, "
+    "chapter Fluid forces, and engine_passive.c, commit 01a932e, github.com/google-deepmind/mujoco.",
+    "fmi2": "Modelica Association, Functional Mock-up Interface for Model Exchange and Co-Simulation, version 2.0.4, 2022, "
+    "fmi-standard.org.",
+    "pythonfmu": "L. I. Hatledal, H. Zhang, F. Collonval, Enabling Python Driven Co-Simulation Models with PythonFMU, ECMS 2020; "
+    "PythonFMU 0.7, github.com/NTNU-IHB/PythonFMU.",
+    "holoocean": "E. Potokar, S. Ashford, M. Kaess, J. G. Mangelson, HoloOcean: An Underwater Robotics Simulator, ICRA 2022; "
+    "version 2.3, client/src/holoocean/fossen_dynamics/torpedo.py and helper_functions.py.",
+    "stonefish": "P. Cieslak, Stonefish: An Advanced Open-Source Simulation Tool Designed for Marine Robotics, OCEANS 2019; "
+    "Library/src/entities/SolidEntity.cpp, commit 3857913, github.com/patrykcieslak/stonefish.",
+}
+
+
+def work(key: str) -> str:
+    """Full reference of a key; a text that is no key is returned as it is."""
+    return WORKS.get(key, key)

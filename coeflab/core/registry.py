@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from coeflab.core.errors import CoeflabError, PluginError, shown
 from coeflab.core.version import VERSION
@@ -159,3 +159,11 @@ def _members(port: type) -> list[str]:
     protocols = [c for c in port.__mro__ if getattr(c, "_is_protocol", False) and c.__module__ != "typing"]
     names = {n for c in protocols for n in (*inspect.get_annotations(c), *vars(c))}
     return sorted(n for n in names if not n.startswith("_"))
+
+
+@runtime_checkable
+class Plugin(Protocol):
+    """What every plugin has: one line about itself and the works that it rests on."""
+
+    summary: str
+    citations: tuple[str, ...]

@@ -1,10 +1,23 @@
-"""Pieces of sentences and records: names in a row, numbers that may be none, and the words of users."""
+"""Pieces of sentences and records: names in a row, numbers that may be none, and the words of users.
+
+Names that people gave, as programs and one-line comments can carry them.
+
+Names that a file, a function or a class must not bear, because it would hide what bears them already.
+"""
 
 from __future__ import annotations
 
+import builtins
+import hashlib
+import keyword
+import re
+import sys
 from collections import Counter
 from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Set as AbstractSet
+from functools import cache
 from math import isfinite
+from pathlib import Path
 from typing import TypeVar
 
 Item = TypeVar("Item", bound=Hashable)
@@ -33,3 +46,59 @@ def repeated(items: Iterable[Item]) -> list[Item]:
 def finite(value: float) -> float | None:
     """The number, or None for what JSON cannot hold: infinities and NaN."""
     return float(value) if isfinite(value) else None
+
+
+DEVICES = frozenset({"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(1, 10))})
+
+
+@cache
+def matlab() -> frozenset[str]:
+    """Keywords and functions of GNU Octave 7.3, some of MATLAB's and of MSS: ``matlab_names.txt``."""
+    return frozenset(Path(__file__).with_name("matlab_names.txt").read_text(encoding="ascii").split())
+
+
+def python() -> frozenset[str]:
+    """Keywords, builtins, modules of the standard library, and numpy."""
+    words = {*keyword.kwlist, *keyword.softkwlist, *dir(builtins), "np", "numpy", "self"}
+    return frozenset(words | sys.stdlib_module_names)
+
+
+PREFIX = "vehicle_"
+_LONGEST = 63  # of MATLAB
+_PLAIN = re.compile(r"\w[\w .+-]{0,79}")
+_MOST_BYTES = 120
+
+
+def identifier(text: str, reserved: AbstractSet[str] = frozenset(), longest: int = _LONGEST) -> str:
+    """An ASCII identifier like a name: letters, digits and underscores, a letter first.
+
+    ``vehicle_`` stands before what begins with a digit, is a reserved word, in whatever letters, or a device of Windows.
+
+    Parameters
+    ----------
+    text : str
+    reserved : set of str, optional
+        Words of the language that it goes into.
+    longest : int
+        Characters; those of MATLAB by default.
+    """
+    name = re.sub(r"[^A-Za-z0-9]+", "_", text).strip("_") or "vehicle"
+    if not name[0].isalpha() or {name, name.lower()} & {*reserved, *DEVICES}:
+        name = PREFIX + name
+    return name[:longest].rstrip("_")
+
+
+def file_stem(text: str) -> str:
+    """What files of a name begin with: the name itself where any file system takes it, else an identifier and a mark of its own.
+
+    The mark, eight digits of the name's SHA-256, keeps names apart that read alike without their other characters.
+    """
+    plain = _PLAIN.fullmatch(text) and text.strip(". ") == text and len(text.encode()) <= _MOST_BYTES
+    if plain and text.partition(".")[0].lower() not in DEVICES:
+        return text
+    return f"{identifier(text, longest=54)}_{hashlib.sha256(text.encode('utf-8', 'surrogatepass')).hexdigest()[:8]}"
+
+
+def one_line(text: str) -> str:
+    """The text with every character that does not print, line breaks among them, replaced by a question mark."""
+    return "".join(c if c.isprintable() else "?" for c in text)

@@ -1,6 +1,33 @@
 """From tables to coefficients: one plugin a file."""
 
-from coeflab.core.registry import Registry
-from coeflab.ports import Fit
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from coeflab.core.registry import Plugin, Registry
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.law.scaling import Scaling
+from coeflab.tables.force_table import ForceTable
 
 FITS = Registry(__name__, "fit", Fit)  # type: ignore[type-abstract]
+
+
+@runtime_checkable
+class Fit(Plugin, Protocol):
+    """Turns the tables of one campaign into coefficients."""
+
+    def fit(self, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
+        """Coefficients with their uncertainty.
+
+        Parameters
+        ----------
+        tables : sequence of ForceTable
+        scaling : Scaling
+            Length of the primes.
+        options : mapping of str to value
+            Of the plugin's `Options`.
+        """
+        ...

@@ -22,26 +22,23 @@ from math import comb
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import measured, one_of, parse_options
-from coeflab.kernels.linear_model import fit_linear
-from coeflab.kernels.robust import t_probability
-from coeflab.kernels.terms import Term, design
-from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
-from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import FittedModel
-from coeflab.model.force_table import ForceTable
-from coeflab.model.misfit import residuals_in_words
-from coeflab.model.regression import Area, Rows, collect, model_of
-from coeflab.model.scaling import Scaling
-from coeflab.model.swept import AREAS, PRIMES, area_of, area_settings, only_moving
+from coeflab.core.types import Array
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.misfit import residuals_in_words
+from coeflab.fits.rows.regression import Area, Rows, collect, model_of
+from coeflab.fits.rows.sweeps import AREAS, PRIMES, area_of, area_settings, only_moving
+from coeflab.fits.statistics.linear_model import fit_linear, t_probability
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.scaling import Scaling
+from coeflab.law.terms import Term, design
+from coeflab.tables.force_table import ForceTable
 
 summary = "drag, lift and moment of a control surface over its angle to the flow, delta - alpha"
 citations = ("huuv2025", "feldman1979", "mackinnon1985", "bell2002")
-
-Array = NDArray[np.float64]
 NEEDS = {"C_D": "X", "C_L": "Z", "C_m": "M"}
 DERIVATIVES = {"C_L": ("Zds", -1.0), "C_m": ("Mds", 1.0)}
 NEAR_ZERO = float(np.radians(0.3))

@@ -4,6 +4,8 @@ Equations 28-30 of the THAUV paper. D is along the relative flow and L upward, n
 the table's reference point; a is alpha = atan2(w, u). The paper does not say the unit of a. Its published speeds need
 degrees (in radians the glide has no such speed) [derived], so the fit gives both and `angle_unit_of` tells which of
 them a printed set is in.
+
+Coefficients that somebody printed, read from words and held against a fit.
 """
 
 from __future__ import annotations
@@ -17,26 +19,57 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import one_of, parse_options, words
-from coeflab.core.symbols import LINEAR
-from coeflab.kernels.brief import brief
-from coeflab.kernels.linear_model import fit_linear
-from coeflab.kernels.robust import t_probability
-from coeflab.kernels.terms import Term, design
-from coeflab.kernels.wind_axes import wind_forces
-from coeflab.model.coefficient import CoefficientSet
-from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import Domain, FittedModel
-from coeflab.model.force_table import ForceTable
-from coeflab.model.misfit import residuals_in_words
-from coeflab.model.printed import at_no_angle, read_printed
-from coeflab.model.regression import Rows, model_of, variable
-from coeflab.model.scaling import Scaling
-from coeflab.model.swept import only_moving, without_blanks
+from coeflab.core.types import Array, brief
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import Domain, FittedModel
+from coeflab.fits.results.misfit import residuals_in_words
+from coeflab.fits.rows.regression import Rows, model_of, variable
+from coeflab.fits.rows.sweeps import only_moving, without_blanks
+from coeflab.fits.statistics.linear_model import fit_linear, t_probability
+from coeflab.law.coefficient import CoefficientSet
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import LINEAR
+from coeflab.law.terms import Term, design
+from coeflab.law.transforms import wind_forces
+from coeflab.tables.force_table import ForceTable
+
+
+def read_printed(items: Sequence[str], place: str) -> dict[str, float]:
+    """``K_L=9.5`` as numbers.
+
+    Raises
+    ------
+    InputError
+        No finite number behind an equals sign.
+    """
+    out = {}
+    for item in items:
+        symbol, _, text = item.partition("=")
+        try:
+            out[symbol] = float(text)
+        except ValueError:
+            raise InputError(shown(item), "SYMBOL=NUMBER such as K_L=9.5281", column=place) from None
+        if not np.isfinite(out[symbol]):
+            raise InputError(shown(item), "a finite number", column=place)
+    return out
+
+
+def at_no_angle(symbol: str, printed: float, result: FitResult) -> str:
+    """A printed coefficient that no unit of the angle touches, against the fitted 95 % interval."""
+    model = next((m for m in result.models if symbol in m.symbols), None)
+    if model is None:
+        return f"{symbol}: not fitted, so the printed {printed:g} is not compared."
+    value, half = model.named(symbol)
+    if not np.isfinite(half):
+        return f"{symbol}: printed {printed:g}, fitted {value:.5g} without an interval."
+    place = "inside" if abs(printed - value) <= half else "outside"
+    return (
+        f"{symbol}: printed {printed:g} is {place} the fitted {value:.5g} +- {half:.2g}; it has no unit of the angle."
+    )
+
 
 summary = "lift, drag and pitching moment of a glider over angle of attack and speed, per degree and per radian"
 citations = ("thauv", "fossen2011", "mackinnon1985", "bell2002")
-
-Array = NDArray[np.float64]
 POWERS = {"L": 1, "D": 2, "M": 1}
 NEAR_ZERO = float(np.radians(0.3))
 SAME_SPEED = 1e-3

@@ -18,21 +18,20 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import one_of, parse_options, words
-from coeflab.core.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
+from coeflab.core.types import Array
 from coeflab.core.wording import finite
-from coeflab.kernels.terms import Term
-from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
-from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import FittedModel
-from coeflab.model.force_table import ForceTable
-from coeflab.model.misfit import residuals_in_words
-from coeflab.model.regression import Rows, model_of
-from coeflab.model.scaling import Scaling
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.misfit import residuals_in_words
+from coeflab.fits.rows.regression import Rows, model_of
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
+from coeflab.law.terms import Term
+from coeflab.tables.force_table import ForceTable
 
 summary = "linear and quadratic damping of every axis, from rows in which only its velocity moves"
 citations = ("fossen2011", "tj_flyingfish", "mackinnon1985", "bell2002")
-
-Array = NDArray[np.float64]
 FORMS = {"both": ("{0}", "{0}|{0}|"), "linear": ("{0}",), "quadratic": ("{0}|{0}|",)}
 AT_REST = 1e-6
 

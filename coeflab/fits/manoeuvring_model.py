@@ -4,6 +4,8 @@ Of several campaigns each has its own intercepts and its own scatter; its rows a
 
 Term sets: Gertler & Hagen (1967), Feldman (1979). HC2: MacKinnon & White (1985), degrees of freedom: Bell & McCaffrey
 (2002). Valid inside the convex hull of the data; U95 holds the scatter of the points about the chosen form only.
+
+Which terms of a manoeuvring model are fitted: those that were named, and those of a set that the tables hold.
 """
 
 from __future__ import annotations
@@ -13,25 +15,131 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import one_of, parse_options, words
-from coeflab.core.symbols import MOTIONS
+from coeflab.core.types import Array, brief
 from coeflab.core.wording import finite
-from coeflab.kernels.least_squares import Array
-from coeflab.model.asked_terms import AskedTerms, asked_terms
-from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
-from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import FittedModel
-from coeflab.model.force_table import ForceTable
-from coeflab.model.joint_component import Component
-from coeflab.model.joint_model import joint_models
-from coeflab.model.joint_rows import joint_name, joint_rows
-from coeflab.model.manoeuvring_terms import NamedTerm, canonical, read_equation, split_equations
-from coeflab.model.misfit import next_terms_in_words, residuals_in_words
-from coeflab.model.scaling import Scaling
-from coeflab.model.secant import secant
-from coeflab.model.several_campaigns import about_one_point, differences
+from coeflab.fits.joint.model import joint_models
+from coeflab.fits.joint.rows import Component, about_one_point, differences, joint_name, joint_rows, measured, moving
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.misfit import next_terms_in_words, residuals_in_words
+from coeflab.fits.rows.secant import secant
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.law.terms import SETS, NamedTerm, canonical, read_equation, read_term, read_terms, split_equations
+from coeflab.tables.force_table import AT_REST, ForceTable
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class AskedTerms:
+    """Terms of a fit.
+
+    Attributes
+    ----------
+    fitted : tuple of NamedTerm
+        By component, intercepts first.
+    idle : tuple of NamedTerm
+        Of the set, without motion in the tables.
+    own : tuple of str
+        Components in which every campaign has an intercept of its own.
+    """
+
+    fitted: tuple[NamedTerm, ...]
+    idle: tuple[NamedTerm, ...]
+    own: tuple[str, ...]
+
+
+def asked_terms(
+    texts: Sequence[str],
+    chosen: str,
+    components: Sequence[str],
+    tables: Sequence[ForceTable],
+    *,
+    intercepts: bool,
+    place: str,
+) -> AskedTerms:
+    """Terms by name and of a set.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        Named ones.
+    chosen : str
+        Set, or ``none``.
+    components : sequence of str
+        Of the set; none for all that the tables have.
+    tables : sequence of ForceTable
+    intercepts : bool
+        Add one to every component that names none; where the tables are of several campaigns, one for each campaign.
+    place : str
+        Plugin, for messages.
+
+    Raises
+    ------
+    InputError
+        Unknown or repeated terms, or none that the tables hold.
+    """
+    named = read_terms(tuple(texts), f"{place}.terms")
+    if chosen == "none" and not named:
+        raise InputError("no terms", "terms, or a set", column=f"{place}.terms",
+                         advice="For example terms = Yv,Yv|v|,Nv or set = horizontal.")  # fmt: skip
+    unknown = [c for c in components if c not in COMPONENTS]
+    if unknown:
+        raise InputError(", ".join(unknown), f"some of {', '.join(COMPONENTS)}", column=f"{place}.components")
+    wanted = set(measured(tables)) & set(components or COMPONENTS)
+    of_set = [t for s in SETS.get(chosen, ()) if (t := read_term(s, "set")).component in wanted]
+    if intercepts:
+        of_set += [read_term(f"{c}0", "set") for c in {t.component for t in named}]
+    else:
+        of_set = [t for t in of_set if t.term.factors]
+    taken, moves = {t.key for t in named}, set(moving(tables))
+    fitted, idle = list(named), list[NamedTerm]()
+    for t in of_set:
+        if t.key in taken:
+            continue
+        taken.add(t.key)
+        occurring = _occurs(t, tables) if moves.issuperset(v for v, _, _ in t.term.factors) else False
+        (fitted if occurring else idle).append(t)
+    alone = {t.component for t in fitted} - {t.component for t in fitted if t.term.factors or t in named}
+    idle += [t for t in fitted if t.component in alone]
+    fitted = [t for t in fitted if t.component not in alone]
+    if not fitted:
+        campaigns = joint_name(t.campaign for t in tables)
+        raise InputError(f"no motion of the {chosen} set in {campaigns}", "tables in which one of its motions varies",
+                         column=f"{place}.set", advice="Name the terms, or use the other set.")  # fmt: skip
+    own: tuple[str, ...] = ()
+    if len({t.campaign for t in tables}) > 1:
+        own = tuple(t.component for t in fitted if not t.term.factors and t not in named)
+        fitted = [t for t in fitted if t.term.factors or t in named]
+    order = {c: i for i, c in enumerate(COMPONENTS)}
+    fitted.sort(key=lambda t: (order[t.component], bool(t.term.factors)))
+    return AskedTerms(tuple(fitted), tuple(idle), own)
+
+
+def _motion(table: ForceTable, name: str) -> NDArray[np.float64]:
+    """A motion or control of a table, primed; zero where it has none."""
+    if name in table.controls or name in table.motion:
+        return table.primed_motion(name, table.scaling.length)
+    return np.zeros(len(table))
+
+
+def _occurs(term: NamedTerm, tables: Sequence[ForceTable]) -> bool:
+    """Whether a usable row of the component has all motions of a term at once."""
+    for t in tables:
+        if term.component not in t.forces:
+            continue
+        together = np.array(t.usable[term.component])
+        for v, _, _ in term.term.factors:
+            together &= np.abs(_motion(t, v)) > AT_REST
+        if np.any(together):
+            return True
+    return False
+
 
 summary = (
     "manoeuvring model of any SNAME terms over one or several campaigns, with linear equations between coefficients"

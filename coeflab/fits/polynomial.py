@@ -11,18 +11,18 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
-from coeflab.core.symbols import COMPONENTS, primed
 from coeflab.core.wording import finite
-from coeflab.kernels.sharpened import sharpened
-from coeflab.kernels.terms import Term, power_terms
-from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
-from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import Extrapolation, FittedModel, in_words
-from coeflab.model.force_table import ForceTable
-from coeflab.model.misfit import residuals_in_words
-from coeflab.model.regression import ANGLES, Area, collect, model_of
-from coeflab.model.scaling import Scaling
-from coeflab.model.swept import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words
+from coeflab.fits.results.misfit import residuals_in_words
+from coeflab.fits.rows.regression import ANGLES, Area, collect, model_of
+from coeflab.fits.rows.sweeps import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
+from coeflab.fits.statistics.linear_model import sharpened
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import COMPONENTS, primed
+from coeflab.law.terms import Term, power_terms
+from coeflab.tables.force_table import ForceTable
 
 summary = "polynomials in one variable (angle, velocity, rate, control), with their domain and intervals"
 citations = ("mackinnon1985", "bell2002", "imbens2016")

@@ -1,7 +1,7 @@
 """Slopes at the origin: Yv', Nv', Zw', Mw', Yr', Nr' and their like, with what they are worth.
 
 Every force component is regressed on v' = sin(beta), w' = sin(alpha), r' = r L/U or a control angle by several forms in
-growing windows; `coeflab.kernels.slopes.recommend` gives the rule.
+growing windows; `coeflab.fits.statistics.slopes.recommend` gives the rule.
 """
 
 from __future__ import annotations
@@ -12,23 +12,21 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from coeflab.core.limits import REPLICATES
 from coeflab.core.options import bounded, parse_options
-from coeflab.kernels import families, slopes
-from coeflab.kernels.bootstrap import drawn_counts, pairs, percentile_interval, wild
-from coeflab.kernels.diagnostics import levels
-from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
-from coeflab.model.fit_result import BootstrapInterval, FitResult, Sensitivity, Sweep
-from coeflab.model.force_table import ForceTable
-from coeflab.model.scaling import Scaling
-from coeflab.model.sweep_rows import INCIDENCE, SweepRows, arm_shift, collect_points, sweep_rows
+from coeflab.core.types import Array
+from coeflab.fits.results.fit_result import BootstrapInterval, FitResult, Sensitivity, Sweep
+from coeflab.fits.rows.sweeps import INCIDENCE, SweepRows, arm_shift, collect_points, sweep_rows
+from coeflab.fits.statistics import slopes
+from coeflab.fits.statistics import slopes as families
+from coeflab.fits.statistics.diagnostics import drawn_counts, levels, pairs, percentile_interval, wild
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.scaling import Scaling
+from coeflab.tables.force_table import ForceTable
 
 summary = "slopes at the origin by several forms and windows, with random and model-form uncertainty"
 citations = ("mackinnon1985", "bell2002", "imbens2016", "davidson2008", "hurvich1989")
-
-Array = NDArray[np.float64]
 ODD = {"v": "YNK", "w": "ZM", "r": "YNK", "q": "ZM", "p": "K", "dr": "YNK", "ds": "ZM", "db": "ZM"}
 EVEN = {"v": "X", "w": "X", "r": "X", "q": "X"}
 SMALLEST_ANGLE = np.sin(np.radians(3.0))

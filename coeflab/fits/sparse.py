@@ -20,20 +20,18 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import REPLICATES
 from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, one_of, parse_options, words
-from coeflab.core.symbols import COMPONENTS
-from coeflab.kernels.least_squares import Array
-from coeflab.kernels.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins
-from coeflab.kernels.terms import Term, design
-from coeflab.model.coefficient import Coefficient, CoefficientSet, Parts, Status
-from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import FittedModel
-from coeflab.model.force_table import ForceTable
-from coeflab.model.joint_rows import JointRows, joint_rows, measured, moving
-from coeflab.model.manoeuvring_terms import symmetric
-from coeflab.model.misfit import residuals_in_words
-from coeflab.model.out_of_sample import every_third_point
-from coeflab.model.regression import model_of
-from coeflab.model.scaling import Scaling
+from coeflab.core.types import Array
+from coeflab.fits.joint.rows import JointRows, joint_rows, measured, moving
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.misfit import every_third_point, residuals_in_words
+from coeflab.fits.rows.regression import model_of
+from coeflab.fits.statistics.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import COMPONENTS
+from coeflab.law.terms import Term, design, symmetric
+from coeflab.tables.force_table import ForceTable
 
 summary = "sparse force law: the terms of a library that the data ask for (pysindy)"
 citations = ("brunton2016", "kaptanoglu2022", "fasel2022", "chen2008", "mackinnon1985", "bell2002")

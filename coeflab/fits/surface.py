@@ -11,22 +11,15 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
-from coeflab.core.symbols import PORT_STARBOARD
-from coeflab.kernels.nested import nested_test
-from coeflab.kernels.sharpened import sharpened
-from coeflab.kernels.terms import Term, power_terms
-from coeflab.model.coefficient import CoefficientSet
-from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import Extrapolation, FittedModel, in_words
-from coeflab.model.force_table import ForceTable
-from coeflab.model.misfit import residuals_in_words
-from coeflab.model.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
-from coeflab.model.scaling import Scaling
-from coeflab.model.swept import (
+from coeflab.core.types import Array
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words
+from coeflab.fits.results.misfit import residuals_in_words
+from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
+from coeflab.fits.rows.sweeps import (
     AREAS,
     PRIMES,
     allowed,
@@ -37,11 +30,15 @@ from coeflab.model.swept import (
     only_moving,
     without_blanks,
 )
+from coeflab.fits.statistics.linear_model import nested_test, sharpened
+from coeflab.law.coefficient import CoefficientSet
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import PORT_STARBOARD
+from coeflab.law.terms import Term, power_terms
+from coeflab.tables.force_table import ForceTable
 
 summary = "polynomial surfaces in two variables, additive or with interaction, each measured against the other"
 citations = ("huuv2025", "allen1974", "hurvich1989", "mackinnon1985", "bell2002")
-
-Array = NDArray[np.float64]
 USUAL = ("C_D", "C_S", "C_L", "C_m", "C_n")
 FORMS = ("tensor", "total", "additive")
 PARITIES = ("full", "odd", "even", "symmetric")

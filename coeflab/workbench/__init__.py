@@ -1,37 +1,66 @@
-"""The main path: tables -> fits -> comparisons -> parameter files -> checks, one study."""
+"""The main path: tables -> fits -> comparisons -> parameter files -> checks, one study.
+
+What a plan names, read: tables about one reference point, bodies.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from coeflab.checks import CHECKS
-from coeflab.core.errors import CoeflabError, InputError, shown
+from coeflab.bodies.body import Body
+from coeflab.bodies.readers import read_body
+from coeflab.core.errors import CoeflabError, InputError, ScalingMismatchError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.symbols import MOTIONS
+from coeflab.core.table import Check, Severity
 from coeflab.core.wording import Verbatim
 from coeflab.fits import FITS
-from coeflab.model.assemble import assemble
-from coeflab.model.body import Body
-from coeflab.model.budget import Budget, budgets_of, with_budget
-from coeflab.model.check import Check, Severity
-from coeflab.model.coefficient import Coefficient, Status
-from coeflab.model.fit_result import FitResult
-from coeflab.model.force_table import ForceTable
-from coeflab.model.joint_rows import joint_name
-from coeflab.model.model_budget import with_model_budgets
-from coeflab.model.parameter_file import refusals_told
-from coeflab.model.reference import compare, compare_set, read_references
-from coeflab.model.scaling import Scaling
-from coeflab.model.several_campaigns import one_length
-from coeflab.model.study import Plan, PlannedParameterFile, Study
-from coeflab.presentation.content import document
-from coeflab.reporting import REPORTERS
+from coeflab.fits.joint.rows import joint_name, one_length
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.uncertainty.budget import Budget, budgets_of, with_budget
+from coeflab.fits.uncertainty.model_budget import with_model_budgets
+from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import MOTIONS
+from coeflab.motion.simulation import manoeuvres_of
+from coeflab.report.content import document
+from coeflab.report.formats import REPORTERS
+from coeflab.study.checks import CHECKS
+from coeflab.study.study import Plan, PlannedJoint, Study
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import read_tables
+from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.parameter_file import refusals_told
+from coeflab.vehicle.reference import compare, compare_set, read_references
 from coeflab.workbench.exports import exports_of, parameter_files_rendered, refuse_unknown
 from coeflab.workbench.hulls import hulls_of
-from coeflab.workbench.manoeuvres import manoeuvres_of
-from coeflab.workbench.reading import read_body, read_tables, settled, together
+
+
+def settled(table: ForceTable, plan: Plan) -> ForceTable:
+    """The table about the plan's reference point."""
+    if plan.include_uncertain:
+        table = table.with_uncertain_cells()
+    if plan.reference_point is None:
+        return table
+    if plan.datum and plan.datum != table.datum:
+        raise ScalingMismatchError(
+            f"the plan measures points from {shown(plan.datum.id)}, {table.campaign} from {shown(table.datum.id)}; "
+            "state the reference point from one datum."
+        )
+    return table.about(plan.reference_point)
+
+
+def together(joint: PlannedJoint, plan: Plan) -> list[ForceTable]:
+    """All tables of a joint fit, each once."""
+    read = [settled(t, plan) for planned in joint.tables for t in read_tables(planned)]
+    names = [t.name for t in read]
+    twice = next((n for n in names if names.count(n) > 1), None)
+    if twice is not None:
+        raise InputError(f"the table {shown(twice)} twice", "every table once, and campaigns of different names",
+                         column="campaigns", advice="A row that counts twice makes every interval too narrow.")  # fmt: skip
+    return read
+
 
 __all__ = ["read_body", "read_tables", "rendered", "run"]
 

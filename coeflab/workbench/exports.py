@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from coeflab.core.errors import InputError, PluginError, shown
-from coeflab.core.identifiers import PREFIX, file_stem
 from coeflab.core.machine import one_thread
-from coeflab.exporters import EXPORTERS
-from coeflab.model.export import Export, Refused
-from coeflab.model.force_law import force_law
-from coeflab.model.inertia import MEASURED, converted, water_inertia, with_accelerations
-from coeflab.model.loss import loss_of
-from coeflab.model.lost import Kind, Lost, lost_by_all
-from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.study import PlannedExport
-from coeflab.ports import InertialExporter, SimulatorExporter
-from coeflab.presentation.loss_tables import as_text, in_short
+from coeflab.core.wording import PREFIX, file_stem
+from coeflab.formats import EXPORTERS, InertialExporter, SimulatorExporter
+from coeflab.formats.export import Export, PlannedExport, Refused
+from coeflab.formats.loss import loss_of
+from coeflab.formats.lost import Kind, Lost, lost_by_all
+from coeflab.report.tables.formats import as_text, in_short
+from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations
+from coeflab.vehicle.parameter_file import ParameterFile
 
 LONGEST = 255
 
@@ -30,7 +28,7 @@ def export(parameters: ParameterFile, target: str, accelerations: str = MEASURED
     parameters : ParameterFile
     target : str
     accelerations : {"measured", "computed"}
-        As for `coeflab.workbench.manoeuvres.simulate`. The loss is counted from the file with its measured ones.
+        As for `coeflab.motion.simulation.simulate`. The loss is counted from the file with its measured ones.
 
     Raises
     ------

@@ -7,16 +7,16 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from coeflab.added_mass import ADDED_MASS
+from coeflab.bodies.added_mass import ADDED_MASS
+from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.particulars import computed
+from coeflab.bodies.readers import read_body
+from coeflab.bodies.shape import Parts
+from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
-from coeflab.model.added_mass import AddedMass
-from coeflab.model.body import Body
-from coeflab.model.mesh_particulars import computed
-from coeflab.model.shape import Parts
-from coeflab.model.study import PlannedParameterFile
-from coeflab.model.triangulation import Triangulation
-from coeflab.workbench.reading import read_body
+from coeflab.law.added_mass import AddedMass
+from coeflab.vehicle.assemble import PlannedParameterFile
 
 DENSEST = 1e5
 FILE = "body.toml"

@@ -11,14 +11,14 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from coeflab.core.files import write_atomically
-from coeflab.model.acceptance import Acceptance
-from coeflab.model.study import Study
-from coeflab.presentation import acceptance_document
-from coeflab.presentation.document import Figure
-from coeflab.presentation.estimator_figure import estimator_figure
-from coeflab.presentation.sheet import plain
-from coeflab.reporting.pdf import page_pictures
-from coeflab.studies.documents import report_of, studied, written
+from coeflab.published.documents import report_of, studied, written
+from coeflab.report.acceptance import Acceptance
+from coeflab.report.document import Figure
+from coeflab.report.figures.estimator import estimator_figure
+from coeflab.report.figures.sheet import plain
+from coeflab.report.formats.pdf import page_pictures
+from coeflab.report.sections import acceptance as acceptance_document
+from coeflab.study.study import Study
 
 HERE = Path(__file__).resolve().parent
 STUDIES = ("suboff", "huuv", "flyingfish", "thauv")

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from coeflab.bodies.groves import CAP_END, FOOT, meridian, radius
+from coeflab.bodies.readers.groves import CAP_END, FOOT, meridian, radius
+from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.model.reference import read_references
-from coeflab.model.shape import Revolution
+from coeflab.vehicle.reference import read_references
 from coeflab.workbench import read_body
 
 BODY = shipped("geometry") / "suboff_bare_hull" / "body.toml"

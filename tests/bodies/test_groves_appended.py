@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.added_mass import panel
-from coeflab.bodies.groves import FOOT, appended, meridian, mesh
+from coeflab.bodies.added_mass import panel
+from coeflab.bodies.mesh.decimation import is_closed
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.readers.groves import FOOT, appended, meridian, mesh
+from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.kernels.decimation import is_closed
-from coeflab.model.mesh import TriangleMesh
-from coeflab.model.meshing import meshed
-from coeflab.model.shape import Revolution
 from coeflab.workbench import read_body
 from coeflab.workbench.hulls import added_masses
 

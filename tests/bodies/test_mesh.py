@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from coeflab.added_mass import strip
+from coeflab.bodies.added_mass import strip
+from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core.errors import InputError
-from coeflab.model.body import Body
-from coeflab.model.mesh import TriangleMesh
 from coeflab.workbench import read_body
 
 RADIUS, LENGTH = 0.1, 1.5

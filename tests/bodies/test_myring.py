@@ -11,12 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from coeflab.bodies.myring import Myring
+from coeflab.bodies.mesh.decimation import is_closed
+from coeflab.bodies.mesh.meshing import dense_meridian, meshed
+from coeflab.bodies.readers.myring import Myring
+from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.kernels.decimation import is_closed
-from coeflab.model.meshing import dense_meridian, meshed
-from coeflab.model.shape import Revolution
 from coeflab.workbench import read_body
 from coeflab.workbench.hulls import added_masses
 

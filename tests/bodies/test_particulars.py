@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from coeflab.bodies.body import MassProperties, mass_from_primes
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.model.body import MassProperties, mass_from_primes
-from coeflab.model.scaling import Scaling
+from coeflab.law.scaling import Scaling
 from coeflab.workbench import read_body
 
 SUBOFF = shipped("geometry") / "suboff" / "body.toml"

@@ -8,12 +8,13 @@ import shutil
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.model.plan import read_plan
-from coeflab.model.study import Plan, PlannedTable
-from coeflab.presentation.content import document
-from coeflab.reporting import REPORTERS
+from coeflab.report.content import document
+from coeflab.report.formats import REPORTERS
+from coeflab.study.plan import read_plan
+from coeflab.study.study import Plan
+from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import run
-from tests.presentation.studies import ENDLESS, FULL, HOSTILE, small_study
+from tests.report.studies import ENDLESS, FULL, HOSTILE, small_study
 
 FLAGS = [
     "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-sync",

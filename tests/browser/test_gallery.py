@@ -6,12 +6,12 @@ from threading import Thread
 
 import pytest
 
-from coeflab.presentation.content import document
-from coeflab.reporting import REPORTERS
-from coeflab.studies.gallery.server import GalleryServer
+from coeflab.report.content import document
+from coeflab.report.formats import REPORTERS
+from coeflab.report.gallery.server import GalleryServer
 from tests.browser.test_interaction import SERIOUS
 from tests.cli.test_compare import VALUES, changed, made
-from tests.presentation.studies import ENDLESS, FULL, HOSTILE, small_study
+from tests.report.studies import ENDLESS, FULL, HOSTILE, small_study
 
 
 @pytest.fixture(scope="module")

@@ -208,7 +208,7 @@ def test_legends_keep_their_italics_and_indices(visit, written):
 
 def test_an_index_of_a_legend_stands_below_and_a_power_above(plain):
     """Without the page around them: the words that the drawings of this study have are never raised."""
-    source = (files("coeflab.reporting") / "_html" / "figures.js").read_text().partition("class Plot")[0]
+    source = (files("coeflab.report.formats") / "_html" / "figures.js").read_text().partition("class Plot")[0]
     made = plain.evaluate(
         f"""() => {{ {source}
           const text = document.createElementNS(SVG, 'text'), place = document.createElement('p');

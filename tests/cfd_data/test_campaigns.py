@@ -10,11 +10,10 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from coeflab.core.citations import WORKS
 from coeflab.core.files import shipped
-from coeflab.core.provenance import sha256_of
-from coeflab.model.force_table import ForceTable
-from coeflab.model.study import PlannedTable
+from coeflab.core.provenance import WORKS, sha256_of
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import read_tables
 
 CFD_DATA = shipped("cfd_data")

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.importers import IMPORTERS
-from coeflab.model.campaign import FILE, read_campaign
-from coeflab.model.force_table import ForceTable
+from coeflab.tables.campaign import FILE, read_campaign
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import IMPORTERS
 
 NAMES = (
     "flyingfish_water_synthetic",

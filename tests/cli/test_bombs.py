@@ -11,19 +11,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.bodies.mesh.file import glb_faces, obj_faces, stl_faces
 from coeflab.core import limits
-from coeflab.core.delimited import read_cells
 from coeflab.core.errors import InputError
-from coeflab.core.json import parse_json
-from coeflab.core.toml import read_toml
-from coeflab.core.xacro import Xacro
-from coeflab.core.xml import parse_xml
-from coeflab.core.yaml import parse_yaml
+from coeflab.core.text.delimited import read_cells
+from coeflab.core.text.json import parse_json
+from coeflab.core.text.toml import read_toml
+from coeflab.core.text.xml import parse_xml
+from coeflab.core.text.yaml import parse_yaml
 from coeflab.fits import slope_at_origin
-from coeflab.kernels.bootstrap import draw_counts, drawn_counts
-from coeflab.model.glb_header import glb_faces
-from coeflab.model.mesh_headers import obj_faces, stl_faces
-from coeflab.model.parameter_file import read_parameter_file
+from coeflab.fits.statistics.diagnostics import draw_counts, drawn_counts
+from coeflab.formats.uuv_simulator.law import Xacro
+from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.cli.conftest import COEFLAB, Run
 
 SAMPLE = json.loads((Path(__file__).parents[1] / "data" / "parameters_1_3.json").read_text())
@@ -79,9 +78,9 @@ def scene(nodes: list[dict[str, object]]) -> bytes:
     return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
 
 
-PARAMETERS = "from coeflab.model.parameter_file import read_parameter_file", "read_parameter_file(Path(sys.argv[1]))"
-TOML = "from coeflab.core.toml import read_toml", "read_toml(Path(sys.argv[1]))"
-MESH = "from coeflab.model.mesh_file import load", "load(Path(sys.argv[1]))"
+PARAMETERS = "from coeflab.vehicle.parameter_file import read_parameter_file", "read_parameter_file(Path(sys.argv[1]))"
+TOML = "from coeflab.core.text.toml import read_toml", "read_toml(Path(sys.argv[1]))"
+MESH = "from coeflab.bodies.mesh.file import load", "load(Path(sys.argv[1]))"
 BOMBS = {
     "coefficients.json": (PARAMETERS, lambda: with_many("coefficients", {}, 500_000), "500,0.. objects"),
     "covered.json": (PARAMETERS, lambda: with_many("covered", {}, 49_000), "covered.0.variable"),
@@ -192,7 +191,7 @@ def test_replicates_have_a_bound_that_the_plan_is_named_for(coeflab: Run, tmp_pa
 
 
 def test_pieces_draw_what_the_whole_draws(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("coeflab.kernels.bootstrap.TOGETHER", 13 * 100)
+    monkeypatch.setattr("coeflab.fits.statistics.diagnostics.TOGETHER", 13 * 100)
     found = list(drawn_counts(13, 1050, 3))
     assert [len(c) for c in found] == [100] * 10 + [50]
     assert np.array_equal(np.vstack(found), draw_counts(13, 1050, 3))

@@ -8,7 +8,8 @@ import typer
 
 from coeflab import workbench
 from coeflab.cli.carry_out import carry_out
-from coeflab.model.study import Plan, PlannedTable
+from coeflab.study.study import Plan
+from coeflab.tables.importers import PlannedTable
 
 
 def test_the_report_is_drawn_with_one_thread_on_a_terminal(write_campaign, tmp_path, monkeypatch, capsys):

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from coeflab.core.symbols import derivative
-from coeflab.model.parameter_file import ParameterFile, read_parameter_file
-from coeflab.studies.compare import Verdict, compare
+from coeflab.law.symbols import derivative
+from coeflab.vehicle.comparison import Verdict, compare
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from tests.cli.conftest import Run
 
 VALUES = {"Yv'": (-0.028, 0.002), "Nv'": (-0.014, 0.001), "Yr'": (0.005, 0.001), "Nr'": (-0.0045, 0.0004)}

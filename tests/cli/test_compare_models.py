@@ -10,10 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from coeflab.model.parameter_file import ParameterFile, read_parameter_file
-from coeflab.studies.compare import compare
-from coeflab.studies.compare_models import MOST, ComparedModel, compare_models
-from coeflab.studies.shared_tables import Verdict
+from coeflab.vehicle.comparison import MOST, ComparedModel, Verdict, compare, compare_models
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from tests.cli.conftest import Run
 
 PARAMS = Path(__file__).parents[1] / "data" / "parameters_1_1.json"

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from tests.cli.conftest import Run
-from tests.model.test_inertia import accelerating
+from tests.vehicle.test_inertia import accelerating
 
 PARAMS = Path(__file__).parents[1] / "data" / "parameters_1_2.json"
 

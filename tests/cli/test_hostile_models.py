@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.errors import CoeflabError
-from coeflab.studies.model_files import read_model_file
+from coeflab.formats.model_files import read_model_file
 from tests.cli.conftest import COEFLAB
 
 DATA = Path(__file__).parents[1] / "parameter_importers" / "data"

@@ -11,7 +11,7 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from tests.manoeuvres.vehicles import made, with_limits
+from tests.motion.vehicles import made, with_limits
 
 Run = Callable[..., CompletedProcess[str]]
 FILES = ["synthetic.identified.csv", "synthetic.identified.json", "synthetic.identified.svg"]

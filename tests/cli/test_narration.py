@@ -23,7 +23,7 @@ def told(monkeypatch: pytest.MonkeyPatch, stream: io.StringIO, slow: float) -> s
     with show.narrated():
         stage("reading 10 faces")
         time.sleep(0.3)
-        logging.getLogger("coeflab.model.mesh_file").info("hull.stl: 10 faces")
+        logging.getLogger("coeflab.bodies.mesh.file").info("hull.stl: 10 faces")
     return stream.getvalue()
 
 

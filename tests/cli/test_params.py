@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.model.parameter_versions import SCHEMA_VERSION
+from coeflab.vehicle.parameter_file import SCHEMA_VERSION
 from tests.cli.conftest import Run
 
 DATA = Path(__file__).parents[1] / "parameter_importers" / "data"

@@ -10,7 +10,7 @@ import sys
 import pytest
 
 from coeflab.cli import show
-from coeflab.model.table import Table
+from coeflab.core.table import Table
 from tests.cli.conftest import COEFLAB
 from tests.cli.test_compare import VALUES, made
 

@@ -15,9 +15,9 @@ import pytest
 import trimesh
 from manifold3d import Manifold
 
+from coeflab.bodies.mesh.solids import box, surface
+from coeflab.bodies.shape import Cylinder, Plate
 from coeflab.core.files import shipped
-from coeflab.kernels.solids import box, surface
-from coeflab.model.shape import Cylinder, Plate
 from coeflab.workbench import read_body
 
 Run = Callable[..., CompletedProcess[str]]

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tests.cli.conftest import Run
-from tests.manoeuvres.vehicles import STABLE, made, rudder_covered
-from tests.studies.uncertain import with_uncertainty
+from tests.motion.uncertain import with_uncertainty
+from tests.motion.vehicles import STABLE, made, rudder_covered
 
 FREE = ("--free", "u,v,r")
 

@@ -12,8 +12,8 @@ import pytest
 
 from coeflab.cli.table import wanted
 from coeflab.core.errors import InputError
-from coeflab.core.symbols import FLOW_ANGLES
-from coeflab.model.parameter_file import read_parameter_file
+from coeflab.law.symbols import FLOW_ANGLES
+from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.cli.conftest import Run
 
 PARAMS = Path(__file__).parents[1] / "data" / "parameters_1_1.json"

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.bodies.myring import Myring
+from coeflab.bodies.readers.myring import Myring
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped
-from coeflab.kernels.stability import index_gradient, stability_index
-from coeflab.model.plan import read_plan
+from coeflab.study.plan import read_plan
+from coeflab.vehicle.derived import index_gradient, stability_index
 from coeflab.workbench import rendered, run
 from tests.cli.conftest import COEFLAB, Run
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.cli.conftest import Run
-from tests.studies.test_trim import MASS, PLANE, PUSH, TURNING, thruster
-from tests.studies.trimmed import parameter_file
+from tests.motion.test_trim import MASS, PLANE, PUSH, TURNING, thruster
+from tests.motion.trimmed import parameter_file
 
 FREE = ("--free", "u,v,r")
 

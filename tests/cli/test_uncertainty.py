@@ -16,7 +16,7 @@ import psutil
 import pytest
 
 from tests.cli.conftest import COEFLAB
-from tests.studies.uncertain import uncertain_torpedo, with_uncertainty
+from tests.motion.uncertain import uncertain_torpedo, with_uncertainty
 
 Run = Callable[..., CompletedProcess[str]]
 ASKED = ("--manoeuvre", "zigzag", "--executes", "2", "--longest", "60", "--hold", "w,p,q", "--json")

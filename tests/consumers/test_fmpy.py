@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from coeflab.exporters import fmi
-from coeflab.kernels.rigid_body import motion, rigid_body_inertia
-from coeflab.kernels.transforms import rigid_body_force
-from coeflab.model.force_law import force_law
-from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.study import Study
-from tests.exporters import files as made
-from tests.exporters.files import control_force
-from tests.exporters.massed import CENTRE, INERTIA, MASS, torpedo
-from tests.exporters.of_a_vehicle import floating, quaternion, restoring
+from coeflab.formats.fmi import write as fmi
+from coeflab.law.rigid_body import motion, rigid_body_inertia
+from coeflab.law.transforms import rigid_body_force
+from coeflab.study.study import Study
+from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.parameter_file import ParameterFile
+from tests.formats import files as made
+from tests.formats.files import control_force
+from tests.formats.massed import CENTRE, INERTIA, MASS, torpedo
+from tests.formats.of_a_vehicle import floating, quaternion, restoring
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed (dependency group test)")
 SECONDS, STEP = 20.0, 0.1  # s

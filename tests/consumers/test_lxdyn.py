@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.exporters import xdyn
-from coeflab.kernels.rigid_body import Trajectory, motion, rotation
-from coeflab.kernels.transforms import force_transfer, velocity_transfer
-from coeflab.model.force_law import force_law
-from coeflab.model.parameter_file import ParameterFile
+from coeflab.formats.xdyn import write as xdyn
+from coeflab.law.rigid_body import Trajectory, motion, rotation
+from coeflab.law.transforms import force_transfer, velocity_transfer
+from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.parameter_file import ParameterFile
 from tests.consumers.lxdyn_environment import PYTHON
-from tests.exporters.files import at_rest, control_force, full
-from tests.exporters.massed import ADDED, CENTRE, INERTIA, MASS, OWN, torpedo, with_mass
-from tests.exporters.of_a_vehicle import floating, quaternion, restoring
+from tests.formats.files import at_rest, control_force, full
+from tests.formats.massed import ADDED, CENTRE, INERTIA, MASS, OWN, torpedo, with_mass
+from tests.formats.of_a_vehicle import floating, quaternion, restoring
 
 RUN = Path(__file__).with_name("run_lxdyn.py")
 SECONDS, STEP = 60.0, 0.02  # s

@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.kernels.transforms import velocity_transfer
-from coeflab.model.manoeuvre import Manoeuvre, Phase
-from coeflab.model.trajectory import Ended
-from coeflab.model.vehicle import vehicle
-from coeflab.simulators import rigid_body
+from coeflab.law.transforms import velocity_transfer
+from coeflab.motion.manoeuvre import Manoeuvre, Phase
+from coeflab.motion.simulators import rigid_body
+from coeflab.motion.trajectory import Ended
+from coeflab.motion.vehicle import vehicle
 from tests.consumers.lxdyn_environment import PYTHON
 from tests.consumers.test_lxdyn import SECONDS, apart, in_xdyn, rendered
-from tests.exporters.massed import CENTRE, torpedo
+from tests.formats.massed import CENTRE, torpedo
 
 TOLERANCE = 1e-4
 STRAIGHT, OBLIQUE = (1.5, 0.0, 0.0, 0.0, 0.0, 0.0), (1.2, 0.3, -0.2, 0.15, 0.1, -0.2)

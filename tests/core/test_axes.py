@@ -7,7 +7,7 @@ import pytest
 
 from coeflab.core.axes import ANGLE_SIGNS, DIRECTIONS, FRAMES, angle_sign, parse_axes
 from coeflab.core.errors import AxesError
-from coeflab.core.symbols import COMPONENTS, MOTIONS
+from coeflab.law.symbols import COMPONENTS, MOTIONS
 
 
 def test_every_triad_is_right_handed_or_refused() -> None:

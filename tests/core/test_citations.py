@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from coeflab.core.citations import UNNAMED, WORKS, work
+from coeflab.core.provenance import UNNAMED, WORKS, work
 
 BODIES = ("SNAME,", "IMO,", "ITTC,", "JCGM", "ASME", "Modelica", "Open Source", "Sirehna,", "coeflab,")
 PERSON = re.compile(r"[A-Z]\.[ -]")

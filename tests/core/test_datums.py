@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.core.datums import SHIPPED, Datum, read_datum
+from coeflab.core.axes import SHIPPED, Datum, read_datum
 from coeflab.core.errors import CoeflabError, InputError
-from coeflab.core.toml import read_toml
-from coeflab.model.plan import read_plan
+from coeflab.core.text.toml import read_toml
+from coeflab.study.plan import read_plan
 from coeflab.workbench import run
 
 PROSE = "nose, 2 m aft"

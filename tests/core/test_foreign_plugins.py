@@ -12,18 +12,18 @@ from typing import Any
 
 import pytest
 
-from coeflab.checks import CHECKS
 from coeflab.core.errors import PluginError
 from coeflab.core.registry import Registry as Room
+from coeflab.core.table import Severity
 from coeflab.core.version import VERSION
 from coeflab.fits import FITS
-from coeflab.model.check import Severity
-from coeflab.model.plan import read_plan
-from coeflab.model.study import Plan
+from coeflab.study.checks import CHECKS
+from coeflab.study.plan import read_plan
+from coeflab.study.study import Plan
 from coeflab.workbench import run
 
 Install = Callable[..., None]
-GOOD = "from coeflab.model.check import Check, Severity\nsummary = 'theirs'\ncitations = ()\n"
+GOOD = "from coeflab.core.table import Check, Severity\nsummary = 'theirs'\ncitations = ()\n"
 
 
 @pytest.fixture

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from coeflab.core.identifiers import file_stem, identifier
-from coeflab.core.reserved import matlab, python
+from coeflab.core.wording import file_stem, identifier, matlab, python
 
 
 @pytest.mark.parametrize("name", ["sin", "class", "end", "max", "sqrt", "remus100", "npsauv", "Sin", "m2c"])

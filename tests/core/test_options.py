@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from coeflab.added_mass import ADDED_MASS
+from coeflab.bodies.added_mass import ADDED_MASS
 from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.options import bounded, described, measured, one_of, parse_options, words
 from coeflab.fits import FITS

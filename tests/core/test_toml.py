@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.core.toml import Section, read_toml
+from coeflab.core.text.toml import Section, read_toml
 
 TEXT = """
 name = "n"

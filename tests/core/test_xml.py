@@ -7,10 +7,10 @@ from xml.etree.ElementTree import Element
 
 import pytest
 
-from coeflab.core import xml
 from coeflab.core.errors import InputError
-from coeflab.core.xacro import Xacro
-from coeflab.core.xml import numbers, parse_xml, read_xml, serialised
+from coeflab.core.text import xml
+from coeflab.core.text.xml import numbers, parse_xml, read_xml, serialised
+from coeflab.formats.uuv_simulator.law import Xacro
 
 BOMB = '<!DOCTYPE a [<!ENTITY b "ha"><!ENTITY c "&b;&b;&b;">]><a>&c;</a>'
 

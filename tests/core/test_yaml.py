@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.core.yaml import number, parse_yaml
+from coeflab.core.text.yaml import number, parse_yaml
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Coverage of `coeflab.kernels.origin_slope` on simulated campaigns whose slope is known.
+"""Coverage of `coeflab.fits.statistics.origin_slope` on simulated campaigns whose slope is known.
 
 ``python tests/coverage/slope_campaigns.py WORK [ROUNDS]`` runs 20 rounds of 50 campaigns per cell (family, noise,
 design), each round with settings of its own; a round that is already in WORK is not run again. It then writes
@@ -16,8 +16,8 @@ from pathlib import Path
 import numpy as np
 from scipy import stats
 
-from coeflab.kernels.least_squares import Array
-from coeflab.kernels.origin_slope import estimate_many, prepare
+from coeflab.core.types import Array
+from coeflab.fits.statistics.origin_slope import estimate_many, prepare
 
 NOISE = (0.03, 0.01, 0.001, 0.0001, 0.00001)
 DESIGNS = ("even", "uneven", "one-sided", "replicated")

@@ -13,18 +13,17 @@ from typing import Any
 import pytest
 
 import coeflab
-from coeflab.added_mass import ADDED_MASS
-from coeflab.bodies import BODIES
-from coeflab.checks import CHECKS
-from coeflab.core.citations import WORKS
+from coeflab.bodies.added_mass import ADDED_MASS
+from coeflab.bodies.readers import BODIES
+from coeflab.core.provenance import WORKS
 from coeflab.core.registry import Registry
-from coeflab.exporters import EXPORTERS
 from coeflab.fits import FITS
-from coeflab.importers import IMPORTERS
-from coeflab.manoeuvres import MANOEUVRES
-from coeflab.parameter_importers import PARAMETER_IMPORTERS
-from coeflab.reporting import REPORTERS
-from coeflab.simulators import SIMULATORS
+from coeflab.formats import EXPORTERS, PARAMETER_IMPORTERS
+from coeflab.motion.manoeuvres import MANOEUVRES
+from coeflab.motion.simulators import SIMULATORS
+from coeflab.report.formats import REPORTERS
+from coeflab.study.checks import CHECKS
+from coeflab.tables.importers import IMPORTERS
 
 ROOMS: tuple[Registry[Any], ...] = (
     IMPORTERS, BODIES, FITS, ADDED_MASS, SIMULATORS, MANOEUVRES, EXPORTERS, PARAMETER_IMPORTERS, CHECKS, REPORTERS,

@@ -8,9 +8,9 @@ from functools import cache
 import numpy as np
 
 from coeflab.core.files import shipped
-from coeflab.importers import IMPORTERS
-from coeflab.model.campaign import FILE, read_campaign
-from coeflab.model.force_table import ForceTable
+from coeflab.tables.campaign import FILE, read_campaign
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import IMPORTERS
 
 
 @cache

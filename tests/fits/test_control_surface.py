@@ -9,14 +9,14 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.fits import FITS
-from coeflab.kernels.least_squares import factorise, solve
-from coeflab.kernels.robust import bell_mccaffrey, hc_variance, t_factor
-from coeflab.kernels.terms import design
-from coeflab.kernels.wind_axes import body_forces
-from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import FittedModel
-from coeflab.model.force_table import ForceTable
-from coeflab.model.model_record import recorded
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.statistics.least_squares import factorise, solve
+from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
+from coeflab.law.terms import design
+from coeflab.law.transforms import body_forces
+from coeflab.tables.force_table import ForceTable
+from coeflab.vehicle.assemble import recorded
 from tests.fits.shipped import rows, tables
 
 # Chosen in cfd_data/make_synthetic_vehicles.py: the HUUV paper plots its own and prints none.

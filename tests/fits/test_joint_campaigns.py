@@ -9,17 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.core.datums import Datum
+from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.files import shipped
+from coeflab.core.table import Severity
 from coeflab.fits import FITS
-from coeflab.model.check import Severity
-from coeflab.model.coefficient import Status
-from coeflab.model.fit_result import FitResult
-from coeflab.model.force_table import ForceTable
-from coeflab.model.plan import read_plan, table_at
-from coeflab.model.pooling import Pooling
-from coeflab.model.study import Plan, PlannedJoint, Study
+from coeflab.fits.results.fit_result import FitResult, Pooling
+from coeflab.law.coefficient import Status
+from coeflab.study.plan import read_plan, table_at
+from coeflab.study.study import Plan, PlannedJoint, Study
+from coeflab.tables.force_table import ForceTable
 from coeflab.workbench import run
 from tests.fits.shipped import tables
 

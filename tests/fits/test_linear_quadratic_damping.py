@@ -10,15 +10,15 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.fits import FITS
-from coeflab.importers import IMPORTERS
-from coeflab.kernels.least_squares import factorise, solve
-from coeflab.kernels.robust import bell_mccaffrey, hc_variance, t_factor
-from coeflab.kernels.terms import design
-from coeflab.model.campaign import FILE, read_campaign
-from coeflab.model.coefficient import Status
-from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import FittedModel
-from coeflab.model.force_table import ForceTable
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.statistics.least_squares import factorise, solve
+from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
+from coeflab.law.coefficient import Status
+from coeflab.law.terms import design
+from coeflab.tables.campaign import FILE, read_campaign
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import IMPORTERS
 from tests.fits.shipped import rows, tables
 
 # Equations 49 and 50 of the TJ-FlyingFish paper, printed for F = -(a + b |x|) x.

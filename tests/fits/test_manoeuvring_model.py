@@ -13,15 +13,14 @@ from hypothesis import strategies as st
 
 from coeflab.core.errors import InputError
 from coeflab.fits import FITS
-from coeflab.kernels.stacked import freed
-from coeflab.kernels.terms import Term
-from coeflab.model.coefficient import Coefficient, Status
-from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import FittedModel
-from coeflab.model.force_table import ForceTable
-from coeflab.model.manoeuvring_terms import SETS, Equation, canonical, read_equation, read_term, read_terms, symmetric
-from coeflab.model.out_of_sample import every_third_point
-from coeflab.model.secant import explain, secant
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.misfit import every_third_point
+from coeflab.fits.rows.secant import explain, secant
+from coeflab.fits.statistics.stacked import freed
+from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.terms import SETS, Equation, Term, canonical, read_equation, read_term, read_terms, symmetric
+from coeflab.tables.force_table import ForceTable
 from tests.fits.shipped import tables
 
 pytestmark = pytest.mark.usefixtures("one_thread")

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.core.datums import Datum
+from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import Source
-from coeflab.core.symbols import COMPONENTS, MOTIONS
 from coeflab.fits import FITS
-from coeflab.model.coefficient import Status
-from coeflab.model.fitted_model import Extrapolation
-from coeflab.model.force_table import ForceTable
-from coeflab.model.scaling import Conditions, Scaling
+from coeflab.fits.results.fitted_model import Extrapolation
+from coeflab.law.coefficient import Status
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.tables.force_table import ForceTable
 
 LENGTH, SPEED, DENSITY = 1.6, 2.0, 1000.0
 SCALING = Scaling(LENGTH, "LOA")

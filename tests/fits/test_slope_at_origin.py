@@ -10,12 +10,12 @@ import pytest
 
 from coeflab.core.files import shipped
 from coeflab.fits import FITS
-from coeflab.importers import IMPORTERS
-from coeflab.kernels.slopes import Estimate
-from coeflab.model.campaign import FILE, read_campaign
-from coeflab.model.coefficient import Status
-from coeflab.model.fit_result import FitResult, Sweep
-from coeflab.model.force_table import ForceTable
+from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.statistics.slopes import Estimate
+from coeflab.law.coefficient import Status
+from coeflab.tables.campaign import FILE, read_campaign
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import IMPORTERS
 
 LINE, CUBIC, SQUARE = "line", "{x} + {x}^3", "{x} + {x}|{x}|"
 ESTIMATORS = ((4.0, LINE), (10.0, CUBIC), (18.0, SQUARE))

@@ -13,15 +13,14 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.fits import FITS
-from coeflab.importers import IMPORTERS
-from coeflab.kernels.sparse_selection import library, select
-from coeflab.kernels.terms import Term, design
-from coeflab.model.campaign import FILE, read_campaign
-from coeflab.model.coefficient import Status
-from coeflab.model.fit_result import FitResult
-from coeflab.model.fitted_model import FittedModel
-from coeflab.model.force_table import ForceTable
-from coeflab.model.manoeuvring_terms import symmetric
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.statistics.sparse_selection import library, select
+from coeflab.law.coefficient import Status
+from coeflab.law.terms import Term, design, symmetric
+from coeflab.tables.campaign import FILE, read_campaign
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import IMPORTERS
 
 TRIALS, POINTS, NOISE = 100, 200, 0.02
 SMALLEST, LARGEST = 1e-4, 1e-2

@@ -13,14 +13,14 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.fits import FITS
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.statistics.least_squares import factorise, solve
+from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
 from coeflab.fits.surface import sum_of_slices
-from coeflab.importers import IMPORTERS
-from coeflab.kernels.least_squares import factorise, solve
-from coeflab.kernels.robust import bell_mccaffrey, hc_variance, t_factor
-from coeflab.kernels.terms import design
-from coeflab.model.campaign import FILE, read_campaign
-from coeflab.model.fit_result import FitResult
-from coeflab.model.force_table import ForceTable
+from coeflab.law.terms import design
+from coeflab.tables.campaign import FILE, read_campaign
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import IMPORTERS
 
 FRONTAL = {"area": 0.04, "area_name": "frontal"}
 SYMMETRIC = {"degree": 3, "parity": "beta=symmetric", **FRONTAL}

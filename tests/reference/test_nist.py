@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.kernels.least_squares import BLOCK, Array, classical_variance, factorise, solve
-from coeflab.kernels.linear_model import fit_linear
-from coeflab.kernels.sharpened import sharpened
-from coeflab.kernels.terms import Term, design
+from coeflab.core.types import Array
+from coeflab.fits.statistics.least_squares import BLOCK, classical_variance, factorise, solve
+from coeflab.fits.statistics.linear_model import fit_linear, sharpened
+from coeflab.law.terms import Term, design
 
 DATA = Path(__file__).parent / "data" / "nist"
 

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.checks.signs import check as signs
-from coeflab.checks.viscous_centre import check as centres
 from coeflab.core.files import shipped
-from coeflab.model.check import Check, Severity
-from coeflab.model.parameter_file import ParameterFile
-from coeflab.model.plan import read_plan
-from coeflab.model.study import Study
+from coeflab.core.table import Check, Severity
+from coeflab.study.checks.signs import check as signs
+from coeflab.study.checks.viscous_centre import check as centres
+from coeflab.study.plan import read_plan
+from coeflab.study.study import Study
+from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.workbench import run
 
 DENSITY, LBP, MASS_PRIME = 998.0, 4.26086, 0.018078

@@ -10,9 +10,10 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.errors import InputError, PluginError
-from coeflab.model.plan import read_plan
-from coeflab.model.study import Plan, PlannedExport, Study
-from coeflab.presentation.content import document
+from coeflab.formats.export import PlannedExport
+from coeflab.report.content import document
+from coeflab.study.plan import read_plan
+from coeflab.study.study import Plan, Study
 from coeflab.workbench import rendered, run
 from coeflab.workbench.exports import export
 from tests.workbench.test_other_units_and_axes import write_template
@@ -104,7 +105,7 @@ def test_what_a_target_cannot_take_at_all_names_the_plan(tmp_path: Path, monkeyp
     def refuse(*_: object) -> None:
         raise InputError("an inertia that is not positive", "a body")
 
-    monkeypatch.setattr("coeflab.exporters.xdyn.render", refuse)
+    monkeypatch.setattr("coeflab.formats.xdyn.write.render", refuse)
     (refused,) = run(planned(tmp_path, 'to = "csv"', 'to = "xdyn"')).refused
     assert (refused.why.file, refused.why.column) == (tmp_path / "plan.toml", "export[1].to")
     assert refused.why.found == "an inertia that is not positive in my_vehicle for xdyn"

@@ -9,13 +9,14 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.core.toml import read_toml
-from coeflab.model.check import Severity
-from coeflab.model.input_uncertainty import read_input_uncertainty
-from coeflab.model.lost import lost_by_all
-from coeflab.model.plan import read_plan
-from coeflab.model.scaling import Scaling
-from coeflab.model.study import Plan, PlannedTable, Study
+from coeflab.core.table import Severity
+from coeflab.core.text.toml import read_toml
+from coeflab.formats.lost import lost_by_all
+from coeflab.law.scaling import Scaling
+from coeflab.study.plan import read_plan
+from coeflab.study.study import Plan, Study
+from coeflab.tables.campaign import read_input_uncertainty
+from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import run
 
 

@@ -10,14 +10,14 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.model.plan import read_plan
-from coeflab.model.study import PlannedManoeuvre
-from coeflab.presentation.manoeuvre_section import manoeuvre_sections
+from coeflab.motion.manoeuvre import PlannedManoeuvre
+from coeflab.motion.simulation import manoeuvres_of
+from coeflab.report.sections.manoeuvre import manoeuvre_sections
+from coeflab.study.plan import read_plan
 from coeflab.workbench.exports import exports_of
-from coeflab.workbench.manoeuvres import manoeuvres_of
-from tests.manoeuvres.vehicles import UNSTABLE, made, rudder_covered
-from tests.model.test_inertia import accelerating
-from tests.presentation.studies import FULL, small_study
+from tests.motion.vehicles import UNSTABLE, made, rudder_covered
+from tests.report.studies import FULL, small_study
+from tests.vehicle.test_inertia import accelerating
 
 PLAN = '[study]\nname = "s"\n[[table]]\ncampaign = "suboff_roddy_2"\n'
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.model.plan import read_plan
+from coeflab.study.plan import read_plan
 from coeflab.workbench import rendered, run
 
 FOOT, POUND = 0.3048, 4.4482216152605

@@ -1,0 +1,1 @@
+"""Closed triangulated surfaces: files, gates, repair, topology, decimation."""

@@ -1,0 +1,226 @@
+"""What a mesh must be before anything is computed from it.
+
+The repair of a mesh that a person may ask for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from coeflab.bodies.mesh.solids import Solid, solid, surface
+from coeflab.bodies.mesh.topology import (
+    Labels,
+    crossing_faces,
+    degenerate,
+    edges,
+    joined,
+    oriented,
+    repeated,
+    shell_volumes,
+    shells,
+    welded,
+)
+from coeflab.core.errors import InputError
+from coeflab.core.machine import stage
+from coeflab.core.types import Array, Faces, brief
+
+MOST_TESTED, MOST_SHELLS = 50_000, 1000
+NOTHING, JOINED, OVERLAP, SHEET = 1e-9, 1e-6, 1e-6, 1e-6
+ASK = "set repair = true under [mesh], or --repair with a bare mesh file"
+ON_REQUEST = f"Mend it where it was made, or {ASK}."
+NEARLY = f"Its vertices nearly meet: {ASK}, to join them."
+PLATE = "Describe it as a plate in a body.toml of reader primitives: the formulas of plates need no thickness."
+BY_HAND = "Mend it where it was made; repair does not close holes or untangle surfaces."
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class SoundMesh:
+    """A closed mesh with all faces outward, and what was done or left undone to say so."""
+
+    vertices: Array
+    faces: Faces
+    statements: tuple[str, ...]
+
+
+def examined(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
+    """The mesh with equal vertices joined, if it is sound.
+
+    Sound is: no face without an area, none twice, every edge between two faces that run opposite ways, a volume above
+    zero in every shell, no shells that overlap, no faces that cross. Crossing is looked for in meshes of up to 50,000
+    faces; the statements say so of larger ones.
+
+    Raises
+    ------
+    InputError
+        The first of these that does not hold, with the way out.
+    """
+
+    def fail(found: str, expected: str, advice: str = ON_REQUEST) -> InputError:
+        return InputError(found, expected, file=file, advice=advice)
+
+    stage(f"joining the corners of {len(faces):,} faces")
+    vertices, faces = welded(vertices, faces)
+    if _thickness(vertices) < SHEET:
+        raise fail("a plate of zero thickness: all corners lie in one plane", "a surface that encloses a volume", PLATE)
+    flat = int(degenerate(vertices, faces).sum())
+    if flat:
+        raise fail(f"{flat} degenerate faces of {len(faces)}, whose corners lie on a line", "faces with an area")
+    stage(f"looking for holes and turned faces among {len(faces):,}")
+    twice = int(repeated(faces).sum())
+    if twice:
+        raise fail(f"{twice} duplicate faces of {len(faces)}", "every face once")
+    border = edges(faces)
+    if border.open or border.crowded:
+        what = [f"{border.open} edges with one face"] * bool(border.open)
+        what += [f"{border.crowded} edges with more than two"] * bool(border.crowded)
+        advice = NEARLY if _nearly_closed(vertices, faces) else BY_HAND
+        raise fail(f"a mesh that is not watertight: {' and '.join(what)}", "two faces at every edge", advice)
+    if border.turned:
+        raise fail(
+            f"inconsistent winding: neighbours face opposite sides at {border.turned} edges", "all faces outward"
+        )
+    stage(f"separating the shells of {len(faces):,} faces")
+    count, shell = shells(faces)
+    _outward(*shell_volumes(vertices, faces, shell), fail)
+    if count > 1:
+        _apart(vertices, faces, shell, count, fail)
+    said: tuple[str, ...] = ()
+    if len(faces) > MOST_TESTED:
+        said = (f"self-intersection not looked for above {MOST_TESTED} faces",)
+    else:
+        crossing = crossing_faces(vertices, faces)
+        if crossing is None:
+            said = ("self-intersection not looked for: too many faces lie close together",)
+        elif crossing:
+            raise fail(f"a surface that cuts through itself, in {crossing} pairs of faces", "a simple surface", BY_HAND)
+    return SoundMesh(vertices, faces, said)
+
+
+def _thickness(vertices: Array) -> float:
+    """Smallest over largest size, along the principal axes of the corners."""
+    away = vertices - vertices.mean(axis=0)
+    sizes = np.ptp(away @ np.linalg.eigh(away.T @ away)[1], axis=0)
+    return float(sizes.min() / sizes.max()) if sizes.max() > 0.0 else 0.0
+
+
+def _nearly_closed(vertices: Array, faces: Faces) -> bool:
+    left = joined(vertices, faces, JOINED)[1]
+    if not len(left):
+        return False
+    border = edges(left)
+    return not (border.open or border.crowded)
+
+
+def _outward(volume: Array, area: Array, fail: Callable[..., InputError]) -> None:
+    """Every shell encloses something, and from outside."""
+    empty = int(np.sum(np.abs(volume) <= NOTHING * area**1.5))
+    if empty:
+        raise fail(f"{empty} of {len(volume)} shells with zero volume", "a surface that encloses a volume", BY_HAND)
+    inward = volume < 0.0
+    if inward.all():
+        raise fail("inward normals: all faces look into the body", "faces that look outward")
+    if inward.any():
+        raise fail(
+            f"{inward.sum()} of {len(volume)} shells that look inward: a cavity, the inner side of a wall, or a part turned "
+            "inside out",
+            "the outer surface alone",
+            f"Water enclosed in the hull moves with it: leave inner walls out, or {ASK}.",
+        )
+
+
+def _boxes(vertices: Array, faces: Faces, shell: Labels, count: int) -> tuple[Array, Array]:
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    for corner in faces.T:
+        np.minimum.at(low, shell, vertices[corner])
+        np.maximum.at(high, shell, vertices[corner])
+    return low, high
+
+
+def _apart(vertices: Array, faces: Faces, shell: Labels, count: int, fail: Callable[..., InputError]) -> None:
+    """Shells do not overlap; the volume that they share would count twice."""
+    if count > MOST_SHELLS:
+        raise fail(f"{count} separate shells", f"at most {MOST_SHELLS}", "Delete loose triangles and fittings.")
+    low, high = _boxes(vertices, faces, shell, count)
+    meet = np.all((low[:, None] < high[None]) & (low[None] < high[:, None]), axis=2)
+    close = np.argwhere(np.triu(meet, 1))
+    solids = {int(k): as_solid(vertices, faces[shell == k], fail) for k in np.unique(close)}
+    pairs = [(solids[int(a)], solids[int(b)]) for a, b in close]
+    common = [(a ^ b).volume() / min(a.volume(), b.volume()) for a, b in pairs]
+    overlapping = sum(c > OVERLAP for c in common)
+    if overlapping:
+        raise fail(
+            f"{count} shells of which {overlapping} pairs overlap, so that their common volume counts twice",
+            "one surface around all",
+            f"Union them first, or {ASK}.",
+        )
+
+
+def as_solid(vertices: Array, faces: Faces, fail: Callable[..., InputError]) -> Solid:
+    """One shell as a solid that can be cut and united."""
+    try:
+        return solid(*welded(vertices, faces))
+    except ValueError as why:
+        raise fail(str(why), "a closed surface", BY_HAND) from None
+
+
+def repaired(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
+    """The mesh mended as far as that is safe, then examined like any other; the statements say what was done.
+
+    Vertices within 1e-6 of the size are joined; faces that lost their area or came twice go; faces are turned alike and
+    outward, which fills cavities; shells are united.
+
+    Raises
+    ------
+    InputError
+        What remains after that, such as holes.
+    """
+    said: list[str] = []
+    count = len(faces)
+    before = len(welded(vertices, faces)[0])
+    vertices, faces = joined(vertices, faces, JOINED)
+    _say(said, before - len(vertices), "vertices joined")
+    faces = faces[~repeated(faces)]
+    if not len(faces):
+        raise InputError(
+            "no face with an area", "triangles of a closed surface", file=file, advice="Is the file damaged?"
+        )
+    _say(said, count - len(faces), "degenerate or duplicate faces dropped")
+    turned = oriented(faces)
+    if turned is not None:
+        _say(said, int(np.any(turned != faces, axis=1).sum()), "faces turned")
+        faces = turned
+    number, shell = shells(faces)
+    inward = shell_volumes(vertices, faces, shell)[0] < 0.0
+    if edges(faces).sound:
+        faces = np.where(inward[shell][:, None], faces[:, ::-1], faces)
+        _say(said, int(inward.sum()), f"of {number} shells turned outward")
+        if number > 1 or degenerate(vertices, faces).any():
+            vertices, faces = _united(vertices, faces, shell, number, file)
+            said.append(
+                f"{number} shells united" if number > 1 else "faces without an area merged into their neighbours"
+            )
+    found = examined(vertices, faces, file)
+    return SoundMesh(
+        found.vertices, found.faces, (f"repaired: {', '.join(said) or 'nothing to do'}", *found.statements)
+    )
+
+
+def _united(vertices: Array, faces: Faces, shell: Labels, count: int, file: Path) -> tuple[Array, Faces]:
+    """What all shells enclose together."""
+    from manifold3d import Manifold, OpType
+
+    def fail(found: str, expected: str, advice: str) -> InputError:
+        return InputError(found, expected, file=file, advice=advice)
+
+    made = [as_solid(vertices, faces[shell == k], fail) for k in range(count)]
+    return surface(Manifold.batch_boolean(made, OpType.Add).simplify(0.0))
+
+
+def _say(said: list[str], count: int, what: str) -> None:
+    if count:
+        said.append(f"{count} {what}")

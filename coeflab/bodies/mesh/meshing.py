@@ -1,0 +1,191 @@
+"""A triangle mesh of every shape."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Sequence
+from functools import reduce
+from itertools import combinations
+
+import numpy as np
+
+from coeflab.bodies.mesh.decimation import decimated, is_closed
+from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
+from coeflab.bodies.mesh.solids import solid, surface
+from coeflab.bodies.mesh.structured_surface import box_surface, outline, revolved, rings
+from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, Revolution, Shape
+from coeflab.core.errors import InputError, shown
+from coeflab.core.types import Array, Faces
+
+FEWEST, MOST = 64, 2_000_000
+SAME_VOLUME, CHANGE, MORE = 1e-9, 0.02, 1.1
+WITHIN_REACH, GENTLE, NEARLY = 50_000, 3, 1e-3
+DENSE = 4097
+
+
+def meshed(shape: Shape, panels: int) -> TriangleMesh:
+    """A closed mesh of about ``panels`` triangles.
+
+    A body of revolution gets structured rings with every vertex on its meridian, a cylinder, an ellipsoid and a box
+    likewise; meshes of one body at two counts are similar, so that an error of order h^2 can be extrapolated. Parts share
+    the count by the root of their surface, and are united where they meet. A mesh that has no more faces than asked is
+    returned as it is, another is remade from its body's equations where these are known, else decimated.
+
+    Parameters
+    ----------
+    shape : Shape
+    panels : int
+        From 64 to 2,000,000.
+
+    Returns
+    -------
+    TriangleMesh
+        Its ``discretisation_error`` compares its volume with the shape's own, except where parts were united: what
+        they enclose together has no closed form.
+
+    Raises
+    ------
+    InputError
+        Too few or too many panels; a plate, which encloses nothing; a mesh that cannot be decimated and stay closed
+        and within 2 % of its volume.
+    """
+    if not FEWEST <= panels <= MOST:
+        raise InputError(f"a mesh of {panels} triangles", f"from {FEWEST} to {MOST}", column="panels")
+    if isinstance(shape, TriangleMesh):
+        if len(shape.faces) <= panels:
+            return shape
+        return shape.remade(panels) if shape.remade else _decimated(shape, panels)
+    if isinstance(shape, Revolution):
+        x, radius, around = rings(*dense_meridian(shape), panels)
+        vertices, faces = revolved(x, radius, around)
+        return TriangleMesh(vertices + np.array([0.0, *shape.axis]), faces, shape.volume)
+    return _assembled(shape, panels)
+
+
+def dense_meridian(shape: Revolution) -> tuple[Array, Array]:
+    """x, rising, and radius from the after end to the fore end, m; a pole has radius zero.
+
+    The ends are known from the stations: their weights give the length and the middle of the axis.
+    """
+    middle = float(shape.weight @ shape.x / shape.weight.sum())
+    ends = middle - shape.length / 2.0, middle + shape.length / 2.0
+    return outline(shape.x, shape.radius**2, shape.radius_slope, ends)
+
+
+def united(meshes: Sequence[TriangleMesh]) -> TriangleMesh:
+    """What several closed meshes enclose together.
+
+    Raises
+    ------
+    InputError
+        One of them is not closed.
+    """
+    try:
+        solids = [solid(m.vertices, m.faces) for m in meshes]
+    except ValueError as why:
+        raise InputError(str(why), "a closed surface") from None
+    return TriangleMesh(*surface(reduce(operator.add, solids)))
+
+
+def _decimated(mesh: TriangleMesh, panels: int) -> TriangleMesh:
+    if not is_closed(mesh.faces):
+        raise InputError("a mesh that is not closed", "a closed surface, each edge between two faces")
+    out = TriangleMesh(*decimated(*_thinned(mesh, panels), panels), mesh.exact_volume or mesh.volume)
+    change = out.volume / mesh.volume - 1.0
+    if abs(change) > CHANGE or len(out.faces) > MORE * panels:
+        raise InputError(
+            f"a mesh of {len(mesh.faces)} faces that comes to {len(out.faces)} and changes its volume by {change:.1%} "
+            f"when decimated to {panels}",
+            f"a change within {CHANGE:.0%}",
+            column="panels",
+            advice="Ask for more panels.",
+        )
+    return out
+
+
+def _thinned(mesh: TriangleMesh, panels: int) -> tuple[Array, Faces]:
+    """A very fine mesh, brought within reach by a library that is quick and sometimes leaves holes: then it is not used."""
+    within = max(WITHIN_REACH, 8 * panels)
+    if len(mesh.faces) > 2 * within:
+        import fast_simplification
+
+        points, faces = fast_simplification.simplify(
+            mesh.vertices.copy(), mesh.faces.copy(), target_count=within, agg=GENTLE
+        )
+        vertices, faces = np.asarray(points, dtype=np.float64), np.asarray(faces, dtype=np.int64)
+        whole = mesh_integrals(vertices, faces).volume / mesh.volume - 1.0
+        if is_closed(faces) and abs(whole) < NEARLY:
+            return vertices, faces
+    return mesh.vertices, mesh.faces
+
+
+def _assembled(shape: Parts, panels: int) -> TriangleMesh:
+    flat = [p.name for p in shape.parts if isinstance(p.form, Plate)]
+    if flat:
+        raise InputError(
+            f"the plate {shown(flat[0])}, which has no thickness and encloses nothing",
+            "parts that displace water",
+            advice="The added-mass method primitives has the formulas of plates; a box has a thickness.",
+        )
+    share = np.sqrt([_surface(p.form) for p in shape.parts])
+    counts = np.maximum(panels * share / share.sum(), FEWEST).astype(int)
+    meshes = [_placed(part, int(count)) for part, count in zip(shape.parts, counts, strict=True)]
+    if any(_boxes_meet(a, b) for a, b in combinations(meshes, 2)):
+        whole = united(meshes)
+        if abs(whole.volume / sum(m.volume for m in meshes) - 1.0) > SAME_VOLUME:
+            return whole
+        return TriangleMesh(whole.vertices, whole.faces, shape.volume)
+    starts = np.cumsum([0, *(len(m.vertices) for m in meshes[:-1])])
+    faces = np.concatenate([m.faces + start for m, start in zip(meshes, starts, strict=True)])
+    return TriangleMesh(np.concatenate([m.vertices for m in meshes]), faces, shape.volume)
+
+
+def _boxes_meet(a: TriangleMesh, b: TriangleMesh) -> bool:
+    low = np.maximum(a.vertices.min(axis=0), b.vertices.min(axis=0))
+    high = np.minimum(a.vertices.max(axis=0), b.vertices.max(axis=0))
+    return bool(np.all(low <= high))
+
+
+def _surface(form: Form) -> float:
+    """m^2; of an ellipsoid by Thomsen's formula, within 1.1 %, which is enough to share panels by."""
+    if isinstance(form, Cylinder):
+        return float(2.0 * np.pi * form.radius * (form.radius + form.length))
+    if isinstance(form, Ellipsoid):
+        p = 1.6075
+        x, y, z = form.axes**p
+        return float(4.0 * np.pi * ((x * y + y * z + z * x) / 3.0) ** (1.0 / p))
+    sides = form.sides if isinstance(form, Box) else np.zeros(3)
+    return float(2.0 * (sides[0] * sides[1] + sides[1] * sides[2] + sides[2] * sides[0]))
+
+
+def _placed(part: Part, panels: int) -> TriangleMesh:
+    vertices, faces = _own(part.form, panels)
+    return TriangleMesh(vertices @ part.rotation.T + part.centre, faces, part.form.volume)
+
+
+def _own(form: Form, panels: int) -> tuple[Array, Faces]:
+    """Vertices and faces along the form's own axes."""
+    if isinstance(form, Box):
+        return box_surface(form.sides, panels)
+    if isinstance(form, Cylinder):
+        x = np.linspace(-form.length / 2.0, form.length / 2.0, DENSE)
+        x, radius, around = rings(x, np.full(DENSE, form.radius), panels)
+        return revolved(x, radius, around)
+    if isinstance(form, Ellipsoid):
+        return _ellipsoid(form.axes, panels)
+    raise InputError("a plate", "a form that displaces water")
+
+
+def _ellipsoid(axes: Array, panels: int) -> tuple[Array, Faces]:
+    """Rings about the axis whose two others are the most alike; one of these is then stretched to its length."""
+    pole = min(range(3), key=lambda k: abs(float(np.log(axes[k - 2] / axes[k - 1]))))
+    turn = [pole, (pole + 1) % 3, (pole + 2) % 3]
+    a, b, c = axes[turn]
+    angle = np.linspace(np.pi, 0.0, DENSE)
+    radius = b * np.sin(angle)
+    radius[[0, -1]] = 0.0
+    rounds = rings(a * np.cos(angle), radius, panels)
+    vertices, faces = revolved(*rounds)
+    out = np.empty_like(vertices)
+    out[:, turn] = vertices * np.array([1.0, 1.0, c / b])
+    return out, faces

@@ -1,0 +1,329 @@
+"""What joins the faces of a mesh, and what keeps them from enclosing a body; arrays in, arrays out.
+
+Vertices are (n, 3); faces are (m, 3) indices, counter-clockwise seen from outside.
+
+Triangles of a mesh that cut through each other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from coeflab.bodies.mesh.mesh import BLOCK, corner_range
+from coeflab.core.types import Array, Faces
+
+Mask = NDArray[np.bool_]
+Labels = NDArray[np.int64]
+FLAT = 1e-10
+_ODD = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
+
+
+@dataclass(frozen=True, slots=True)
+class Edges:
+    """Edges that are no border between exactly two faces that run opposite ways along it.
+
+    Attributes
+    ----------
+    open : int
+        With one face only.
+    crowded : int
+        With more than two faces.
+    turned : int
+        With two faces that both run the same way: one of them is turned over.
+    """
+
+    open: int
+    crowded: int
+    turned: int
+
+    @property
+    def sound(self) -> bool:
+        """Watertight and consistently wound."""
+        return not (self.open or self.crowded or self.turned)
+
+
+def _mixed(columns: NDArray[np.uint64]) -> NDArray[np.uint64]:
+    """A hash of each row of (n, 3)."""
+    h = columns[:, 0] * _ODD[0]
+    for k in (1, 2):
+        h = (h ^ (h >> np.uint64(29))) + columns[:, k]
+        h *= _ODD[k]
+    return np.asarray(h ^ (h >> np.uint64(32)))
+
+
+def welded(vertices: Array, faces: Faces, within: float = 0.0) -> tuple[Array, Faces]:
+    """Join vertices at one place; unused ones go.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+    faces : (m, 3) array of int
+    within : float
+        Zero joins equal coordinates only; otherwise vertices closer than this are joined, each cluster to its first.
+    """
+    if within > 0.0:
+        vertices = _gathered(vertices, within)
+    bits = np.ascontiguousarray(vertices + 0.0).view(np.uint64)
+    key = _mixed(bits)
+    order = np.argsort(key)
+    last = np.r_[key[order][1:] != key[order][:-1], True]
+    group = np.empty(len(key), dtype=np.int64)
+    group[order] = np.cumsum(np.r_[0, last[:-1]])
+    first = np.full(int(last.sum()), len(key), dtype=np.int64)
+    np.minimum.at(first, group, np.arange(len(key)))
+    if not np.array_equal(vertices[first][group], vertices):
+        first, group = np.unique(bits, axis=0, return_index=True, return_inverse=True)[1:]
+        group = group.reshape(-1)
+    corners = first[group][faces]
+    used = np.zeros(len(key), dtype=bool)
+    used[corners] = True
+    number = np.cumsum(used) - 1
+    return np.asarray(vertices[used]), np.asarray(number[corners])
+
+
+def _gathered(vertices: Array, within: float) -> Array:
+    """Every vertex at the place of the first one of its cluster."""
+    from scipy.spatial import cKDTree
+
+    near = cKDTree(vertices).query_pairs(within, output_type="ndarray")
+    graph = coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(len(vertices), len(vertices)))
+    count, label = connected_components(graph, directed=False)
+    first = np.full(count, len(vertices), dtype=np.int64)
+    np.minimum.at(first, label, np.arange(len(vertices)))
+    return np.asarray(vertices[first[label]])
+
+
+def joined(vertices: Array, faces: Faces, share: float) -> tuple[Array, Faces]:
+    """Vertices within a share of the size joined, and the faces that are left with three corners."""
+    vertices, faces = welded(vertices, faces, share * float(np.ptp(vertices, axis=0).max()))
+    point = np.any([faces[:, a] == faces[:, b] for a, b in pairwise((0, 1, 2, 0))], axis=0)
+    return vertices, faces[~point]
+
+
+def degenerate(vertices: Array, faces: Faces) -> Mask:
+    """Faces without an area: two corners at one place, or all on a line (height below 1e-10 of the longest side)."""
+    out = np.empty(len(faces), dtype=bool)
+    for start in range(0, len(faces), BLOCK):
+        a, b, c = (vertices[corner] for corner in faces[start : start + BLOCK].T)
+        e, f = b - a, c - a
+        longest = np.maximum(np.einsum("ij,ij->i", e, e), np.einsum("ij,ij->i", f, f))
+        x, y, z = (e[:, i] * f[:, j] - e[:, j] * f[:, i] for i, j in ((1, 2), (2, 0), (0, 1)))
+        out[start : start + BLOCK] = x * x + y * y + z * z <= (FLAT * longest) ** 2
+    return out
+
+
+def repeated(faces: Faces) -> Mask:
+    """Faces whose three corners an earlier face has too, whichever way round."""
+    low, high = corner_range(faces)
+    rows = np.column_stack([low, faces[:, 0] + faces[:, 1] + faces[:, 2] - low - high, high])
+    key = _mixed(rows.astype(np.uint64))
+    out = np.zeros(len(faces), dtype=bool)
+    ordered = np.sort(key)
+    if not np.any(ordered[1:] == ordered[:-1]):
+        return out
+    _, first = np.unique(rows, axis=0, return_index=True)
+    out[:] = True
+    out[first] = False
+    return out
+
+
+def _directed(faces: Faces) -> tuple[Labels, Labels]:
+    """Start and end of every side of every face, side by side: (3 m,) each."""
+    return faces[:, [0, 1, 2]].ravel(), faces[:, [1, 2, 0]].ravel()
+
+
+def edges(faces: Faces) -> Edges:
+    """Count the edges that spoil a closed, consistently wound surface."""
+    start, end = _directed(faces)
+    count = int(faces.max()) + 1
+    key = np.sort(((np.minimum(start, end) * count + np.maximum(start, end)) << 1) | (start > end))
+    if len(key) % 2 == 0:
+        up, down = key[0::2], key[1::2]
+        if np.all(up & 1 == 0) and np.all(down == up + 1) and np.all(up[1:] != up[:-1]):
+            return Edges(0, 0, 0)
+    edge, inverse = np.unique(key >> 1, return_inverse=True)
+    uses = np.bincount(inverse)
+    backward = np.bincount(inverse, weights=key & 1)
+    pairs = uses == 2
+    return Edges(
+        int((uses == 1).sum()), int((uses > 2).sum()), int((pairs & (backward != 1)).sum()) if len(edge) else 0
+    )
+
+
+def shells(faces: Faces) -> tuple[int, Labels]:
+    """How many connected shells there are, and the shell of each face; faces connect through common vertices."""
+    ends = np.concatenate([faces[:, 1], faces[:, 2]])
+    starts = np.concatenate([faces[:, 0], faces[:, 0]])
+    count = int(faces.max()) + 1
+    graph = coo_array((np.ones(len(ends), dtype=np.int8), (starts, ends)), shape=(count, count))
+    _, label = connected_components(graph, directed=False)
+    found, own = np.unique(label[faces[:, 0]], return_inverse=True)
+    return len(found), own
+
+
+def shell_volumes(vertices: Array, faces: Faces, shell: Labels) -> tuple[Array, Array]:
+    """Signed volume and area of each shell: (k,) arrays; a volume below zero is of a shell that looks inward."""
+    middle = (vertices.min(axis=0) + vertices.max(axis=0)) / 2.0
+    volume, area = (np.zeros(int(shell.max()) + 1) for _ in range(2))
+    for start in range(0, len(faces), BLOCK):
+        own = shell[start : start + BLOCK]
+        a, b, c = (vertices[corner] - middle for corner in faces[start : start + BLOCK].T)
+        normal = np.cross(b - a, c - a)
+        volume += np.bincount(own, np.einsum("ij,ij->i", a, normal) / 6.0, len(volume))
+        area += np.bincount(own, np.sqrt(np.einsum("ij,ij->i", normal, normal)) / 2.0, len(area))
+    return volume, area
+
+
+def oriented(faces: Faces) -> Faces | None:
+    """The faces turned so that neighbours run opposite ways along their edge; None where no turning can do that.
+
+    Each face stands for two nodes, as it is and turned over; an edge links the nodes that agree. A face linked to its
+    own turned self lies on a one-sided surface. Per shell, the way of its first face is kept.
+    """
+    start, end = _directed(faces)
+    count = int(faces.max()) + 1
+    edge = np.minimum(start, end) * count + np.maximum(start, end)
+    order = np.argsort(edge, kind="stable")
+    pair = np.flatnonzero(edge[order][1:] == edge[order][:-1])
+    one, two = order[pair], order[pair + 1]
+    opposite = (start[one] < end[one]) != (start[two] < end[two])
+    m = len(faces)
+    f, g = one // 3, two // 3
+    partner = np.where(opposite, g, g + m)
+    links = np.concatenate([f, f + m]), np.concatenate([partner, (partner + m) % (2 * m)])
+    graph = coo_array((np.ones(2 * len(f), dtype=np.int8), links), shape=(2 * m, 2 * m))
+    _, label = connected_components(graph, directed=False)
+    if np.any(label[:m] == label[m:]):
+        return None
+    twin = np.minimum(label[:m], label[m:])
+    lead = np.full(label.max() + 1, m, dtype=np.int64)
+    np.minimum.at(lead, twin, np.arange(m))
+    kept = label[:m] == label[lead[twin]]
+    return np.where(kept[:, None], faces, faces[:, ::-1])
+
+
+Pairs = tuple[NDArray[np.int64], NDArray[np.int64]]
+FILLED = 12
+MOST_PAIRS = 8_000_000
+TOUCH, SHARED = 1e-5, 1e-3
+
+
+def crossing_faces(vertices: Array, faces: Faces) -> int | None:
+    """How many pairs of faces cross, or None where more than eight million pairs would have to be looked at.
+
+    Two faces cross when a side of one passes through the inside of the other, or when their planes meet in a line on
+    which both have a length in common: sides that meet sides, as in bodies with planes of symmetry. Faces that only
+    touch, and faces that lie in one plane, do not count.
+    """
+    triangles = vertices[faces]
+    candidates = _neighbours(triangles.min(axis=1), triangles.max(axis=1))
+    if candidates is None:
+        return None
+    one, two = candidates
+    common = sum((faces[one, i] == faces[two, j]).astype(int) for i in range(3) for j in range(3))
+    one, two = one[common < 2], two[common < 2]
+    for _ in range(2):
+        astride = _astride(triangles[one], triangles[two])
+        one, two = two[astride], one[astride]
+    cut = np.zeros(len(one), dtype=bool)
+    for through, by in ((one, two), (two, one)):
+        for k in range(3):
+            cut |= _pierced(triangles[through], triangles[by, k], triangles[by, (k + 1) % 3])
+    cut[~cut] = _share_a_length(triangles[one[~cut]], triangles[two[~cut]])
+    return int(cut.sum())
+
+
+def _astride(triangle: Array, other: Array) -> NDArray[np.bool_]:
+    """Whether the other triangle has corners on both sides of the plane of the first."""
+    normal = np.cross(triangle[:, 1] - triangle[:, 0], triangle[:, 2] - triangle[:, 0])
+    height = np.einsum("ij,ikj->ik", normal, other - triangle[:, :1])
+    return np.asarray((height.min(axis=1) < 0.0) & (height.max(axis=1) > 0.0))
+
+
+def _neighbours(low: Array, high: Array) -> Pairs | None:
+    """Each pair of boxes that meet, once; those that share a cell of a grid are looked at."""
+    size = float(np.median((high - low).max(axis=1)))
+    while True:
+        first = np.floor((low - low.min(axis=0)) / size).astype(np.int64)
+        span = np.floor((high - low.min(axis=0)) / size).astype(np.int64) - first + 1
+        filled = span.prod(axis=1)
+        if float(filled.astype(float).sum()) <= FILLED * len(low):
+            break
+        size *= 1.5
+    face = np.repeat(np.arange(len(low)), filled)
+    within = np.arange(len(face)) - np.repeat(np.cumsum(filled) - filled, filled)
+    ny, nz = span[face, 1], span[face, 2]
+    cell = first[face] + np.column_stack([within // (ny * nz), within // nz % ny, within % nz])
+    grid = cell.max(axis=0) + 1
+    key = (cell[:, 0] * grid[1] + cell[:, 1]) * grid[2] + cell[:, 2]
+    order = np.argsort(key, kind="stable")
+    key, face = key[order], face[order]
+    begins = np.flatnonzero(np.r_[True, key[1:] != key[:-1]])
+    ends = np.r_[begins[1:], len(key)]
+    after = np.repeat(ends, ends - begins) - np.arange(len(key)) - 1
+    if int(after.sum()) > MOST_PAIRS:
+        return None
+    left = np.repeat(np.arange(len(key)), after)
+    right = left + 1 + np.arange(len(left)) - np.repeat(np.cumsum(after) - after, after)
+    a, b = face[left], face[right]
+    for k in range(3):
+        meet = (low[a, k] <= high[b, k]) & (low[b, k] <= high[a, k])
+        a, b = a[meet], b[meet]
+    a, b = np.minimum(a, b), np.maximum(a, b)
+    pair = np.unique(a * len(low) + b)
+    return pair // len(low), pair % len(low)
+
+
+def _pierced(triangle: Array, start: Array, end: Array) -> NDArray[np.bool_]:
+    """Whether segments pass through the inside of triangles; by signs of volumes; below 1e-5 of the cube is touching."""
+    a, b, c = triangle[:, 0], triangle[:, 1], triangle[:, 2]
+    scale = np.max(np.ptp(np.concatenate([triangle, start[:, None], end[:, None]], axis=1), axis=1), axis=1)
+    least = TOUCH * scale**3
+
+    def volume(p: Array, q: Array, r: Array, s: Array) -> Array:
+        return np.asarray(np.einsum("ij,ij->i", np.cross(q - p, r - p), s - p))
+
+    before, past = volume(a, b, c, start), volume(a, b, c, end)
+    through = ((before > least) & (past < -least)) | ((before < -least) & (past > least))
+    inside = [volume(start, end, p, q) for p, q in ((a, b), (b, c), (c, a))]
+    same = np.all([v > least for v in inside], axis=0) | np.all([v < -least for v in inside], axis=0)
+    return np.asarray(through & same)
+
+
+def _share_a_length(one: Array, two: Array) -> NDArray[np.bool_]:
+    """Whether both triangles cover a common length of the line in which their planes meet.
+
+    Moller, A fast triangle-triangle intersection test, J. Graphics Tools 2, 1997. Corners closer to the other's plane
+    than touching do not count as beyond it.
+    """
+    both = np.concatenate([one, two], axis=1)
+    scale = np.max(np.ptp(both, axis=1), axis=1, initial=0.0)
+    first, second = (np.cross(t[:, 1] - t[:, 0], t[:, 2] - t[:, 0]) for t in (one, two))
+    line = np.cross(first, second)
+    length = np.linalg.norm(line, axis=1)
+    line = line / np.where(length > 0.0, length, 1.0)[:, None]
+    low, high, beyond = [], [], length > 0.0
+    for triangle, other, normal in ((one, two, second), (two, one, first)):
+        height = np.einsum("ij,ikj->ik", normal, triangle - other[:, :1])
+        least = TOUCH * scale**3
+        beyond &= (height.min(axis=1) < -least) & (height.max(axis=1) > least)
+        along = np.einsum("ij,ikj->ik", line, triangle - both[:, :1])
+        ends = [_where_zero(height, along, k, (k + 1) % 3) for k in range(3)]
+        low.append(np.nanmin(ends, axis=0, initial=np.inf))
+        high.append(np.nanmax(ends, axis=0, initial=-np.inf))
+    common = np.minimum(*high) - np.maximum(*low)
+    return np.asarray(beyond & (common > SHARED * scale))
+
+
+def _where_zero(height: Array, along: Array, i: int, j: int) -> Array:
+    """Where on the line the side from corner i to j passes through the plane; NaN where it does not."""
+    apart = height[:, i] - height[:, j]
+    passes = (height[:, i] * height[:, j] <= 0.0) & (apart != 0.0)
+    share = height[:, i] / np.where(passes, apart, 1.0)
+    return np.where(passes, along[:, i] + share * (along[:, j] - along[:, i]), np.nan)

@@ -1,0 +1,1 @@
+"""Added mass by panels on the surface."""

@@ -1,0 +1,366 @@
+"""DARPA SUBOFF from its equations: bow, parallel middle body, afterbody and cap, with sail and stern planes on request.
+
+Source: Groves, Huang & Chang, DTRC/SHD-1298-01 (1989), Tables 1-3; feet, x aft of the nose. Ring wings are not part of it.
+
+Sail and stern planes of DARPA SUBOFF: integrals of what stands outside the hull, and sections to loft a mesh from.
+
+Source: Groves, Huang & Chang, DTRC/SHD-1298-01 (1989), Tables 2 and 3. All in feet, x aft of the nose. The hull comes in
+as a function of x that returns R and R dR/dx.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from coeflab.bodies.body import Body, Configuration
+from coeflab.bodies.body_file import open_body_file
+from coeflab.bodies.closed_forms import graded_nodes
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.meshing import meshed, united
+from coeflab.bodies.mesh.structured_surface import lofted
+from coeflab.bodies.shape import Revolution
+from coeflab.core.errors import InputError
+from coeflab.core.types import Array, brief
+
+Hull = Callable[[Array], tuple[Array, Array]]
+
+SAIL_JOINTS = (3.032986, 3.333333, 3.358507, 3.559028, 4.241319)
+SIDE_TOP, SAIL_FOOT = 1.507813, 0.6
+HALF_THICKNESS = 0.109375
+TRAILING_EDGE, TAPER, AXIS_CHORD = 13.146284, -0.466308, 0.88859
+TIP, PLANE_FOOT = 5.0 / 6.0, 0.12
+APPENDAGE_NODES, APPENDAGE_GRADING, ROUNDS = 48, 4, 32
+
+_D = Polynomial([0.0, 1.0])
+_FORE = (
+    2.094759 * 2.0 * _D * (_D - 1.0) ** 4
+    + 0.2071781 * _D**2 * (_D - 1.0) ** 3 / 3.0
+    + 1.0
+    - (_D - 1.0) ** 4 * (4.0 * _D + 1.0)
+)
+_AFTER = 2.238361 * _D * (_D - 1.0) ** 4 + 3.106529 * _D**2 * (_D - 1.0) ** 3 + 1.0 - (_D - 1.0) ** 4 * (4.0 * _D + 1.0)
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Appendage:
+    """What an appendage adds to the hull, in feet.
+
+    Attributes
+    ----------
+    volume : float
+        Outside the hull.
+    moment : (2,) array
+        First moments of that volume: x aft of the nose, and height above the axis.
+    surface : float
+        Its own wetted surface.
+    covered : float
+        Surface of the hull that it hides.
+    """
+
+    volume: float
+    moment: Array
+    surface: float
+    covered: float
+
+
+def sail_half_thickness(x: Array) -> tuple[Array, Array]:
+    """Half thickness b and b db/dx of the sail."""
+    d, e = 3.072 * (x - SAIL_JOINTS[0]), (SAIL_JOINTS[4] - x) / 0.6822917
+    fore = np.sqrt(np.clip(_FORE(d), 0.0, None)), _FORE.deriv()(d) * 3.072 / 2.0
+    after = _AFTER(e), -_AFTER(e) * _AFTER.deriv()(e) / 0.6822917
+    ahead, behind = x < SAIL_JOINTS[2], x > SAIL_JOINTS[3]
+    share = np.where(ahead, fore[0], np.where(behind, after[0], 1.0))
+    slope = np.where(ahead, fore[1], np.where(behind, after[1], 0.0))
+    return HALF_THICKNESS * share, HALF_THICKNESS**2 * slope
+
+
+def sail(hull: Hull) -> Appendage:
+    """The sail: vertical sides on the hull, a cap of half an ellipse as high as a quarter of the local thickness."""
+    volume, surface, covered, moment = 0.0, 0.0, 0.0, np.zeros(2)
+    turn, turn_weight = graded_nodes(0.0, np.pi, APPENDAGE_NODES)
+    for start, end in pairwise(SAIL_JOINTS):
+        x, weight = graded_nodes(start, end, APPENDAGE_NODES, APPENDAGE_GRADING)
+        (b, slope), (radius, radius_slope) = sail_half_thickness(x), hull(x)
+        foot = np.sqrt(radius**2 - b**2)
+        area = 2.0 * b * SIDE_TOP - b * foot - radius**2 * np.arcsin(b / radius) + np.pi * b**2 / 4.0
+        lift = b * (SIDE_TOP**2 - radius**2) + b**3 / 3.0 + np.pi * b**2 / 4.0 * SIDE_TOP + b**3 / 6.0
+        cap = np.sqrt((slope[:, None] / 2.0) ** 2 + b[:, None] ** 2 * (1.0 - 0.75 * np.cos(turn) ** 2)) @ turn_weight
+        volume += float(weight @ area)
+        moment += np.array([weight @ (area * x), weight @ lift])
+        surface += float(weight @ (2.0 * (SIDE_TOP - foot) * np.hypot(b, slope) / b + cap))
+        covered += float(weight @ (2.0 * np.arcsin(b / radius) * np.hypot(radius, radius_slope)))
+    return Appendage(volume, moment, surface, covered)
+
+
+def sail_sections(stations: int, levels: int, cap: int) -> Array:
+    """(stations + 1, 2 levels + cap + 1, 3) closed loops x, y, height across the sail, from within the hull to its top."""
+    x = SAIL_JOINTS[0] + (SAIL_JOINTS[4] - SAIL_JOINTS[0]) * _eased(stations)
+    b, _ = sail_half_thickness(x)
+    up, turn = np.linspace(SAIL_FOOT, SIDE_TOP, levels + 1), np.pi * np.arange(1, cap) / cap
+    share = np.concatenate([np.ones(levels + 1), np.cos(turn), -np.ones(levels + 1)])
+    rise = np.concatenate([np.zeros(levels + 1), np.sin(turn) / 2.0, np.zeros(levels + 1)])
+    foot = np.concatenate([up, np.full(cap - 1, SIDE_TOP), up[::-1]])
+    y, height = b[:, None] * share, foot + b[:, None] * rise
+    return np.stack([np.broadcast_to(x[:, None], y.shape), y, height], axis=-1)
+
+
+def _eased(count: int) -> Array:
+    """From 0 to 1, dense at both ends, both exact."""
+    out: Array = (1.0 - np.cos(np.pi * np.arange(count + 1) / count)) / 2.0
+    out[[0, -1]] = 0.0, 1.0
+    return out
+
+
+def _half(q: Array) -> Array:
+    """Half thickness over chord of the planes at a share q of the chord."""
+    return 0.2969 * np.sqrt(q) - 0.126 * q - 0.3516 * q**2 + 0.2852 * q**3 - 0.1045 * q**4
+
+
+def _half_slope(q: Array) -> Array:
+    return 0.14845 / np.sqrt(q) - 0.126 - 0.7032 * q + 0.8556 * q**2 - 0.418 * q**3
+
+
+def _chord(y: Array) -> Array:
+    return TAPER * y + AXIS_CHORD
+
+
+def _foot(hull: Hull, q: Array, share: Array) -> Array:
+    """Distance from the axis at which a line along the span leaves the hull; share of the half thickness from -1 to 1."""
+    half = _half(q)
+    y = np.full(np.broadcast_shapes(q.shape, share.shape), TIP / 2.0)
+    for _ in range(ROUNDS):
+        radius, _ = hull(TRAILING_EDGE - _chord(y) * (1.0 - q))
+        y = np.sqrt(radius**2 - (share * half * _chord(y)) ** 2)
+    return y
+
+
+def plane(hull: Hull) -> Appendage:
+    """One stern plane; its moment counts x alone, since four of them balance about the axis.
+
+    Integrals run along the span, from the hull's surface to the tip, in closed form for every share of the chord and of
+    the thickness.
+    """
+    q, q_weight = graded_nodes(0.0, 1.0, APPENDAGE_NODES, APPENDAGE_GRADING)
+    share, share_weight = graded_nodes(0.0, 1.0, APPENDAGE_NODES)
+    half, slope = _half(q), _half_slope(q)
+    tip, foot = _chord(np.array(TIP)), _chord(_foot(hull, q[:, None], share))
+    second = (tip**3 - foot**3) / (3.0 * TAPER) @ share_weight
+    third = (tip**4 - foot**4) / (4.0 * TAPER) @ share_weight
+    volume = 2.0 * q_weight @ (half * second)
+    along = 2.0 * q_weight @ (half * (TRAILING_EDGE * second - (1.0 - q) * third))
+    edge = _chord(_foot(hull, q, np.ones_like(q)))
+    stretch = np.sqrt(1.0 + slope**2 + TAPER**2 * (slope * (1.0 - q) + half) ** 2)
+    sides = 2.0 * q_weight @ (stretch * (tip**2 - edge**2) / (2.0 * TAPER))
+    flat = 2.0 * tip**2 * (q_weight @ half)
+    return Appendage(float(volume), np.array([along, 0.0]), float(sides + flat), _covered(hull))
+
+
+def _covered(hull: Hull) -> float:
+    nose = TRAILING_EDGE - float(_chord(_foot(hull, np.zeros(1), np.zeros(1)))[0])
+    x, weight = graded_nodes(nose, TRAILING_EDGE, APPENDAGE_NODES, APPENDAGE_GRADING)
+    radius, radius_slope = hull(x)
+    angle = np.zeros_like(x)
+    for _ in range(ROUNDS):
+        chord = _chord(radius * np.cos(angle))
+        q = np.clip((x - TRAILING_EDGE) / chord + 1.0, 0.0, 1.0)
+        angle = np.arcsin(chord * _half(q) / radius)
+    return float(weight @ (2.0 * angle * np.hypot(radius, radius_slope)))
+
+
+def plane_sections(stations: int, levels: int) -> Array:
+    """(stations + 1, 2 levels + 3, 3) closed loops x, distance from the axis, thickness across one stern plane."""
+    q = _eased(stations)
+    half = np.zeros(stations + 1)
+    half[1:-1] = _half(q[1:-1])
+    span = np.linspace(PLANE_FOOT, TIP, levels + 1)
+    y = np.concatenate([span, [TIP], span[::-1]])
+    side = np.concatenate([np.ones(levels + 1), [0.0], -np.ones(levels + 1)])
+    x = TRAILING_EDGE - _chord(y) * (1.0 - q[:, None])
+    return np.stack([x, np.broadcast_to(y, x.shape), _chord(y) * half[:, None] * side], axis=-1)
+
+
+summary = "SUBOFF from the equations of Groves, Huang and Chang: bare hull, or with sail and stern planes"
+citations = ("groves1989",)
+FOOT = 0.3048
+LARGEST_RADIUS = 5.0 / 6.0
+BOW_END, MIDDLE_END, AFTERBODY_END, CAP_END = 3.333333, 10.645833, 13.979167, 14.291667
+CAP_RADIUS, K0, K1 = 0.1175, 10.0, 44.6244
+NODES, GRADING = 96, 4
+HULL_PANELS, FEWEST_HULL = 60_000, 64
+SAIL, PLANE = (48, 24, 12), (40, 20)
+
+_X = Polynomial([0.0, 1.0])
+_BOW = (
+    1.126395101 * _X * (0.3 * _X - 1.0) ** 4
+    + 0.442874707 * _X**2 * (0.3 * _X - 1.0) ** 3
+    + 1.0
+    - (0.3 * _X - 1.0) ** 4 * (1.2 * _X + 1.0)
+)
+_R2, _RK = CAP_RADIUS**2, CAP_RADIUS * K0
+_AFTERBODY = Polynomial(
+    [
+        _R2,
+        0.0,
+        _RK,
+        20.0 - 20.0 * _R2 - 4.0 * _RK - K1 / 3.0,
+        -45.0 + 45.0 * _R2 + 6.0 * _RK + K1,
+        36.0 - 36.0 * _R2 - 4.0 * _RK - K1,
+        -10.0 + 10.0 * _R2 + _RK + K1 / 3.0,
+    ]
+)(Polynomial([AFTERBODY_END / 3.333333, -1.0 / 3.333333]))
+_CAP = _R2 * (1.0 - Polynomial([-44.733333, 3.2]) ** 2)
+
+
+def _bow(x: Array) -> tuple[Array, Array]:
+    """(R/Rmax)^2 and half its slope; the power 1/2.1 makes the slope infinite at the nose itself."""
+    p = np.clip(_BOW(x), 0.0, None)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        half = np.where(p > 0.0, p ** (1.0 / 1.05 - 1.0) * _BOW.deriv()(x) / 2.1, np.inf)
+    return p ** (1.0 / 1.05), half
+
+
+def _rest(x: Array, square: Polynomial) -> tuple[Array, Array]:
+    return np.clip(square(x), 0.0, None), square.deriv()(x) / 2.0
+
+
+def _piece(x: Array, end: float) -> tuple[Array, Array]:
+    if end == BOW_END:
+        return _bow(x)
+    square = {MIDDLE_END: Polynomial([1.0]), AFTERBODY_END: _AFTERBODY, CAP_END: _CAP}[end]
+    return _rest(x, square)
+
+
+def profile(x: Array) -> tuple[Array, Array]:
+    """R and R dR/dx at stations within the hull, ft."""
+    ends = (BOW_END, MIDDLE_END, AFTERBODY_END, CAP_END)
+    square, half = np.empty_like(x), np.empty_like(x)
+    for k, end in enumerate(ends):
+        here = np.searchsorted(ends, x).clip(max=3) == k
+        square[here], half[here] = _piece(x[here], end)
+    return LARGEST_RADIUS * np.sqrt(square), LARGEST_RADIUS**2 * half
+
+
+def radius(aft: float) -> float:
+    """Radius of the bare hull, m.
+
+    Parameters
+    ----------
+    aft : float
+        Distance aft of the nose, m, from 0 to 4.3561 (14.291667 ft).
+
+    Raises
+    ------
+    InputError
+        Ahead of the nose or aft of the tail.
+    """
+    x = aft / FOOT
+    if not -1e-12 <= x <= CAP_END + 1e-12:
+        raise InputError(f"x = {aft:g} m aft of the nose", f"0 to {CAP_END * FOOT:.4f} m, where the equations hold")
+    return float(FOOT * profile(np.array([x]))[0][0])
+
+
+def meridian(nodes: int = NODES) -> Revolution:
+    """The hull by Gauss-Legendre stations, ``nodes`` on each of the four pieces, graded to the ends of each."""
+    joints = (0.0, BOW_END, MIDDLE_END, AFTERBODY_END, CAP_END)
+    pieces = []
+    for start, end in pairwise(joints):
+        stations, weights = graded_nodes(start, end, nodes, GRADING)
+        pieces.append((stations, weights, *_piece(stations, end)))
+    x, weight, square, half = (np.concatenate(column) for column in zip(*pieces, strict=True))
+    return Revolution(
+        x=-FOOT * x,
+        weight=FOOT * weight,
+        radius=FOOT * LARGEST_RADIUS * np.sqrt(square),
+        radius_slope=-FOOT * LARGEST_RADIUS**2 * half,
+        axis=np.zeros(2),
+        length=FOOT * CAP_END,
+    )
+
+
+def appended(with_sail: bool, with_planes: bool) -> Configuration:
+    """Integrals of the equations: the hull, and of sail and planes what stands outside it."""
+    hull = meridian()
+    parts: list[Appendage] = [sail(profile)] if with_sail else []
+    parts += [plane(profile)] * 4 if with_planes else []
+    volume = hull.volume + FOOT**3 * sum(p.volume for p in parts)
+    centre = hull.centre_of_volume
+    if parts:
+        aft, up = FOOT**4 * np.sum([p.moment for p in parts], axis=0)
+        centre = (hull.volume * centre - np.array([aft, 0.0, up])) / volume
+    names = ["sail"] * with_sail + ["four stern planes"] * with_planes
+    return Configuration(
+        name="by_equations",
+        title=", ".join(["integrals of the equations", *names]),
+        volume=volume,
+        wetted_surface=hull.integrals.wetted_surface + FOOT**2 * sum(p.surface - p.covered for p in parts),
+        centre_of_buoyancy=centre,
+        mass=None,
+    )
+
+
+def mesh(with_sail: bool, with_planes: bool, hull_panels: int = HULL_PANELS) -> TriangleMesh:
+    """The hull with its appendages as one closed mesh; the exact volume by equations is known to it.
+
+    Parameters
+    ----------
+    with_sail, with_planes : bool
+    hull_panels : int
+        On the hull; what is attached has triangles as much larger or smaller than by default as the hull.
+    """
+    whole = _whole(with_sail, with_planes, hull_panels)
+    volume, share = appended(with_sail, with_planes).volume, hull_panels / len(whole.faces)
+
+    def remade(panels: int) -> TriangleMesh:
+        other = _whole(with_sail, with_planes, max(round(panels * share), FEWEST_HULL))
+        return TriangleMesh(other.vertices, other.faces, volume)
+
+    return TriangleMesh(whole.vertices, whole.faces, volume, remade)
+
+
+def _whole(with_sail: bool, with_planes: bool, hull_panels: int) -> TriangleMesh:
+    fine = np.sqrt(hull_panels / HULL_PANELS)
+    solids = [meshed(meridian(), hull_panels)]
+    if with_sail:
+        solids.append(_solid(sail_sections(*_counts(SAIL, fine)), 0.0))
+    if with_planes:
+        sections = plane_sections(*_counts(PLANE, fine))[:, :, [0, 2, 1]]
+        solids += [_solid(sections, turn * np.pi / 2.0) for turn in range(4)]
+    return united(solids)
+
+
+def _counts(finest: tuple[int, ...], fine: float) -> tuple[int, ...]:
+    """Even counts along a section, so that its checkerboard of diagonals keeps its symmetry."""
+    return tuple(max(2, 2 * round(count * fine / 2.0)) for count in finest)
+
+
+def _solid(sections: Array, roll: float) -> TriangleMesh:
+    """Loops of x aft, breadth and height, ft, about an upright appendage: to m, FRD, and rolled about the axis."""
+    vertices, faces = lofted(FOOT * sections * np.array([-1.0, 1.0, -1.0]))
+    c, s = np.cos(roll), np.sin(roll)
+    return TriangleMesh(vertices @ np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]]).T, faces)
+
+
+def read(path: Path) -> Body:
+    """Read a body.toml whose shape is SUBOFF; ``[hull]`` may say ``sail = true`` and ``planes = true``.
+
+    The bare hull is a body of revolution. With appendages the shape is a mesh, and the configuration ``by_equations``
+    still holds exact integrals.
+
+    Raises
+    ------
+    InputError
+        Anything missing, unknown or of the wrong unit, by file and key.
+    """
+    opened = open_body_file(path, "groves")
+    chosen = opened.root.section("hull", required=False)
+    with_sail, with_planes = chosen.flag("sail", False), chosen.flag("planes", False)
+    chosen.finish()
+    shape = mesh(with_sail, with_planes) if with_sail or with_planes else meridian()
+    return opened.body(shape, appended(with_sail, with_planes))

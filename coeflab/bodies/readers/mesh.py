@@ -1,0 +1,106 @@
+"""Bodies as closed surfaces of triangles: STL, OBJ, PLY or GLB with their unit and axes declared."""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from coeflab.bodies.body import Body, Configuration
+from coeflab.bodies.body_file import open_body_file
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.particulars import UNITS, computed, likely_unit, require_plausible
+from coeflab.bodies.mesh.source import mesh_source
+from coeflab.core.text.toml import Section
+from coeflab.core.units import factor
+
+summary = "a closed mesh (STL, OBJ, PLY, GLB) with declared unit and axes, refused unless sound"
+citations = ("eberly2002",)
+
+NEAR, FAR = 0.005, 0.05
+STATED = (
+    ("length", 0, ("length", "length_overall", "loa")),
+    ("breadth", 1, ("breadth", "beam", "width")),
+    ("depth", 2, ("depth", "height")),
+)
+
+
+def _require_size(mesh: TriangleMesh, unit: float, lengths: dict[str, float], section: Section) -> tuple[str, ...]:
+    """Hold the mesh against the stated sizes; what lies 0.5 to 5 % off is returned in words.
+
+    Raises
+    ------
+    InputError
+        More than 5 % off, or without stated sizes shorter than 0.05 m or longer than 500 m.
+    """
+    said = []
+    stated = {name: (axis, lengths[key]) for name, axis, keys in STATED for key in keys if key in lengths}
+    if not stated:
+        require_plausible(mesh, unit, partial(section.fail, "unit"))
+    for name, (axis, value) in stated.items():
+        found = float(mesh.extents[axis])
+        if not _near(found, value):
+            axes = "Are the axes right?" if np.any(np.abs(mesh.extents / value - 1.0) <= FAR) else ""
+            advice = axes or likely_unit(found / unit, value)
+            raise section.fail(
+                "path", f"a {name} of {found:.6g} m", f"{value:.6g} m as in [particulars], within 5 %", advice
+            )
+        if abs(found / value - 1.0) > NEAR:
+            said.append(f"{name} {100.0 * (found / value - 1.0):+.1f} % from the stated")
+    return tuple(said)
+
+
+def _require_volume(
+    mesh: TriangleMesh, unit: float, printed: tuple[Configuration, ...], section: Section
+) -> tuple[str, ...]:
+    """Hold the volume against the nearest of the stated ones, in the same way."""
+    stated = [(abs(mesh.volume / c.volume - 1.0), c) for c in printed if c.volume]
+    if not stated:
+        return ()
+    off, nearest = min(stated, key=lambda pair: pair[0])
+    volume = nearest.volume or 1.0
+    if off > FAR:
+        likely = (
+            f'Is the unit "{u}"?' for u in UNITS if _near(mesh.volume * (factor(u, "length") / unit) ** 3, volume)
+        )
+        raise section.fail(
+            "path",
+            f"a volume of {mesh.volume:.6g} m^3",
+            f"{volume:.6g} m^3 as in [[configuration]] {nearest.name}, within 5 %",
+            next(likely, "Does the mesh show the same body, all of it and once?"),
+        )
+    return (f"volume {100.0 * (mesh.volume / volume - 1.0):+.1f} % from {nearest.name}",) if off > NEAR else ()
+
+
+def _near(found: float, stated: float) -> bool:
+    return abs(found / stated - 1.0) <= FAR
+
+
+def read(path: Path) -> Body:
+    """Read a body.toml whose shape is a mesh file.
+
+    ``[mesh]`` holds ``path`` (from the folder of the body.toml), ``unit``, ``axes`` (``"FRD"``, ``"FLU"``, ``"CFD"`` or
+    three directions), ``origin`` (where the file's origin lies, m, FRD, from the datum; the datum itself unless given)
+    and ``repair`` (false). ``length``, ``breadth`` and ``depth`` under ``[particulars]``, and the volume of a
+    ``[[configuration]]``, are what the mesh is held against.
+
+    Raises
+    ------
+    InputError
+        Anything missing, unknown or of the wrong unit, by file and key; a file that is no sound mesh; a body far from
+        its stated size.
+    """
+    opened = open_body_file(path, "mesh")
+    section = opened.root.section("mesh")
+    source = mesh_source(section, path.parent)
+    shape, statements = source.read()
+    body = opened.body(shape, computed(shape, statements))
+    said = _require_size(shape, source.unit, dict(body.lengths), section)
+    said += _require_volume(shape, source.unit, body.configurations[1:], section)
+    return dataclasses.replace(
+        body,
+        configurations=(computed(shape, statements + said), *body.configurations[1:]),
+        files=(*body.files, source.input_file(body.name)),
+    )

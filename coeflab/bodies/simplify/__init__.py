@@ -1,0 +1,1 @@
+"""A mesh as simple parts."""

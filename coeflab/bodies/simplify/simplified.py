@@ -1,0 +1,350 @@
+"""What a simplification found: parts beside the pieces of the mesh that they stand for.
+
+Writing a body of simple parts as a body.toml that the reader ``primitives`` takes.
+"""
+
+from __future__ import annotations
+
+import json
+import textwrap
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.solids import simplified, solid, surface
+from coeflab.bodies.mesh.source import ply
+from coeflab.bodies.shape import Box, Cylinder, Form, Part, Parts, Plate, StandIn, shadow
+from coeflab.bodies.simplify.part_forms import MISFIT, SHARED, Likeness
+from coeflab.core.table import ABSENT, Table, number
+from coeflab.core.types import Array, brief
+from coeflab.law.transforms import angles
+
+FIGURES, WIDTH = 12, 118  # digits that outlast rounding, and a line of an editor
+
+
+def part_file(
+    body: Body, shape: Parts, opening: tuple[str, ...], remarks: Mapping[str, tuple[str, ...]], mesh: str = ""
+) -> bytes:
+    """A body.toml.
+
+    Parameters
+    ----------
+    body : Body
+        Names, datum, reference point, source and scaling.
+    shape : Parts
+    opening : tuple of str
+        Comment lines at the top.
+    remarks : mapping of str to tuple of str
+        Comment lines over each part, by its name.
+    mesh : str
+        Name of the file beside it, m, FRD, from the datum, for which the parts stand; none where empty.
+    """
+    lines = [*_comments(opening), "[body]"]
+    lines += [f"name = {_text(body.name)}", f"title = {_text(body.title)}", 'reader = "primitives"']
+    lines.append(f"datum = {_text(body.datum.id)}")
+    if body.datum.note:
+        lines.append(f"datum_note = {_text(body.datum.note)}")
+    lines += [f"reference_point = {_numbers(body.reference_point)}", "", "[source]"]
+    for key in ("citation", "place", "kind", "how_obtained", "stated_uncertainty"):
+        value = getattr(body.source, key)
+        if value:
+            lines.append(f"{key} = {_text(value)}")
+    if body.scaling is not None:
+        lines += ["", "[prime]", f"length = {_number(body.scaling.length)}"]
+        lines.append(f"length_name = {_text(body.scaling.length_name)}")
+    if mesh:
+        lines += ["", "[mesh]", f"path = {_text(mesh)}", 'unit = "m"', 'axes = "FRD"']
+    for part in shape.parts:
+        lines += ["", *_comments(remarks.get(part.name, ())), *_part(part)]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _part(part: Part) -> list[str]:
+    kind, sizes = written(part.form)
+    lines = ["[[part]]", f"name = {_text(part.name)}", f"form = {_text(kind)}"]
+    lines += [f"{key} = {_number(value)}" for key, value in sizes.items()]
+    lines.append(f"centre = {_numbers(part.centre)}")
+    turned = [float(np.round(np.degrees(a), 9)) + 0.0 for a in angles(part.rotation)]
+    if any(turned):
+        lines.append("rotation = [" + ", ".join(f'"{a:g} deg"' for a in turned) + "]")
+    if part.fit is not None:
+        lines.append(f"fit = {_fit(part.fit)}")
+    return lines
+
+
+def _fit(fit: StandIn) -> str:
+    own = ("misfit", fit.misfit) if fit.misfit is not None else ("thickness", fit.thickness or 0.0)
+    numbers = {own[0]: own[1], "shared": fit.shared, "volume": fit.volume, "length": fit.length}
+    said = ", ".join(f"{key} = {_number(value)}" for key, value in numbers.items())
+    return f'{{class = "{fit.kind}", {said}, areas = {_numbers(np.array(fit.areas))}}}'
+
+
+def written(form: Form) -> tuple[str, dict[str, float]]:
+    """The name and the keys under which a body.toml gives a form."""
+    if isinstance(form, Cylinder):
+        return "cylinder", {"radius": form.radius, "length": form.length}
+    if isinstance(form, Plate):
+        return "plate", {"chord": form.chord, "span": form.span}
+    if isinstance(form, Box):
+        return "box", {"length": form.length, "width": form.width, "height": form.height}
+    if form.x == form.y == form.z:
+        return "sphere", {"radius": form.x}
+    if form.y == form.z:
+        return "spheroid", {"length": 2.0 * form.x, "diameter": 2.0 * form.y}
+    return "ellipsoid", {"semi_axis_x": form.x, "semi_axis_y": form.y, "semi_axis_z": form.z}
+
+
+def _comments(texts: tuple[str, ...]) -> list[str]:
+    """Comment lines; TOML allows no control characters in them."""
+    plain = ("".join(ch if ch.isprintable() else " " for ch in text) for text in texts)
+    wrap = textwrap.TextWrapper(WIDTH, initial_indent="# ", subsequent_indent="#   ")
+    return [line for text in plain for line in wrap.wrap(text)]
+
+
+def _text(value: str) -> str:
+    """A TOML basic string; JSON's escapes are TOML's but for DEL, which TOML wants escaped."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _number(value: float) -> str:
+    text = f"{float(value) + 0.0:.{FIGURES}g}"
+    return text if any(ch in text for ch in ".en") else f"{text}.0"
+
+
+def _numbers(values: np.ndarray) -> str:
+    return "[" + ", ".join(_number(float(v)) for v in values) + "]"
+
+
+TOLD = np.radians(0.05)
+POOR, POOR_VOLUME, DECIMALS = 0.05, 0.02, 6
+MESH, KEPT_FACES = "mesh.ply", 200_000
+RULES = (
+    "A thin body (mean thickness under 0.2 of the shorter of mean chord and span) is a plate of the area that it "
+    "projects along its normal and of the span at the middle of it, hence of its aspect ratio; it has no thickness: volume and edges are left out.",
+    "Any other is the cylinder, spheroid, ellipsoid or box with the least misfit: error of the length, plus errors of the three "
+    "projected areas over their sum. Each keeps volume and length (a cylinder that fits better so: volume and area across), "
+    "those of three sizes the largest projected area too.",
+    f"Where the least misfit is over {MISFIT:g}, or the form shares under {SHARED:.0%} of the volume, the class is other.",
+    "An attachment is cut off where it meets the hull's surface; its form keeps the attachment's centre.",
+)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class SimplifiedPart:
+    """A part and the piece of the mesh behind it.
+
+    Attributes
+    ----------
+    part : Part
+    likeness : Likeness
+        The form as fitted, before rounding, and why.
+    volume : float
+        Of the piece, m^3.
+    projected : (3,) array
+        Of the piece along the part's own axes, m^2.
+    extents : (3,) array
+        Of the piece along the part's own axes, m.
+    cut : bool
+        Whether it was cut from a hull.
+    turned : float
+        Angle by which the pose was tidied, rad.
+    """
+
+    part: Part
+    likeness: Likeness
+    volume: float
+    projected: Array
+    extents: Array
+    cut: bool
+    turned: float
+
+    @property
+    def volume_error(self) -> float:
+        """Of the form over the piece, less one."""
+        return self.part.form.volume / self.volume - 1.0
+
+    @property
+    def projected_errors(self) -> Array:
+        """(3,) along the part's own axes, of the form over the piece, less one."""
+        return np.array([shadow(self.part.form, axis) for axis in np.eye(3)]) / self.projected - 1.0
+
+    @property
+    def length_error(self) -> float:
+        """Of the form over the piece, less one, along the own axis on which the piece is longest; a plate's in span."""
+        longest = int(np.argmax(self.extents)) if self.part.form.volume else 1
+        return float(2.0 * self.part.form.half_extents(np.eye(3))[longest] / self.extents[longest] - 1.0)
+
+    def with_fit(self) -> SimplifiedPart:
+        """The same with the quality of the fit in the part."""
+        like, (x, y, z) = self.likeness, (_written(e) for e in self.projected_errors)
+        form = self.part.form
+        thickness = None
+        if isinstance(form, Plate):
+            thickness = _written(self.volume / (form.chord * form.span * min(form.chord, form.span)))
+        misfit = None if like.misfit is None else _written(like.misfit)
+        shared, volume, length = (_written(v) for v in (like.shared, self.volume_error, self.length_error))
+        fit = StandIn(like.kind, min(shared, 1.0), volume, (x, y, z), length, misfit, thickness)
+        return replace(self, part=replace(self.part, fit=fit))
+
+    @property
+    def poor(self) -> tuple[str, ...]:
+        """What is off by more than 5 %, in words; of a plate only the area along its normal counts."""
+        return self.part.fit.over(POOR) if self.part.fit is not None else ()
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What it was found to be, in words."""
+        like = self.likeness
+        held = "equal area" if like.form == "plate" else "equal volume"
+        kind = like.form if like.clear else f"other, as no form is good; a {like.form} of {held} stands in"
+        kind = kind.replace("a ellipsoid", "an ellipsoid")
+        out = [f"{'attachment' if self.cut else 'body'} of {self.volume:.5g} m^3: {kind} ({like.reason})"]
+        if not like.clear:
+            out.append("look at it in the overlay; --box around each of its bodies, or --split convex, divides it")
+        if self.turned > TOLD:
+            out.append(f"pose tidied: turned by {np.degrees(self.turned):.1f} deg to right angles")
+        return tuple(out)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Simplification:
+    """A mesh, the simple parts in its place, and how far they agree.
+
+    Attributes
+    ----------
+    body : Body
+        Of the parts.
+    shape : Parts
+        The same parts.
+    mesh : TriangleMesh
+    parts : tuple of SimplifiedPart
+    unassigned : float
+        Volume of slivers that belong to no part, m^3.
+    statements : tuple of str
+        What was done to the mesh first.
+    """
+
+    body: Body
+    shape: Parts
+    mesh: TriangleMesh
+    parts: tuple[SimplifiedPart, ...]
+    unassigned: float
+    statements: tuple[str, ...]
+
+    def part_table(self) -> Table:
+        """Sizes and errors part by part."""
+        rows = []
+        for p in self.parts:
+            kind, sizes = written(p.part.form)
+            size = ", ".join(f"{key.replace('_', ' ')} {value:g}" for key, value in sizes.items())
+            clear = kind if p.likeness.clear else f"other ({kind})"
+            errors = [_percent(e) for e in (p.volume_error, *p.projected_errors, p.length_error)]
+            rows.append((p.part.name, clear, size, number(p.volume, 5), number(p.part.form.volume, 5), *errors))
+        notes = [
+            "errors: form over mesh, less one; A: projected areas along the part's own axes; length: the largest extent, of a plate in span"
+        ]
+        notes += [f"{p.part.name}: {remark}" for p in self.parts for remark in p.remarks]
+        notes += [f"LOOK AT {p.part.name}: {', '.join(p.poor)}" for p in self.parts if p.poor]
+        headers = ("part", "form", "m", "mesh m^3", "form m^3", "V", "A x", "A y", "A z", "length")
+        return Table("Parts", headers, tuple(rows), (*notes, *self.statements), frozenset({0, 1, 2}))
+
+    def total_table(self) -> Table:
+        """The whole mesh beside the sum of the parts."""
+        pieces = sum(p.volume for p in self.parts)
+        plates = sum(p.volume for p in self.parts if not p.part.form.volume)
+        whole = pieces + self.unassigned
+        centre = self.shape.centre_of_volume
+        rows = [
+            ("volume m^3", number(whole, 6), number(self.shape.volume, 6), _percent(self.shape.volume / whole - 1.0)),
+            ("of it plates m^3", number(plates, 4), "0", ABSENT),
+            (
+                "unassigned m^3",
+                number(abs(self.unassigned), 3),
+                ABSENT,
+                f"{abs(100.0 * self.unassigned / whole):.4f} %",
+            ),
+        ]
+        for axis, a, b in zip(
+            "xyz", *(np.round(c, 5) + 0.0 for c in (self.mesh.centre_of_volume, centre)), strict=True
+        ):
+            rows.append((f"centre of volume {axis} m", f"{a:.5f}", f"{b:.5f}", f"{b - a:+.5f} m"))
+        for axis, a, b in zip("xyz", self.mesh.integrals.projected, self._projected(), strict=True):
+            rows.append((f"projected area along {axis} m^2", number(a, 5), number(b, 5), _percent(b / a - 1.0)))
+        notes: tuple[str, ...] = ("projected areas: sums over the parts, what hides what is not looked at", *RULES)
+        if abs(self.shape.volume / whole - 1.0) > POOR_VOLUME:
+            notes = (
+                f"LOOK: the parts displace {self.shape.volume / whole - 1.0:+.1%} of the mesh's volume, and the centre moves "
+                "with it; plates displace nothing",
+                *notes,
+            )
+        return Table("Whole body", ("", "mesh", "parts", "error"), tuple(rows), notes)
+
+    def _projected(self) -> Array:
+        along = np.eye(3)
+        return np.array([sum(shadow(p.form, p.rotation.T @ d) for p in self.shape.parts) for d in along])
+
+    def as_json(self) -> dict[str, Any]:
+        """Everything that the tables show, in SI."""
+        parts = [
+            {
+                "name": p.part.name, "form": written(p.part.form)[0], "sizes": written(p.part.form)[1],
+                "centre": p.part.centre.tolist(), "rotation": p.part.rotation.tolist(),
+                "mesh_volume": p.volume, "misfit": p.likeness.misfit, "shared": p.likeness.shared, "volume": p.part.form.volume, "volume_error": p.volume_error,
+                "projected_area_errors": p.projected_errors.tolist(), "length_error": p.length_error,
+                "class": p.likeness.kind, "stand_in": not p.likeness.clear, "look_at": list(p.poor),
+                "remarks": list(p.remarks),
+            }
+            for p in self.parts
+        ]  # fmt: skip
+        return {
+            "body": self.body.name,
+            "parts": parts,
+            "mesh_volume": sum(p.volume for p in self.parts) + self.unassigned,
+            "volume": self.shape.volume,
+            "unassigned": self.unassigned,
+            "mesh_centre_of_volume": self.mesh.centre_of_volume.tolist(),
+            "centre_of_volume": self.shape.centre_of_volume.tolist(),
+            "mesh_projected_areas": self.mesh.integrals.projected.tolist(),
+            "projected_areas": self._projected().tolist(),
+            "rules": list(RULES),
+            "statements": list(self.statements),
+        }
+
+    def part_file(self) -> bytes:
+        """The body.toml of the parts, with remarks for the person who corrects it."""
+        opening = (
+            f"Simple parts in place of {self.body.name.removesuffix('_simplified')}, made by coeflab simplify. Look at "
+            "the overlay, and correct here what is wrong.",
+            "Lengths in m, FRD, from the datum. Along its own axes a cylinder or spheroid lies along x; a plate has its "
+            "chord along x, its span along y, its normal along z. rotation = [roll, pitch, yaw].",
+            "fit: how well the form stands for its piece of the mesh; class other is like none. volume, areas (projected along "
+            "the part's own axes) and length: form over piece, less one. Delete the fit of a part that you correct; "
+            "what has none counts as you describe it.",
+            "mesh: what the parts stand for. Panel method and strips take it in their place; delete it where the parts are to "
+            "be another body than the mesh.",
+            *RULES,
+            *self.statements,
+        )
+        return part_file(self.body, self.shape, opening, {p.part.name: p.remarks for p in self.parts}, MESH)
+
+    def mesh_file(self) -> bytes:
+        """The mesh for which the parts stand, as PLY; above 200,000 faces decimated to that many."""
+        if len(self.mesh.faces) <= KEPT_FACES:
+            return ply(self.mesh.vertices, self.mesh.faces)
+        return ply(*surface(simplified(solid(self.mesh.vertices, self.mesh.faces), KEPT_FACES)[0]))
+
+
+def _written(value: float) -> float:
+    """As the file gives it."""
+    return round(float(value), DECIMALS) + 0.0
+
+
+def _percent(share: float) -> str:
+    text = f"{100.0 * share:+.1f} %"
+    return "0.0 %" if text in ("+0.0 %", "-0.0 %") else text

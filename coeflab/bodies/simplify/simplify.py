@@ -1,0 +1,345 @@
+"""A mesh as cylinders, plates, ellipsoids and boxes: cut into bodies, each replaced by the form that it resembles.
+
+Boxes that a person draws around parts of a body.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coeflab.bodies.body import Body, Configuration
+from coeflab.bodies.mesh import solids
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.meshing import meshed
+from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate
+from coeflab.bodies.simplify.part_forms import Likeness, Piece, likeness
+from coeflab.bodies.simplify.segmentation import convex_pieces, segments, without_overlap
+from coeflab.bodies.simplify.simplified import KEPT_FACES, Simplification, SimplifiedPart
+from coeflab.core.errors import InputError, shown
+from coeflab.core.machine import one_thread
+from coeflab.core.provenance import Source
+from coeflab.core.text.toml import read_toml
+from coeflab.core.types import brief
+from coeflab.core.units import quantity
+from coeflab.law.transforms import angles, rotation, snapped
+
+WRITTEN = "NAME=x0:x1,y0:y1,z0:z1 in m, FRD, from the datum"
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class NamedBox:
+    """A box along the body's axes; m, FRD, from the datum.
+
+    Attributes
+    ----------
+    name : str
+        Of the part inside.
+    low, high : tuple of float
+        Opposite corners.
+    """
+
+    name: str
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        if not np.all(np.less(self.low, self.high)):
+            sides = ", ".join(f"{a:g}:{b:g}" for a, b in zip(self.low, self.high, strict=True))
+            raise InputError(f"the box {shown(self.name)} over {sides}", "each side from a lower to a higher value")
+
+
+def parse_box(text: str) -> NamedBox:
+    """Read ``mast=0.05:0.15,-0.05:0.05,-0.4:-0.07``; a length may carry its unit (``5 cm``).
+
+    Raises
+    ------
+    InputError
+    """
+    name, equals, sides = text.partition("=")
+    ranges = [side.split(":") for side in sides.split(",")]
+    if not equals or not name.strip() or len(ranges) != 3 or any(len(r) != 2 for r in ranges):
+        raise InputError(shown(text), WRITTEN, column="--box")
+    (x0, x1), (y0, y1), (z0, z1) = ([_length(end) for end in r] for r in ranges)
+    return NamedBox(name.strip(), (x0, y0, z0), (x1, y1, z1))
+
+
+def _length(text: str) -> float:
+    try:
+        return quantity(float(text), "length", key="--box")
+    except ValueError:
+        return quantity(text, "length", key="--box")
+
+
+def read_boxes(path: Path) -> tuple[NamedBox, ...]:
+    """The ``[[box]]`` tables of a TOML file, each with name, x, y and z as [low, high].
+
+    Raises
+    ------
+    InputError
+    """
+    root = read_toml(path)
+    out = []
+    for section in root.sections("box"):
+        name, pairs = section.text("name"), []
+        for key in "xyz":
+            pair = section.raw(key)
+            if not isinstance(pair, list) or len(pair) != 2:
+                raise section.fail(key, shown(pair), "[low, high], lengths in m or with units")
+            pairs.append([quantity(v, "length", file=path, key=section.key(key)) for v in pair])
+        section.finish()
+        low, high = zip(*pairs, strict=True)
+        try:
+            out.append(NamedBox(name, low, high))
+        except InputError as why:
+            raise InputError(why.found, why.expected, file=path, column="box") from None
+    root.finish()
+    if not out:
+        raise InputError("no [[box]]", "at least one, with name, x, y and z", file=path)
+    return tuple(out)
+
+
+MOST_FACES, DRAWN_FACES = 1_000_000, 20_000
+SNAP, SNAP_CUT = np.radians(0.3), np.radians(2.0)
+SNAP_OFFSET = 5e-4
+ROUNDING = 1e-9
+RESOLUTION = 1e-5
+FORMS: dict[str, Any] = {"cylinder": Cylinder, "plate": Plate, "ellipsoid": Ellipsoid, "box": Box}
+PLURAL = {"cylinder": "cylinders", "plate": "plates", "ellipsoid": "ellipsoids", "box": "boxes", "other": "others"}
+SECTORS = ("starboard", "starboard_bottom", "bottom", "port_bottom", "port", "port_top", "top", "starboard_top")
+SLIVERS, REMNANT, HAIR, CHIPS = 2e-4, 0.2, 1e-6, 0.01
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """A body of the mesh before it has a form."""
+
+    solid: solids.Solid
+    name: str
+    cut: bool
+
+
+@one_thread()
+def simplify(
+    body: Body, boxes: Sequence[NamedBox] = (), expected: int | None = None, convex: bool = False
+) -> Simplification:
+    """Replace a mesh by simple parts.
+
+    Parameters
+    ----------
+    body : Body
+        Whose shape is a mesh, or a body of revolution, which is meshed first.
+    boxes : sequence of NamedBox
+        What is inside a box becomes a part of that name, before anything else is cut; what little it leaves between
+        itself and the hull goes with it.
+    expected : int, optional
+        How many parts there must be.
+    convex : bool
+        Cut what no form is like into nearly convex pieces (`convex_pieces`); a named box stays one part.
+
+    Raises
+    ------
+    InputError
+        Simple parts already, a surface that is not closed, a shell that looks inward, a box that holds nothing, another number
+        of parts than expected, nothing but plates, convex pieces without the package vhacdx.
+    """
+    shape = body.require_shape()
+    if isinstance(shape, Parts):
+        raise InputError(f"{body.name}, which is made of simple parts already", "a mesh, or a body given by equations")
+    mesh = shape if isinstance(shape, TriangleMesh) else meshed(shape, DRAWN_FACES)
+    whole, statements = _whole(mesh)
+    if mesh is not shape:
+        statements.insert(0, f"meshed from its equations with {len(mesh.faces)} faces")
+    _refuse_idle_boxes(boxes, mesh)
+    found, unassigned, shared = _pieces(whole, boxes)
+    if shared > SLIVERS * mesh.volume:
+        statements.append(f"shells overlap by {shared:.4g} m^3, which goes to the larger one")
+    likes = [likeness(p.solid) for p in found]
+    if convex:
+        found, likes, lost, said = _convex(found, likes)
+        unassigned += lost
+        statements += said
+    unassigned = unassigned if abs(unassigned) > ROUNDING * mesh.volume else 0.0
+    if all(like.form == "plate" for like in likes):
+        raise InputError(
+            "nothing but plates", "at least one part that displaces water",
+            advice="Describe them in a body.toml of reader primitives; of one alone coeflab added-mass takes the mesh itself.",
+        )  # fmt: skip
+    if expected is not None and len(found) != expected:
+        raise InputError(
+            f"{len(found)} parts ({', '.join(_counted(likes))})", f"{expected} parts, as --parts says",
+            advice="Name parts with --box, or leave --parts out and look at the overlay.",
+        )  # fmt: skip
+    length = float(mesh.extents.max())
+    parts = _named([_part(p, like, length) for p, like in zip(found, likes, strict=True)])
+    made = Parts(tuple(p.part for p in parts))
+    return Simplification(_body(body, made), made, mesh, parts, unassigned, tuple(statements))
+
+
+def _whole(mesh: TriangleMesh) -> tuple[solids.Solid, list[str]]:
+    try:
+        whole = solids.solid(mesh.vertices, mesh.faces)
+    except ValueError as why:
+        raise InputError(str(why), "a closed surface", advice="Repair the mesh first.") from None
+    if len(mesh.faces) <= MOST_FACES:
+        return whole, []
+    fewer, moved = solids.simplified(whole, KEPT_FACES)
+    change = fewer.volume() / whole.volume() - 1.0
+    said = f"{len(mesh.faces)} faces decimated to {fewer.num_tri()}: surface moved by at most {moved:.2g} m, volume "
+    return fewer, [f"{said}{100.0 * change:+.3f} %"]
+
+
+def _refuse_idle_boxes(boxes: Sequence[NamedBox], mesh: TriangleMesh) -> None:
+    names = [b.name for b in boxes]
+    for b in boxes:
+        if names.count(b.name) > 1:
+            raise InputError(f"two boxes called {shown(b.name)}", "one name for each box")
+        if not np.any(np.all((mesh.vertices >= b.low) & (mesh.vertices <= b.high), axis=1)):
+            low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+            reach = ", ".join(f"{axis} {a:.4g} to {z:.4g}" for axis, a, z in zip("xyz", low, high, strict=True))
+            raise InputError(
+                f"the box {shown(b.name)}, which holds no vertex of the mesh", f"a box within {reach} m",
+                advice="Boxes are in m, FRD, from the datum: z is down.",
+            )  # fmt: skip
+
+
+def _boxed(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece], solids.Solid]:
+    """What the boxes hold, in their order, and the rest.
+
+    Boxes shrink by a hair, so that a side drawn on a flat face of the mesh does not take that face along as a skin.
+    """
+    out, rest, least = [], whole, SLIVERS * whole.volume()
+    for b in boxes:
+        hair = HAIR * float(np.ptp([b.low, b.high], axis=0).max())
+        block = solids.box(np.add(b.low, hair), np.subtract(b.high, hair))
+        inside = rest ^ block
+        if inside.volume() <= least:
+            raise InputError(f"the box {shown(b.name)}, which holds next to no volume", "a box around a part")
+        out.append(_Piece(inside, b.name, False))
+        rest = rest - block
+    return out, rest
+
+
+def _remnant_of(part: solids.Solid, boxes: Sequence[NamedBox], boxed: Sequence[_Piece]) -> int | None:
+    """The box that cut an attachment and left this little of it between itself and the hull: under a fifth."""
+    found = part.bounding_box()
+    for k, b in enumerate(boxes):
+        reach = HAIR * float(np.ptp([b.low, b.high], axis=0).max())
+        touches = np.all(np.greater(found[3:], np.subtract(b.low, reach)) & np.less(found[:3], np.add(b.high, reach)))
+        if touches and part.volume() < REMNANT * boxed[k].solid.volume():
+            return k
+    return None
+
+
+def _pieces(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece], float, float]:
+    """Bodies, named boxes first; the volume of the slivers; and the volume that shells shared."""
+    least = SLIVERS * whole.volume()
+    out, rest = _boxed(whole, boxes)
+    shells = solids.pieces(rest)
+    if any(s.volume() < -least for s in shells):
+        raise InputError(
+            "a shell that looks inward: a cavity, or reversed faces", "shells that look outward",
+            advice="Remove inner surfaces: added mass belongs to the outer one.",
+        )  # fmt: skip
+    alone = [p for s in without_overlap(shells) for p in solids.pieces(s)]
+    shared = sum(s.volume() for s in shells) - sum(p.volume() for p in alone)
+    unassigned = 0.0
+    for shell in alone:
+        if shell.volume() <= least:
+            unassigned += shell.volume()
+            continue
+        cut = segments(shell, least / shell.volume())
+        for part, attached in zip(cut.bodies, cut.cut, strict=True):
+            k = _remnant_of(part, boxes, out) if attached else None
+            if k is None:
+                out.append(_Piece(part, "", attached))
+            else:
+                out[k] = replace(out[k], solid=out[k].solid + part)
+        unassigned += cut.unassigned
+    if not out:
+        raise InputError("nothing but slivers", "at least one body")
+    return out, unassigned, shared
+
+
+def _convex(found: list[_Piece], likes: list[Likeness]) -> tuple[list[_Piece], list[Likeness], float, list[str]]:
+    """Pieces and their forms, those that are like nothing cut further; volume that became slivers; what was done."""
+    out, forms, lost, said = [], [], 0.0, []
+    for piece, like in zip(found, likes, strict=True):
+        if like.clear or piece.name:
+            out.append(piece)
+            forms.append(like)
+            continue
+        try:
+            least = CHIPS * piece.solid.volume()
+            parts = [p for p in convex_pieces(piece.solid) if p.volume() > least]
+        except ImportError:
+            raise InputError(
+                "--split convex without the package vhacdx", "vhacdx", advice='Install "coeflab[convex]".'
+            ) from None
+        lost += piece.solid.volume() - sum(p.volume() for p in parts)
+        said.append(f"what is like no form, {piece.solid.volume():.5g} m^3, cut into {len(parts)} nearly convex pieces")
+        out += [replace(piece, solid=p) for p in parts]
+        forms += [likeness(p) for p in parts]
+    return out, forms, lost, said
+
+
+def _part(piece: _Piece, like: Likeness, length: float) -> SimplifiedPart:
+    """The form in round numbers: sizes to 1e-5 of the body's length, angles to 0.01 deg, near-right angles right."""
+    decimals = int(np.ceil(-np.log10(RESOLUTION * length)))
+    turn = snapped(like.rotation, SNAP_CUT if piece.cut or piece.name else SNAP)
+    turned = float(np.arccos(np.clip((np.trace(turn.T @ like.rotation) - 1.0) / 2.0, -1.0, 1.0)))
+    turn = rotation(*(np.radians(np.round(np.degrees(a), 2)) for a in angles(turn)))
+    centre = np.where(np.abs(like.centre) < np.array([0.0, 1.0, 1.0]) * SNAP_OFFSET * length, 0.0, like.centre)
+    sizes = [round(s, decimals) if s > 100.0 * RESOLUTION * length else float(f"{s:.3g}") for s in like.sizes]
+    form: Form = FORMS[like.form](*sizes)
+    part = Part(piece.name, form, np.asarray(np.round(centre, decimals) + 0.0), turn)
+    own = Piece.of(solids.surface(piece.solid))
+    return SimplifiedPart(part, like, own.volume, own.projected(turn), own.extents(turn), piece.cut, turned).with_fit()
+
+
+def _named(parts: list[SimplifiedPart]) -> tuple[SimplifiedPart, ...]:
+    """Hull first, then from fore to aft and from port to starboard; names by form and side unless a box gave one."""
+    hull = max(parts, key=lambda p: p.volume)
+    rest = sorted(
+        (p for p in parts if p is not hull), key=lambda p: tuple(np.round([-1.0, 1.0, 1.0] * p.part.centre, 3))
+    )
+    given = {p.part.name for p in parts}
+    names = [p.part.name or ("hull" if p is hull and "hull" not in given else _place(p, hull)) for p in (hull, *rest)]
+    out = []
+    for i, (p, name) in enumerate(zip((hull, *rest), names, strict=True)):
+        numbered = name if names.count(name) == 1 or p.part.name else f"{name}_{names[: i + 1].count(name)}"
+        out.append(replace(p, part=replace(p.part, name=numbered)))
+    return tuple(out)
+
+
+def _place(p: SimplifiedPart, hull: SimplifiedPart) -> str:
+    """``plate_port``: the form, and where it lies about the hull's axis, in eighths of the girth; else fore or aft."""
+    turn = hull.part.rotation if hull.part.rotation[0, 0] > 0.7 else np.eye(3)
+    offset = turn.T @ (p.part.centre - hull.part.centre)
+    half = hull.part.form.half_extents(turn.T @ hull.part.rotation)
+    if np.hypot(offset[1], offset[2]) < 0.2 * max(half[1:]):
+        return f"{p.likeness.kind}_{'fore' if offset[0] > 0.0 else 'aft'}"
+    return f"{p.likeness.kind}_{SECTORS[round(np.arctan2(offset[2], offset[1]) / (np.pi / 4.0)) % 8]}"
+
+
+def _counted(likes: Sequence[Likeness]) -> list[str]:
+    forms = [like.kind for like in likes]
+    return [f"{forms.count(f)} {PLURAL[f] if forms.count(f) > 1 else f}" for f in dict.fromkeys(forms)]
+
+
+def _body(body: Body, shape: Parts) -> Body:
+    made_from = "; ".join(f"{f.name}, sha256 {f.sha256}" for f in body.files)
+    source = Source(body.source.citation, body.source.place, f"coeflab simplify of {made_from}", "computed")
+    computed = Configuration(
+        "by_parts", "sum of the parts; overlaps count twice", shape.volume, None, shape.centre_of_volume, None
+    )
+    return replace(
+        body, name=f"{body.name}_simplified", title=f"{body.title or body.name}, simplified", configurations=(computed,),
+        source=source, shape=shape, measured=(),
+    )  # fmt: skip

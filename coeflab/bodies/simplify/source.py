@@ -1,0 +1,106 @@
+"""The mesh that a person names: a body of reader mesh, or a mesh file with its unit and axes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.file import FORMATS, load
+from coeflab.bodies.mesh.gates import examined, repaired
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.particulars import computed, require_plausible
+from coeflab.core.axes import Datum, parse_axes
+from coeflab.core.errors import InputError, UnitsError
+from coeflab.core.files import located, shipped
+from coeflab.core.provenance import InputFile, Source, sha256_of
+from coeflab.core.units import factor
+from coeflab.workbench import read_body
+
+BODY, CAMPAIGN = "body.toml", "campaign.toml"
+
+
+def mesh_body(name: str, unit: str = "", axes: str = "", repair: bool = False) -> Body:
+    """A body whose shape is a mesh.
+
+    Parameters
+    ----------
+    name : str
+        A body.toml, its folder, a shipped body, or a mesh file.
+    unit, axes : str
+        Of a mesh file, which says neither; of nothing else.
+    repair : bool
+        Mend a mesh file that is not sound.
+
+    Raises
+    ------
+    InputError
+        Nothing there, not sound, of no vehicle's size, or without unit and axes; unit and axes of a body.toml, which declares its own.
+    """
+    path = located(name, "geometry")
+    path = path / BODY if path.is_dir() else path
+    if path.suffix.lower() == ".toml":
+        if unit or axes or repair:
+            raise InputError(
+                "--unit, --axes or --repair",
+                "a mesh file with them",
+                file=path,
+                advice="A body.toml says these itself.",
+            )
+        return read_body(path)
+    return _bare(path, _factor(unit, path), parse_axes(_declared(axes), file=path, key="--axes").rotation, repair)
+
+
+def names_body(name: str) -> bool:
+    """Whether a mesh file, a body.toml, a folder of one or a shipped body is meant, and no campaign.
+
+    A name that both a shipped campaign and a shipped body bear is the campaign's.
+    """
+    try:
+        path = located(name, "cfd_data")
+    except InputError:
+        return name in {found.parent.name for found in shipped("geometry").glob(f"*/{BODY}")}
+    if path.is_dir():
+        return (path / BODY).is_file() and not (path / CAMPAIGN).exists()
+    return path.name == BODY or path.suffix.lower().lstrip(".") in FORMATS
+
+
+def _factor(unit: str, path: Path) -> float:
+    if not unit:
+        raise InputError(
+            "no unit", "--unit m, mm, in ...", file=path, column="--unit", advice="Mesh files do not say their unit."
+        )
+    try:
+        return factor(unit, "length")
+    except UnitsError as why:
+        raise UnitsError(why.found, why.expected, file=path, column="--unit") from None
+
+
+def _declared(axes: str) -> Any:
+    """None, a frame's name, or three directions."""
+    words = [w.strip() for w in axes.split(",")]
+    return words if len(words) == 3 else axes or None
+
+
+def _bare(path: Path, unit: float, turn: np.ndarray[Any, Any], repair: bool) -> Body:
+    raw = load(path)
+    sound = repaired(*raw, path) if repair else examined(*raw, path)
+    shape = TriangleMesh(unit * sound.vertices @ turn.T, sound.faces)
+
+    def fail(found: str, expected: str, advice: str) -> InputError:
+        return InputError(found, expected, file=path, column="--unit", advice=advice)
+
+    require_plausible(shape, unit, fail)
+    return Body(
+        name=path.stem,
+        title=path.name,
+        datum=Datum(f"origin of {path.name}"),
+        reference_point=np.zeros(3),
+        lengths={},
+        configurations=(computed(shape, sound.statements),),
+        source=Source(path.name),
+        files=(InputFile(path.name, sha256_of(path)),),
+        shape=shape,
+    )

@@ -1,0 +1,1 @@
+"""Added mass of slender bodies by sections."""

@@ -1,0 +1,1 @@
+"""Readers and writers of text: delimited tables, TOML, XML, YAML, names."""

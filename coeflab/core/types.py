@@ -1,0 +1,94 @@
+"""Arrays that stay as they are: copied, read-only.
+
+Nouns that show themselves in a line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import fields
+from enum import Enum
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+def locked(values: ArrayLike, dtype: type = float) -> NDArray[Any]:
+    """A read-only copy."""
+    array: NDArray[Any] = np.array(values, dtype=dtype)
+    array.flags.writeable = False
+    return array
+
+
+def locked_columns(columns: Mapping[str, ArrayLike], dtype: type = float) -> Mapping[str, NDArray[Any]]:
+    """A read-only mapping of read-only copies."""
+    return MappingProxyType({name: locked(values, dtype) for name, values in columns.items()})
+
+
+Noun = TypeVar("Noun")
+LONGEST_LINE, LONGEST_TEXT, FEW = 380, 60, 8
+
+
+def brief(cls: type[Noun]) -> type[Noun]:
+    """Give a dataclass or a pydantic model a ``repr`` of one line that never grows with what it holds.
+
+    Texts and numbers are shown, nouns by their name, collections and arrays by their size; fields without content are
+    left out, and what would not fit is counted.
+    """
+    cls.__repr__ = _in_a_line  # type: ignore[method-assign]
+    return cls
+
+
+def _in_a_line(noun: Any) -> str:
+    shown, left = [], LONGEST_LINE
+    names = getattr(type(noun), "model_fields", None) or [f.name for f in fields(noun) if f.repr]
+    kept = [name for name in names if not _is_empty(getattr(noun, name))]
+    for i, name in enumerate(kept):
+        text = f"{name}={_in_short(getattr(noun, name))}"
+        if len(text) > left:
+            shown.append(f"and {len(kept) - i} more")
+            break
+        shown.append(text)
+        left -= len(text) + 2
+    return f"{type(noun).__name__}({', '.join(shown)})"
+
+
+def _is_empty(value: Any) -> bool:
+    return value is None or (isinstance(value, (str, tuple, list, Mapping, frozenset)) and not value)
+
+
+def _in_short(value: Any) -> str:
+    if isinstance(value, Enum):
+        return str(value.name)
+    if isinstance(value, (str, Path)):
+        text = repr(str(value))
+        return text if len(text) <= LONGEST_TEXT else f"{text[: LONGEST_TEXT - 4]}...{text[-1]}"
+    if isinstance(value, np.ndarray):
+        return f"<array {' x '.join(map(str, value.shape))}>" if value.size else "<empty array>"
+    if isinstance(value, (bool, int, float)):
+        return f"{value!r:.24}"
+    if isinstance(value, Mapping):
+        names = ", ".join(map(str, value))
+        return f"{{{names}}}" if len(names) <= LONGEST_TEXT else f"<{len(value)} entries>"
+    if isinstance(value, (tuple, list, frozenset)):
+        return _counted(value)
+    name = getattr(value, "name", None)
+    return f"<{type(value).__name__}{f' {_in_short(name)}' if isinstance(name, str) else ''}>"
+
+
+def _counted(values: Collection[Any]) -> str:
+    if all(isinstance(v, (str, bool, int, float)) for v in values) and len(values) <= FEW:
+        shown = f"({', '.join(map(_in_short, values))})"
+        if len(shown) <= 2 * LONGEST_TEXT:
+            return shown
+    kinds = list(dict.fromkeys(type(v).__name__ for v in values))
+    return f"<{len(values)} {kinds[0] if len(kinds) == 1 else 'items'}>"
+
+
+Array = NDArray[np.float64]
+
+
+Faces = NDArray[np.int64]

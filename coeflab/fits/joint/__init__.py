@@ -1,0 +1,1 @@
+"""One law fitted over several tables, campaigns and components."""

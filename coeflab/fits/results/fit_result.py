@@ -1,0 +1,298 @@
+"""What a fit returns: coefficients, and for each sweep everything a reader needs to judge them.
+
+What every campaign adds to a joint fit, and whether one law serves them all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isinf, isnan
+
+import numpy as np
+
+from coeflab.core.table import coefficient
+from coeflab.core.types import Array, brief, locked
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.misfit import UNLIKELY, OutOfSample, chance
+from coeflab.fits.statistics.groups import Poolability
+from coeflab.fits.statistics.slopes import Estimate, Recommendation
+from coeflab.law.coefficient import CoefficientSet
+from coeflab.law.symbols import primed
+from coeflab.report.tables import nouns as noun_tables
+
+DOUBTFUL = 0.1  # not rejected, but one in ten: worth a sentence
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class CampaignShare:
+    """One campaign in the fit of one component.
+
+    Attributes
+    ----------
+    campaign : str
+    n_points : int
+    intercept, half_width : float or None
+        Its own force at rest, primed, with the 95 % half-width; None where it has none of its own or it is left open.
+    noise : float
+        Primed standard deviation that its rows are weighed by (root mean square).
+    rms, rms_alone : float
+        Residuals about the joint law and about the same terms fitted to this campaign alone.
+    left_out : OutOfSample
+        Its rows predicted from the other campaigns, but for one constant of its own; as a share of its own range.
+    """
+
+    campaign: str
+    n_points: int
+    intercept: float | None
+    half_width: float | None
+    noise: float
+    rms: float
+    rms_alone: float
+    left_out: OutOfSample
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Pooling:
+    """One component of a joint fit by campaign.
+
+    Attributes
+    ----------
+    response : str
+    shares : tuple of CampaignShare
+    every_third : OutOfSample
+        Prediction of every third point of all campaigns.
+    test : Poolability
+        Of one law against a law for each campaign.
+    alone : tuple of (symbol, tuple of (campaign, value, half-width))
+        Coefficients that several campaigns determine alone.
+    """
+
+    response: str
+    shares: tuple[CampaignShare, ...]
+    every_third: OutOfSample
+    test: Poolability
+    alone: tuple[tuple[str, tuple[tuple[str, float, float], ...]], ...] = ()
+
+    @property
+    def rejected(self) -> bool | None:
+        """Whether the campaigns disagree at 1 %; None where the rows cannot tell."""
+        p = self.test.probability
+        return None if isnan(p) else p < UNLIKELY
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether the test comes near to rejecting, between 1 and 10 %: with few rows it has little power."""
+        return self.rejected is False and self.test.probability < DOUBTFUL
+
+    @property
+    def statistic(self) -> str:
+        """The test as a number."""
+        t = self.test
+        if self.rejected is None:
+            return f"{t.restrictions} coefficients in common, no test" if t.restrictions else "no coefficient in common"
+        if isinf(t.freedom):
+            return "rows without scatter"
+        return f"F({t.restrictions}, {t.freedom:.3g}) = {t.statistic:.3g}, {chance(t.probability)}"
+
+    @property
+    def values_alone(self) -> str:
+        """What each campaign gives by itself, in words."""
+        each = [
+            f"{primed(symbol)} " + ", ".join(f"{coefficient(v)} ± {coefficient(h)} ({c})" for c, v, h in values)
+            for symbol, values in self.alone
+        ]
+        return f"Alone they give {'; '.join(each)}." if each else ""
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """Campaigns, intercepts, weights, prediction and test in words."""
+        out = []
+        own = [s for s in self.shares if s.intercept is not None and s.half_width is not None]
+        if own:
+            listed = ", ".join(f"{coefficient(s.intercept)} ± {coefficient(s.half_width)} ({s.campaign})" for s in own)
+            out.append(f"Every campaign has its own {self.response}0', which is taken off its rows: {listed}.")
+        told = [str(s.left_out) for s in self.shares if s.left_out.predicted or len(self.shares) > 1]
+        if len(self.shares) == 1:
+            alone = f"Only {self.shares[0].campaign} has rows of {self.response}: one law for several campaigns is not tested"
+            return (*out, *told, f"{alone}." if told else f"{alone}, and leaving a campaign out is not available.")
+        quiet, loud = min(self.shares, key=lambda s: s.noise), max(self.shares, key=lambda s: s.noise)
+        listed = ", ".join(f"{s.noise:.2g} ({s.campaign})" for s in self.shares)
+        said = f"Rows weigh by 1 / scatter^2 of their campaign about its own law: {listed}"
+        if quiet is not loud:
+            said += f"; a row of {quiet.campaign} counts as {(loud.noise / quiet.noise) ** 2:.3g} of {loud.campaign}"
+        out.append(f"{said}.")
+        out += told
+        verdict = {
+            None: "Whether one law serves all campaigns cannot be tested",
+            False: "One law is not contradicted, nor is it shown"
+            if self.doubtful
+            else "The campaigns do not contradict one law",
+            True: "The campaigns disagree: one law does not serve them all",
+        }[self.rejected]
+        out.append(f"{verdict} ({self.statistic}; Wald test by campaign, HC2, approximate Hotelling T^2).")
+        if self.rejected:
+            out.append(f"{self.values_alone} U95 does not hold their difference.".lstrip())
+        return tuple(out)
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class BootstrapInterval:
+    """Percentile intervals of one member: pairs and wild, with the share of usable resamples."""
+
+    pairs: tuple[float, float]
+    wild: tuple[float, float]
+    usable: float
+
+
+@dataclass(frozen=True, slots=True)
+class Sensitivity:
+    """The recommendation when no window may exceed ``cap`` (in the motion variable)."""
+
+    cap: float
+    value: float | None
+    u95: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A point that the fit does not use: its setting, its force (NaN if blank), its label and the reason."""
+
+    x: float
+    y: float
+    label: str
+    reason: str
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Sweep:
+    """One force component over one motion variable, and the coefficient that it gives.
+
+    Attributes
+    ----------
+    symbol : str
+        Coefficient, without prime.
+    variable, component : str
+    parity : str
+        ``odd`` (slope) or ``even`` (curvature or value at rest).
+    target : str
+        Term of the families whose coefficient is the result.
+    x, y : (n,) array
+        Primed motion variable and force.
+    se : (n,) array or None
+    labels : tuple of str
+    left_out : tuple of LeftOut
+    recommendation : Recommendation
+    plain : tuple of Estimate
+        Each family without nuisance terms in every window: the single estimators of the literature.
+    bootstrap : dict of family name to BootstrapInterval
+    sensitivity : tuple of Sensitivity
+    one_sided : bool
+    table, campaign, body : str
+    offset : str
+        What was subtracted before the fit, if anything.
+    borrowed : str
+        Table that lent its row at rest, if any.
+    """
+
+    symbol: str
+    variable: str
+    component: str
+    parity: str
+    target: str
+    x: Array
+    y: Array
+    se: Array | None
+    labels: tuple[str, ...]
+    left_out: tuple[LeftOut, ...]
+    recommendation: Recommendation
+    plain: tuple[Estimate, ...]
+    bootstrap: dict[str, BootstrapInterval]
+    sensitivity: tuple[Sensitivity, ...]
+    one_sided: bool
+    table: str
+    campaign: str
+    body: str
+    offset: str = ""
+    borrowed: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", locked(self.x))
+        object.__setattr__(self, "y", locked(self.y))
+        if self.se is not None:
+            object.__setattr__(self, "se", locked(self.se))
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether the motion variable is the sine of an angle."""
+        return self.variable in ("v", "w")
+
+    @property
+    def angle_name(self) -> str:
+        """What the motion variable is called on paper."""
+        return {"v": "v' = v/U", "w": "w' = w/U", "dr": "rudder angle", "ds": "stern plane angle"}.get(
+            self.variable, f"{self.variable}' = {self.variable} L/U"
+        )
+
+    def window_of(self, estimate: Estimate) -> tuple[float, float]:
+        """Range of the rows that an estimate used: radians for v', w' and controls, r' for rates."""
+        rows = self.x[estimate.rows]
+        low, high = float(rows.min()), float(rows.max())
+        if self.is_angle:
+            return float(np.arcsin(max(low, -1.0))), float(np.arcsin(min(high, 1.0)))
+        return low, high
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class FitResult:
+    """Coefficients of one campaign, or of several jointly, by one fit.
+
+    Attributes
+    ----------
+    fit : str
+        Plugin name.
+    campaign, body : str
+        Of several campaigns the names, joined by commas.
+    coefficients : CoefficientSet
+    sweeps : tuple of Sweep
+    citations : tuple of str
+    settings : dict of str to str
+        Options as used, seed and replicates among them.
+    models : tuple of FittedModel
+        Force laws and tables over one or more variables.
+    poolings : tuple of Pooling
+        What each of several campaigns adds, one a component.
+    differences : tuple of str
+        What sets several campaigns apart: bodies, Reynolds numbers, sources, points.
+    """
+
+    fit: str
+    campaign: str
+    body: str
+    coefficients: CoefficientSet
+    sweeps: tuple[Sweep, ...]
+    citations: tuple[str, ...]
+    settings: dict[str, str]
+    models: tuple[FittedModel, ...] = ()
+    poolings: tuple[Pooling, ...] = ()
+    differences: tuple[str, ...] = ()
+
+    @property
+    def campaigns(self) -> tuple[str, ...]:
+        """The campaigns that it comes from."""
+        return tuple(self.campaign.split(", "))
+
+    def _repr_html_(self) -> str:
+        """Coefficients and terms, for notebooks."""
+        return "".join(t._repr_html_() for t in noun_tables.fit_tables(self))
+
+    def sweep(self, symbol: str) -> Sweep:
+        """The sweep of a coefficient."""
+        for s in self.sweeps:
+            if s.symbol == symbol.removesuffix("'"):
+                return s
+        raise KeyError(symbol)

@@ -1,0 +1,276 @@
+"""A fitted force law or table: terms, coefficients with covariance, domain, diagnostics.
+
+Rows that a source prints and no fit uses: rejected or doubtful, kept for pictures.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.types import Array, brief, locked, locked_columns
+from coeflab.fits.statistics.linear_model import LinearFit
+from coeflab.law.domain import half_spaces, inside
+from coeflab.law.terms import Term, design
+from coeflab.report.tables import nouns as noun_tables
+from coeflab.tables.force_table import ForceTable
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class SetAside:
+    """Points beside a fit.
+
+    Attributes
+    ----------
+    x : mapping of variable to (n,) array
+        As the rows of the fit.
+    y : (n,) array
+    labels : tuple of str
+    """
+
+    x: Mapping[str, Array]
+    y: Array
+    labels: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", locked_columns(self.x))
+        object.__setattr__(self, "y", locked(self.y))
+
+    def only(self, keep: NDArray[np.bool_]) -> SetAside:
+        """Some of the points."""
+        labels = tuple(t for t, k in zip(self.labels, keep, strict=True) if k)
+        return SetAside({v: x[keep] for v, x in self.x.items()}, self.y[keep], labels)
+
+
+def joined(parts: list[SetAside]) -> SetAside | None:
+    """The points of several tables over the same variables; None where there are none."""
+    found = [p for p in parts if len(p.y)]
+    if not found:
+        return None
+    return SetAside(
+        {v: np.concatenate([p.x[v] for p in found]) for v in found[0].x},
+        np.concatenate([p.y for p in found]),
+        tuple(t for p in found for t in p.labels),
+    )
+
+
+def readmitted(table: ForceTable) -> ForceTable:
+    """The table with every printed cell in use that its file or its declaration turns away.
+
+    Rows that a fit leaves out of its own accord, as another variable moves in them, have no line of a file and stay out.
+    """
+    usable = {c: np.isfinite(values) for c, values in table.forces.items()}
+    for e in table.exclusions:
+        if not e.line:
+            for component in [e.component] if e.component else usable:
+                usable[component][e.row] = False
+    return replace(table, usable=usable)
+
+
+class Extrapolation(StrEnum):
+    """What a reader outside the data is to do."""
+
+    REFUSE = "refuse"
+    CLAMP = "clamp"
+    TAPER = "taper"
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Domain:
+    """Where a model may be read.
+
+    Attributes
+    ----------
+    variables : tuple of str
+    low, high : (d,) array
+        Bounding box.
+    spaces : (m, d + 1) array
+        Half-spaces of the convex hull of the data.
+    rule : Extrapolation
+    """
+
+    variables: tuple[str, ...]
+    low: Array
+    high: Array
+    spaces: Array
+    rule: Extrapolation = Extrapolation.REFUSE
+
+    def __post_init__(self) -> None:
+        for name in ("low", "high", "spaces"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+    @classmethod
+    def of(cls, columns: Mapping[str, Array], rule: Extrapolation = Extrapolation.REFUSE) -> Domain:
+        """The domain of some data, one column a variable."""
+        points = np.column_stack(list(columns.values()))
+        return cls(tuple(columns), points.min(axis=0), points.max(axis=0), half_spaces(points), rule)
+
+    def contains(self, columns: Mapping[str, Array]) -> NDArray[np.bool_]:
+        """Whether points lie inside, shape (n,)."""
+        points = np.column_stack([columns[v] for v in self.variables])
+        return np.asarray(inside(self.spaces, points), dtype=bool)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class FittedModel:
+    """One response as a linear combination of terms.
+
+    Attributes
+    ----------
+    response : str
+        ``C_D``, ``Y'``, ``X [N]`` ...
+    unit : str
+        ``1`` or SI.
+    form : str
+        In words: ``polynomial of degree 3, odd``.
+    symbols : tuple of str
+        Name of every coefficient.
+    terms : tuple of Term
+    fit : LinearFit
+    domain : Domain
+    table, campaign, body : str
+    n_points : int
+    x : mapping of variable to (n,) array
+    y : (n,) array
+    labels : tuple of str
+    statements : tuple of str
+        What the data do not determine, collinearity, accuracy: in words.
+    post_selection : bool
+        True when the terms were chosen by looking at the same data; intervals are then too narrow.
+    shared : mapping of str to (p,) array
+        Errors that all rows share, each as the signed 95 % shift that it gives to every coefficient: the grid, declared
+        angles, speeds, calibrations.
+    not_assessed : tuple of str
+        What may act and is in no half-width, in words; filled in by the budget.
+    set_aside : SetAside or None
+        Printed rows that are rejected or doubtful.
+    """
+
+    response: str
+    unit: str
+    form: str
+    symbols: tuple[str, ...]
+    terms: tuple[Term, ...]
+    fit: LinearFit
+    domain: Domain
+    table: str
+    campaign: str
+    body: str
+    x: Mapping[str, Array]
+    y: Array
+    labels: tuple[str, ...]
+    statements: tuple[str, ...] = ()
+    post_selection: bool = False
+    shared: Mapping[str, Array] = field(default_factory=dict)
+    not_assessed: tuple[str, ...] = ()
+    set_aside: SetAside | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", locked_columns(self.x))
+        object.__setattr__(self, "shared", locked_columns(self.shared))
+        object.__setattr__(self, "y", locked(self.y))
+
+    @property
+    def n_points(self) -> int:
+        """Rows used."""
+        return len(self.y)
+
+    @property
+    def covariance(self) -> Array:
+        """(p, p), of standard uncertainties, half-width / 2: scatter by its correlation, every shared error in full."""
+        standard = self.fit.half_width / 2.0
+        out = self.fit.correlation * np.outer(standard, standard)
+        np.fill_diagonal(out, standard**2)
+        for shift in self.shared.values():
+            out = out + np.outer(shift, shift) / 4.0
+        return np.asarray((out + out.T) / 2.0)
+
+    @property
+    def half_width(self) -> Array:
+        """(p,) 95 % half-widths of the coefficients, scatter and shared errors; NaN where there is none."""
+        return np.asarray(np.sqrt(self.fit.half_width**2 + sum(s**2 for s in self.shared.values())))
+
+    def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Values, 95 % half-widths of the mean, and whether each point lies inside the domain.
+
+        The half-widths join those of the coefficients by their covariance, shared errors included. A point that needs a coefficient which
+        the data leave open has the value NaN.
+
+        Parameters
+        ----------
+        columns : mapping of variable to (n,) array
+            Same variables and units as `x`.
+        """
+        rows = design(self.terms, columns)
+        known = np.isfinite(self.fit.coefficients)
+        values = np.where(np.any(rows[:, ~known] != 0.0, axis=1), np.nan, rows[:, known] @ self.fit.coefficients[known])
+        bare = known & ~np.isfinite(self.fit.half_width)
+        joint = np.nan_to_num(self.covariance)
+        spread = 2.0 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", rows, joint, rows), 0.0))
+        sure = np.isfinite(values) & ~np.any(rows[:, bare] != 0.0, axis=1)
+        return values, np.where(sure, spread, np.nan), self.domain.contains(columns)
+
+    def _repr_html_(self) -> str:
+        """Its terms, for notebooks."""
+        return noun_tables.terms(self)._repr_html_()
+
+    def named(self, symbol: str) -> tuple[float, float]:
+        """Value and 95 % half-width of one coefficient."""
+        i = self.symbols.index(symbol)
+        return float(self.fit.coefficients[i]), float(self.half_width[i])
+
+
+COLLINEAR = 0.98  # the half-width is five times that of either term alone: 1 / sqrt(1 - 0.98^2)
+MOST_PAIRS = 3
+MOST_DIRECTIONS, MOST_MIXED = 4, 6
+FEWEST_DIGITS = 7.0  # half of a double's
+SEEN = 0.05  # of the largest part: less is not named
+
+
+def _only_together(parts: list[tuple[str, float]]) -> str:
+    """Terms that a direction of the coefficients mixes; of many, the heaviest."""
+    heaviest = sorted(parts, key=lambda p: -abs(p[1]))[:MOST_MIXED]
+    shown = [p for p in parts if p in heaviest]
+    more = f" and {len(parts) - len(shown)} more" if len(parts) > len(shown) else ""
+    names = ", ".join(s for s, _ in shown)
+    mix = " ".join(f"{d:+.2g} [{s}]" for s, d in shown) + (" ..." if more else "")
+    return (
+        f"{names}{more} are determined only together: adding any multiple of {mix} (each scaled by its column) changes no "
+        "prediction."
+    )
+
+
+def in_words(fit: LinearFit, symbols: tuple[str, ...]) -> tuple[str, ...]:
+    """What the rows do not determine, which coefficients move together, and how exact the arithmetic is."""
+    out = []
+    for direction in fit.open_directions[:MOST_DIRECTIONS]:
+        largest = float(np.max(np.abs(direction)))
+        parts = [(s, float(d) / largest) for s, d in zip(symbols, direction, strict=True) if abs(d) > SEEN * largest]
+        if len(parts) == 1:
+            out.append(f"{parts[0][0]} is not determined: its term is zero on these data.")
+        else:
+            out.append(_only_together(parts))
+    if len(fit.open_directions) > MOST_DIRECTIONS:
+        out.append(
+            f"{len(fit.open_directions) - MOST_DIRECTIONS} more combinations are not determined: "
+            f"{fit.rank} of {len(symbols)} terms can be told apart. Ask for fewer."
+        )
+    pairs = [(abs(fit.correlation[i, j]), i, j) for i, j in combinations(range(len(symbols)), 2)]
+    close = sorted((pair for pair in pairs if pair[0] > COLLINEAR), reverse=True)
+    for _, i, j in close[:MOST_PAIRS]:
+        out.append(f"{symbols[i]} and {symbols[j]} are nearly collinear (correlation {fit.correlation[i, j]:.3f}).")
+    if len(close) > MOST_PAIRS:
+        out.append(f"{len(close) - MOST_PAIRS} more pairs are nearly collinear (beyond {COLLINEAR}).")
+    if fit.digits < FEWEST_DIGITS:
+        out.append(
+            f"Only {max(fit.digits, 0):.0f} digits of the coefficients are sure: the terms are nearly dependent."
+        )
+    return tuple(out)

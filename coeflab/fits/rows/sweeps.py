@@ -1,0 +1,241 @@
+"""Rows of a table in which one motion variable is swept while the others rest.
+
+Rows of a table in which nothing but the wanted variables moves.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError
+from coeflab.core.types import Array, brief
+from coeflab.fits.results.fit_result import LeftOut
+from coeflab.fits.rows.regression import WIND, Area, Rows, response
+from coeflab.fits.statistics.slopes import is_one_sided
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import COMPONENTS, FORCES
+from coeflab.tables.force_table import AT_REST, Exclusion, ForceTable
+
+INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
+ASTERN = "does not run ahead (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
+NEAR_ZERO = np.sin(np.radians(0.3))  # what is left of a setting of zero when a model is aligned
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class SweepRows:
+    """Rows of one sweep, with rest rows of the same campaign where a one-sided sweep has none of its own.
+
+    ``astern`` rows do not run ahead: sin(beta) is the same at 10 and at 170 degrees, the force is not.
+    """
+
+    table: ForceTable
+    x: Array
+    rows: NDArray[np.intp]
+    rest: tuple[ForceTable, NDArray[np.intp]] | None
+    astern: NDArray[np.intp]
+
+
+def _others_at_rest(table: ForceTable, variable: str, length: float) -> NDArray[np.bool_]:
+    """Rows in which nothing but surge and ``variable`` moves (control sweeps: within 0.3 degrees of zero incidence)."""
+    keep = np.ones(len(table), dtype=bool)
+    for name in ("v", "w", "p", "q", "r", *table.controls):
+        if name != variable:
+            limit = NEAR_ZERO if INCIDENCE.get(variable) == name else AT_REST
+            keep &= np.abs(table.primed_motion(name, length)) <= limit
+    return keep
+
+
+def sweep_rows(table: ForceTable, variable: str, tables: Sequence[ForceTable], length: float) -> SweepRows:
+    """The rows of ``table`` that sweep a variable.
+
+    A one-sided sweep without a row at rest borrows those of the first other table at the same speed.
+    """
+    keep = _others_at_rest(table, variable, length)
+    ahead = table.motion["u"] > 0.0
+    astern = np.flatnonzero(keep & ~ahead)
+    keep &= ahead
+    x = table.primed_motion(variable, length)
+    rest = None
+    if is_one_sided(x[keep]) and not np.any(keep & (np.abs(x) <= AT_REST)):
+        for other in tables:
+            still = _others_at_rest(other, "", length)
+            if other is not table and np.any(still) and np.allclose(other.speed[still], table.speed.mean(), rtol=0.01):
+                rest = (other, np.flatnonzero(still))
+                break
+    return SweepRows(table, x, np.flatnonzero(keep), rest, astern)
+
+
+def collect_points(
+    rows: SweepRows, component: str, length: float, taken_out: Array
+) -> tuple[Array, Array, Array | None, tuple[str, ...], tuple[LeftOut, ...]]:
+    """x, y, se, labels of the usable points, and those left out with their reasons.
+
+    ``taken_out`` is subtracted from the primed force of every row of the sweep's own table.
+    """
+    table = rows.table
+    reasons = {(e.row, e.component): e.reason for e in table.exclusions}
+    parts: list[tuple[ForceTable, NDArray[np.intp], Array]] = [(table, rows.rows, rows.x[rows.rows])]
+    if rows.rest is not None and component in rows.rest[0].forces:
+        parts.append((*rows.rest, np.zeros(len(rows.rest[1]))))
+    x, y, se, labels = [], [], [], []
+    left: list[LeftOut] = []
+    if len(rows.astern):
+        away = table.primed_force(component, length)
+        left += [LeftOut(float(rows.x[i]), float(away[i]), table.labels[i], ASTERN) for i in rows.astern]
+    for source, index, at in parts:
+        force = source.primed_force(component, length) - (taken_out if source is table else 0.0)
+        error = source.primed_force(component, length, source.errors[component]) if component in source.errors else None
+        for i, xi in zip(index, at, strict=True):
+            if source.usable[component][i]:
+                x.append(xi)
+                y.append(force[i])
+                se.append(np.nan if error is None else error[i])
+                labels.append(source.labels[i] if source is table else f"{source.name} {source.labels[i]}")
+            elif source is table:
+                why = reasons.get((int(i), component)) or reasons.get((int(i), ""), "excluded")
+                left.append(LeftOut(float(xi), float(force[i]), source.labels[i], why))
+    errors = np.array(se)
+    known = errors if len(errors) and np.all(np.isfinite(errors)) else None
+    return np.array(x), np.array(y), known, tuple(labels), tuple(left)
+
+
+def arm_shift(tables: Sequence[ForceTable]) -> float:
+    """How far forward the point lies at which rotating runs have no cross flow; 0 if there is no one such point.
+
+    About any other point an arm's runs have v = r dx (w = -q dx), and no row turns without drifting.
+    """
+    found: list[Array] = []
+    for table in tables:
+        for rate, drift, sign in (("r", "v", -1.0), ("q", "w", 1.0)):
+            turning = table.motion[rate] != 0.0
+            if np.any(np.abs(table.primed_motion(drift, 1.0)[turning]) > AT_REST):
+                found.append(sign * table.motion[drift][turning] / table.motion[rate][turning])
+    if not found:
+        return 0.0
+    shifts = np.concatenate(found)
+    scale = float(tables[0].scaling.length)
+    return float(np.median(shifts)) if float(np.ptp(shifts)) <= 1e-6 * scale else 0.0
+
+
+MOVED_BY = {"alpha": ("w",), "beta": ("v",)}
+PRIMES = "L^2"
+AREAS = (PRIMES, "frontal", "wetted", "projected", "planform", "volume^(2/3)")
+
+
+def area_of(value: float, name: str, scaling: Scaling) -> Area:
+    """The area that force coefficients are divided by; 0 is the square of the primes' length.
+
+    Parameters
+    ----------
+    value : float
+        m^2, or 0.
+    name : str
+        One of `AREAS`.
+    scaling : Scaling
+        Whose length the primes have.
+
+    Raises
+    ------
+    InputError
+        An area without its name, or a name without its area.
+    """
+    if value == 0.0 and name == PRIMES:
+        return Area(scaling.length**2, PRIMES, scaling.length)
+    if value == 0.0 or name == PRIMES:
+        raise InputError(
+            f"area {value:g} m^2 named {name}", "an area above zero with its name, or neither", column="area",
+            advice=f"Names: {', '.join(AREAS[1:])}. Without both the area is {PRIMES} of {scaling}.",
+        )  # fmt: skip
+    return Area(value, name, scaling.length)
+
+
+def area_settings(area: Area) -> dict[str, str]:
+    """The area among the settings of a fit, from which the parameter file takes it."""
+    return {"area": repr(area.area), "area_name": area.name}
+
+
+def without_blanks(options: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """Options in which one text of ``key=value`` words may have blanks around the equals sign."""
+    text = options.get(name)
+    return {**options, name: re.sub(r"\s*=\s*", "=", text)} if isinstance(text, str) else dict(options)
+
+
+def check_varies(rows: Rows) -> None:
+    """Raise where a variable of two stands still, within `AT_REST`."""
+    for name, x in rows.x.items():
+        if np.ptp(x) <= AT_REST:
+            others = ", ".join(v for v in rows.x if v != name)
+            raise InputError(
+                f"{name} never varies in the rows of {rows.response} ({rows.campaign})", "variables that all vary",
+                column="variables", advice=f"The fit polynomial takes {others} alone.",
+            )  # fmt: skip
+
+
+def named_response(name: str, area: Area) -> str:
+    """``Y'`` for primes, ``C_Y`` by another area; ``C_D`` and its like stay."""
+    if name not in COMPONENTS:
+        return name
+    return f"{name}'" if area.name == PRIMES else f"C_{name}"
+
+
+def allowed(tables: Sequence[ForceTable], name: str, area: Area) -> list[ForceTable]:
+    """The tables that have what a response needs."""
+    if name in WIND and not any(c in t.forces for t in tables for c in FORCES):
+        return []
+    out = []
+    for table in tables:
+        try:
+            _, _, usable = response(table, name, area)
+        except InputError:
+            continue
+        if np.any(usable):
+            out.append(table)
+    return out
+
+
+def only_moving(
+    tables: Sequence[ForceTable], variables: Sequence[str], length: float
+) -> tuple[list[ForceTable], tuple[str, ...]]:
+    """The tables with the rows out of use in which another variable moves.
+
+    Surge does not count. Another variable is at rest within the sine of 0.05 degrees, in primes.
+
+    Returns
+    -------
+    tables : list of ForceTable
+        Tables without such a row are left out.
+    statements : tuple of str
+        How many rows were left out, where any.
+    """
+    free = {"u"} | {m for v in variables for m in MOVED_BY.get(v, (v,))}
+    kept, statements = [], []
+    for table in tables:
+        still = np.ones(len(table), dtype=bool)
+        for name in ("v", "w", "p", "q", "r", *table.controls):
+            if name not in free:
+                still &= np.abs(table.primed_motion(name, length)) <= AT_REST
+        lost = int(np.sum(~still))
+        if not lost:
+            kept.append(table)
+            continue
+        statements.append(f"{lost} of {len(table)} rows of {table.name} are left out: other variables move in them.")
+        if lost < len(table):
+            moving = tuple(
+                Exclusion(int(i), 0, "", f"moves in more than {', '.join(variables)}") for i in np.flatnonzero(~still)
+            )
+            usable = {c: mask & still for c, mask in table.usable.items()}
+            kept.append(replace(table, usable=usable, exclusions=(*table.exclusions, *moving)))
+    if not kept:
+        raise InputError(
+            f"no row in which only {' and '.join(variables)} may move",
+            "a sweep over these variables",
+            column="variable",
+        )
+    return kept, tuple(statements)

@@ -1,0 +1,1 @@
+"""Regression and resampling: arrays in, arrays out."""

@@ -1,0 +1,365 @@
+"""A linear model with everything an expert asks of it: robust errors, influence, prediction, conditioning, open directions.
+
+PRESS: Allen (1974). Cook's distance: Cook (1977). Runs test: Wald & Wolfowitz (1940).
+
+Standard errors that stand unequal noise, with degrees of freedom that stand small samples.
+
+HC2 and HC3: MacKinnon & White (1985). Degrees of freedom: Bell & McCaffrey (2002) in the form of Imbens & Kolesar
+(2016), equation for one contrast under equal reference variances.
+
+Whether the terms that a smaller linear model leaves out matter: the F test of nested models.
+
+Fisher's ratio for equal, independent, normal noise; Draper & Smith, Applied Regression Analysis (1998), chapter 6.
+
+Coefficients of nearly dependent powers, with the powers themselves in extended precision.
+
+A design matrix in double precision holds rounded powers, and the coefficients of nearly dependent columns amplify that
+rounding by the condition number and, where the residuals are not small, by its square. Refinement of residuals and
+coefficients together (Bjorck, Numerical Methods for Least Squares Problems, 1996, section 2.9.3) gets back what the
+platform's long double can carry, and his bound of the rounding error (section 1.4.5) says how much that is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import fdtrc, ndtr, stdtr, stdtrit
+
+from coeflab.core.types import Array, brief
+from coeflab.fits.statistics.least_squares import Factorised, aicc, factorise, solve
+from coeflab.law.terms import Term, design
+
+FULL_LEVERAGE = 1.0 - 1e-9
+
+
+def hangs_on_one_point(f: Factorised) -> NDArray[np.bool_]:
+    """Coefficients that a point of leverage 1 moves, boolean (p,): no residual shows that point's noise."""
+    squares = f.estimator**2
+    alone = squares[:, f.leverage >= FULL_LEVERAGE].sum(axis=1)
+    return np.asarray(alone > 1e-18 * squares.sum(axis=1))
+
+
+def _inflated(f: Factorised, residuals: Array, power: int) -> Array:
+    """Squared residuals over (1 - h)^power; a point of leverage 1 has no residual and adds nothing."""
+    room = np.where(f.leverage < FULL_LEVERAGE, 1.0 - f.leverage, np.inf) ** power
+    return np.asarray(residuals**2 / (room if residuals.ndim == 1 else room[:, None]))
+
+
+def hc_variance(f: Factorised, residuals: Array, kind: int) -> Array:
+    """HC2 (``kind=2``) or HC3 (``kind=3``) variances of the coefficients, shape (p,) or (p, m).
+
+    NaN for a coefficient that a point of leverage 1 moves.
+    """
+    variance = np.asarray(f.estimator**2 @ _inflated(f, residuals, kind - 1))
+    variance[hangs_on_one_point(f)] = np.nan
+    return variance
+
+
+def bell_mccaffrey(f: Factorised) -> Array:
+    """Degrees of freedom of the HC2 variance of every coefficient, shape (p,).
+
+    Satterthwaite's match of the first two moments; computed in O(n p^2) without the n x n residual maker. Zero for a
+    coefficient that a point of leverage 1 moves.
+    """
+    room = np.where(f.leverage < FULL_LEVERAGE, 1.0 - f.leverage, np.inf)
+    weights = f.estimator**2 / room
+    first = np.sum(weights * np.where(np.isfinite(room), room, 0.0), axis=1)
+    gram = np.einsum("pn,ni,nj->pij", weights, f.basis, f.basis)
+    second = weights**2 @ (1.0 - 2.0 * f.leverage) + np.sum(gram**2, axis=(1, 2))
+    known = (second > 0) & ~hangs_on_one_point(f)
+    return np.asarray(np.where(known, first**2 / np.where(known, second, 1.0), 0.0))
+
+
+def t_factor(freedom: Array | float, level: float = 0.95) -> Array:
+    """Two-sided Student factor; NaN where the degrees of freedom vanish."""
+    return np.asarray(stdtrit(freedom, 0.5 + 0.5 * level))
+
+
+def t_probability(ratio: Array | float, freedom: Array | float) -> Array:
+    """Two-sided probability of a larger |t| by chance."""
+    return np.asarray(2.0 * stdtr(freedom, -np.abs(ratio)))
+
+
+DOUBLE_DIGITS = 15.5
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class LinearFit:
+    """A fitted linear model.
+
+    Attributes
+    ----------
+    coefficients : (p,) array
+        NaN where the rows leave a coefficient open.
+    covariance : (p, p) array
+        HC2.
+    freedom : (p,) array
+        Bell-McCaffrey degrees of freedom of every coefficient.
+    half_width : (p,) array
+        95 % half-widths, HC2.
+    residuals : (n,) array
+        Of the response, unweighted.
+    leverage : (n,) array
+    left_out : (n,) array
+        Residual of every point predicted from the others (PRESS residuals).
+    cooks_distance : (n,) array
+    rms : float
+        Root mean square of the residuals.
+    press_rms : float
+        Root mean square of `left_out`.
+    r_squared : float
+    aicc : float
+    runs_probability : float
+        Probability of so few or so many runs of one sign, residuals in the order given; NaN if not computable.
+    condition : float
+        Of the column-scaled design.
+    digits : float
+        Decimal digits that the condition number and the size of the residuals leave sure.
+    correlation : (p, p) array
+    open_directions : (k, p) array
+        Combinations of scaled coefficients that the rows do not determine.
+    rank : int
+    """
+
+    coefficients: Array
+    covariance: Array
+    freedom: Array
+    half_width: Array
+    residuals: Array
+    leverage: Array
+    left_out: Array
+    cooks_distance: Array
+    rms: float
+    press_rms: float
+    r_squared: float
+    aicc: float
+    runs_probability: float
+    condition: float
+    digits: float
+    correlation: Array
+    open_directions: Array
+    rank: int
+
+
+def runs_probability(residuals: Array) -> float:
+    """Two-sided probability of the number of runs of sign, normal approximation with continuity correction."""
+    signs = residuals[residuals != 0.0] > 0.0
+    n, up = len(signs), int(signs.sum())
+    down = n - up
+    if up < 2 or down < 2:
+        return float("nan")
+    runs = 1 + int(np.count_nonzero(signs[1:] != signs[:-1]))
+    mean = 1.0 + 2.0 * up * down / n
+    variance = (mean - 1.0) * (mean - 2.0) / (n - 1.0)
+    if variance <= 0.0:
+        return float("nan")
+    distance = max(abs(runs - mean) - 0.5, 0.0) / variance**0.5
+    return float(2.0 * ndtr(-distance))
+
+
+def fit_linear(
+    design: Array, response: Array, errors: Array | None = None, constraint: tuple[Array, Array] | None = None
+) -> LinearFit:
+    """Fit a linear model.
+
+    Parameters
+    ----------
+    design : (n, p) array
+    response : (n,) array
+    errors : (n,) array, optional
+        Standard errors; weights are their inverse squares.
+    constraint : ((k, p) array, (k,) array), optional
+        C and d of C b = d, kept exactly.
+
+    Raises
+    ------
+    ValueError
+        The constraint cannot hold.
+    """
+    p = design.shape[1]
+    offset: Array = np.zeros(p)
+    free: Array = np.eye(p)
+    if constraint is not None:
+        c, d = constraint
+        offset = np.asarray(np.linalg.lstsq(c, d, rcond=None)[0], dtype=np.float64)
+        if not np.allclose(c @ offset, d, rtol=0.0, atol=1e-12 * max(1.0, float(np.max(np.abs(d), initial=0.0)))):
+            raise ValueError("the constraint cannot hold")
+        _, singular, right = np.linalg.svd(c)
+        free = right[int(np.sum(singular > 1e-12 * singular.max())) :].T
+    reduced = design if constraint is None else design @ free
+    centred = response if constraint is None else response - design @ offset
+    f = factorise(reduced, None if errors is None else errors**-2.0)
+    inner, _ = solve(f, centred)
+    coefficients = inner if constraint is None else offset + free @ inner
+    residuals = response - design @ coefficients
+    weighted = residuals * f.root_weights
+    room = np.where(f.leverage < FULL_LEVERAGE, 1.0 - f.leverage, np.nan)
+    half_square = np.nan_to_num(weighted / np.sqrt(room))
+    moved = f.basis.T * half_square
+    spread = f.back @ moved
+    covariance = free @ (spread @ spread.T) @ free.T
+    freedom = _freedom(f, free, constraint is not None)
+    deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    open_directions = _open_directions(f, free, np.linalg.norm(design * f.root_weights[:, None], axis=0))
+    undetermined = np.any(np.abs(open_directions) > 1e-6, axis=0) if f.null.size else np.zeros(p, dtype=bool)
+    coefficients = np.where(undetermined, np.nan, coefficients)
+    total = float(np.sum((f.root_weights * (response - np.average(response, weights=f.root_weights**2))) ** 2))
+    remaining = float(np.sum(weighted**2))
+    left_out = residuals / room
+    variance = remaining / f.freedom if f.freedom > 0 else float("nan")
+    size = np.where(deviation > 0, deviation, 1.0)
+    return LinearFit(
+        coefficients=coefficients,
+        covariance=covariance,
+        freedom=freedom,
+        half_width=np.where(undetermined, np.nan, deviation * t_factor(freedom)),
+        residuals=residuals,
+        leverage=f.leverage,
+        left_out=left_out,
+        cooks_distance=weighted**2 * f.leverage / (room**2 * max(f.rank, 1) * variance)
+        if variance and variance > 0
+        else np.full(len(response), np.nan),
+        rms=float(np.sqrt(np.mean(residuals**2))),
+        press_rms=float(np.sqrt(np.nanmean(left_out**2))) if np.any(np.isfinite(left_out)) else float("nan"),
+        r_squared=1.0 - remaining / total if total > 0.0 else float("nan"),
+        aicc=float(aicc(f, weighted)),
+        runs_probability=runs_probability(residuals),
+        condition=f.condition,
+        digits=_digits(f, inner, remaining**0.5),
+        correlation=covariance / np.outer(size, size),
+        open_directions=open_directions,
+        rank=f.rank,
+    )
+
+
+def _digits(f: Factorised, coefficients: Array, remaining: float) -> float:
+    """Digits that rounding leaves: lost by the condition number, and by its square times what the fit leaves over.
+
+    Bjorck (1996), section 1.4.3, with columns of unit length.
+    """
+    size = float(np.linalg.norm(coefficients * np.linalg.norm(f.design, axis=0)))
+    loss = f.condition + f.condition**2 * (remaining / size if size > 0.0 else 0.0)
+    return DOUBLE_DIGITS - float(np.log10(max(loss, 1.0)))
+
+
+def _open_directions(f: Factorised, free: Array, scale: Array) -> Array:
+    """Directions that no row determines, in coefficients scaled by their columns, unit length, shape (k, p)."""
+    inner = np.linalg.norm(f.design, axis=0)
+    directions = (free @ (f.null / np.where(inner > 0.0, inner, 1.0)[:, None])) * np.where(scale > 0.0, scale, 1.0)[
+        :, None
+    ]
+    size = np.linalg.norm(directions, axis=0)
+    return np.asarray((directions / np.where(size > 0.0, size, 1.0)).T)
+
+
+def _freedom(f: Factorised, free: Array, constrained: bool) -> Array:
+    """Bell-McCaffrey degrees of freedom per coefficient; through the constraint where there is one."""
+    if not constrained:
+        return bell_mccaffrey(f)
+    return bell_mccaffrey(replace(f, back=free @ f.back))
+
+
+@dataclass(frozen=True, slots=True)
+class NestedTest:
+    """Fisher's ratio.
+
+    Attributes
+    ----------
+    ratio : float
+        NaN where it cannot be computed.
+    between, within : int
+        Degrees of freedom of numerator and denominator.
+    probability : float
+        Of so large a ratio by noise alone; NaN where it cannot be computed.
+    """
+
+    ratio: float
+    between: int
+    within: int
+    probability: float
+
+
+def nested_test(small: float, small_rank: int, full: float, full_rank: int, n: int) -> NestedTest:
+    """Compare two nested models by their weighted sums of squared residuals.
+
+    Parameters
+    ----------
+    small, full : float
+        Sums of squares of the smaller and of the full model.
+    small_rank, full_rank : int
+    n : int
+        Rows.
+    """
+    between, within = full_rank - small_rank, n - full_rank
+    if between <= 0 or within <= 0 or full <= 0.0:
+        return NestedTest(float("nan"), between, within, float("nan"))
+    ratio = max(small - full, 0.0) / between / (full / within)
+    return NestedTest(float(ratio), between, within, float(fdtrc(between, within, ratio)))
+
+
+WELL_CONDITIONED = 1e2
+STEPS = 40
+MOST_DIGITS = 15.0
+
+
+def sharpened(
+    fit: LinearFit, terms: tuple[Term, ...], columns: Mapping[str, Array], response: Array, errors: Array | None
+) -> LinearFit:
+    """The fit with refined coefficients and residuals, and with the digits that can be vouched for.
+
+    Parameters
+    ----------
+    fit : LinearFit
+        Of these terms, without a constraint.
+    terms : tuple of Term
+    columns : mapping of variable to (n,) array
+    response : (n,) array
+    errors : (n,) array or None
+        Standard errors that the fit was weighted by.
+
+    Notes
+    -----
+    Rank-deficient and well-conditioned fits are returned as they are.
+    """
+    if fit.rank < len(terms) or fit.condition < WELL_CONDITIONED:
+        return fit
+    f = factorise(design(terms, columns), None if errors is None else errors**-2.0)
+    root = f.root_weights.astype(np.longdouble)
+    exact = root[:, None] * np.column_stack([_power(t, columns, len(response)) for t in terms])
+    target = root * response.astype(np.longdouble)
+    best = fit.coefficients.astype(np.longdouble)
+    left = target - exact @ best
+    change = np.inf
+    for _ in range(STEPS):
+        off = (target - left - exact @ best).astype(np.float64)
+        slope = f.back.T @ (-(exact.T @ left)).astype(np.float64)
+        along = f.basis.T @ off
+        step = f.back @ (along - slope)
+        best = best + step
+        left = left + (off - f.basis @ (along - slope))
+        size = np.maximum(np.abs(best.astype(np.float64)), np.finfo(float).tiny)
+        before, change = change, float(np.max(np.abs(step) / size))
+        if change < 1e-17 or change > 0.5 * before:
+            break
+    matrix, remaining = np.abs(exact).astype(np.float64), np.abs(left).astype(np.float64)
+    through = np.abs(f.back @ f.back.T) @ (matrix.T @ remaining)
+    direct = np.abs(f.estimator) @ (np.abs(target).astype(np.float64) + matrix @ size)
+    rounding = float(np.finfo(np.longdouble).eps * np.max((through + direct) / size))
+    return replace(
+        fit,
+        coefficients=best.astype(np.float64),
+        residuals=(left / root).astype(np.float64),
+        digits=min(MOST_DIGITS, -float(np.log10(max(rounding, change, 1e-300)))),
+    )
+
+
+def _power(term: Term, columns: Mapping[str, Array], n: int) -> np.ndarray[tuple[int], np.dtype[np.longdouble]]:
+    out = np.ones(n, dtype=np.longdouble)
+    for variable, power, absolute in term.factors:
+        base = columns[variable].astype(np.longdouble)
+        out = out * (np.abs(base) if absolute else base) ** power
+    return out

@@ -1,0 +1,1 @@
+"""Budgets, grid convergence and propagation."""

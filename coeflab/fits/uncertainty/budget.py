@@ -1,0 +1,429 @@
+"""The uncertainty budget of a coefficient: what is in its U95, by how much, and what was not assessed.
+
+Parts are joined as a root sum of squares (JCGM 100:2008, ITTC 7.5-02-06-04) and taken as independent. An input error is
+one that all points of a campaign share.
+
+How the uncertain inputs of a campaign move the coefficients that its sweeps give.
+
+Every coefficient of a fit is one function of the declared inputs: the sweeps refitted with their members held fixed, then
+moved by the error of the reference point. Linear sensitivities and Monte Carlo are of that same function.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.types import Array, brief
+from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.uncertainty.grid_convergence import GridStudy, gravest, grid_studies
+from coeflab.fits.uncertainty.propagation import STEP, Propagated, displaced, normal_draws, refit, summary_of
+from coeflab.law.coefficient import Coefficient, CoefficientSet, transfer_matrix
+from coeflab.law.symbols import ANGULAR, MOMENTS, primed
+from coeflab.tables.campaign import NAMES, InputUncertainty
+from coeflab.tables.force_table import ForceTable
+
+ROUNDING = 1e-9
+NEWTON = 4
+
+
+@dataclass(frozen=True, slots=True)
+class InputPart:
+    """How one uncertain input moves a coefficient.
+
+    Attributes
+    ----------
+    name : str
+    half_width : float
+        Declared: rad, m or relative.
+    sensitivity : float
+        Derivative of the coefficient by the input.
+    """
+
+    name: str
+    half_width: float
+    sensitivity: float
+
+    @property
+    def linear(self) -> float:
+        """95 % half-width of the coefficient from this input."""
+        return abs(self.sensitivity) * self.half_width
+
+
+def acting(component: str, rate: bool, angle: bool | None = None) -> tuple[str, ...]:
+    """Inputs that can act on a coefficient of a component and whose effect its own rows show.
+
+    Parameters
+    ----------
+    component : str
+    rate : bool
+        It multiplies a rate.
+    angle : bool, optional
+        Its rows set an angle; by default those that are no rates do. An angle error of a rotating arm adds a drift whose
+        coupling with the rate a sweep of the rate alone does not know.
+    """
+    moment = component in MOMENTS
+    names = {
+        "angle": not rate if angle is None else angle, "rate": rate, "speed": True, "force": not moment,
+        "moment": moment, "reference_point": component in ("M", "N") or rate, "length": True, "density": True,
+    }  # fmt: skip
+    return tuple(n for n, acts in names.items() if acts)
+
+
+def perturbed(sweep: Sweep, names: Sequence[str]) -> Callable[[Array], Array]:
+    """The sweep's value as a function of input errors, members held fixed: (s, k) deviations -> (s,) values.
+
+    A deviation d says that the true angle is the set one plus d, that true speed, rate, length, density and forces are
+    1 + d times those in the table. The reference point is left to `CoefficientSet.about`.
+    """
+    force_power = 3 if sweep.component in MOMENTS else 2
+    rate = sweep.variable in ANGULAR
+
+    def values(deviations: Array) -> Array:
+        error = dict(zip(names, deviations.T, strict=True))
+        none = np.zeros(len(deviations))
+        one = {n: 1.0 + error.get(n, none) for n in NAMES}
+        x_factor = one["rate"] * one["length"] / one["speed"] if rate else none + 1.0
+        calibration = one["moment" if sweep.component in MOMENTS else "force"]
+        y_factor = calibration / (one["density"] * one["speed"] ** 2 * one["length"] ** force_power)
+        offset = none if rate else error.get("angle", none)
+        x, y = displaced(sweep.x, offset, x_factor, sweep.y, y_factor, sweep.is_angle)
+        return refit(sweep.recommendation.members, x, y)
+
+    return values
+
+
+def moved_by(
+    fit: FitResult, sweeps: tuple[Sweep, ...], declared: InputUncertainty, draws: int, seed: int
+) -> list[tuple[tuple[InputPart, ...], Propagated]]:
+    """Inputs of every sweep's coefficient, and all inputs together by both ways."""
+    names = declared.declared
+    half = np.array([getattr(declared, n) for n in names], dtype=float)
+    function, transferable = _of_inputs(fit, sweeps, names)
+    step = STEP * half
+    around = function(np.vstack([np.diag(step), -np.diag(step)]))
+    gradients = (around[: len(names)] - around[len(names) :]) / (2.0 * step[:, None])
+    nominal = function(np.zeros((1, len(names))))[0]
+    gradients = np.where(np.abs(gradients * half[:, None]) > ROUNDING * np.abs(nominal), gradients, 0.0)
+    covariance = np.diag((half / 2.0) ** 2)
+    sample = function(normal_draws(covariance, draws, seed))
+    out = []
+    for i, sweep in enumerate(sweeps):
+        acts = [
+            n for n in acting(sweep.component, sweep.variable in ANGULAR) if n != "reference_point" or transferable[i]
+        ]
+        inputs = tuple(
+            InputPart(n, float(half[k]), float(gradients[k, i]))
+            for k, n in enumerate(names)
+            if n in acts or gradients[k, i] != 0.0
+        )
+        out.append((inputs, summary_of(sample[:, i], float(nominal[i]), gradients[:, i], covariance, seed)))
+    return out
+
+
+def _of_inputs(
+    fit: FitResult, sweeps: tuple[Sweep, ...], names: tuple[str, ...]
+) -> tuple[Callable[[Array], Array], NDArray[np.bool_]]:
+    """All coefficients of a fit as functions of the inputs, (s, k) -> (s, m), and which of them a transfer determines.
+
+    The transfer is a quadratic of the shift, I + d A + d^2 B. A fit may have swept about another point than the one that
+    its coefficients are about; how far forward the coefficients' point lies is read off the coefficients.
+    """
+    symbols = tuple(s.symbol for s in sweeps)
+    length = fit.coefficients.scaling.length
+    at = [transfer_matrix(symbols, frozenset(symbols), np.array([d / length, 0.0, 0.0])) for d in (1.0, -1.0)]
+    known = at[0][1] & at[1][1]
+    first = np.where(known[:, None], 0.5 * (at[0][0] - at[1][0]), 0.0)
+    second = np.where(known[:, None], 0.5 * (at[0][0] + at[1][0]) - np.eye(len(symbols)), 0.0)
+    raw = np.array([s.recommendation.value for s in sweeps], dtype=float)
+    final = np.array([fit.coefficients[s].value or 0.0 for s in symbols])
+    slopes, curves = first @ raw, second @ raw
+    k = int(np.argmax(np.abs(slopes)))
+    shift = 0.0
+    if slopes[k] != 0.0:
+        for _ in range(NEWTON):
+            shift += (final[k] - raw[k] - shift * slopes[k] - shift**2 * curves[k]) / (
+                slopes[k] + 2 * shift * curves[k]
+            )
+    each = [perturbed(s, names) for s in sweeps]
+
+    def values(deviations: Array) -> Array:
+        about = np.column_stack([f(deviations) for f in each])
+        dx = np.full((len(deviations), 1), shift)
+        if "reference_point" in names:
+            dx = dx + deviations[:, [names.index("reference_point")]]
+        return np.asarray(about + dx * (about @ first.T) + dx**2 * (about @ second.T))
+
+    return values, known
+
+
+DRAWS, SEED = 2000, 1  # 2.5 % tails of 50 draws each: half-widths to about 3 %
+TELLING = 0.05  # of the largest force: the relative grid error of a smaller one says nothing
+ALWAYS_OPEN = {
+    "cfd": ("turbulence model", "domain and boundary conditions"),
+    "experiment": ("rig interference and blockage",),
+    "literature": ("whatever the source left out",),
+    "synthetic": (),
+}
+COUPLED = "angle, coupled with the rate"
+NOT_OF_A_COMPUTATION = ("force", "moment")
+
+
+@dataclass(frozen=True, slots=True)
+class BudgetPart:
+    """One part of a U95.
+
+    Attributes
+    ----------
+    name : str
+        ``random``, ``model form``, ``grid``, or the name of an input.
+    half_width : float
+        95 %, primed.
+    share : float or None
+        Of the variance, 0 to 1; None where no U95 is given.
+    """
+
+    name: str
+    half_width: float
+    share: float | None
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Budget:
+    """The budget of one coefficient.
+
+    Attributes
+    ----------
+    symbol, campaign, body, table, kind : str
+        ``kind`` of the source: ``cfd``, ``experiment``, ``literature`` or ``synthetic``.
+    value : float
+        Primed.
+    parts : tuple of BudgetPart
+        Assessed ones only; ``random and model form`` in one where a move of the reference point has joined them.
+    u95 : float or None
+        None where the fit itself gives none.
+    inputs : tuple of InputPart
+        Those that act on this coefficient.
+    monte_carlo : Propagated or None
+        All inputs together, linear beside Monte Carlo; None where none was declared.
+    grid : GridStudy or None
+    window : float or None
+        How far the value moves when no window may exceed a cap, 2 / sqrt 3 times the largest move; for information, as
+        each form has its own window and the model-form part holds that choice already.
+    unassessed : tuple of str
+    """
+
+    symbol: str
+    campaign: str
+    body: str
+    table: str
+    kind: str
+    value: float
+    parts: tuple[BudgetPart, ...]
+    u95: float | None
+    inputs: tuple[InputPart, ...]
+    monte_carlo: Propagated | None
+    grid: GridStudy | None
+    window: float | None
+    unassessed: tuple[str, ...]
+
+    def part(self, name: str) -> float | None:
+        """Half-width of a part; None where it was not assessed."""
+        return next((p.half_width for p in self.parts if p.name == name), None)
+
+    @property
+    def input(self) -> float | None:
+        """All inputs together, linear; None where none was declared."""
+        return None if self.monte_carlo is None else self.monte_carlo.linear
+
+    def joined(self, *names: str) -> float:
+        """Root sum of squares of the named parts that were assessed."""
+        return float(np.sqrt(sum((self.part(n) or 0.0) ** 2 for n in names)))
+
+
+def budgets_of(
+    fit: FitResult, tables: Mapping[str, ForceTable], draws: int = DRAWS, seed: int = SEED
+) -> tuple[Budget, ...]:
+    """Budgets of the coefficients of one fit that come from a sweep and have a value.
+
+    Parameters
+    ----------
+    fit : FitResult
+        As the fit made it, before `with_budget`.
+    tables : mapping of name to ForceTable
+    draws, seed : int
+        Of the Monte Carlo over the inputs.
+    """
+    sweeps = [s for s in fit.sweeps if s.recommendation.value is not None and s.table in tables]
+    if not sweeps:
+        return ()
+    declared = tables[sweeps[0].table].uncertainty
+    moved = None
+    if declared is not None and declared.declared:
+        moved = moved_by(fit, tuple(sweeps), declared, draws, seed)
+    found = []
+    for i, sweep in enumerate(sweeps):
+        c = fit.coefficients[sweep.symbol]
+        if c.value is not None:
+            found.append(_budget(c, sweep, tables[sweep.table], *(moved[i] if moved else ((), None))))
+    return tuple(found)
+
+
+def _budget(
+    c: Coefficient, sweep: Sweep, table: ForceTable, inputs: tuple[InputPart, ...], total: Propagated | None
+) -> Budget:
+    raw = sweep.recommendation.value or 0.0
+    apart = [abs(s.value - raw) for s in sweep.sensitivity if s.value is not None]
+    fitted = {"random": c.parts.random, "model form": c.parts.model_form}
+    if c.u95 is not None and c.parts.random is None:
+        fitted = {"random and model form": c.u95}
+    wanted = acting(sweep.component, sweep.variable in ANGULAR)
+    lacking = undeclared(wanted, (table,), inputs) + ([COUPLED] if sweep.variable in ANGULAR else [])
+    if _true_by_construction((table,)):
+        lacking = []
+    window = 2.0 * max(apart) / 3.0**0.5 if apart else None
+    return budget_of(c, sweep.component, (table,), fitted, inputs, total, lacking, window)
+
+
+def budget_of(
+    c: Coefficient,
+    component: str,
+    tables: Sequence[ForceTable],
+    fitted: Mapping[str, float | None],
+    inputs: tuple[InputPart, ...],
+    total: Propagated | None,
+    lacking: Sequence[str],
+    window: float | None = None,
+    study: GridStudy | None = None,
+) -> Budget:
+    """The budget of a coefficient.
+
+    Parameters
+    ----------
+    c : Coefficient
+        With a value.
+    component : str
+        X .. N, for its grid studies.
+    tables : sequence of ForceTable
+        Those that it comes from.
+    fitted : mapping of part to half-width
+        What the fit assessed; None where it could have and did not.
+    inputs, total
+        See `Budget`.
+    lacking : sequence of str
+        Inputs that may act and were not assessed.
+    window : float, optional
+        See `Budget`.
+    study : GridStudy, optional
+        The one to take; by default the gravest of the component in these tables.
+    """
+    value = 0.0 if c.value is None else c.value
+    kinds = tuple(dict.fromkeys(t.source.kind for t in tables))
+    found = {name: part for name, part in fitted.items() if part is not None}
+    open_parts = [name for name, part in fitted.items() if part is None]
+    study = study or grid_study_of(tables, component)
+    relative = None if study is None else study.convergence.relative
+    if relative is not None:
+        found["grid"] = relative * abs(value)
+    elif "cfd" in kinds:
+        open_parts.append("grid" if study is None else f"grid: {study.convergence.convergence}")
+    found.update({p.name.replace("_", " "): p.linear for p in inputs if p.linear > 0.0})
+    unassessed = (*open_parts, *lacking, *(u for kind in kinds for u in ALWAYS_OPEN[kind]))
+    u95 = None if c.u95 is None else float(np.sqrt(sum(h * h for h in found.values())))
+    parts = tuple(BudgetPart(n, h, (h / u95) ** 2 if u95 else None) for n, h in found.items())
+    return Budget(
+        c.symbol, c.campaign or "", c.body, c.table or "", kinds[0], value, parts, u95, inputs, total, study, window, unassessed
+    )  # fmt: skip
+
+
+def grid_study_of(tables: Sequence[ForceTable], component: str, variables: Sequence[str] = ()) -> GridStudy | None:
+    """The gravest grid study of a component in computed tables; one where the force is next to nothing has no relative
+    error to carry on.
+
+    Parameters
+    ----------
+    tables : sequence of ForceTable
+    component : str
+    variables : sequence of str
+        Only studies in which one of these moves; all where none is named.
+    """
+    studies: list[GridStudy] = []
+    for table in tables:
+        if table.source.kind != "cfd" or component not in table.forces:
+            continue
+        force = table.forces[component][table.usable[component]]
+        least = TELLING * float(np.max(np.abs(force), initial=0.0))
+        found = [g for g in grid_studies(table, component) if not variables or set(variables) & set(g.moving)]
+        studies += [g for g in found if abs(g.convergence.values[g.convergence.used]) >= least]
+    return gravest(tuple(studies))
+
+
+def _true_by_construction(tables: Sequence[ForceTable]) -> bool:
+    return all(t.source.kind == "synthetic" and t.uncertainty is None for t in tables)
+
+
+def undeclared(wanted: Sequence[str], tables: Sequence[ForceTable], inputs: Sequence[InputPart]) -> list[str]:
+    """Inputs that may act and were not assessed, by name; none where the tables are synthetic and declare none."""
+    if _true_by_construction(tables):
+        return []
+    computed = all(t.source.kind == "cfd" for t in tables)
+    known = {p.name.split(" ")[0] for p in inputs}
+    named = [n for n in wanted if not (computed and n in NOT_OF_A_COMPUTATION)]
+    return [n.replace("_", " ") for n in named if n not in known]
+
+
+def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
+    """The fit with the grid and input parts in the U95 and covariance of its coefficients."""
+    mine = {b.symbol: b for b in found if b.campaign == fit.campaign}
+    if not any(b.u95 is not None for b in mine.values()):
+        return fit
+    among = fit.coefficients
+    changed = []
+    for c in among.coefficients:
+        b = mine.get(c.symbol)
+        outside = None if b is None else float(np.hypot(b.input or 0.0, b.part("grid") or 0.0))
+        if b is None or b.u95 is None or not outside:
+            changed.append(c)
+        else:
+            changed.append(replace(c, u95=b.u95, parts=replace(c.parts, input=outside)))
+    wider = replace(among, coefficients=tuple(changed), covariance=covariance(among, tuple(mine.values())))
+    return replace(fit, coefficients=wider)
+
+
+def covariance(among: CoefficientSet, found: Sequence[Budget]) -> Array:
+    """Covariance of standard uncertainties of a set with the budgets' further parts, shape (k, k).
+
+    Random parts keep the correlation of the set. A grid error is common to the coefficients of one component that take it
+    from one study, and independent of others. An input error is common to the coefficients of a campaign, so that it
+    cancels where a ratio does not feel it.
+    """
+    return np.asarray(among.covariance + further(among.symbols, [c.campaign for c in among.coefficients], found))
+
+
+def _one_grid(a: Budget, b: Budget) -> bool:
+    """Whether two budgets take their grid part from one study."""
+    if a.grid is None or b.grid is None:
+        return False
+    return (a.grid.table, a.grid.component, a.grid.setting) == (b.grid.table, b.grid.component, b.grid.setting)
+
+
+def further(symbols: Sequence[str], campaigns: Sequence[str | None], found: Sequence[Budget]) -> Array:
+    """Covariance that the grid and input parts add, shape (k, k); symbols with or without prime."""
+    by = {(primed(b.symbol), b.campaign): b for b in found}
+    chosen = [by.get((primed(s), c or "")) for s, c in zip(symbols, campaigns, strict=True)]
+    out = np.zeros((len(symbols), len(symbols)))
+    for i, a in enumerate(chosen):
+        for j, b in enumerate(chosen):
+            if a is None or b is None or a.campaign != b.campaign:
+                continue
+            other = {p.name: p.sensitivity for p in b.inputs}
+            out[i, j] += sum(p.sensitivity * other.get(p.name, 0.0) * p.half_width**2 for p in a.inputs) / 4.0
+            if i == j or _one_grid(a, b):
+                out[i, j] += (
+                    float(np.copysign(a.joined("grid"), a.value) * np.copysign(b.joined("grid"), b.value)) / 4.0
+                )
+    return out

@@ -1,0 +1,112 @@
+"""Parameter files in the formats of other programs: one folder a program, with ``write``, ``read`` and its force law."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.registry import Plugin, Registry
+from coeflab.vehicle.parameter_file import ParameterFile
+
+EXPORTERS = Registry(__name__, "exporter", Exporter)  # type: ignore[type-abstract]
+
+
+PARAMETER_IMPORTERS = Registry(__name__, "parameter importer", ParameterImporter)  # type: ignore[type-abstract]
+
+
+@runtime_checkable
+class Exporter(Plugin, Protocol):
+    """Renders a parameter file for a target; pure, so that golden files hold it."""
+
+    def render(self, parameters: ParameterFile) -> Mapping[str, bytes]:
+        """Contents by file name.
+
+        Parameters
+        ----------
+        parameters : ParameterFile
+        """
+        ...
+
+
+@runtime_checkable
+class SimulatorExporter(Exporter, Protocol):
+    """An exporter whose target has a force law of its own, which proves what the export is worth.
+
+    ``adds_coriolis`` says whether the target itself adds -C_A(nu) nu from the added mass that it is given. ``holds`` names the
+    keys of the file beside its force law, of hydrostatics, thrusters and surfaces, that the target is given.
+    """
+
+    adds_coriolis: bool
+    holds: frozenset[str]
+
+    def force(self, files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n, 6) force of the target's law, FRD, about the file's reference point, in steady motion.
+
+        Parameters
+        ----------
+        files : mapping of str to bytes
+            What `render` made.
+        nu : (n, 6) array
+            u v w p q r, SI.
+        """
+        ...
+
+    def not_held(self, parameters: ParameterFile) -> tuple[str, ...]:
+        """Terms of the law that the target has no place for.
+
+        Parameters
+        ----------
+        parameters : ParameterFile
+        """
+        ...
+
+    def missing(self, parameters: ParameterFile) -> tuple[str, ...]:
+        """What the target needs and the file does not have.
+
+        Parameters
+        ----------
+        parameters : ParameterFile
+        """
+        ...
+
+    def changes(self, parameters: ParameterFile) -> tuple[str, ...]:
+        """What the target is given otherwise than the file has it, in words.
+
+        Parameters
+        ----------
+        parameters : ParameterFile
+        """
+        ...
+
+
+@runtime_checkable
+class InertialExporter(SimulatorExporter, Protocol):
+    """A simulator's exporter that also says what added mass the target integrates, so that accelerations are compared too."""
+
+    def added_mass(self, files: Mapping[str, bytes]) -> NDArray[np.float64]:
+        """(6, 6) added mass read from the written files, FRD, about the file's reference point, kg, kg m, kg m^2.
+
+        Parameters
+        ----------
+        files : mapping of str to bytes
+            What `render` made.
+        """
+        ...
+
+
+@runtime_checkable
+class ParameterImporter(Plugin, Protocol):
+    """Reads somebody's model file."""
+
+    def read(self, path: Path) -> ParameterFile:
+        """The model as a parameter file.
+
+        Parameters
+        ----------
+        path : Path
+        """
+        ...

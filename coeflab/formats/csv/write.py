@@ -1,0 +1,62 @@
+"""Coefficients, and every fitted model on a grid, as CSV tables with units in the header."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Mapping, Sequence
+
+from coeflab.core.wording import file_stem, identifier
+from coeflab.formats.look_up import LookUp, look_up
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterCoefficient
+
+summary = "coefficients.csv: primed and SI values, U95, status, origin; a table_N.csv for each fitted model"
+citations = ("sname1950",)
+
+HEADER = (
+    "symbol", "value [-]", "u95 [-]", "random [-]", "model_form [-]", "input [-]", "value_si", "unit_si", "status", "origin",
+    "table", "estimator", "window_low", "window_high", "n_points", "citation",
+)  # fmt: skip
+
+
+def _cell(value: object) -> str:
+    if value is None or value != value:  # noqa: PLR0124 - NaN alone differs from itself
+        return ""
+    text = str(value).lower() if isinstance(value, bool) else repr(value) if isinstance(value, float) else str(value)
+    return "'" + text if isinstance(value, str) and text[:1] in "=+-@\t\r" and text else text
+
+
+def _table(rows: Iterable[Sequence[object]]) -> bytes:
+    out = io.StringIO()
+    csv.writer(out, lineterminator="\n").writerows([_cell(v) for v in row] for row in rows)
+    return out.getvalue().encode()
+
+
+def render(parameters: ParameterFile) -> Mapping[str, bytes]:
+    """The coefficients of a parameter file and the look-up tables of its models, numbers with all their digits.
+
+    Text that a spreadsheet would take for a formula is set behind an apostrophe. A value is empty where the model may not
+    be read.
+    """
+    files = {
+        f"{file_stem(parameters.name)}.coefficients.csv": _table([HEADER, *map(_coefficient, parameters.coefficients)])
+    }
+    for k, model in enumerate(parameters.models, 1):
+        response = identifier(model.response)
+        files[f"{file_stem(parameters.name)}.table_{k}_{response}.csv"] = _table(_look_up(look_up(model)))
+    return files
+
+
+def _coefficient(c: ParameterCoefficient) -> tuple[object, ...]:
+    low, high = c.window or (None, None)
+    return (
+        c.symbol, c.value, c.u95, c.parts.random, c.parts.model_form, c.parts.input, c.value_si, c.unit_si, c.status, c.origin,
+        c.table, c.estimator, low, high, c.n_points, c.citation,
+    )  # fmt: skip
+
+
+def _look_up(of: LookUp) -> list[Sequence[object]]:
+    unit = "-" if of.model.unit == "1" else of.model.unit
+    variables = [f"{v.name} [{'-' if v.unit == '1' else v.unit}]" for v in of.model.variables]
+    return [[*variables, f"{of.model.response} [{unit}]", f"u95 [{unit}]", "inside the data [-]"], *of.rows]

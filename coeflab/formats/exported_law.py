@@ -1,0 +1,389 @@
+"""What exports to simulators of second order in the velocities share: the law, its form, an added mass that they can carry.
+
+A law near a straight course ahead, whatever its terms are called, and whether a target of another form takes a term.
+
+The force law of a parameter file as named numbers and expressions, for targets that are programs.
+
+Absolute values in a name are written with ``a`` before the factor, ``Yvav`` for Yv|v|, as in MSS navalvessel.m.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from coeflab.core.types import Array, brief
+from coeflab.core.units import STANDARD_GRAVITY
+from coeflab.law.added_mass import definiteness
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.law.terms import Term, canonical, parse_suffix
+from coeflab.vehicle.force_law import ForceLaw, LawTerm, force_law
+from coeflab.vehicle.inertia import centre_of_gravity, water_inertia
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.second_order import SecondOrder, resists, second_order, slot
+
+
+def number(value: float) -> str:
+    """All digits, and no minus before a zero."""
+    return repr(float(value) + 0.0)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class ExportedLaw:
+    """A law as simulators of second order take it, in FRD about the file's reference point.
+
+    Attributes
+    ----------
+    law : ForceLaw
+    form : SecondOrder
+        The law's terms that have a place in it.
+    matrix : (6, 6) array
+        Added mass that the vehicle moves with, see `coeflab.vehicle.inertia`; zeros where nothing is known.
+    statements : tuple of str
+        Where it comes from, then what was done to it.
+    """
+
+    law: ForceLaw
+    form: SecondOrder
+    matrix: Array
+    statements: tuple[str, ...]
+
+    @property
+    def inert(self) -> bool:
+        """Whether there is no added mass."""
+        return not np.any(self.matrix)
+
+
+def exported_law(parameters: ParameterFile) -> ExportedLaw:
+    """The law of a file and the added mass that a physics engine integrates, the same that `coeflab simulate` does.
+
+    A file without mass cannot be simulated, and engines take a default mass: there an added mass that is not positive by itself
+    keeps its diagonal alone.
+    """
+    law, water = force_law(parameters), water_inertia(parameters)
+    matrix, statements = water.matrix, water.statements
+    if parameters.mass is None and not definiteness(matrix).holds:
+        matrix = np.diag(np.maximum(np.diag(matrix), 0.0))
+        said = "added mass: only its diagonal, because the whole is not positive and no mass is known: entries are missing or wrong"
+        statements = (*statements, said)
+    return ExportedLaw(law, second_order(law), matrix, statements)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Afloat:
+    """Weight and buoyancy as an export writes them, those that `coeflab.motion.vehicle.vehicle` moves the file with.
+
+    Attributes
+    ----------
+    mass : float
+        kg.
+    centre, centre_of_buoyancy : (3,) arrays
+        From the reference point, m, FRD.
+    volume : float
+        Displaced, m^3.
+    gravity : float
+        m/s^2.
+    length : float
+        m, of a cylinder of that volume, no shorter than thick.
+    said : str
+        Where volume and centre come from.
+    """
+
+    mass: float
+    centre: Array
+    volume: float
+    centre_of_buoyancy: Array
+    gravity: float
+    length: float
+    said: str
+
+    @property
+    def radius(self) -> float:
+        """Of the cylinder, m."""
+        return float(np.sqrt(self.volume / (np.pi * self.length)))
+
+
+def afloat(parameters: ParameterFile, otherwise: float) -> Afloat:
+    """Mass, displaced volume and their centres: what the file has not is neutral, with both centres in one point.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    otherwise : float
+        kg, the mass that the target takes where the file states neither mass nor buoyancy.
+    """
+    h, density, length = parameters.hydrostatics, parameters.conditions.density, parameters.scaling.length
+    centre = centre_of_gravity(parameters)
+    mass = parameters.mass.mass if parameters.mass is not None else otherwise if h is None else density * h.volume
+    if h is None:
+        volume, at, gravity = mass / density, centre, STANDARD_GRAVITY
+        said = "neutrally buoyant, the centre of buoyancy in the centre of gravity: the file states no buoyancy"
+        if parameters.mass is None:
+            said = f"neutrally buoyant at {mass:g} kg: the file states neither weight nor buoyancy; write mass and volume together"
+    else:
+        volume, at, gravity = h.volume, np.array(h.centre_of_buoyancy), h.gravity
+        x, y, z = (f"{v:g}" for v in at)
+        said = f"displaced volume {volume:g} m^3 at ({x}, {y}, {z}) m, FRD from the reference point, of the file"
+        if parameters.mass is None:
+            centre = at
+            said += f"; the file states no mass: {mass:.6g} kg, neutral, with its centre in that of buoyancy"
+    return Afloat(mass, centre, volume, at, gravity, max(length, (4.0 * volume / np.pi) ** (1.0 / 3.0)), said)
+
+
+def states_buoyancy(parameters: ParameterFile, otherwise: str) -> str:
+    """Why an export has no weight and buoyancy, or not the file's: the file states none, or the target does not take them."""
+    return "the file's hydrostatics are not in it" if parameters.hydrostatics is not None else otherwise
+
+
+def common_changes(parameters: ParameterFile, law: ExportedLaw, *, whole: bool) -> tuple[str, ...]:
+    """What any such export changes, in words; `whole` says whether the target takes v^2 and w^2 of the resistance."""
+    out = [f"numbers are SI: primes times 1/2 rho L^k at {parameters.conditions.density:g} kg/m^3", *law.statements[1:]]
+    terms = [t for t in law.law.terms if t.coefficient]
+    if whole and any(resists(t) for t in terms):
+        out.append(
+            "X0 U^2 is written as u|u| + v^2 + w^2, alike on every course ahead; <coeflab_x0> repeats it for our reader, the target passes it over"
+        )
+    speed = [t.symbol for t in terms if t.speed_power and slot(t) is not None and not (whole and resists(t))]
+    if speed:
+        out.append(
+            f"u stands for U in {', '.join(speed)} (u v for U v, u|u| or u^2 for U^2): alike on a straight course ahead, in drift "
+            "less by 1 - cos(beta) of a term in U, 1 - cos^2(beta) of one in U^2"
+        )
+    return tuple(out)
+
+
+# Of the speed; products such as v|v| err by the first power of a step, which two steps take off.
+TOLERANCE, STEP = 1e-6, 1e-5
+
+
+def canonical_name(term: LawTerm) -> str | None:
+    """What a term is on a straight course ahead, where U = u = |u|: ``Yv`` for Yv, Yuv, Yv|u|; ``X0`` for X0, Xu|u|, Xuu, Xu;
+    ``Yv|v|``; None for products of other motions and for terms even in one.
+    """
+    match [f for f in canonical(term.term) if f[0] != "u"]:
+        case []:
+            return f"{term.component}0"
+        case [(x, 1, True)]:
+            return term.component + x
+        case [(x, 2, True)]:
+            return f"{term.component}{x}|{x}|"
+        case _:
+            return None
+
+
+def straight_coefficients(law: ForceLaw, speed: float) -> Mapping[str, float]:
+    """Sums of terms alike on a straight course, by their canonical names.
+
+    Parameters
+    ----------
+    law : ForceLaw
+    speed : float
+        m/s, at which a term in another power of the speed than its name says counts: Xu of a state of rest is X0 = Xu / U.
+
+    Returns
+    -------
+    mapping of str to float
+        SI: ``X0`` by U^2, ``Yv`` by U, ``Yv|v|`` by no power of U.
+    """
+    out: dict[str, float] = {}
+    for t in law.terms:
+        name = canonical_name(t)
+        if name is not None:
+            ahead = sum(n for v, n, _ in t.term.factors if v == "u")
+            rest = t.term.degree - ahead
+            out[name] = out.get(name, 0.0) + t.coefficient * speed ** (t.speed_power + ahead + rest - 2)
+    return out
+
+
+def held_when_straight(force: Callable[[Array], Array], law: ForceLaw, speed: float) -> Callable[[LawTerm], bool]:
+    """A test of terms: constants and those linear in one velocity are held if the target's force has them to 1e-6.
+
+    Terms that are alike on a straight course, such as Yv and Yuv, are held together or not at all.
+
+    Parameters
+    ----------
+    force : callable
+        Velocities (n, 6) -> forces (n, 6) of the target, FRD about the file's reference point.
+    law : ForceLaw
+        Of the file.
+    speed : float
+        m/s, straight ahead; derivatives are taken there, extrapolated to no step, for a term such as r|r| bends the line.
+    """
+    straight = np.array([speed, 0.0, 0.0, 0.0, 0.0, 0.0])
+    wanted = straight_coefficients(law, speed)
+
+    def held(t: LawTerm) -> bool:
+        name = canonical_name(t)
+        if name is None or "|" in name or t.speed_power + t.term.degree != 2:
+            return False
+        i = COMPONENTS.index(t.component)
+        if name.endswith("0"):
+            theirs, ours = float(force(straight[None])[0, i]), wanted[name] * speed**2
+        else:
+            step = speed * np.eye(6)[MOTIONS.index(name[1:])]
+            slopes = []
+            for h in (STEP, STEP / 2.0):
+                pair = force(np.array([straight + h * step, straight - h * step]))
+                slopes.append(float(pair[0, i] - pair[1, i]) / (2.0 * h * speed))
+            theirs, ours = 2.0 * slopes[1] - slopes[0], wanted[name] * speed
+        return abs(theirs - ours) <= TOLERANCE * abs(ours)
+
+    return held
+
+
+_SPELT = re.compile(r"a(dr|ds|db|[uvwpqr](?!dot))")
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class WrittenTerm:
+    """One term of the law.
+
+    Attributes
+    ----------
+    group : {"prime", "rest", "potential"}
+        Primed and multiplied by 1/2 rho L^k and a power of U; SI, whatever U is; primed products of the ideal fluid.
+    name : str
+        SNAME, spelt for a program.
+    value : float
+    component : str
+    length_power : int
+        k of 1/2 rho L^k; 0 for SI.
+    speed_power : int
+    term : Term
+    note : str
+        U95 and origin, in words.
+    """
+
+    group: str
+    name: str
+    value: float
+    component: str
+    length_power: int
+    speed_power: int
+    term: Term
+    note: str
+
+    def expression(self, place: Callable[[str, str], str], power: str) -> str:
+        """The term as an expression.
+
+        Parameters
+        ----------
+        place : callable
+            Group and name -> what the program calls the number.
+        power : str
+            ``^`` or ``**``.
+        """
+        parts = [f"r{self.length_power}"] if self.length_power else []
+        parts.append(place(self.group, self.name))
+        if self.speed_power > 0:
+            parts.append("U" + (f"{power}{self.speed_power}" if self.speed_power > 1 else ""))
+        for variable, n, absolute in self.term.factors:
+            parts.append((f"abs({variable})" if absolute else variable) + (f"{power}{n}" if n > 1 else ""))
+        text = "*".join(parts)
+        return (
+            text
+            if self.speed_power >= 0
+            else f"{text}/U" + (f"{power}{-self.speed_power}" if self.speed_power < -1 else "")
+        )
+
+
+def spelt(symbol: str) -> str:
+    """``Yv|v|'`` as a program can name it: ``Yvav``."""
+    return re.sub(r"\|(\w+)\|", r"a\1", symbol.removesuffix("'"))
+
+
+def sname(name: str) -> str:
+    """The SNAME symbol, without prime, of a name that `spelt` made."""
+    return name[:1] + _SPELT.sub(r"|\1|", name[1:])
+
+
+def written_terms(parameters: ParameterFile) -> tuple[WrittenTerm, ...]:
+    """Every coefficient with a value but accelerations, then the ideal fluid's products that these leave open."""
+    density, length = parameters.conditions.density, parameters.scaling.length
+    out = []
+    for c in parameters.coefficients:
+        d = derivative(c.symbol)
+        if c.value is None or any(f.endswith("dot") for f in d.factors):
+            continue
+        note = c.origin if c.u95 is None else f"U95 {c.u95:.2g}, {c.origin}"
+        rest = c.law == "rest" and c.value_si is not None
+        value = c.value_si if rest and c.value_si is not None else c.value
+        scale, power = (0, 0) if rest else (d.powers[1], d.powers[0])
+        out.append(
+            WrittenTerm(
+                "rest" if rest else "prime",
+                spelt(d.text),
+                value,
+                d.component,
+                scale,
+                power,
+                parse_suffix(d.text[1:]),
+                note,
+            )
+        )
+    ideal = force_law(parameters).ideal
+    for i, component in enumerate(COMPONENTS):
+        for j, first in enumerate(MOTIONS):
+            for k, second in enumerate(MOTIONS[j:], j):
+                value = ideal[i, j, k] * (1.0 if j == k else 2.0)
+                name = component + first + second
+                scale = derivative(name).powers[1]
+                if value:
+                    prime = float(value / (0.5 * density * length**scale))
+                    term = parse_suffix(first + second)
+                    out.append(WrittenTerm("potential", name, prime, component, scale, 0, term, ""))
+    return tuple(out)
+
+
+def written_accelerations(parameters: ParameterFile) -> tuple[dict[str, float], str]:
+    """Primed acceleration derivatives that are not zero, and where they come from."""
+    water = water_inertia(parameters)
+    matrix, source = water.matrix, water.source
+    density, length = parameters.conditions.density, parameters.scaling.length
+    out = {}
+    for i, component in enumerate(COMPONENTS):
+        for j, motion in enumerate(MOTIONS):
+            if matrix[i, j]:
+                name = f"{component}{motion}dot"
+                out[name] = float(-matrix[i, j] / (0.5 * density * length ** derivative(name).powers[1]))
+    return out, source
+
+
+def written_controls(terms: tuple[WrittenTerm, ...]) -> tuple[str, ...]:
+    """The controls that terms use."""
+    used = {v for t in terms for v, _, _ in t.term.factors}
+    return tuple(c for c in CONTROLS if c in used)
+
+
+def not_written(parameters: ParameterFile) -> tuple[str, ...]:
+    """What no expression of velocities and controls holds: products with an acceleration."""
+    dots = [s for s in force_law(parameters).left_out if "dot" in s]
+    return tuple(f"{s} (product with an acceleration)" for s in dots if len(derivative(s).factors) > 1)
+
+
+def written_changes(parameters: ParameterFile, target: str, ideal: str, matrix: str) -> tuple[str, ...]:
+    """How any program has the law, in words.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    target : str
+        Who adds no C_A(nu) nu.
+    ideal : str
+        As what the ideal fluid's products stand.
+    matrix : str
+        What the added mass is called.
+    """
+    water = water_inertia(parameters)
+    return (
+        "axes, signs, primes and reference point are the file's; primes are multiplied by 1/2 rho L^k U^n in the program",
+        f"totals are written, for {target} adds no C_A(nu) nu; products of the ideal fluid that nothing measured speaks of stand as "
+        f"{ideal}",
+        f"{matrix}: {water.source}",
+        *water.warnings,
+    )

@@ -1,0 +1,1 @@
+"""gz-sim with added mass in the link."""

@@ -1,0 +1,1 @@
+"""The Marine Systems Simulator (MSS)."""

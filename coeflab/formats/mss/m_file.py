@@ -1,0 +1,329 @@
+"""Numbers and derivatives of a MATLAB file with plain assignments, and the units that it is written in.
+
+Nothing is run: numbers, ``+ - * / ^`` and names assigned above are computed, all else is passed over. Primes are those of MSS
+VESSELS/npsauv.m, where r2 = rho*L^2/2 and so on tell that the derivatives are primed.
+
+Plain assignments of a MATLAB or Octave file: read as text, never run.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.arithmetic import ArithmeticProblem, evaluate
+from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import M_FILE_BYTES, bounded_number, positive_number
+from coeflab.core.text.toml import read_text
+from coeflab.core.types import brief
+from coeflab.core.wording import one_line
+from coeflab.formats.exported_law import sname
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
+from coeflab.vehicle.imperial_units import FEET_PER_SECOND, FOOT, SLUG, SLUGS
+
+_ASSIGNMENT = re.compile(r"([A-Za-z]\w*(?:\.[A-Za-z]\w*)*)\s*=(?!=)\s*(.*\S)", re.ASCII | re.DOTALL)
+_QUOTED = re.compile(r"'((?:[^']|'')*)'")
+_DOUBLE_QUOTED = re.compile(r'"(?:[^"\\]|\\.|"")*"')
+_OPENING, _CLOSING = "([{", ")]}"
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """``target = expression``, with the line that it begins on; ``target`` may have dots."""
+
+    line: int
+    target: str
+    expression: str
+
+    @property
+    def quoted(self) -> str | None:
+        """The text of a quoted right-hand side; None for anything else."""
+        match = _QUOTED.fullmatch(self.expression)
+        return match[1].replace("''", "'") if match else None
+
+
+def assignments(text: str) -> tuple[Assignment, ...]:
+    """The plain assignments of a file, in order; whatever else it does is passed over.
+
+    Comments (``%``, ``#``, blocks of ``%{``) are dropped and lines that end in ``...`` joined.
+    """
+    out = []
+    for line, statement in _statements(text):
+        match = _ASSIGNMENT.fullmatch(statement)
+        if match:
+            out.append(Assignment(line, match[1], match[2]))
+    return tuple(out)
+
+
+def _statements(text: str) -> list[tuple[int, str]]:
+    out: list[tuple[int, str]] = []
+    held, begun, depth, block = "", 0, 0, 0
+    for number, raw in enumerate(text.splitlines(), 1):
+        if raw.strip() in ("%{", "#{"):
+            block += 1
+        elif block:
+            block -= raw.strip() in ("%}", "#}")
+        else:
+            pieces, depth, more = _pieces(raw, depth)
+            for i, piece in enumerate(pieces):
+                if i:
+                    out.append((begun, held.strip()))
+                    held = ""
+                begun = begun if held.strip() else number
+                held += piece
+            if more or depth:
+                held += " "
+            else:
+                out.append((begun, held.strip()))
+                held = ""
+    out.append((begun, held.strip()))
+    return [(line, s) for line, s in out if s]
+
+
+def _pieces(line: str, depth: int) -> tuple[list[str], int, bool]:
+    """A line cut at ``;`` and ``,`` outside brackets and quotes; the depth of brackets; whether it goes on."""
+    pieces: list[str] = []
+    begun, at = 0, 0
+    while at < len(line):
+        c = line[at]
+        if c in "%#":
+            return [*pieces, line[begun:at]], depth, False
+        if line.startswith("...", at):
+            return [*pieces, line[begun:at]], depth, True
+        opens = c == '"' or (c == "'" and (at == 0 or not (line[at - 1].isalnum() or line[at - 1] in "_)]}'.")))
+        if opens:
+            match = (_QUOTED if c == "'" else _DOUBLE_QUOTED).match(line, at)
+            at = match.end() if match else len(line)
+            continue
+        depth = max(0, depth + (c in _OPENING) - (c in _CLOSING))
+        if c in ";," and not depth:
+            pieces.append(line[begun:at])
+            begun = at + 1
+        at += 1
+    return [*pieces, line[begun:]], depth, False
+
+
+LENGTHS = ("L", "Lpp", "LBP", "LOA", "Loa", "L_auv", "length")
+DENSITIES, GRAVITIES, MASSES = ("rho", "rho_water"), ("g", "g_mu"), ("m", "mass")
+_CHANGED = re.compile(r"^[^%#\n]*\bC_?A\s*\(", re.MULTILINE)
+_ADDED = ("CA", "C_A")
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class MFile:
+    """What a file states.
+
+    Attributes
+    ----------
+    numbers, texts : mapping of last name to value
+    derivatives : mapping of SNAME symbol to (group, value)
+    adds_coriolis : bool
+        Whether it computes C_A(nu).
+    changes_coriolis : bool
+        Whether it then sets entries of it.
+    """
+
+    numbers: dict[str, float]
+    texts: dict[str, str]
+    derivatives: dict[str, tuple[str, float]]
+    adds_coriolis: bool
+    changes_coriolis: bool
+
+    def named(self, *names: str) -> tuple[str, float] | None:
+        """The first of these that is a number, with its name."""
+        return next(((n, self.numbers[n]) for n in names if n in self.numbers), None)
+
+    def first(self, *names: str) -> float | None:
+        """Its number alone."""
+        found = self.named(*names)
+        return None if found is None else found[1]
+
+
+def read_m_file(path: Path) -> MFile:
+    """Read a file.
+
+    Raises
+    ------
+    InputError
+        No derivative, or one that is no plain arithmetic or has two values; NaN or Inf in any place.
+    """
+    text = read_text(path, M_FILE_BYTES)
+    lines = assignments(text)
+    adds = any("m2c(" in a.expression or a.target.split(".")[-1] in _ADDED for a in lines)
+    out = MFile({}, {}, {}, adds, _CHANGED.search(text) is not None)
+    names: dict[str, float] = {"pi": math.pi}
+    for a in lines:
+        group, _, last = a.target.rpartition(".")
+        if a.quoted is not None:
+            out.texts.setdefault(last, one_line(a.quoted))
+            continue
+        symbol = _symbol(last)
+        value = _value(a, symbol, names, path)
+        if value is None:
+            continue
+        out.numbers.setdefault(last, value)
+        if symbol and group.rpartition(".")[2] != "ideal":
+            before = out.derivatives.setdefault(symbol, (group.rpartition(".")[2], value))
+            if before[1] != value:
+                raise InputError(f"{last} = {value:g} after {before[1]:g}", "one value", file=path, line=a.line)
+    if not out.derivatives:
+        raise InputError("no derivative such as Yv or Zwdot", "plain assignments of SNAME derivatives", file=path)
+    return out
+
+
+def _value(a: Assignment, symbol: str, names: dict[str, float], path: Path) -> float | None:
+    """The value of an assignment, kept for those below; None where it is none and no derivative is lost by it."""
+    try:
+        names[a.target] = float(evaluate(a.expression, names))
+    except ArithmeticProblem as why:
+        if symbol or _literal(a.expression):
+            raise InputError(
+                f"{shown(a.expression)}: {why}", f"{a.target} as a number, or + - * / ^ of numbers and names above",
+                file=path, line=a.line,
+            ) from None  # fmt: skip
+        names.pop(a.target, None)
+        return None
+    if symbol and (expected := bounded_number(names[a.target])):
+        raise InputError(f"{a.target} = {names[a.target]:g}", expected, file=path, line=a.line)
+    return names[a.target]
+
+
+def _literal(expression: str) -> bool:
+    """Whether it is one number, NaN and Inf among them."""
+    try:
+        float(expression)
+    except ValueError:
+        return False
+    return True
+
+
+def _symbol(name: str) -> str:
+    try:
+        return derivative(sname(name)).text
+    except InputError:
+        return ""
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class MValues:
+    """Derivatives as primes, and what told their units.
+
+    Attributes
+    ----------
+    scaling : Scaling
+    conditions : Conditions
+    primed : bool
+        Whether the file writes primes.
+    imperial : bool
+        Whether it is in slug and foot.
+    values : mapping of symbol to prime
+    """
+
+    scaling: Scaling
+    conditions: Conditions
+    primed: bool
+    imperial: bool
+    values: dict[str, float]
+
+    @property
+    def units(self) -> tuple[float, float]:
+        """Mass and length of the file, kg and m."""
+        return (SLUG, FOOT) if self.imperial else (1.0, 1.0)
+
+    def product(self, symbol: str) -> float:
+        """SI value of a derivative as the factor of velocities, rates and, where they are missing to two, u."""
+        return float(
+            self.values[symbol] * 0.5 * self.conditions.density * self.scaling.length ** derivative(symbol).powers[1]
+        )
+
+    def stays(self, symbol: str) -> bool:
+        """Whether the force does not grow with the speed: damping about a state of rest."""
+        factors = derivative(symbol).factors
+        return not self.primed and sum(f in MOTIONS for f in factors) != 2 and not is_acceleration(symbol)
+
+    @property
+    def added_mass(self) -> NDArray[np.float64]:
+        """Added mass (6, 6), SI."""
+        return added_mass({s: self.product(s) for s in self.values if is_acceleration(s)})
+
+
+def foreign_values(found: MFile, path: Path, density: float | None = None) -> MValues:
+    """Somebody's own model: SI or slug and foot, primed or not, by what the file itself says.
+
+    Parameters
+    ----------
+    found : MFile
+    path : path
+        For messages.
+    density : float, optional
+        kg/m^3, where the file states none.
+
+    Raises
+    ------
+    InputError
+        No density, or a length or density that is not above zero.
+    """
+    rho = found.first(*DENSITIES)
+    imperial = is_imperial(found)
+    mass_unit, length_unit = (SLUG, FOOT) if imperial else (1.0, 1.0)
+    if rho is None and density is None:
+        raise InputError(
+            "no density", "rho = 1025 or the like", file=path,
+            advice="Add it, in the units of the file, or give it in kg/m^3 (--density 1025).",
+        )  # fmt: skip
+    si = density if rho is None and density is not None else (rho or 0.0) * mass_unit / length_unit**3
+    if expected := positive_number(si):
+        raise InputError(f"rho = {rho:g}", expected.replace("value", "density"), file=path)
+    name, length = found.named(*LENGTHS) or ("1 m", 1.0 / length_unit)
+    if expected := positive_number(length * length_unit):
+        raise InputError(f"{name} = {length:g}", expected.replace("value", "length"), file=path)
+    primed = rho is not None and any(
+        math.isclose(found.numbers[f"r{k}"], 0.5 * rho * length**k, rel_tol=1e-9)
+        for k in range(2, 6)
+        if f"r{k}" in found.numbers
+    )
+    speed = found.first("U0", "U")
+    scaling, at = Scaling(length * length_unit, name), Conditions(si, abs(speed or 0.0) * length_unit or 1.0)
+    values = {s: v if primed else _si(s, v, mass_unit, length_unit) / scaling.factor(s, at)
+              for s, (_, v) in found.derivatives.items()}  # fmt: skip
+    return MValues(scaling, at, primed, imperial, values)
+
+
+def is_imperial(found: MFile) -> bool:
+    """Whether density, or gravity where there is none, is in slug and foot."""
+    rho, gravity = found.first(*DENSITIES), found.first(*GRAVITIES) or 0.0
+    feet = FEET_PER_SECOND[0] < gravity < FEET_PER_SECOND[1]
+    return SLUGS[0] < rho < SLUGS[1] if rho is not None else feet
+
+
+def _si(symbol: str, value: float, mass_unit: float, length_unit: float) -> float:
+    d = derivative(symbol)
+    power = (2 if d.component in MOMENTS else 1) - sum(f.removesuffix("dot") in LINEAR for f in d.factors)
+    return value * mass_unit * length_unit**power
+
+
+def is_acceleration(symbol: str) -> bool:
+    """Whether a symbol is an acceleration derivative."""
+    factors = derivative(symbol).factors
+    return len(factors) == 1 and factors[0].endswith("dot")
+
+
+def added_mass(accelerations: Mapping[str, float]) -> NDArray[np.float64]:
+    """Added mass (6, 6) of acceleration derivatives; one whose mirror image is not stated stands for both."""
+    matrix = np.zeros((6, 6))
+    for symbol, value in accelerations.items():
+        matrix[COMPONENTS.index(symbol[0]), MOTIONS.index(symbol[1])] = -value
+    for i in range(6):
+        for j in range(6):
+            if f"{COMPONENTS[i]}{MOTIONS[j]}dot" not in accelerations:
+                matrix[i, j] = matrix[j, i]
+    return matrix

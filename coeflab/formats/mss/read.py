@@ -1,0 +1,244 @@
+"""Vehicle models of the Marine Systems Simulator (MSS): ``.m`` files whose coefficients are plain assignments."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from coeflab.core.axes import Datum
+from coeflab.core.errors import InputError
+from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.table import Check, Severity
+from coeflab.formats.mss.m_file import (
+    DENSITIES,
+    GRAVITIES,
+    MASSES,
+    MFile,
+    MValues,
+    added_mass,
+    foreign_values,
+    is_acceleration,
+    read_m_file,
+)
+from coeflab.formats.stated_file import MODEL_ORIGIN, Law, Stated, StatedMass, matrix_doubts, stated_file
+from coeflab.law.added_mass import AddedMass, potential_part
+from coeflab.law.rigid_body import ideal_quadratics
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.vehicle.imperial_units import SLUGS, gravity, gyration, no_mass, water, weight
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.plausibility import Written, munk_twice
+
+summary = "MSS .m files with plain assignments: primed or SI derivatives, slug and foot units told by rho or g"
+citations = ("sname1950", "fossen2011", "mss")
+signs = "MSS takes Xudot ... and damping such as Yv negative."
+
+OWN_AXES = ("Xuu", "Yvv", "Zww", "Kpp", "Mqq", "Nrr")
+TURNING = ("Nv", "Nuv", "Mw", "Muw")
+
+
+def read(path: Path, density: float | None = None) -> ParameterFile:
+    """Read a model file.
+
+    Parameters
+    ----------
+    path : path
+    density : float, optional
+        kg/m^3, where the file states none.
+
+    Raises
+    ------
+    InputError
+        No derivative or no density in it, a derivative that is no plain arithmetic or has two values.
+    """
+    found = read_m_file(path)
+    source = InputFile(path.name, sha256_of(path))
+    stated = _own(found, path) if "coeflab" in found.numbers else _foreign(found, path, density)
+    return stated_file(stated, [source], citations)
+
+
+def examine(path: Path) -> tuple[Check, ...]:
+    """What this format lets go wrong and a parameter file cannot show.
+
+    Raises
+    ------
+    InputError
+    """
+    found = read_m_file(path)
+    if "coeflab" in found.numbers:
+        own = MValues(*_own_conditions(found, path), True, False, {s: v for s, (_, v) in found.derivatives.items()})
+        return _munk(found, own)
+    values = foreign_values(found, path, density=1.0)
+    return (*_units(found, values), *_munk(found, values), *_capsizes(found))
+
+
+def _units(found: MFile, values: MValues) -> list[Check]:
+    out: list[Check] = []
+    mass, forces = found.named(*MASSES), found.named("W")
+    if rho := found.named(*DENSITIES):
+        out.append(
+            Check("mss", f"density {rho[0]}", Severity.NOTE, f"{rho[1]:g}", f"{SLUGS[0]:g} to {SLUGS[1]:g} slug/ft^3",
+                  "The file is in slug, foot and pound; everything is converted to SI.")
+            if values.imperial
+            else water("mss", rho[1], f"density {rho[0]}")
+        )  # fmt: skip
+        if (g := found.named(*GRAVITIES)) and not values.imperial:
+            out += gravity("mss", g[1], g[0])
+        if mass and forces and not values.imperial:
+            out += weight("mss", forces[1], mass[1], f"{forces[0]} and {mass[0]}")
+    if mass:
+        out += no_mass("mss", mass[1], mass[0])
+        if rho and found.named("xG", "x_G", "xg") is None and not values.primed:
+            hull = np.diag(values.added_mass)
+            out += gyration("mss", mass[1] * values.units[0], values.conditions.density, hull[1], hull[5])
+    return out
+
+
+def _munk(found: MFile, values: MValues) -> tuple[Check, ...]:
+    """Where the file adds C_A(nu) nu; one whose entries it sets afterwards cannot be told."""
+    if not found.adds_coriolis or found.changes_coriolis:
+        return ()
+    ideal = ideal_quadratics(values.added_mass)
+    written = []
+    for symbol in TURNING:
+        if symbol not in values.values:
+            continue
+        stays = values.stays(symbol) or found.derivatives[symbol][0] == "rest"
+        value = (
+            values.values[symbol] * values.scaling.factor(symbol, values.conditions)
+            if stays
+            else values.product(symbol)
+        )
+        written.append(Written(symbol[0], symbol, float(value), not stays))
+    return munk_twice("mss", written, ideal, ideal)
+
+
+def _capsizes(found: MFile) -> tuple[Check, ...]:
+    """A centre of gravity above that of buoyancy, which with z down is the smaller z."""
+    gravity_at, buoyancy_at = found.named("zG", "z_G", "zg"), found.named("zB", "z_B", "zb")
+    above = (buoyancy_at[1] if buoyancy_at else 0.0) - (gravity_at[1] if gravity_at else 0.0)
+    if gravity_at is None or above <= 0.0:
+        return ()
+    keys = gravity_at[0] + (f" and {buoyancy_at[0]}" if buoyancy_at else "")
+    return (Check("mss", keys, Severity.WARN, f"centre of gravity {above:.4g} above that of buoyancy", "below it",
+                  "The vehicle turns over. z is down here: was it copied from axes with z up (ENU, FLU)?"),)  # fmt: skip
+
+
+def _own_conditions(found: MFile, path: Path) -> tuple[Scaling, Conditions]:
+    n = found.numbers
+    missing = [k for k in ("rho", "U0", "L", "x_ref", "y_ref", "z_ref") if k not in n]
+    if missing:
+        raise InputError(f"no {', '.join(missing)}", "every fact that the exporter writes", file=path)
+    return Scaling(n["L"], found.texts.get("L_name", "L")), Conditions(n["rho"], n["U0"], n.get("viscosity"))
+
+
+def _own(found: MFile, path: Path) -> Stated:
+    """A file that the exporter wrote: nothing is guessed."""
+    n = found.numbers
+    scaling, at = _own_conditions(found, path)
+    coefficients: dict[str, tuple[float, Law]] = {}
+    matrix, method = None, found.texts.get("MA_method")
+    doubts: tuple[str, ...] = ()
+    if method is not None:
+        stated = {s: v * scaling.factor(s, at) for s, (_, v) in found.derivatives.items() if is_acceleration(s)}
+        matrix = added_mass(stated)
+        doubts = matrix_doubts(matrix)
+        matrix = None if doubts else matrix
+    for symbol, (group, value) in found.derivatives.items():
+        if group == "rest":
+            coefficients[symbol] = (value / scaling.factor(symbol, at), "rest")
+        elif matrix is None or not is_acceleration(symbol):
+            coefficients[symbol] = (value, "motion")
+    return Stated(
+        name=found.texts.get("name", "")[:200] or path.stem,
+        body=found.texts.get("body", "")[:200] or path.stem,
+        scaling=scaling,
+        conditions=at,
+        coefficients=coefficients,
+        point=(n["x_ref"], n["y_ref"], n["z_ref"]),
+        datum=Datum.named(found.texts.get("datum", MODEL_ORIGIN.id)),
+        matrix=matrix,
+        matrix_body=found.texts.get("MA_body", ""),
+        matrix_method=method or "stated",
+        mass=_own_mass(n),
+        notes=doubts,
+    )
+
+
+def _own_mass(n: Mapping[str, float]) -> StatedMass | None:
+    if "m" not in n or "mxG" not in n:
+        return None
+    centre = [n[k] for k in ("xG", "yG", "zG") if k in n]
+    inertia = [n[f"I{i}{j}"] for i in (1, 2, 3) for j in (1, 2, 3) if f"I{i}{j}" in n]
+    return StatedMass(
+        n["m"],
+        n["mxG"],
+        n.get("I_transverse"),
+        np.array(centre) if len(centre) == 3 else None,
+        np.array(inertia).reshape(3, 3) if len(inertia) == 9 else None,
+    )
+
+
+def _foreign(found: MFile, path: Path, density: float | None) -> Stated:
+    """Somebody's own model: viscous parts become totals where the file adds C_A(nu) nu itself."""
+    v = foreign_values(found, path, density)
+    notes = []
+    if v.imperial:
+        told = [f"{k} = {x:g}" for k, x in filter(None, (found.named(*DENSITIES), found.named(*GRAVITIES)))]
+        notes.append(f"slug, foot and pound told by {', '.join(told)}; converted to SI")
+    name = v.scaling.length_name
+    notes.append(f"lengths made dimensionless by {name}" + ("" if name != "1 m" else ": the file states none"))
+    notes.append(
+        "primed derivatives, told by r2 = rho*L^2/2 and the like; U is taken where the file's own equations may have u"
+        if v.primed
+        else "dimensional derivatives: forces do not scale with U unless the velocities in the name say so"
+    )
+    matrix = v.added_mass
+    doubts = matrix_doubts(matrix)
+    kept = matrix if found.adds_coriolis and not doubts else None
+    notes += [*doubts, _coriolis_note(found, kept is not None)]
+    hull = None if kept is None else AddedMass(kept, np.zeros(3), MODEL_ORIGIN, path.stem, "stated")
+    coefficients: dict[str, tuple[float, Law]] = {}
+    squares: dict[str, str] = {}
+    for symbol, value in v.values.items():
+        if kept is not None and is_acceleration(symbol):
+            continue
+        damping = f"{symbol[:2]}|{symbol[2:]}|"
+        if symbol in OWN_AXES and value < 0.0 and damping not in v.values:
+            squares[symbol] = damping
+            coefficients[damping] = (value, "motion")
+            continue
+        rest = v.stays(symbol)
+        own = 0.0 if hull is None or rest else potential_part(symbol, hull, v.scaling, v.conditions.density) or 0.0
+        coefficients[symbol] = (value + own, "rest" if rest else "motion")
+    if squares:
+        both = ", ".join(f"{a} read as {b}" for a, b in squares.items())
+        notes.append(f"{both}: damping in both directions")
+    return Stated(
+        name=path.stem[:200], body=path.stem[:200], scaling=v.scaling, conditions=v.conditions, coefficients=coefficients,
+        matrix=kept, mass=_mass(found, v), notes=tuple(notes),
+    )  # fmt: skip
+
+
+def _coriolis_note(found: MFile, kept: bool) -> str:
+    if kept and found.changes_coriolis:
+        return "the file adds C_A(nu) nu and then sets entries of it, which is not read: totals here hold all of it"
+    if kept:
+        return "the file adds C_A(nu) nu itself: its derivatives are viscous, totals are written here"
+    if found.adds_coriolis:
+        return "the file adds C_A(nu) nu itself, which this added mass does not allow: its products are left out"
+    return "no C_A(nu) in the file: products of velocities that it does not name are taken as zero"
+
+
+def _mass(found: MFile, v: MValues) -> StatedMass | None:
+    """Mass where the centre of gravity is known too; in a file of primes a mass below one is a prime."""
+    mass, forward = found.first(*MASSES), found.first("xG", "x_G", "xg")
+    if mass is None or forward is None or mass <= 0.0:
+        return None
+    mass_unit, length_unit = v.units
+    prime = v.primed and mass < 1.0
+    kilograms = mass * 0.5 * v.conditions.density * v.scaling.length**3 if prime else mass * mass_unit
+    pitch, yaw = found.first("Iy", "Iyy"), found.first("Iz", "Izz")
+    transverse = pitch * mass_unit * length_unit**2 if pitch is not None and pitch == yaw and pitch > 1.0 else None
+    return StatedMass(kilograms, kilograms * forward * length_unit, transverse)

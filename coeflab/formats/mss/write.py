@@ -1,0 +1,195 @@
+"""A MATLAB or Octave function in the manner of the vehicle models of the Marine Systems Simulator (MSS).
+
+Coefficients stand in a struct ``h`` under their SNAME names, primed as in MSS VESSELS/npsauv.m (constants r2 ... r5 and
+section "Parameters, hydrodynamic derivatives and main dimensions"); the struct, and ``a`` for absolute values, are those of
+VESSELS/navalvessel.m (section "Vessel Data").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.arithmetic import evaluate
+from coeflab.core.wording import identifier, matlab, one_line
+from coeflab.formats.exported_law import (
+    WrittenTerm,
+    not_written,
+    written_accelerations,
+    written_changes,
+    written_controls,
+    written_terms,
+)
+from coeflab.formats.lost import missing_water
+from coeflab.formats.mss.m_file import assignments
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.vehicle.parameter_file import ParameterFile
+
+summary = "MSS: a MATLAB or Octave function of force and added mass, with a struct of SNAME coefficients"
+citations = ("sname1950", "fossen2011", "mss")
+adds_coriolis = False
+holds = frozenset({"hydrostatics"})
+not_held, missing = not_written, missing_water
+
+OWN = frozenset({"nu", "delta", "tau", "h", "MA", "U", *MOTIONS, *COMPONENTS, *CONTROLS})
+_PLACES = {"prime": "h.", "rest": "h.rest.", "potential": "h.ideal."}
+_HEADINGS = {
+    "prime": "Primed by rho and L: totals, potential part included",
+    "rest": "Damping about a state of rest, SI, not scaled with U",
+    "potential": "Primed products of the ideal fluid, -C_A(nu)*nu, that no coefficient above speaks of",
+}
+
+
+def _quoted(text: str) -> str:
+    return "'" + one_line(text).replace("'", "''") + "'"
+
+
+def _place(group: str, name: str) -> str:
+    return _PLACES[group] + name
+
+
+def _head(function: str, parameters: ParameterFile) -> list[str]:
+    call = f"[tau, MA, h] = {function}(nu, delta)"
+    return [
+        f"function {call}",
+        f"% {call} returns the force of the water on a body",
+        "% in steady motion, and its added mass. Plain MATLAB language; runs in GNU Octave.",
+        "%",
+        f"%   {one_line(parameters.name)}, body: {one_line(parameters.body)}",
+        "%",
+        "%   nu    = [ u v w p q r ]'  velocity through the water at the reference point (m/s, rad/s)",
+        "%   delta = [ dr ds db ]'     rudder, stern plane, bow plane (rad), zero if not given",
+        "%   tau   = [ X Y Z K M N ]'  force and moment about the reference point (N, N m)",
+        "%   MA    = added mass matrix about the reference point, positive (kg, kg m, kg m^2)",
+        "%   h     = struct of the coefficients",
+        "%",
+        "% Axes: x forward, y starboard, z down. Equations of motion with rigid-body MRB and CRB:",
+        "%   (MRB + MA)*nu_dot + CRB*nu + g = tau + tau_control",
+        "% tau holds -C_A(nu)*nu already (the Munk moment in Nv and Mw): do not add m2c(MA, nu).",
+        "%",
+        "% Primes: Y = 1/2 rho U^2 L^2 Y', v' = v/U, r' = r L/U, U = |(u, v, w)|; a in a name is an absolute value,",
+        "% h.Yvav that of v|v|.",
+        "",
+        "if nargin < 1, nu = zeros(6,1); end",
+        "if nargin < 2, delta = zeros(3,1); end",
+        "",
+    ]
+
+
+def _facts(parameters: ParameterFile) -> list[str]:
+    p, point = parameters, parameters.reference_point
+    facts: list[tuple[str, float | str | None, str]] = [
+        ("coeflab", 1.0, "layout of this file"),
+        ("name", p.name, ""),
+        ("body", p.body, ""),
+        ("rho", p.conditions.density, "density (kg/m^3)"),
+        ("U0", p.conditions.speed, "speed of the tests (m/s)"),
+        ("viscosity", p.conditions.viscosity, "kinematic (m^2/s)"),
+        ("L", p.scaling.length, "length of the primes (m)"),
+        ("L_name", p.scaling.length_name, ""),
+        ("datum", point.datum, "where points are measured from"),
+        *((f"{axis}_ref", value, "reference point (m)") for axis, value in zip("xyz", point.point, strict=True)),
+    ]
+    if p.mass is not None:
+        facts += [("m", p.mass.mass, "mass (kg)"), ("mxG", p.mass.mass_moment, "x_G*m (kg m)")]
+        facts += [("I_transverse", p.mass.inertia, "Iyy = Izz about the reference point (kg m^2)")]
+        facts += [(f"{axis}G", x, "centre of gravity (m)") for axis, x in zip("xyz", p.mass.centre or (), strict=False)]
+        rows = enumerate(p.mass.inertia_matrix or (), 1)
+        facts += [(f"I{i}{j}", x, "of the inertia matrix (kg m^2)") for i, row in rows for j, x in enumerate(row, 1)]
+    if p.hydrostatics is not None:
+        facts += [
+            ("volume", p.hydrostatics.volume, "displaced (m^3)"),
+            ("g", p.hydrostatics.gravity, "gravity (m/s^2)"),
+        ]
+        centre = zip("xyz", p.hydrostatics.centre_of_buoyancy, strict=True)
+        facts += [(f"{axis}B", x, "centre of buoyancy (m)") for axis, x in centre]
+    if p.added_mass is not None:
+        facts += [("MA_body", p.added_mass.body, ""), ("MA_method", p.added_mass.method, "")]
+    return [
+        f"h.{name} = {_quoted(value) if isinstance(value, str) else repr(value)};" + (f"  % {note}" if note else "")
+        for name, value, note in facts
+        if value is not None
+    ]
+
+
+def render(parameters: ParameterFile) -> Mapping[str, bytes]:
+    """One function file; its name is the parameter file's, as an identifier."""
+    function = identifier(parameters.name, matlab() | OWN)
+    terms = written_terms(parameters)
+    accelerations, source = written_accelerations(parameters)
+    lines = [*_head(function, parameters), *_facts(parameters)]
+    for group, heading in _HEADINGS.items():
+        chosen = [t for t in terms if t.group == group]
+        if chosen:
+            lines += ["", f"% {heading}"]
+            lines += [f"{_place(group, t.name)} = {t.value!r};" + (f"  % {t.note}" if t.note else "") for t in chosen]
+    lines += ["", f"% Primed acceleration derivatives, the negative of the added mass: {one_line(source)}"]
+    lines += [f"h.{name} = {value!r};" for name, value in accelerations.items()]
+    lines += ["", *_force(terms, accelerations), "", *_added_mass(accelerations), "end"]
+    return {f"{function}.m": ("\n".join(lines) + "\n").encode()}
+
+
+def _force(terms: tuple[WrittenTerm, ...], accelerations: Mapping[str, float]) -> list[str]:
+    scales = {t.length_power for t in terms} | {derivative(a).powers[1] for a in accelerations}
+    lines = [f"{name} = nu({k});" for k, name in enumerate(MOTIONS, 1)]
+    lines += [f"{name} = delta({CONTROLS.index(name) + 1});" for name in written_controls(terms)]
+    lines += ["U = max(sqrt(u^2 + v^2 + w^2), 1e-9);"]
+    lines += [f"r{k} = h.rho*h.L^{k}/2;" for k in sorted(scales) if k]
+    for component in COMPONENTS:
+        parts = [t.expression(_place, "^") for t in terms if t.component == component] or ["0"]
+        lines += [f"{component} = " + " ...\n    + ".join(parts) + ";"]
+    return [*lines, "tau = [X; Y; Z; K; M; N];"]
+
+
+def _added_mass(accelerations: Mapping[str, float]) -> list[str]:
+    rows = []
+    for component in COMPONENTS:
+        names = [f"{component}{motion}dot" for motion in MOTIONS]
+        rows.append(" ".join(f"r{derivative(n).powers[1]}*h.{n}" if n in accelerations else "0" for n in names))
+    return ["MA = -[" + ";\n       ".join(rows) + "];"]
+
+
+def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The function's own assignments, one after the other, with zero control angles."""
+    names, _ = _evaluated(files, nu)
+    return np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
+
+
+def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
+    """The function's own ``MA``, entry by entry."""
+    names, matrix = _evaluated(files, np.zeros((1, 6)))
+    rows = matrix.strip().removeprefix("-[").removesuffix("]").split(";")
+    return -np.array([[float(evaluate(entry, names, {})) for entry in row.split()] for row in rows])
+
+
+def _evaluated(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> tuple[dict[str, Any], str]:
+    """What the function's assignments give at velocities (n, 6), and the text of that of MA."""
+    text = next(content for name, content in files.items() if name.endswith(".m")).decode()
+    functions: dict[str, Callable[..., Any]] = {
+        "nu": lambda k: nu[:, int(k) - 1],
+        "delta": lambda _: np.zeros(len(nu)),
+        "sqrt": np.sqrt,
+        "max": np.maximum,
+        "abs": np.abs,
+    }
+    names: dict[str, Any] = {}
+    matrix = ""
+    for a in assignments(text):
+        if a.target == "MA":
+            matrix = a.expression
+        elif a.quoted is None and a.target not in ("nu", "delta", "tau"):
+            names[a.target] = evaluate(a.expression, names, functions)
+    return names, matrix
+
+
+def changes(parameters: ParameterFile) -> tuple[str, ...]:
+    """How the law is written, in words."""
+    buoyant = "h.volume, h.g and h.xB h.yB h.zB are the numbers of the g above, as for MSS gvect"
+    return (
+        *written_changes(parameters, "the function", "h.ideal", "MA"),
+        f"tau holds no weight and no buoyancy{'' if parameters.hydrostatics is None else f': {buoyant}'}",
+        "r2 in the function is 1/2 rho L^2, r3 is 1/2 rho L^3 and so on; U is never below 1e-9 m/s",
+    )

@@ -1,0 +1,1 @@
+"""Fossen's Python Vehicle Simulator."""

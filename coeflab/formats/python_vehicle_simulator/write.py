@@ -1,0 +1,293 @@
+"""A vehicle class in the manner of Fossen's Python Vehicle Simulator, which needs numpy alone.
+
+The simulator's loop (src/python_vehicle_simulator/lib/mainLoop.py, simulate()) calls ``stepInput(t)`` and
+``dynamics(eta, nu, u_actual, u_control, sampleTime)`` and reads ``name L controlDescription controlMode nu u_actual
+controls dimU``; currents and the Euler step are those of vehicles/remus100.py, dynamics().
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.wording import identifier, one_line, python
+from coeflab.formats.exported_law import (
+    WrittenTerm,
+    not_written,
+    written_accelerations,
+    written_changes,
+    written_controls,
+    written_terms,
+)
+from coeflab.formats.lost import missing_mass, missing_water
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.vehicle.inertia import centre_of_gravity
+from coeflab.vehicle.parameter_file import ParameterFile
+
+summary = "Python Vehicle Simulator: a vehicle class with dynamics(), its law in SNAME coefficients"
+citations = ("sname1950", "fossen2011", "python_vehicle_simulator")
+adds_coriolis = False
+holds = frozenset({"hydrostatics"})
+
+not_held = not_written
+
+GRAVITY = 9.81  # m/s^2, as in the simulator's own vehicles (vehicles/otter.py)
+_PLACES = {"prime": "self.", "rest": "self.rest_", "potential": "self.ideal_"}
+_HEADINGS = {
+    "prime": "Primed by rho and L: totals, potential part included",
+    "rest": "Damping about a state of rest, SI, not scaled with U",
+    "potential": "Primed products of the ideal fluid, -C_A(nu) nu, that no coefficient above speaks of",
+}
+_HEAD = '''
+import math
+
+import numpy as np
+
+GRAVITY = {gravity!r}  # m/s^2
+
+
+class {name}:
+    """Vehicle in steady hydrodynamics of a coefficient file.
+
+    {name}()
+        step inputs: the thrust that balances the resistance at U0, no control angles
+    {name}('stepInput', r_z, r_psi, V_current, beta_current)
+        current of V_current (m/s) towards beta_current (deg); r_z and r_psi are not used
+
+    m, Ix, Iy, Iz: mass (kg) and moments of inertia (kg m^2) about the reference point; None is unknown, and dynamics()
+    asks for it. products: entries xy, xz and yz of the inertia matrix, with their sign. r_bg, r_bb: centres of gravity and buoyancy from the reference point (m), x forward, y starboard,
+    z down; without r_bb it lies in the centre of gravity, and nothing rights the vehicle. volume: displaced (m^3); None makes
+    weight and buoyancy equal.
+
+    u_control = [ rudder (rad), stern plane (rad), bow plane (rad), thrust (N) ], followed without lag.
+    """
+
+    def __init__(self, controlSystem="stepInput", r_z=0, r_psi=0, V_current=0, beta_current=0,
+                 m={m!r}, Ix={moments[0]!r}, Iy={moments[1]!r}, Iz={moments[2]!r}, products={products!r},
+                 r_bg={centre!r}, r_bb={buoyancy!r}, volume={volume!r}):
+        self.controlMode = "stepInput"
+        self.controlDescription = "Step inputs for thrust and control angles"
+        self.ref_z, self.ref_psi = r_z, r_psi
+        self.V_c, self.beta_c = V_current, math.radians(beta_current)
+        self.m, self.Ix, self.Iy, self.Iz, self.products = m, Ix, Iy, Iz, products
+        self.r_bg = np.array(r_bg, float)
+        self.r_bb = self.r_bg if r_bb is None else np.array(r_bb, float)
+        self.volume = volume
+        self.controls = ["Rudder (deg)", "Stern plane (deg)", "Bow plane (deg)", "Thrust (N)"]
+        self.dimU = len(self.controls)
+        self.u_actual = np.zeros(self.dimU)
+'''
+_TAIL = '''
+    def dynamics(self, eta, nu, u_actual, u_control, sampleTime):
+        """[nu, u_actual] = dynamics(eta, nu, u_actual, u_control, sampleTime): one step by Euler's method."""
+        missing = [n for n in ("m", "Ix", "Iy", "Iz") if getattr(self, n) is None]
+        if missing:
+            raise ValueError("the coefficient file does not state " + ", ".join(missing) + "; pass it to the constructor")
+        S = np.array([[0, -self.r_bg[2], self.r_bg[1]], [self.r_bg[2], 0, -self.r_bg[0]],
+                      [-self.r_bg[1], self.r_bg[0], 0]], float)
+        Ixy, Ixz, Iyz = self.products
+        MRB = np.zeros((6, 6))
+        MRB[:3, :3], MRB[:3, 3:], MRB[3:, :3] = self.m * np.eye(3), -self.m * S, self.m * S
+        MRB[3:, 3:] = [[self.Ix, Ixy, Ixz], [Ixy, self.Iy, Iyz], [Ixz, Iyz, self.Iz]]
+
+        u_c = self.V_c * math.cos(self.beta_c - eta[5])
+        v_c = self.V_c * math.sin(self.beta_c - eta[5])
+        Dnu_c = np.array([nu[5] * v_c, -nu[5] * u_c, 0, 0, 0, 0], float)
+        nu_r = nu - np.array([u_c, v_c, 0, 0, 0, 0], float)
+
+        momentum = MRB @ nu_r
+        CRB_nu = np.concatenate([np.cross(nu_r[3:], momentum[:3]),
+                                 np.cross(nu_r[3:], momentum[3:]) + np.cross(nu_r[:3], momentum[:3])])
+        down = np.array([-math.sin(eta[4]), math.cos(eta[4]) * math.sin(eta[3]), math.cos(eta[4]) * math.cos(eta[3])])
+        tau = self.hydrodynamics(nu_r, u_actual[:3])
+        tau[0] += u_actual[3]
+        weight = self.m * GRAVITY
+        buoyancy = weight if self.volume is None else self.rho * GRAVITY * self.volume
+        tau[:3] += (weight - buoyancy) * down
+        tau[3:] += np.cross(weight * self.r_bg - buoyancy * self.r_bb, down)
+        nu_dot = Dnu_c + np.linalg.solve(MRB + self.MA, tau - CRB_nu)
+        return nu + sampleTime * nu_dot, np.array(u_control, float)
+
+    def stepInput(self, t):
+        """The thrust that balances the resistance at U0, and no control angles."""
+        return np.array([0.0, 0.0, 0.0, -self.hydrodynamics(self.nu_0)[0]], float)
+'''
+
+
+def _place(group: str, name: str) -> str:
+    return _PLACES[group] + name
+
+
+def render(parameters: ParameterFile) -> Mapping[str, bytes]:
+    """One class file; class and file bear the parameter file's name as an identifier."""
+    name = identifier(parameters.name, python())
+    terms, h = written_terms(parameters), parameters.hydrostatics
+    accelerations, source = written_accelerations(parameters)
+    p, mass = parameters, parameters.mass
+    point = ", ".join(f"{x:g}" for x in p.reference_point.point)
+    lines = [
+        "#!/usr/bin/env python3",
+        f"# {name}.py: {one_line(p.name)}, body: {one_line(p.body)}",
+        f"# Primes by {one_line(p.scaling.length_name)}; reference point ({point}) m, x forward, y starboard, z down, "
+        f"from: {one_line(p.reference_point.datum)}",
+        _HEAD.format(
+            name=name,
+            m=None if mass is None else mass.mass,
+            moments=_moments(parameters),
+            products=_products(parameters),
+            centre=tuple(float(x) for x in centre_of_gravity(parameters)),
+            gravity=GRAVITY if h is None else h.gravity,
+            buoyancy=None if h is None else h.centre_of_buoyancy,
+            volume=None if h is None else h.volume,
+        ),
+        f"        self.name = {one_line(p.name)!r}",
+        f"        self.rho = {p.conditions.density!r}  # kg/m^3",
+        f"        self.L = {p.scaling.length!r}  # length of the primes (m)",
+        f"        self.U0 = {p.conditions.speed!r}  # speed of the tests (m/s)",
+        "        self.nu_0 = np.array([self.U0, 0, 0, 0, 0, 0], float)",
+        "        self.nu = self.nu_0.copy()",
+    ]
+    for group, heading in _HEADINGS.items():
+        chosen = [t for t in terms if t.group == group]
+        if chosen:
+            lines += ["", f"        # {heading}"]
+            lines += [
+                f"        {_place(group, t.name)} = {t.value!r}" + (f"  # {t.note}" if t.note else "") for t in chosen
+            ]
+    lines += ["", f"        # Acceleration derivatives, primed: {one_line(source)}"]
+    lines += [f"        self.{name} = {value!r}" for name, value in accelerations.items()]
+    lines += [*_added_mass(accelerations), *_force(terms), _TAIL.rstrip()]
+    return {f"{name}.py": ("\n".join(lines) + "\n").encode()}
+
+
+def _moments(parameters: ParameterFile) -> tuple[float | None, ...]:
+    """Ix, Iy, Iz about the reference point, None where the file states none."""
+    mass = parameters.mass
+    if mass is None or mass.inertia_matrix is None:
+        transverse = None if mass is None else mass.inertia
+        return None, transverse, transverse
+    return tuple(mass.inertia_matrix[i][i] for i in range(3))
+
+
+def _products(parameters: ParameterFile) -> tuple[float, ...]:
+    mass = parameters.mass
+    matrix = None if mass is None else mass.inertia_matrix
+    return (0.0, 0.0, 0.0) if matrix is None else (matrix[0][1], matrix[0][2], matrix[1][2])
+
+
+def _scales(powers: set[int]) -> list[str]:
+    return [f"        r{k} = 0.5 * self.rho * self.L**{k}" for k in sorted(powers) if k]
+
+
+def _added_mass(accelerations: Mapping[str, float]) -> list[str]:
+    lines = _scales({derivative(a).powers[1] for a in accelerations})
+    lines.append("        self.MA = -np.array([")
+    for component in COMPONENTS:
+        names = [f"{component}{motion}dot" for motion in MOTIONS]
+        cells = (f"r{derivative(n).powers[1]} * self.{n}" if n in accelerations else "0.0" for n in names)
+        lines.append(f"            [{', '.join(cells)}],")
+    return [*lines, "        ])"]
+
+
+def _force(terms: tuple[WrittenTerm, ...]) -> list[str]:
+    lines = [
+        "",
+        "    def hydrodynamics(self, nu, delta=(0.0, 0.0, 0.0)):",
+        '        """X Y Z K M N of the water on the body (N, N m) for u v w p q r and control angles dr ds db (rad).',
+        "",
+        "        It holds -C_A(nu) nu already, the Munk moment in Nv and Mw: m2c(MA, nu) must not be added.",
+        '        """',
+        *(f"        {name} = nu[{k}]" for k, name in enumerate(MOTIONS)),
+        *(f"        {name} = delta[{CONTROLS.index(name)}]" for name in written_controls(terms)),
+        "        U = max((u**2 + v**2 + w**2) ** 0.5, 1e-9)",
+        *_scales({t.length_power for t in terms}),
+    ]
+    for component in COMPONENTS:
+        parts = [t.expression(_place, "**") for t in terms if t.component == component] or ["0.0"]
+        lines += [f"        {component} = (", *(f"            {'+ ' if i else ''}{p}" for i, p in enumerate(parts))]
+        lines.append("        )")
+    return [*lines, f"        return np.array([{', '.join(COMPONENTS)}], float)"]
+
+
+def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What ``hydrodynamics`` returns, read from the class without running it, with zero control angles."""
+    methods, numbers = _read(files)
+    names = {**numbers, "nu": list(nu.T), "delta": [np.zeros(len(nu))] * 3}
+    for node in methods["hydrodynamics"].body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            names[node.targets[0].id] = _value(node.value, names)
+    return np.column_stack([np.broadcast_to(np.asarray(names[c], dtype=np.float64), len(nu)) for c in COMPONENTS])
+
+
+def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:
+    """``MA`` of the class, read without running it."""
+    methods, names = _read(files)
+    for node in methods["__init__"].body:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                names[name] = _value(value, names)
+            case ast.Assign(
+                targets=[ast.Attribute(attr="MA")],
+                value=ast.UnaryOp(op=ast.USub(), operand=ast.Call(args=[ast.List(elts=rows)])),
+            ):
+                return -np.array([[_value(e, names) for e in row.elts] for row in rows if isinstance(row, ast.List)])
+    raise ValueError("no self.MA in the class")
+
+
+def _read(files: Mapping[str, bytes]) -> tuple[dict[str, ast.FunctionDef], dict[str, Any]]:
+    """Methods of the class by name, and the numbers that its constructor sets."""
+    tree = ast.parse(next(content for name, content in files.items() if name.endswith(".py")))
+    vehicle = next(n for n in tree.body if isinstance(n, ast.ClassDef))
+    methods = {n.name: n for n in vehicle.body if isinstance(n, ast.FunctionDef)}
+    names: dict[str, Any] = {}
+    for node in methods["__init__"].body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Attribute) and _is_number(node.value):
+            names[f"self.{node.targets[0].attr}"] = ast.literal_eval(node.value)
+    return methods, names
+
+
+def _is_number(node: ast.expr) -> bool:
+    inner = node.operand if isinstance(node, ast.UnaryOp) else node
+    return isinstance(inner, ast.Constant) and isinstance(inner.value, float)
+
+
+def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
+    match node:
+        case ast.Constant(value=value):
+            return value
+        case ast.Name(id=name):
+            return names[name]
+        case ast.Attribute(value=ast.Name(id=owner), attr=attribute):
+            return names[f"{owner}.{attribute}"]
+        case ast.Subscript(value=ast.Name(id=name), slice=ast.Constant(value=int(k))):
+            return names[name][k]
+        case ast.Call(func=ast.Name(id="max"), args=[first, second]):
+            return np.maximum(_value(first, names), _value(second, names))
+        case ast.Call(func=ast.Name(id="abs"), args=[first]):
+            return np.abs(_value(first, names))
+        case ast.BinOp(left=left, op=sign, right=right):
+            a, b = _value(left, names), _value(right, names)
+            return a + b if isinstance(sign, ast.Add) else a * b if isinstance(sign, ast.Mult) else (
+                a / b if isinstance(sign, ast.Div) else a**b
+            )  # fmt: skip
+    raise ValueError(ast.dump(node))
+
+
+def missing(parameters: ParameterFile) -> tuple[str, ...]:
+    """Mass, moments of inertia and added mass, where the file has none."""
+    asks = "dynamics() asks for them, hydrodynamics() does not"
+    return (*missing_mass(parameters, asks, "dynamics() asks for Ix"), *missing_water(parameters))
+
+
+def changes(parameters: ParameterFile) -> tuple[str, ...]:
+    """How the law is written, in words."""
+    return (
+        *written_changes(parameters, "the class (as remus100.py, which zeroes its Munk terms)", "ideal_*", "MA"),
+        "weight and buoyancy are equal and act at one point until r_bb is given: the file states no buoyancy"
+        if parameters.hydrostatics is None
+        else "weight and buoyancy, r_bb and volume, act in dynamics(), not in hydrodynamics(); GRAVITY is the file's",
+    )

@@ -1,0 +1,1 @@
+"""uuv_simulator and DAVE."""

@@ -1,0 +1,155 @@
+"""URDF and xacro models for uuv_simulator and DAVE: the hydrodynamic model "fossen"."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree.ElementTree import Element
+
+import numpy as np
+
+from coeflab.core.table import Check, Severity
+from coeflab.core.text.xml import numbers, once, read_xml
+from coeflab.formats.stated_file import LinkModel, link_file
+from coeflab.formats.uuv_simulator.law import PLUGIN_DENSITY, SPACE, FossenLink, Xacro, read_fossen_link
+from coeflab.law.rigid_body import ideal_quadratics, momentum_quadratics
+from coeflab.vehicle.imperial_units import displaced, gravity, no_mass, water
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.plausibility import Written, munk_twice
+from coeflab.vehicle.second_order import SURGE, SecondOrder
+
+summary = "uuv_simulator and DAVE: URDF or xacro with hydrodynamic_model fossen"
+citations = ("fossen2011", "uuv_simulator")
+signs = "uuv_simulator takes <added_mass> positive, every damping matrix negative."
+
+GRAVITIES = ("g", "gravity")
+
+
+def read(
+    path: Path, density: float | None = None, length: float | None = None, speed: float | None = None
+) -> ParameterFile:
+    """Read a URDF, or a xacro file whose properties it defines itself.
+
+    Parameters
+    ----------
+    path : path
+    density : float, optional
+        kg/m^3, where the file states none; else the plugin's own 1028 kg/m^3.
+    length, speed : float, optional
+        Of the primes, m and m/s; else the length of <box>, or 1 m, and 1 m/s, which the file says. Forces do not depend on
+        them.
+
+    Raises
+    ------
+    InputError
+        No file with one hydrodynamic model of type fossen.
+    """
+    root = read_xml(path)
+    link = read_fossen_link(root, path)
+    for model in root.iter("hydrodynamic_model"):
+        once(model, path)
+    notes = [
+        "the plugin takes these numbers in x forward, y starboard, z down; reference point: the link's origin",
+        "u v of linear_damping_forward_speed is read as U v: both agree on straight courses",
+    ]
+    rho = link.density if link.density is not None else density
+    if rho is None:
+        rho = PLUGIN_DENSITY
+        notes.append(f"density {rho:g} kg/m^3: the file states none, this is the plugin's own (BuoyantObject.cc)")
+    if np.any(link.centre):
+        notes.append(
+            "the plugin's force acts at the centre of gravity: moments, and added mass, are moved to the link's origin"
+        )
+    stated = LinkModel(
+        model=root.get("name", ""),
+        link=link.link,
+        density=rho,
+        form=_form(link),
+        added=np.einsum("il,ljk->ijk", link.arm, momentum_quadratics(link.added_mass)),
+        matrix=link.arm @ link.added_mass,
+        mass=link.mass,
+        centre=link.centre,
+        inertia=link.inertia,
+        length=link.length,
+        length_name="length of the box",
+        notes=tuple(notes),
+    )
+    return link_file(stated, path, citations, length, speed)
+
+
+def examine(path: Path) -> tuple[Check, ...]:
+    """What this format lets go wrong and a parameter file cannot show.
+
+    Raises
+    ------
+    InputError
+    """
+    root = read_xml(path)
+    link = read_fossen_link(root, path)
+    out = [*_units(root, link, path)]
+    ignored = link.quadratic - np.diag(np.diag(link.quadratic))
+    if np.any(ignored):
+        out.append(_found("<quadratic_damping>", f"{np.count_nonzero(ignored)} off-diagonal entries",
+                          "a diagonal matrix", "The plugin ignores them (HydrodynamicModel.cc, line 437)."))  # fmt: skip
+    if np.any(link.centre):
+        out.append(_found("<inertial> <origin>", f"centre of gravity {np.linalg.norm(link.centre):g} m from the link's origin",
+                          "the origin in the centre of gravity",
+                          "The plugin takes velocities at one and applies forces at the other."))  # fmt: skip
+    added = momentum_quadratics(link.added_mass)
+    out += munk_twice("uuv_simulator", _turning(link), added, ideal_quadratics(link.added_mass))
+    return (*out, *_capsizes(root, link, path))
+
+
+def _found(key: str, statistic: str, rule: str, comment: str) -> Check:
+    return Check("uuv_simulator", key, Severity.WARN, statistic, rule, comment)
+
+
+def _units(root: Element, link: FossenLink, path: Path) -> list[Check]:
+    out = [*no_mass("uuv_simulator", link.mass, "<mass>")]
+    if link.density is not None:
+        out.append(water("uuv_simulator", link.density, "density <fluid_density>"))
+    if link.mass and link.volume and link.mass > 0.0:
+        out += displaced("uuv_simulator", link.mass, link.volume, link.density or PLUGIN_DENSITY, "<mass> and <volume>")
+    known = Xacro(root, path)
+    for e in root.iter(f"{SPACE}property"):
+        if (name := e.get("name", "")) in GRAVITIES:
+            value = numbers(known.text(e.get("value", "")), (1,), name, path)[0]
+            out += gravity("uuv_simulator", value, f'<xacro:property name="{name}">')
+    return out
+
+
+def _turning(link: FossenLink) -> list[Written]:
+    """What the plugin is given of N over v and of M over w, in the order of its matrices."""
+    out = []
+    for component, i, j in (("N", 5, 1), ("M", 4, 2)):
+        for tag, matrix, with_speed in (
+            ("linear_damping_forward_speed", link.forward, True), ("linear_damping", link.linear, False),
+        ):  # fmt: skip
+            out.append(Written(component, f"<{tag}> row {i + 1} column {j + 1}", float(matrix[i, j]), with_speed))
+    return out
+
+
+def _capsizes(root: Element, link: FossenLink, path: Path) -> tuple[Check, ...]:
+    """A centre of buoyancy below that of gravity, which in the link's own axes, z up, is a sign from z down."""
+    text = next(
+        (e.findtext("center_of_buoyancy") for e in root.iter("link") if e.find("hydrodynamic_model") is not None), None
+    )
+    if text is None:
+        return ()
+    height = numbers(Xacro(root, path).text(text), (3,), "center_of_buoyancy", path)[2] + float(link.centre[2])
+    if height >= 0.0:
+        return ()
+    return (Check("uuv_simulator", "<center_of_buoyancy>", Severity.WARN, f"{-height:.4g} m below the centre of gravity",
+                  "above it", "The vehicle turns over. The link's z is up: was it copied from axes with z down (NED)?"),)  # fmt: skip
+
+
+def _form(link: FossenLink) -> SecondOrder:
+    """The file's matrices as forces about the link's origin."""
+    linear, forward = link.arm @ link.linear, link.arm @ link.forward
+    signed, absolute = np.zeros((6, 6, 6)), np.zeros((6, 6, 6))
+    signed[:, SURGE, SURGE] = forward[:, SURGE]
+    plain = linear[:, 1:] == 0.0
+    absolute[:, 1:, SURGE] = np.where(plain, forward[:, 1:], 0.0)
+    signed[:, SURGE, 1:] = np.where(plain, 0.0, forward[:, 1:])
+    for i in range(6):
+        absolute[:, i, i] += link.arm[:, i] * link.quadratic[i, i]
+    return SecondOrder(linear, signed, absolute)

@@ -1,0 +1,1 @@
+"""xdyn and lxdyn."""

@@ -1,0 +1,278 @@
+"""A simulation file of xdyn (lxdyn), the time-domain simulator of Sirehna and Naval Group.
+
+The body frame is FRD with its origin at the centre of gravity, because xdyn uses the velocities of the origin with matrices
+about the centre of gravity (xdyn/core/Body.cpp, calculate_state_derivatives). xdyn adds no C_A(nu) nu, so totals are
+written, and the ideal fluid's products beside them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from coeflab.core.errors import InputError
+from coeflab.core.text.yaml import parse_yaml
+from coeflab.core.types import Array
+from coeflab.core.units import STANDARD_GRAVITY
+from coeflab.core.wording import identifier, one_line
+from coeflab.formats.exported_law import WrittenTerm, not_written, written_changes, written_controls, written_terms
+from coeflab.formats.lost import missing_water
+from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, HERE, RIGID, xdyn_body
+from coeflab.law.added_mass import definiteness, moved
+from coeflab.law.rigid_body import about_another, rigid_body_inertia
+from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.law.transforms import force_transfer, velocity_transfer
+from coeflab.vehicle.inertia import water_inertia
+from coeflab.vehicle.parameter_file import ParameterFile
+
+summary = "xdyn: a YAML simulation file with inertia, added mass, damping and manoeuvring expressions"
+citations = ("sname1950", "fossen2011", "xdyn")
+adds_coriolis = False
+holds = frozenset({"hydrostatics"})
+not_held = not_written
+
+FORCES = "hydrodynamic_forces"
+VISCOSITY = 1e-6
+STATES = ("x", "y", "z", "u", "v", "w", "p", "q", "r", "qr", "qi", "qj", "qk")
+
+
+def _names(parameters: ParameterFile) -> tuple[str, str]:
+    """Body and file, as identifiers."""
+    return identifier(parameters.body, {"NED", FORCES, BUOYANCY}), identifier(parameters.name)
+
+
+def _centre(parameters: ParameterFile) -> Array | None:
+    """Centre of gravity from the reference point; None where it is not known."""
+    mass = parameters.mass
+    return None if mass is None or mass.centre is None else np.array(mass.centre)
+
+
+def _rigid(parameters: ParameterFile) -> Array | None:
+    """Inertia about the centre of gravity, (6, 6); None where it is not known."""
+    mass, centre = parameters.mass, _centre(parameters)
+    if mass is None or centre is None or mass.inertia_matrix is None:
+        return None
+    about = about_another(np.array(mass.inertia_matrix), mass.mass, centre, np.zeros(3))
+    return rigid_body_inertia(mass.mass, np.zeros(3), (about + about.T) / 2.0)
+
+
+def _damped(t: WrittenTerm, at_origin: bool) -> int:
+    """The power of the damping block that takes a term: 1, 2, or 0 for none."""
+    if not at_origin or t.group != "rest" or t.term.factors[:1] == ():
+        return 0
+    names = {v for v, _, _ in t.term.factors}
+    powers = sorted((n, a) for _, n, a in t.term.factors)
+    if len(names) != 1 or not names <= set(MOTIONS):
+        return 0
+    return {((1, False),): 1, ((1, False), (1, True)): 2}.get(tuple(powers), 0)
+
+
+def _place(group: str, name: str) -> str:
+    return name + {"prime": "", "rest": "_rest", "potential": "_ideal"}[group]
+
+
+def _axes(values: Sequence[float], unit: str, names: str = "xyz") -> list[str]:
+    return [f"{n}: {{value: {float(v)!r}, unit: {unit}}}" for n, v in zip(names, values, strict=True)]
+
+
+def _angles() -> list[str]:
+    return [f"{n}: {{value: 0, unit: rad}}" for n in ("phi", "theta", "psi")]
+
+
+def _block(indent: int, head: str, lines: Sequence[str]) -> list[str]:
+    return [" " * indent + head, *(" " * (indent + 4) + line for line in lines)]
+
+
+def _rows(matrix: Array) -> list[str]:
+    return [f"row {k}: [{', '.join(repr(float(v) + 0.0) for v in row)}]" for k, row in enumerate(matrix, 1)]
+
+
+def render(parameters: ParameterFile) -> Mapping[str, bytes]:
+    """One YAML file that runs alone: straight ahead at the file's speed, without propulsion; with weight and buoyancy where
+    the file states hydrostatics.
+
+    Raises
+    ------
+    InputError
+        The sum of rigid-body inertia and added mass is not positive definite, which no simulation survives.
+    """
+    (body, name), h = _names(parameters), parameters.hydrostatics
+    centre, rigid = _centre(parameters), _rigid(parameters)
+    origin = "reference point" if centre is None else "centre of gravity"
+    offset = np.zeros(3) if centre is None else 0.0 - centre
+    water = water_inertia(parameters)
+    added = moved(water.matrix, -offset)
+    if rigid is not None and definiteness(rigid + added).smallest <= 0.0:
+        raise InputError("an inertia that is not positive definite with its added mass", "positive masses and inertias")
+    terms, speed = written_terms(parameters), parameters.conditions.speed
+    place = np.array(parameters.reference_point.point) - offset
+    dynamics = [
+        *_block(0, f"{HERE}:", _axes((0.0, 0.0, 0.0), "m")),
+        *_block(0, "centre of inertia:", [f"frame: {body}", *_axes((0.0, 0.0, 0.0), "m")]),
+        *(_block(0, f"{RIGID}:", _rows(rigid)) if rigid is not None else [f"# {_absent(parameters)}"]),
+        *_block(0, f"{ADDED}:", _rows(added)),
+    ]
+    states = ", ".join(f"'{s}({body})'" for s in STATES)
+    position = [*_axes((0.0, 0.0, 0.0), "m"), *_angles()]
+    lines = [
+        f"# {one_line(parameters.name)}, body: {one_line(parameters.body)}",
+        f"# Body frame: x forward, y starboard, z down, origin at the {origin};",
+        f"# the mesh frame is FRD from: {one_line(parameters.reference_point.datum)}",
+        f"# Totals: xdyn adds no C_A(nu) nu. {'Weight, buoyancy and propulsion are' if h is None else 'Propulsion is'} not in here.",
+        f"# Inertia of the water: {one_line(water.source)}",
+        "rotations convention: [psi, theta', phi'']",
+        "environmental constants:",
+        f"    g: {{value: {STANDARD_GRAVITY if h is None else h.gravity!r}, unit: m/s^2}}",
+        f"    rho: {{value: {parameters.conditions.density!r}, unit: kg/m^3}}",
+        f"    nu: {{value: {parameters.conditions.viscosity or VISCOSITY!r}, unit: m^2/s}}",
+        "environment models: []",
+        "bodies:",
+        f"  - name: {body}",
+        *_block(4, "position of body frame relative to mesh:", ["frame: mesh", *_axes(place.tolist(), "m"), *_angles()]),
+        *_block(4, "initial position of body frame relative to NED:", ["frame: NED", *position]),
+        *_block(4, "initial velocity of body frame relative to NED:",
+                [f"frame: {body}", *_axes((speed, 0.0, 0.0), "m/s", "uvw"), *_axes((0.0, 0.0, 0.0), "rad/s", "pqr")]),
+        *_block(4, "dynamics:", dynamics),
+        "    external forces:",
+        *_restoring(parameters, body, offset),
+        *_damping(terms, not offset.any()),
+        *_manoeuvring(parameters, body, offset, terms),
+        *_commands(terms),
+        "output:",
+        "  - format: csv",
+        f"    filename: {name}.csv",
+        f"    data: [t, {states}]",
+    ]  # fmt: skip
+    return {f"{name}.yml": ("\n".join(lines) + "\n").encode()}
+
+
+def _restoring(parameters: ParameterFile, body: str, offset: Array) -> list[str]:
+    """Weight, and buoyancy in the centre of buoyancy, which xdyn's own model "basic buoyancy" puts into that of gravity."""
+    h = parameters.hydrostatics
+    if h is None:
+        return []
+    at = (offset + np.array(h.centre_of_buoyancy)).tolist()
+    lines = [
+        f"name: {BUOYANCY}",
+        *_block(0, "reference frame:", [f"frame: {body}", *_axes(at, "m"), *_angles()]),
+        "commands: []",
+        f"volume: {h.volume!r}",
+        "B: rho*g*volume",
+        "X: B*sin(theta(t))",
+        "Y: 0-B*cos(theta(t))*sin(phi(t))",
+        "Z: 0-B*cos(theta(t))*cos(phi(t))",
+        *(f"{moment}: 0" for moment in "KMN"),
+    ]
+    return ["      - model: gravity", "      - model: maneuvering", *("        " + line for line in lines)]
+
+
+def _damping(terms: Sequence[WrittenTerm], at_origin: bool) -> list[str]:
+    out = []
+    for power, model in ((1, "linear damping"), (2, "quadratic damping")):
+        chosen = [t for t in terms if _damped(t, at_origin) == power]
+        if chosen:
+            matrix = np.zeros((6, 6))
+            for t in chosen:
+                matrix[COMPONENTS.index(t.component), MOTIONS.index(t.term.factors[0][0])] -= t.value
+            out += [f"      - model: {model}", *_block(8, f"{DAMPING}:", _rows(matrix))]
+    return out
+
+
+def _manoeuvring(parameters: ParameterFile, body: str, offset: Array, terms: Sequence[WrittenTerm]) -> list[str]:
+    """The model with every other term; its frame has its origin at the reference point."""
+    kept = [t for t in terms if not _damped(t, not offset.any())]
+    velocities = {m: f"{m}(t)" for m in MOTIONS}
+    if offset.any():
+        velocities |= {"u": "u(t) + q(t)*z_P - r(t)*y_P", "v": "v(t) + r(t)*x_P - p(t)*z_P",
+                       "w": "w(t) + p(t)*y_P - q(t)*x_P"}  # fmt: skip
+    scales = sorted({t.length_power for t in kept} - {0})
+    lines = [
+        f"name: {FORCES}",
+        *_block(0, "reference frame:", [f"frame: {body}", *_axes(offset.tolist(), "m"), *_angles()]),
+        f"commands: [{', '.join(written_controls(tuple(kept)))}]",
+        *(f"{n}_P: {float(v)!r}" for n, v in zip("xyz", offset, strict=True) if offset.any()),
+        *(f"{m}: {text}" for m, text in velocities.items()),
+        "U: sqrt(u^2 + v^2 + w^2 + 1e-18)",
+        f"L: {parameters.scaling.length!r}  # {one_line(parameters.scaling.length_name)}",
+        *(f"r{k}: 0.5*rho*L^{k}" for k in scales),
+        *(f"{_place(t.group, t.name)}: {t.value!r}" for t in kept),
+    ]
+    for component in COMPONENTS:
+        parts = [t.expression(_place, "^") for t in kept if t.component == component]
+        lines.append(f"{component}: {' + '.join(parts) or '0'}")
+    return ["      - model: maneuvering", *("        " + line for line in lines)]
+
+
+def _commands(terms: tuple[WrittenTerm, ...]) -> list[str]:
+    controls = written_controls(terms)
+    if not controls:
+        return []
+    values = [f"    {c}: {{unit: rad, values: [0.0]}}" for c in controls]
+    return ["commands:", f"  - name: {FORCES}", "    t: [0.0]", *values]
+
+
+def force(files: Mapping[str, bytes], nu: Array) -> Array:
+    """What xdyn's models give, by the sources named in `coeflab.formats.xdyn.law`, about the reference point.
+
+    The reference point is the origin of the manoeuvring model's frame.
+    """
+    name, content = next((n, c) for n, c in files.items() if n.endswith(".yml"))
+    body = xdyn_body(parse_yaml(content.decode(), name), name)
+    shift = body.manoeuvring[0].point - body.centre
+    return np.asarray(body.force(nu @ velocity_transfer(-shift).T) @ force_transfer(shift).T)
+
+
+def added_mass(files: Mapping[str, bytes]) -> Array:
+    """The added mass matrix about the centre of gravity, moved to the reference point."""
+    name, content = next((n, c) for n, c in files.items() if n.endswith(".yml"))
+    body = xdyn_body(parse_yaml(content.decode(), name), name)
+    return moved(body.added, body.manoeuvring[0].point - body.centre)
+
+
+def missing(parameters: ParameterFile) -> tuple[str, ...]:
+    """Rigid-body inertia about a known centre of gravity, and added mass, where the file has none."""
+    rigid = () if _rigid(parameters) is not None else (_absent(parameters).removesuffix("."),)
+    return (*rigid, *missing_water(parameters))
+
+
+def _absent(parameters: ParameterFile) -> str:
+    what = "mass, centre and inertia_matrix" if parameters.mass is None else "centre and inertia_matrix"
+    return (
+        f"Rigid-body inertia: the parameter file has no {what} (body.toml: centre_of_gravity, inertia_matrix); xdyn refuses "
+        "the export until the matrix is in it."
+    )
+
+
+def changes(parameters: ParameterFile) -> tuple[str, ...]:
+    """How the law is written, in words."""
+    centre, terms = _centre(parameters), written_terms(parameters)
+    said = [
+        *written_changes(
+            parameters, "xdyn", "expressions ending in _ideal", "added mass about the body frame's origin"
+        ),
+        "velocities over the ground stand for those through the water; currents are for linear and quadratic damping only",
+    ]
+    if parameters.hydrostatics is not None:
+        said.append(
+            f"weight as xdyn's model gravity, buoyancy as a second manoeuvring model, {BUOYANCY}, in the centre of buoyancy: both are "
+            "no part of the differences in this report"
+        )
+    if centre is None:
+        said.append("the body frame has its origin at the reference point; the centre of gravity is not known")
+    elif centre.any():
+        x, y, z = (f"{v:g}" for v in centre)
+        said.append(
+            f"the body frame has its origin at the centre of gravity, ({x}, {y}, {z}) m from the reference point; the "
+            "expressions use the velocities at the reference point, and forces act there"
+        )
+    if any(_damped(t, centre is None or not centre.any()) for t in terms):
+        said.append("damping about a state of rest stands as damping matrices, with the opposite sign")
+    if any(m.area is not None for m in parameters.models):
+        said.append(
+            "no hydrodynamic polar is written for C_D and the like: xdyn's takes C_L, C_D and C_m as functions of one angle in one "
+            "plane, and would add to the expressions of the coefficients"
+        )
+    if parameters.conditions.viscosity is None:
+        said.append(f"viscosity {VISCOSITY:g} m^2/s, which no expression uses, stands where the file has none")
+    return tuple(said)

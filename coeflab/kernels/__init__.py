@@ -1,1 +1,0 @@
-"""Floor 1: pure functions of arrays. No units, no files, no nouns."""

@@ -1,0 +1,1 @@
+"""The vocabulary of forces: symbols, terms, scaling, coefficients, added mass, transforms."""

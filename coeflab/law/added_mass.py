@@ -1,0 +1,230 @@
+"""The added-mass matrix of a body.
+
+Added mass of a body from that of its parts, and whether a matrix can be an added mass at all.
+
+What an ideal fluid gives to a velocity derivative: total = potential + viscous.
+
+A measured force in steady motion holds every entry of -C_A(nu) nu: the Munk moment in Nv and Mw, and shares of Yr, Nr, Zq,
+Mq, Xvr and others. A simulator that adds C_A(nu) itself must be given the viscous part alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.axes import Datum
+from coeflab.core.errors import InputError
+from coeflab.core.types import Array, brief, locked
+from coeflab.law.rigid_body import ideal_quadratics
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
+from coeflab.law.transforms import velocity_transfer
+from coeflab.report.tables import nouns as noun_tables
+
+ROUNDING = 1e-9
+
+
+def turned(matrix: Array, rotation: Array) -> Array:
+    """The (6, 6) matrix in outer axes; ``rotation`` (3, 3) takes components along the part's axes to the outer ones."""
+    both = np.kron(np.eye(2), rotation)
+    return np.asarray(both @ matrix @ both.T)
+
+
+def moved(matrix: Array, shift: Array) -> Array:
+    """The (6, 6) matrix about a point ``shift`` (3,) away from the old one, same axes.
+
+    Kinetic energy does not depend on the point: M_new = H^T M_old H, with H the velocity at the old point from that at
+    the new one (Fossen 2011, section 7.5.4).
+    """
+    back = velocity_transfer(-shift)
+    return np.asarray(back.T @ matrix @ back)
+
+
+def composed(matrices: Sequence[Array], rotations: Sequence[Array], centres: Sequence[Array], point: Array) -> Array:
+    """Sum over parts, each given about its own centre along its own axes, about a common point.
+
+    Parameters
+    ----------
+    matrices : sequence of (6, 6) arrays
+    rotations : sequence of (3, 3) arrays
+        Part to body.
+    centres : sequence of (3,) arrays
+        m, body axes, from the datum.
+    point : (3,) array
+        m, body axes, from the datum.
+
+    Notes
+    -----
+    The flow of one part is not felt by the others; for parts that touch this is an approximation.
+    """
+    total = np.zeros((6, 6))
+    for matrix, rotation, centre in zip(matrices, rotations, centres, strict=True):
+        total += moved(turned(matrix, rotation), point - centre)
+    return np.asarray((total + total.T) / 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Definiteness:
+    """Whether a matrix is symmetric and positive semidefinite, as a kinetic energy must be.
+
+    Attributes
+    ----------
+    asymmetry : float
+        Largest difference across the diagonal, over the largest entry in units of that pair.
+    smallest : float
+        Smallest eigenvalue of the matrix scaled to a unit diagonal.
+    """
+
+    asymmetry: float
+    smallest: float
+
+    @property
+    def holds(self) -> bool:
+        """Both within rounding."""
+        return bool(self.asymmetry <= ROUNDING and self.smallest >= -ROUNDING)
+
+
+def definiteness(matrix: Array) -> Definiteness:
+    """Look at a (6, 6) matrix; entries are scaled by the root of their diagonals, so units do not matter.
+
+    A row with a zero on its diagonal must be zero throughout; otherwise the smallest eigenvalue is -inf.
+    """
+    diagonal = np.diag(matrix)
+    if not np.all(np.isfinite(matrix)) or np.any(diagonal < 0.0):
+        return Definiteness(np.inf, -np.inf)
+    live = diagonal > 0.0
+    if np.any(matrix[~live]) or np.any(matrix[:, ~live]):
+        return Definiteness(float(np.max(np.abs(matrix - matrix.T))), -np.inf)
+    if not np.any(live):
+        return Definiteness(0.0, 0.0)
+    root = np.sqrt(diagonal[live])
+    scaled = matrix[np.ix_(live, live)] / np.outer(root, root)
+    smallest = float(np.linalg.eigvalsh((scaled + scaled.T) / 2.0)[0])
+    return Definiteness(float(np.max(np.abs(scaled - scaled.T))), smallest)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class AddedMass:
+    """M_A in FRD about a named point; acceleration derivatives are its negatives (Xudot = -M_A[0, 0]).
+
+    Attributes
+    ----------
+    matrix : (6, 6) array
+        kg, kg m, kg m^2.
+    reference_point : (3,) array
+        m, FRD, from the datum.
+    datum : Datum
+    body, method : str
+    statements : tuple of str
+        What the method assumed, in words.
+    error : (6, 6) array, optional
+        Estimate of the numerical error of each entry, at least zero, where the method gives one.
+    rough : bool
+        The method itself says that it is only a rough guide for this body.
+    """
+
+    matrix: NDArray[np.float64]
+    reference_point: NDArray[np.float64]
+    datum: Datum
+    body: str
+    method: str
+    statements: tuple[str, ...] = ()
+    error: NDArray[np.float64] | None = None
+    rough: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "matrix", locked(self.matrix))
+        object.__setattr__(self, "reference_point", locked(self.reference_point))
+        if self.error is not None:
+            object.__setattr__(self, "error", locked(self.error))
+        if self.matrix.shape != (6, 6):
+            raise InputError(f"a matrix of shape {self.matrix.shape}", "6 x 6")
+
+    def _repr_html_(self) -> str:
+        """The matrix, for notebooks."""
+        return noun_tables.matrix(self)._repr_html_()
+
+    @property
+    def definiteness(self) -> Definiteness:
+        """Whether the matrix is symmetric and positive semidefinite."""
+        return definiteness(self.matrix)
+
+    @property
+    def verdict(self) -> str:
+        """The same in words."""
+        found = self.definiteness
+        if found.holds:
+            return "symmetric, positive semidefinite"
+        if not np.isfinite(found.smallest):
+            return "no kinetic energy: a zero, negative or infinite diagonal entry; do not use it"
+        return (
+            f"asymmetric by {found.asymmetry:.1e}, smallest scaled eigenvalue {found.smallest:.1e}: no kinetic energy; "
+            "do not use it"
+        )
+
+    def about(self, point: NDArray[np.float64]) -> AddedMass:
+        """The same about another point, m, FRD, from the datum; errors add up as if all had the worst sign."""
+        shift = np.asarray(point, dtype=float) - self.reference_point
+        matrix, error = moved(self.matrix, shift), None
+        if self.error is not None:
+            lever = np.abs(velocity_transfer(-shift))
+            error = lever.T @ self.error @ lever
+        return replace(self, matrix=matrix, reference_point=np.asarray(point), error=error)
+
+    def derivatives(self) -> dict[str, float]:
+        """All 36 acceleration derivatives, SI: Xudot, ..., Nrdot."""
+        return {
+            f"{force}{motion}dot": -float(self.matrix[i, j])
+            for i, force in enumerate(COMPONENTS)
+            for j, motion in enumerate(MOTIONS)
+        }
+
+    def primed(self, symbol: str, scaling: Scaling, density: float) -> float:
+        """One acceleration derivative, primed: Yvdot' by 1/2 rho L^3, Nrdot' by 1/2 rho L^5 (SNAME 1950)."""
+        return self.derivatives()[symbol] * Scaling(1.0, "1 m").ratio(symbol, scaling) / (0.5 * density)
+
+
+def potential_part(symbol: str, added_mass: AddedMass, scaling: Scaling, density: float) -> float | None:
+    """The potential part of a primed derivative.
+
+    Parameters
+    ----------
+    symbol : str
+        With or without prime. Terms of the first order are derivatives at straight motion with u = U.
+    added_mass : AddedMass
+        About the point that the derivative is about.
+    scaling : Scaling
+    density : float
+        That the added mass was computed with, kg/m^3.
+
+    Returns
+    -------
+    float or None
+        Zero for terms in |v| and of the third order: an ideal fluid has products of two velocities only. None for controls
+        and accelerations, of which it is no part.
+
+    Notes
+    -----
+    In primes u is sqrt(1 - v'^2 - w'^2), so a product u v written in v' alone has a tail, -v'^3 / 2 and on. It is not
+    booked: a target that adds u v itself differs by it, 1 - cos(beta) of the potential part, as its loss report shows.
+    """
+    d = derivative(symbol)
+    if any(f not in MOTIONS for f in d.factors):
+        return None
+    if "|" in d.text or len(d.factors) > 2:
+        return 0.0
+    force = COMPONENTS.index(d.component)
+    quadratics = ideal_quadratics(added_mass.matrix)[force]
+    at = [MOTIONS.index(f) for f in d.factors]
+    if not at:
+        value = quadratics[0, 0]
+    elif len(at) == 1:
+        value = 2.0 * quadratics[0, at[0]]
+    else:
+        value = quadratics[at[0], at[1]] * (1.0 if at[0] == at[1] else 2.0)
+    return float(value / (0.5 * density * scaling.length ** d.powers[1]))

@@ -1,0 +1,289 @@
+"""Hydrodynamic coefficients: one with its uncertainty and origin, and a set with covariance and reference point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.axes import Datum
+from coeflab.core.errors import ScalingMismatchError, shown
+from coeflab.core.types import Array, brief, locked
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative
+from coeflab.law.transforms import derivative_transfer
+
+
+class Status(StrEnum):
+    """What a coefficient's number is worth, with advice."""
+
+    OK = "ok"
+    NO_TABLE = "no_table"
+    TOO_FEW_POINTS = "too_few_points"
+    SINGLE_ESTIMATOR = "single_estimator"
+    NOT_DETERMINED = "not_determined"
+    STATED = "stated"
+    FORM_ASSUMED = "form_assumed"
+
+    @property
+    def advice(self) -> str:
+        """What to do about it."""
+        return {
+            Status.OK: "",
+            Status.NO_TABLE: "No table varies this motion. Add a campaign that does.",
+            Status.TOO_FEW_POINTS: "The rows do not determine any estimator. Run more angles or rates.",
+            Status.SINGLE_ESTIMATOR: "Only one form could be fitted, so its model-form error is unknown and no U95 "
+            "is given. Run more angles, some on the other side.",
+            Status.NOT_DETERMINED: "The data, or the derivatives that a change of reference point needs, leave it open.",
+            Status.STATED: "Taken from the literature with the uncertainty stated there.",
+            Status.FORM_ASSUMED: "U95 holds for the form that was asked for; what another form would give is not in it.",
+        }[self]
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """95 % half-widths that make up U95; None where a part was not assessed.
+
+    Attributes
+    ----------
+    random : float or None
+        Scatter of the points: median member interval, HC2 with Bell-McCaffrey degrees of freedom.
+    model_form : float or None
+        2 a / sqrt(3), a the distance of the farthest member estimator from the value; a lone member is compared with
+        the families dropped for their width.
+        Each family has its own window, so the choice of window is in here.
+    window : float or None
+        Reserved for a separately assessed window part.
+    input : float or None
+        What enters from outside the points: declared uncertainty of angle, speed, calibration, lengths, and the grid
+        error of a computation with a grid study.
+    """
+
+    random: float | None = None
+    model_form: float | None = None
+    window: float | None = None
+    input: float | None = None
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Coefficient:
+    """One coefficient.
+
+    Attributes
+    ----------
+    symbol : str
+        SNAME symbol without prime.
+    value : float or None
+        None unless the status says that it is one to use.
+    u95 : float or None
+        95 % half-width.
+    parts : Parts
+    status : Status
+    origin : str
+        ``fit``, ``literature`` or ``none``.
+    unit : str
+        ``1`` when primed, else SI.
+    table, campaign, body : str or None
+    estimator : str
+        How the value was made.
+    window : (float, float) or None
+        Range of the motion variable used: v' and w' as angles in radians, rates as r' = r L/U.
+    n_points : int
+    citation : str
+    law : str
+        ``motion``: the force scales with the speed of the motion, 1/2 rho U^(2-n) for n motion variables, as the prime
+        system has it. ``rest``: damping about a state of rest, whose SI value multiplies the velocities whatever U is.
+    """
+
+    symbol: str
+    value: float | None
+    u95: float | None
+    status: Status
+    body: str
+    parts: Parts = Parts()
+    origin: str = "none"
+    unit: str = "1"
+    table: str | None = None
+    campaign: str | None = None
+    estimator: str = ""
+    window: tuple[float, float] | None = None
+    n_points: int = 0
+    citation: str = ""
+    law: Literal["motion", "rest"] = "motion"
+
+    def scaled(self, factor: float, unit: str) -> Coefficient:
+        """Value and uncertainties times a factor."""
+
+        def times(x: float | None, k: float = abs(factor)) -> float | None:
+            return None if x is None else x * k
+
+        p = self.parts
+        parts = Parts(times(p.random), times(p.model_form), times(p.window), times(p.input))
+        return replace(self, value=times(self.value, factor), u95=times(self.u95), parts=parts, unit=unit)
+
+    def with_rates(self, longer: float) -> Coefficient:
+        """With the window of a rate, r' = r L / U, for a length ``longer`` times the old one."""
+        rate = any(f in ANGULAR for f in derivative(self.symbol).factors)
+        if self.window is None or not rate:
+            return self
+        return replace(self, window=(self.window[0] * longer, self.window[1] * longer))
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class CoefficientSet:
+    """Coefficients of one body, one scaling, one reference point.
+
+    Attributes
+    ----------
+    coefficients : tuple of Coefficient
+    covariance : (k, k) array
+        Of standard uncertainties (U95 / 2); NaN rows where a U95 is not given.
+    scaling : Scaling
+        Length of the primes, also kept when the set is dimensional.
+    conditions : Conditions or None
+        Density and speed of a dimensional set; None when primed.
+    reference_point : (3,) array
+        m, FRD, from the datum.
+    datum : Datum
+    body : str
+    """
+
+    coefficients: tuple[Coefficient, ...]
+    covariance: Array
+    scaling: Scaling
+    reference_point: Array
+    datum: Datum
+    body: str
+    conditions: Conditions | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "covariance", locked(self.covariance))
+        object.__setattr__(self, "reference_point", locked(self.reference_point))
+
+    def __getitem__(self, symbol: str) -> Coefficient:
+        name = symbol.removesuffix("'")
+        for c in self.coefficients:
+            if c.symbol == name:
+                return c
+        raise KeyError(f"no {shown(symbol)} among {', '.join(c.symbol for c in self.coefficients)}")
+
+    def __contains__(self, symbol: str) -> bool:
+        return any(c.symbol == symbol.removesuffix("'") for c in self.coefficients)
+
+    @property
+    def symbols(self) -> tuple[str, ...]:
+        """Symbols in order."""
+        return tuple(c.symbol for c in self.coefficients)
+
+    def _scaled(self, factors: Array, units: list[str], scaling: Scaling, to: Conditions | None) -> CoefficientSet:
+        rows = zip(self.coefficients, factors, units, strict=True)
+        longer = scaling.length / self.scaling.length
+        changed = tuple(c.scaled(float(k), unit).with_rates(longer) for c, k, unit in rows)
+        covariance = self.covariance * np.outer(factors, factors)
+        return replace(self, coefficients=changed, covariance=covariance, scaling=scaling, conditions=to)
+
+    def to_length(self, scaling: Scaling) -> CoefficientSet:
+        """Prime by another length.
+
+        Raises
+        ------
+        ScalingMismatchError
+            The set is dimensional.
+        """
+        if self.conditions is not None:
+            raise ScalingMismatchError("a dimensional set has no length to change; call to_prime first.")
+        factors = np.array([self.scaling.ratio(s, scaling) for s in self.symbols])
+        return self._scaled(factors, ["1"] * len(factors), scaling, None)
+
+    def to_si(self, conditions: Conditions) -> CoefficientSet:
+        """Dimensional at a density and speed."""
+        if self.conditions is not None:
+            raise ScalingMismatchError("the set is dimensional already; call to_prime first.")
+        factors = np.array([self.scaling.factor(s, conditions) for s in self.symbols])
+        return self._scaled(factors, [derivative(s).unit for s in self.symbols], self.scaling, conditions)
+
+    def to_prime(self, scaling: Scaling | None = None) -> CoefficientSet:
+        """Primed by a length, from a dimensional set."""
+        if self.conditions is None:
+            raise ScalingMismatchError("the set is primed already; call to_length to change its length.")
+        by = scaling or self.scaling
+        factors = np.array([1.0 / by.factor(s, self.conditions) for s in self.symbols])
+        return self._scaled(factors, ["1"] * len(factors), by, None)
+
+    def about(self, point: Array) -> CoefficientSet:
+        """The set about another point (m, FRD, same datum), with its covariance.
+
+        First-order velocity and acceleration derivatives go through the 6 x 6 congruence transform, control
+        derivatives through its force half. A coefficient that needs an unknown one becomes `Status.NOT_DETERMINED`;
+        so do higher-order rate terms, whose transfer needs terms that steady sweeps do not give.
+        """
+        shift = np.asarray(point, dtype=float) - self.reference_point
+        if not np.any(shift):
+            return self
+        unit = self.scaling.length if self.conditions is None else 1.0
+        matrix, known = transfer_matrix(self.symbols, self.available, shift / unit)
+        values = np.array([c.value if c.value is not None else 0.0 for c in self.coefficients])
+        moved = matrix @ values
+        covariance = matrix @ np.nan_to_num(self.covariance) @ matrix.T
+        covariance = 0.5 * (covariance + covariance.T)
+        lost = (matrix != 0.0) @ np.isnan(np.diag(self.covariance)) | ~known
+        covariance[lost, :] = covariance[:, lost] = np.nan
+        changed = []
+        for i, c in enumerate(self.coefficients):
+            alone = np.count_nonzero(matrix[i]) == 1
+            if not known[i]:
+                status = Status.NOT_DETERMINED if c.value is not None else c.status
+                changed.append(replace(c, value=None, u95=None, parts=Parts(), status=status))
+            elif alone:
+                changed.append(c)
+            else:
+                u95 = None if lost[i] else float(2.0 * np.sqrt(covariance[i, i]))
+                changed.append(replace(c, value=float(moved[i]), u95=u95, parts=Parts()))
+        return replace(self, coefficients=tuple(changed), covariance=covariance, reference_point=point)
+
+    @property
+    def available(self) -> frozenset[str]:
+        """Symbols with a value."""
+        return frozenset(c.symbol for c in self.coefficients if c.value is not None)
+
+
+def transfer_matrix(
+    symbols: tuple[str, ...], available: frozenset[str], shift: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Matrix T with new = T @ old over ``symbols``, and which rows are determined by the available ones."""
+    left, right = derivative_transfer(shift)
+    index = {s: i for i, s in enumerate(symbols)}
+    matrix = np.zeros((len(symbols), len(symbols)))
+    known = np.ones(len(symbols), dtype=bool)
+    for i, symbol in enumerate(symbols):
+        d = derivative(symbol)
+        row = COMPONENTS.index(d.component)
+        terms: dict[str, float] = {}
+        if len(d.factors) == 1 and (motion := d.factors[0].removesuffix("dot")) in MOTIONS:
+            column, dot = MOTIONS.index(motion), d.factors[0].removeprefix(motion)
+            for k, component in enumerate(COMPONENTS):
+                for j, variable in enumerate(MOTIONS):
+                    if (weight := left[row, k] * right[j, column]) != 0.0:
+                        terms[component + variable + dot] = float(weight)
+        elif all(f not in ("p", "q", "r") and not f.endswith("dot") for f in d.factors):
+            for k, component in enumerate(COMPONENTS):
+                if left[row, k] != 0.0:
+                    terms[component + symbol[1:]] = float(left[row, k])
+        else:
+            terms = {symbol: 1.0, "": 1.0}
+        for name, weight in terms.items():
+            if name in index and name in available:
+                matrix[i, index[name]] = weight
+            elif not _vanishes(name):
+                known[i] = False
+    return matrix, known
+
+
+def _vanishes(symbol: str) -> bool:
+    """True for derivatives that port-starboard symmetry makes zero."""
+    return bool(symbol) and derivative(symbol).odd_in_port_starboard

@@ -1,0 +1,104 @@
+"""Conditions of a test and the prime system of nondimensional coefficients."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from coeflab.core.errors import InputError, ScalingMismatchError
+from coeflab.core.limits import positive_number
+from coeflab.core.text.toml import Section
+from coeflab.law.symbols import derivative
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """Fluid and speed; nothing is assumed.
+
+    Attributes
+    ----------
+    density : float
+        kg/m^3.
+    speed : float
+        m/s, at the reference point.
+    viscosity : float, optional
+        Kinematic, m^2/s.
+    reynolds : float, optional
+        As the source states it.
+    """
+
+    density: float
+    speed: float
+    viscosity: float | None = None
+    reynolds: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("density", "speed", "viscosity", "reynolds"):
+            value = getattr(self, name)
+            if value is not None and (expected := positive_number(value)):
+                raise InputError(f"{name} = {value:g}", expected, column=f"conditions.{name}")
+
+    def reynolds_on(self, length: float) -> float | None:
+        """Reynolds number on a length, or the one that the source states where the viscosity is not known."""
+        return self.reynolds if self.viscosity is None else self.speed * length / self.viscosity
+
+
+@dataclass(frozen=True, slots=True)
+class Scaling:
+    """The prime system on one length: Y' = Y / (1/2 rho U^2 L^2), N' with L^3, v' = v/U, r' = r L/U.
+
+    Attributes
+    ----------
+    length : float
+        m.
+    length_name : str
+        What that length is, for example ``LBP``.
+    """
+
+    length: float
+    length_name: str
+
+    def __post_init__(self) -> None:
+        if expected := positive_number(self.length):
+            raise InputError(
+                f"length = {self.length:g} m", expected.replace("value", "length"), column="scaling.length"
+            )
+
+    def __str__(self) -> str:
+        return f"{self.length_name} {self.length:.6g} m"
+
+    def factor(self, symbol: str, conditions: Conditions) -> float:
+        """SI value of one primed unit of a derivative: 1/2 rho U^a L^b (SNAME 1950)."""
+        speed, length, _ = derivative(symbol).powers
+        return float(0.5 * conditions.density * conditions.speed**speed * self.length**length)
+
+    def ratio(self, symbol: str, other: Scaling) -> float:
+        """Multiply a value primed by this length with this to prime it by ``other``."""
+        power = derivative(symbol).powers[1]
+        return float((self.length / other.length) ** power)
+
+    def require(self, other: Scaling) -> None:
+        """Raise unless ``other`` is the same length under the same name.
+
+        Raises
+        ------
+        ScalingMismatchError
+        """
+        if self.length_name != other.length_name or abs(self.length / other.length - 1.0) > 1e-9:
+            raise ScalingMismatchError(
+                f"coefficients primed by {self} and by {other} do not mix; rescale one of them first (to_length)."
+            )
+
+
+def read_scaling(section: Section, prefix: str = "") -> Scaling:
+    """The Scaling that a section states under ``length`` and ``length_name``."""
+    return Scaling(section.positive(f"{prefix}length", "length"), section.text(f"{prefix}length_name"))
+
+
+def read_conditions(section: Section) -> Conditions:
+    """The Conditions that a section states."""
+    return Conditions(
+        density=section.positive("density", "density"),
+        speed=section.positive("speed", "speed"),
+        viscosity=section.optional_positive("viscosity", "viscosity"),
+        reynolds=section.optional_positive("reynolds", "none"),
+    )

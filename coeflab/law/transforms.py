@@ -1,0 +1,165 @@
+"""Moving the reference point and turning the axes of 6-vectors and 6 x 6 derivative matrices.
+
+Order of components: u v w p q r and X Y Z K M N. Source: Fossen (2011), section 7.5 (the transformation H).
+
+Drag, side force and lift from body-axis forces.
+
+Fossen (2011), section 2.4: X, Y, Z = R(alpha, beta) @ (-D, S, -L), with R = Ry(-alpha) Rz(beta) as below. For FRD axes:
+D along the relative flow, S to starboard and L upward, both normal to it.
+
+Attitudes of parts: angles of a rotation, and which of the equivalent ones is the tidy one.
+"""
+
+from __future__ import annotations
+
+from itertools import permutations, product
+
+import numpy as np
+
+from coeflab.core.types import Array
+
+
+def skew(a: Array) -> Array:
+    """Matrix S with S @ b = a x b."""
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+
+
+def velocity_transfer(shift: Array) -> Array:
+    """(6, 6) matrix H: velocity at a point ``shift`` away = H @ velocity at the old point (v + omega x shift)."""
+    h = np.eye(6)
+    h[:3, 3:] = -skew(shift)
+    return h
+
+
+def force_transfer(shift: Array) -> Array:
+    """(6, 6) matrix: force and moment about the new point = it @ those about the old one (K - shift x F)."""
+    t = np.eye(6)
+    t[3:, :3] = -skew(shift)
+    return t
+
+
+def derivative_transfer(shift: Array) -> tuple[Array, Array]:
+    """Matrices (A, B) with D_new = A @ D_old @ B for a matrix of derivatives d(force)/d(velocity)."""
+    return force_transfer(shift), velocity_transfer(-shift)
+
+
+def rigid_body_force(mass: float, centre: Array, inertia: Array, nu: Array) -> Array:
+    """C_RB(nu) nu, the force and moment that hold a body in a steady motion, shape (n, 6).
+
+    Parameters
+    ----------
+    mass : float
+        kg.
+    centre : (3,) array
+        Centre of gravity from the reference point, m, FRD.
+    inertia : (3, 3) array
+        About the reference point, kg m^2.
+    nu : (n, 6) array
+        Velocities at the reference point.
+
+    Notes
+    -----
+    Newton-Euler about a body point (Fossen 2011, equation 3.42): F = m (w x v + w x (w x rG)),
+    K = w x (I w) + m rG x (w x v).
+    """
+    v, w = nu[:, :3], nu[:, 3:]
+    spin = np.cross(w, v)
+    force = mass * (spin + np.cross(w, np.cross(w, centre)))
+    moment = np.cross(w, w @ inertia.T) + mass * np.cross(centre, spin)
+    return np.hstack([force, moment])
+
+
+def incidence(u: Array, v: Array, w: Array) -> tuple[Array, Array]:
+    """(alpha, beta) = (atan2(w, u), asin(v / V)), radians; zero at V = 0."""
+    speed = np.sqrt(u**2 + v**2 + w**2)
+    ratio = np.divide(v, speed, out=np.zeros_like(speed), where=speed > 0.0)
+    return np.arctan2(w, u), np.arcsin(np.clip(ratio, -1.0, 1.0))
+
+
+def wind_forces(alpha: Array, beta: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
+    """(D, S, L) from FRD forces, each (n,)."""
+    ca, sa, cb, sb = np.cos(alpha), np.sin(alpha), np.cos(beta), np.sin(beta)
+    drag = -(ca * cb * x + sb * y + sa * cb * z)
+    side = -ca * sb * x + cb * y - sa * sb * z
+    lift = sa * x - ca * z
+    return drag, side, lift
+
+
+def body_forces(alpha: Array, beta: Array, drag: Array, side: Array, lift: Array) -> tuple[Array, Array, Array]:
+    """(X, Y, Z) in FRD from (D, S, L), each (n,)."""
+    ca, sa, cb, sb = np.cos(alpha), np.sin(alpha), np.cos(beta), np.sin(beta)
+    return (
+        -ca * cb * drag - ca * sb * side + sa * lift,
+        -sb * drag + cb * side,
+        -sa * cb * drag - sa * sb * side - ca * lift,
+    )
+
+
+RIGHT = np.pi / 2.0
+UPRIGHT = 0.99
+
+
+def rotation(roll: float, pitch: float, yaw: float) -> Array:
+    """(3, 3) matrix from the part's axes to the body's: yaw, then pitch, then roll, rad (Fossen 2011, equation 2.18)."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
+    about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
+    about_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
+    about_z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
+    return np.asarray(about_z @ about_y @ about_x)
+
+
+def angles(turn: Array) -> tuple[float, float, float]:
+    """Roll, pitch and yaw of a (3, 3) rotation, rad; pitched straight up or down, roll is zero."""
+    pitch = float(np.arcsin(np.clip(-turn[2, 0], -1.0, 1.0)))
+    if np.hypot(turn[0, 0], turn[1, 0]) < 1e-9:
+        return 0.0, pitch, float(np.arctan2(-turn[0, 1], turn[1, 1]))
+    return float(np.arctan2(turn[2, 1], turn[2, 2])), pitch, float(np.arctan2(turn[1, 0], turn[0, 0]))
+
+
+def relabelled(turn: Array, normal: bool = False) -> Array:
+    """The same three axes in the order and with the signs that come nearest to the body's own: the largest trace.
+
+    Parameters
+    ----------
+    turn : (3, 3) array
+        Orthonormal columns.
+    normal : bool
+        Whether the third column stays the third.
+    """
+    best, first = turn, (-np.inf,)
+    for order in permutations(range(3)):
+        if normal and order[2] != 2:
+            continue
+        for signs in product((1.0, -1.0), repeat=3):
+            made = turn[:, order] * signs
+            if np.linalg.det(made) < 0.0:
+                continue
+            # Of equal traces the axes that point ahead, to starboard and down first, whatever signs came in.
+            key = (round(float(np.trace(made)), 9), *np.round(made.T.ravel(), 6).tolist())
+            if key > first:
+                best, first = made, key
+    return np.asarray(best)
+
+
+def about_axis(axis: Array) -> Array:
+    """(3, 3) rotation of a part that is round about its own x: x forward, else to starboard, else up.
+
+    Its y is level; where x stands within 8 deg of upright, y is as near to starboard as can be.
+    """
+    leading = int(np.argmax(np.abs(axis) > np.abs(axis).max() - 1e-6))
+    x = axis / np.linalg.norm(axis) * np.sign(axis[leading]) * (-1.0 if leading == 2 else 1.0)
+    y = np.array([0.0, 1.0, 0.0]) - x * x[1] if abs(x[2]) > UPRIGHT else np.cross([0.0, 0.0, 1.0], x)
+    y /= np.linalg.norm(y)
+    return np.column_stack([x, y, np.cross(x, y)])
+
+
+def snapped(turn: Array, within: float) -> Array:
+    """The rotation with angles within ``within`` of a right angle set to it, rad.
+
+    A part whose x stands upright within that angle is set upright first, where roll and yaw are one.
+    """
+    roll, pitch, yaw = angles(turn)
+    if abs(abs(pitch) - RIGHT) <= within:
+        yaw, roll = float(np.arctan2(-turn[0, 1], turn[1, 1])), 0.0
+    near = [RIGHT * round(a / RIGHT) if abs(a - RIGHT * round(a / RIGHT)) <= within else a for a in (roll, pitch, yaw)]
+    return rotation(*near)

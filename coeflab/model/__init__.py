@@ -1,1 +1,0 @@
-"""Floor 1: the nouns. Frozen; arrays are copied and read-only; verbs return new objects."""

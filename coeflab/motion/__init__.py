@@ -1,0 +1,1 @@
+"""Motions: equations, integrators, manoeuvres, trim, identification, ensembles."""

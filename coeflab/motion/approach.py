@@ -1,0 +1,280 @@
+"""What every manoeuvre begins with: a straight run at a speed, and which way a control turns the vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from coeflab.core.errors import InputError
+from coeflab.core.options import named_numbers
+from coeflab.core.types import Array
+from coeflab.core.wording import listed
+from coeflab.law.symbols import ANGULAR, CONTROLS, MOTIONS
+from coeflab.motion.dynamics import linearised, modes
+from coeflab.motion.manoeuvre import UPRIGHT, Figure, Manoeuvre, Phase
+from coeflab.motion.trajectory import UNCOVERED, Trajectory, outside, outside_in_words
+from coeflab.motion.vehicle import THRUST, Vehicle
+from coeflab.vehicle.parameter_parts import ParameterThruster
+
+SURFACES = {"dr": "rudder", "ds": "stern planes", "db": "bow planes"}
+STEP = 1e-4  # rad: an angle that is small for every law, and far above rounding
+
+
+def along(vehicle: Vehicle, speed: float) -> Array:
+    """(6,) straight ahead at a speed; the file's own where zero is asked for."""
+    nu = np.zeros(6)
+    nu[0] = speed or vehicle.speed
+    return nu
+
+
+def propulsion(vehicle: Vehicle, speed: float) -> tuple[dict[str, float], str]:
+    """Orders that keep the speed on a straight course, and what that means, in words.
+
+    Raises
+    ------
+    InputError
+        The file has no resistance although the speed is free.
+    """
+    if "u" not in vehicle.free:
+        return {}, f"speed held at {speed:g} m/s, whatever thrust that takes"
+    needed = vehicle.resistance(speed)
+    if needed <= 0.0:
+        raise InputError(
+            f"a resistance of {needed:g} N at {speed:g} m/s", "a force against the motion, such as X0 or Xu|u|",
+            column="coefficients", advice="Hold the speed: --hold u.",
+        )  # fmt: skip
+    return {THRUST: needed}, f"thrust constant at {needed:.4g} N, which a straight run at {speed:g} m/s takes"
+
+
+def turning_sense(vehicle: Vehicle, control: str, about: str, speed: float) -> float:
+    """+1 where a positive angle first turns the vehicle the positive way about an axis (``r``, ``q``), otherwise -1.
+
+    Raises
+    ------
+    InputError
+        No coefficient of the file speaks of that control, or it gives no moment.
+    """
+    if not any(v[0] == control for t in vehicle.terms for v, _, _ in t.factors):
+        known = [c for c in CONTROLS if any(v[0] == c for t in vehicle.terms for v, _, _ in t.factors)]
+        raise InputError(
+            f"no coefficient of {control}", f"a derivative such as {'N' if about == 'r' else 'M'}{control}",
+            column="coefficients",
+            advice=f"The file has {', '.join(known)}." if known else _instead(vehicle),
+        )  # fmt: skip
+    nu = along(vehicle, speed)[None, :]
+    angles = np.zeros((2, 3))
+    angles[:, CONTROLS.index(control)] = 1.0, -1.0
+    rate = [vehicle.acceleration(nu, np.array([UPRIGHT]), a[None, :] * STEP, np.zeros(6)) for a in angles]
+    turning = float((rate[0] - rate[1])[0, MOTIONS.index(about)])
+    if turning == 0.0:
+        raise InputError(f"{control} without a moment", f"an effect of {control} on {about}", column="coefficients")
+    return 1.0 if turning > 0.0 else -1.0
+
+
+def _instead(vehicle: Vehicle) -> str:
+    """What a vehicle without control surfaces can do."""
+    if not vehicle.thrusters:
+        return "The file has neither control surfaces nor thrusters."
+    orders = " ".join(f"{t.name}={t.curve.segments[-1].high:g}" for t in vehicle.thrusters)
+    return f'Turning circle and zigzag take thrusters in its place: --commands "{orders}", unequal.'
+
+
+def within_limit(vehicle: Vehicle, control: str, angle: float, key: str) -> float:
+    """The angle, if the surface can take it.
+
+    Raises
+    ------
+    InputError
+        Beyond the surface's limit.
+    """
+    surface = next((s for s in vehicle.surfaces if s.control == control), None)
+    if surface is not None and abs(angle) > surface.limit * (1.0 + 1e-9):
+        raise InputError(
+            f"{np.degrees(angle):g} deg",
+            f"at most {np.degrees(surface.limit):g} deg, the limit of {control}",
+            column=key,
+        )
+    return angle
+
+
+def at_once(vehicle: Vehicle, phases: Sequence[Phase]) -> tuple[str, ...]:
+    """Which control surfaces follow their orders at infinite rate, in words: those ordered whose rate the file does not state."""
+    ordered = {c for p in phases for c in p.orders}
+    rated = {s.control for s in vehicle.surfaces if s.rate is not None}
+    at = [f"{SURFACES[c]} ({c})" for c in CONTROLS if c in ordered and c not in rated]
+    if not at:
+        return ()
+    return (
+        f"{listed(at)} at the ordered angle at once, as the file states no rate: times, distances and overshoots are those of "
+        "infinite rate",
+    )
+
+
+def thruster_orders(vehicle: Vehicle, commands: Sequence[str]) -> dict[str, float]:
+    """``left=0 right=60`` as orders.
+
+    Raises
+    ------
+    InputError
+        Not NAME=NUMBER, a name twice, or one that the vehicle does not have.
+    """
+    out = named_numbers(commands, "commands")
+    known = {*CONTROLS}
+    vehicle.wrench({k: v for k, v in out.items() if k not in known})
+    return out
+
+
+def mirrored(vehicle: Vehicle, orders: Mapping[str, float]) -> dict[str, float]:
+    """Orders of all thrusters and control surfaces that turn the vehicle to the other side as the given ones to theirs.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+    orders : mapping of str to float
+        Of thrusters, ``thrust``, ``dr``, ``ds`` and ``db``; what is not named is zero.
+
+    Raises
+    ------
+    InputError
+        An order for a tilt, or a thruster that has no mirror image among the others.
+    """
+    out = {name: orders[name] for name in (THRUST, "ds", "db") if name in orders}
+    if "dr" in orders:
+        out["dr"] = -orders["dr"]
+    tilts = [name for name in orders if name.endswith(".tilt")]
+    if tilts:
+        raise InputError(
+            f"an order for {tilts[0]}", "thrusters without tilts, one side against the other", column="commands"
+        )
+    for t in vehicle.thrusters:
+        image = next((o for o in vehicle.thrusters if _images(t, o)), None)
+        if image is None:
+            raise InputError(
+                f"the thruster {t.name} without an image on the other side",
+                "thrusters that mirror each other",
+                column="commands",
+            )
+        out[t.name] = orders.get(image.name, 0.0)
+    return out
+
+
+def yaw_acceleration(vehicle: Vehicle, orders: Mapping[str, float], velocity: Array) -> float:
+    """Rate of r under orders for thrusters and control surfaces, at a velocity (6,), rad/s^2."""
+    angles = np.array([[orders.get(c, 0.0) for c in CONTROLS]])
+    pushed = vehicle.wrench({k: v for k, v in orders.items() if k not in CONTROLS})
+    return float(vehicle.acceleration(velocity[None, :], np.array([UPRIGHT]), angles, pushed)[0, 5])
+
+
+def _images(one: ParameterThruster, other: ParameterThruster) -> bool:
+    """Whether one thruster is the other's image in the plane of symmetry."""
+    aside = np.array([1.0, -1.0, 1.0])
+    turns = one.torque_curve is None or one.handedness == -other.handedness
+    return (
+        turns
+        and (one.curve, one.torque_curve) == (other.curve, other.torque_curve)
+        and np.allclose(one.position, aside * other.position, atol=1e-9)
+        and np.allclose(one.direction, aside * other.direction, atol=1e-9)
+    )
+
+
+def linear_growth(vehicle: Vehicle, plane: Sequence[str], speed: float) -> float:
+    """Largest real part of the eigenvalues of small motions about a straight course with the speed held, 1/s.
+
+    Positive: the course is unstable, and only nonlinear terms end the growth.
+    """
+    at = [MOTIONS.index(m) for m in plane if m != "u" and m in vehicle.free]
+    if not at:
+        return 0.0
+    held = replace(vehicle, free=tuple(MOTIONS[i] for i in at))
+    nu = along(vehicle, speed)
+    upright = np.array([UPRIGHT])
+
+    def rates(small: Array) -> Array:
+        moved = nu.copy()
+        moved[at] = small
+        return np.asarray(held.acceleration(moved[None, :], upright, np.zeros((1, 3)), np.zeros(6))[0, at])
+
+    scale = np.array([nu[0] / vehicle.length if MOTIONS[i] in ANGULAR else nu[0] for i in at])
+    return float(modes(linearised(rates, nu[at], scale))[0].real)
+
+
+def has_rotary_limit(vehicle: Vehicle, rate: str, components: Sequence[str]) -> bool:
+    """Whether a term of second or higher degree in a rate, beyond its product with V or u, stands in these components."""
+    return any(
+        t.component in components
+        and any(v[0] == rate for v, _, _ in t.factors)
+        and sum(n for v, n, _ in t.factors if v[0] in ("v", "w", "p", "q", "r")) > 1
+        for t in vehicle.terms
+    )
+
+
+def unlimited(vehicle: Vehicle, rate: str, speed: float) -> str:
+    """Why a steady turn in a rate (``r``, ``q``) is not determined, in words; empty where the file's terms limit it."""
+    other, components = ("v", "YN") if rate == "r" else ("w", "ZM")
+    if has_rotary_limit(vehicle, rate, components) or linear_growth(vehicle, (other, rate), speed) <= 0.0:
+        return ""
+    return (
+        f"straight motion is unstable, and the file has no nonlinear term in {rate} of {components[0]} or {components[1]} "
+        "that would limit the turn"
+    )
+
+
+def undetermined_at_once(vehicle: Vehicle, manoeuvre: Manoeuvre) -> str:
+    """Why a file determines nothing of a manoeuvre, in words, before it is computed; empty where it determines its beginning.
+
+    A vehicle whose straight course is unstable, without nonlinear terms that limit the turn, is determined only within its
+    data. Orders that it follows at once may leave them at time zero.
+    """
+    speed = float(manoeuvre.velocity[0])
+    lacking = next(
+        (why for rate in "rq" if rate in vehicle.free and speed > 0.0 and (why := unlimited(vehicle, rate, speed))), ""
+    )
+    rated = {s.control for s in vehicle.surfaces if s.rate is not None}
+    first = {**manoeuvre.orders, **manoeuvre.phases[0].orders}
+    angles = {c: first[c] for c in CONTROLS if c in first and c not in rated}
+    flags = outside(vehicle, manoeuvre.velocity[None, :], {c: np.array([x]) for c, x in angles.items()})
+    if not lacking or not any(f[0] for name, f in flags.items() if not name.endswith(UNCOVERED)):
+        return ""
+    return " ".join((*outside_in_words(vehicle, manoeuvre.velocity, angles), f"{lacking[:1].upper()}{lacking[1:]}."))
+
+
+def in_current(current: Array) -> tuple[str, ...]:
+    """What a current does to the figures of a manoeuvre, in words; nothing in still water."""
+    if not np.any(current):
+        return ()
+    flows = ", ".join(f"{v:g} {name}" for v, name in zip(current, ("north", "east", "down"), strict=True) if v)
+    return (
+        f"current of {flows} m/s: speeds are through the water, positions over the ground, and distances such as advance and "
+        "head reach hold the drift, for which IMO and ITTC correct",
+    )
+
+
+def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking: str = "") -> Figure:
+    """The figure with a word on motions that no data cover before the time it was read off.
+
+    Parameters
+    ----------
+    figure : Figure
+    trajectory : Trajectory
+    until : float or None
+        When it was read off, s.
+    lacking : str
+        Of `unlimited`; then there is no value once the motion has left a range that data cover.
+    """
+    if figure.value is None or until is None:
+        return figure
+    before = trajectory.time <= until
+    names = [name for name, flags in trajectory.outside.items() if np.any(flags & before)]
+    if not names:
+        return figure
+    beyond = f"beyond the data: {', '.join(names)}"
+    if lacking and any(not name.endswith(UNCOVERED) for name in names):
+        return replace(figure, value=None, status="not determined", why=f"{beyond}; {lacking}")
+    return replace(figure, status="extrapolated", why=beyond)
+
+
+def undetermined(figure: Figure, lacking: str) -> Figure:
+    """A figure of a steady turn; without a value where nothing limits the turn."""
+    return replace(figure, value=None, status="not determined", why=lacking) if lacking else figure

@@ -1,0 +1,343 @@
+"""Rates of the whole state of many vehicles at once, one column a vehicle.
+
+The same equations as `coeflab.motion.dynamics`: every product of two velocities (the ideal fluid's and -C_RB(nu) nu)
+is one quadratic form of the 21 pairs, so that a member of an ensemble may have a mass and an added mass of its own.
+
+Equations of motion of many vehicles at once: restoring forces, accelerations and the rates of the whole state.
+
+Equations (Fossen 2011, equations 3.42, 4.6, 6.9, 2.68 and property 8.1), about the reference point, with the velocity nu
+through a steady irrotational current::
+
+    (M_RB + M_A) nu_dot = tau(nu, controls) - C_RB(nu) nu + g(attitude) + thrust        eta_dot = J(q) nu + current
+
+with -C_A(nu) nu inside tau. The state is position (NED), attitude (quaternion, body to NED, scalar first), nu, and the
+heading turned since the start.
+
+Rates of one vehicle in plain numbers: for a single state several times quicker than arrays of one column.
+
+The same equations and the same law as `coeflab.motion.dynamics`, of which it takes its numbers.
+
+Small motions about a steady one: derivatives of the rates, and their eigenvalues.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.types import Array, brief
+from coeflab.law.motion_law import SLOWEST, MotionLaw
+from coeflab.law.transforms import rigid_body_force, skew
+
+FIRST, SECOND = np.triu_indices(6)
+FLAT = 1e-12
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Dynamics:
+    """What a march needs to know of vehicles.
+
+    Attributes
+    ----------
+    law : MotionLaw
+        Its terms; the ideal quadratics are those of ``quadratics``.
+    quadratics : (6, 21) or (m, 6, 21) array
+        Force of every pair of velocities u u, u v, .. r r.
+    inverse : (6, 6) or (m, 6, 6) array
+        Accelerations of unit forces; zero rows for what is held.
+    excess : (1,) or (m,) array
+        Weight less buoyancy, N.
+    lever : (3, 1) or (3, m) array
+        W r_G - B r_B, N m.
+    current : (3,) array
+        North, east, down, m/s.
+    """
+
+    law: MotionLaw
+    quadratics: Array
+    inverse: Array
+    excess: Array
+    lever: Array
+    current: Array
+
+    def members(self, chosen: NDArray[np.int64]) -> Dynamics:
+        """Those of some members; what all share stays shared."""
+        law = self.law
+        if law.coefficient.ndim == 2:
+            law = replace(law, coefficient=law.coefficient[chosen])
+        return Dynamics(
+            law,
+            self.quadratics[chosen] if self.quadratics.ndim == 3 else self.quadratics,
+            self.inverse[chosen] if self.inverse.ndim == 3 else self.inverse,
+            self.excess[chosen] if len(self.excess) > 1 else self.excess,
+            self.lever[:, chosen] if self.lever.shape[1] > 1 else self.lever,
+            self.current,
+        )
+
+    def rates(self, state: Array, controls: Array, wrench: Array) -> Array:
+        """Time derivatives of the states, (14, n).
+
+        Parameters
+        ----------
+        state : (14, n) array
+            As `coeflab.motion.dynamics` has it.
+        controls : (3, n) array
+            dr, ds, db, rad.
+        wrench : (6, n) array
+            Of the thrusters.
+        """
+        nu = state[7:13]
+        # Numbers are several times quicker than arrays of one.
+        w, x, y, z, u, v, down, p, q, r = state[3:13] if state.shape[1] > 1 else state[3:13, 0].tolist()
+        ahead = (1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y))
+        aside = (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
+        below = (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))
+        out = np.empty_like(state)
+        for k in range(3):
+            out[k] = ahead[k] * u + aside[k] * v + below[k] * down + self.current[k]
+        out[3] = -0.5 * (x * p + y * q + z * r)
+        out[4] = 0.5 * (w * p + y * r - z * q)
+        out[5] = 0.5 * (w * q + z * p - x * r)
+        out[6] = 0.5 * (w * r + x * q - y * p)
+        total = self.law.term_force(nu, controls) + wrench
+        pairs = nu[FIRST] * nu[SECOND]
+        total += (
+            self.quadratics @ pairs if self.quadratics.ndim == 2 else np.einsum("nip,pn->in", self.quadratics, pairs)
+        )
+        gx, gy, gz = ahead[2], aside[2], below[2]
+        lx, ly, lz = self.lever
+        for k, weight in enumerate((gx, gy, gz)):
+            total[k] += self.excess * weight
+        total[3] += ly * gz - lz * gy
+        total[4] += lz * gx - lx * gz
+        total[5] += lx * gy - ly * gx
+        out[7:13] = self.inverse @ total if self.inverse.ndim == 2 else np.einsum("nij,jn->in", self.inverse, total)
+        # Horizontal direction of the x axis, which moves as r times the y axis less q times the z axis.
+        flat = ahead[0] * ahead[0] + ahead[1] * ahead[1]
+        north, east = r * aside[0] - q * below[0], r * aside[1] - q * below[1]
+        out[13] = np.where(flat > FLAT, (ahead[0] * east - ahead[1] * north) / np.maximum(flat, FLAT), 0.0)
+        return out
+
+
+def rigid_body_quadratics(mass: float, centre: Array, inertia: Array) -> Array:
+    """(6, 21) -C_RB(nu) nu as a form of the pairs (Fossen 2011, equation 3.42), by polarisation."""
+    unit = np.eye(6)
+    alone = -rigid_body_force(mass, centre, inertia, unit)
+    both = -rigid_body_force(mass, centre, inertia, unit[FIRST] + unit[SECOND])
+    crossed = both - alone[FIRST] - alone[SECOND]
+    return np.asarray(np.where((FIRST == SECOND)[:, None], alone[FIRST], crossed).T)
+
+
+def ideal_pairs(ideal: Array) -> Array:
+    """(.., 6, 21) forms of the pairs from (.., 6, 6, 6) quadratics."""
+    both = ideal + np.swapaxes(ideal, -1, -2)
+    return np.asarray(both[..., FIRST, SECOND] * np.where(FIRST == SECOND, 0.5, 1.0))
+
+
+STATE = 14
+POSITION, ATTITUDE, VELOCITY, HEADING = slice(0, 3), slice(3, 7), slice(7, 13), 13
+
+
+def rotations(attitude: Array) -> Array:
+    """(n, 3, 3) rotations, body to earth, of unit quaternions (n, 4)."""
+    w, x, y, z = attitude.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
+def euler_angles(attitude: Array) -> Array:
+    """(n, 3) roll, pitch and yaw, rad, of unit quaternions; yaw within -pi and pi."""
+    turned = rotations(attitude)
+    roll = np.arctan2(turned[:, 2, 1], turned[:, 2, 2])
+    pitch = -np.arcsin(np.clip(turned[:, 2, 0], -1.0, 1.0))
+    return np.column_stack([roll, pitch, np.arctan2(turned[:, 1, 0], turned[:, 0, 0])])
+
+
+def from_euler(roll: float, pitch: float, yaw: float) -> Array:
+    """(4,) unit quaternion of roll, pitch and yaw, rad (Fossen 2011, appendix E)."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos([roll / 2, pitch / 2, yaw / 2]), np.sin([roll / 2, pitch / 2, yaw / 2])
+    return np.array(
+        [
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        ]
+    )
+
+
+def turned_about(axis: Array, angle: float) -> Array:
+    """(3, 3) rotation about a unit axis (3,), rad, right-handed (Rodrigues)."""
+    s = skew(axis)
+    return np.asarray(np.eye(3) + np.sin(angle) * s + (1.0 - np.cos(angle)) * s @ s)
+
+
+def restoring(attitude: Array, weight: float, buoyancy: float, centre: Array, centre_of_buoyancy: Array) -> Array:
+    """(n, 6) force and moment of weight and buoyancy about the reference point (Fossen 2011, equation 4.6, as a force)."""
+    down = rotations(attitude)[:, 2, :]
+    lever = weight * np.asarray(centre) - buoyancy * np.asarray(centre_of_buoyancy)
+    return np.asarray(np.hstack([(weight - buoyancy) * down, np.cross(lever, down)]))
+
+
+Numbers = Sequence[float]
+Rates = Callable[[Numbers, Numbers, Numbers], list[float]]
+Force = Callable[[Numbers, Numbers], list[float]]
+
+
+def term_force_of_one(law: MotionLaw) -> Force:
+    """The law's terms as a function of a state (14,) and the angles dr ds db, giving X Y Z K M N.
+
+    Parameters
+    ----------
+    law : MotionLaw
+        Of one vehicle: coefficients (t,) or (1, t).
+    """
+    limits = (law.prime.tolist(), law.low.tolist(), law.high.tolist())
+    variables = list(zip(law.source.tolist(), *limits, strict=True))
+    powers, angled = law.powers.tolist(), law.angled
+    coefficients = law.coefficient.reshape(-1).tolist()
+    gathered = [[row for row in rows if row] for rows in law.gathered.T.tolist()]
+    terms = list(zip(law.component.tolist(), coefficients, gathered, strict=True))
+
+    def force(state: Numbers, angles: Numbers) -> list[float]:
+        u, v, w = state[7], state[8], state[9]
+        speed = math.sqrt(u * u + v * v + w * w)
+        alpha = beta = 0.0
+        if angled:
+            alpha = math.atan2(w, u)
+            beta = math.asin(min(max(v / speed, -1.0), 1.0)) if speed > 0.0 else 0.0
+        base = (u, v, w, state[10], state[11], state[12], *angles, speed, alpha, beta)
+        slow = speed if speed > SLOWEST else SLOWEST
+        pool = [1.0]
+        pool += [speed if n == 1 else speed * speed if n == 2 else slow**n for n in powers]
+        values = []
+        for source, prime, low, high in variables:
+            value = base[source]
+            if prime:
+                value = value * prime / slow
+            values.append(low if value < low else high if value > high else value)
+        pool += values
+        pool += [abs(value) for value in values]
+        out = [0.0] * 9
+        for component, coefficient, rows in terms:
+            product = coefficient
+            for row in rows:
+                product *= pool[row]
+            out[component] += product
+        drag, side, lift = out[6:]
+        if drag or side or lift:
+            ca, sa, cb, sb = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
+            out[0] += -ca * cb * drag - ca * sb * side + sa * lift
+            out[1] += -sb * drag + cb * side
+            out[2] += -sa * cb * drag - sa * sb * side - ca * lift
+        return out[:6]
+
+    return force
+
+
+def _sparse(matrix: Array) -> list[list[tuple[int, float]]]:
+    """Rows as pairs of column and entry, without zeros."""
+    return [[(int(j), float(row[j])) for j in np.flatnonzero(row)] for row in matrix]
+
+
+def rates_of_one(dynamics: Dynamics) -> Rates:
+    """Time derivatives of a state (14,) as a function of it, the angles dr ds db and the thrusters' wrench (6,).
+
+    Parameters
+    ----------
+    dynamics : Dynamics
+        Of one vehicle.
+    """
+    force = term_force_of_one(dynamics.law)
+    quadratics = dynamics.quadratics.reshape(6, len(FIRST))
+    wanted = np.flatnonzero(np.any(quadratics, axis=0))
+    pairs = [(7 + int(FIRST[k]), 7 + int(SECOND[k])) for k in wanted]
+    forms = _sparse(quadratics[:, wanted])
+    inverse = _sparse(dynamics.inverse.reshape(6, 6))
+    excess, (lx, ly, lz) = float(dynamics.excess[0]), dynamics.lever[:, 0].tolist()
+    north, east, below = dynamics.current.tolist()
+
+    def rates(state: Numbers, angles: Numbers, wrench: Numbers) -> list[float]:
+        _, _, _, w, x, y, z, u, v, down, p, q, r, _ = state
+        ax, ay, az = 1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)
+        bx, by, bz = 2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)
+        cx, cy, cz = 2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)
+        total = force(state, angles)
+        products = [state[i] * state[j] for i, j in pairs]
+        for i, form in enumerate(forms):
+            total[i] += wrench[i]
+            for k, entry in form:
+                total[i] += entry * products[k]
+        total[0] += excess * az
+        total[1] += excess * bz
+        total[2] += excess * cz
+        total[3] += ly * cz - lz * bz
+        total[4] += lz * az - lx * cz
+        total[5] += lx * bz - ly * az
+        flat = ax * ax + ay * ay
+        turned_north, turned_east = r * bx - q * cx, r * by - q * cy
+        out = [
+            ax * u + bx * v + cx * down + north,
+            ay * u + by * v + cy * down + east,
+            az * u + bz * v + cz * down + below,
+            -0.5 * (x * p + y * q + z * r),
+            0.5 * (w * p + y * r - z * q),
+            0.5 * (w * q + z * p - x * r),
+            0.5 * (w * r + x * q - y * p),
+        ]
+        for row in inverse:
+            acceleration = 0.0
+            for j, entry in row:
+                acceleration += entry * total[j]
+            out.append(acceleration)
+        out.append((ax * turned_east - ay * turned_north) / flat if flat > FLAT else 0.0)
+        return out
+
+    return rates
+
+
+Growth = Literal["stable", "neutral", "unstable"]
+STEP = 1e-5
+NEUTRAL = 1e-6
+
+
+def linearised(rates: Callable[[Array], Array], state: Array, scale: Array) -> Array:
+    """Derivatives of the rates by the state, (n, n), by central differences.
+
+    Parameters
+    ----------
+    rates : callable
+        (n,) -> (n,), time derivatives of the state.
+    state : (n,) array
+    scale : (n,) array
+        Differences are 1e-5 of it.
+    """
+    steps = STEP * scale
+    columns = [(rates(state + d) - rates(state - d)) / (2.0 * h) for d, h in zip(np.diag(steps), steps, strict=True)]
+    return np.column_stack(columns)
+
+
+def modes(matrix: Array) -> NDArray[np.complex128]:
+    """Eigenvalues, the least stable first; of a pair the one with positive imaginary part first."""
+    found = np.asarray(np.linalg.eigvals(matrix), dtype=complex)
+    return found[np.lexsort((-found.imag, -np.round(found.real, 12)))]
+
+
+def growth(values: NDArray[np.complex128]) -> Growth:
+    """``stable``, ``neutral`` or ``unstable``: the sign of the largest real part, neutral within 1e-6 of the fastest."""
+    if values.size == 0:
+        return "neutral"
+    largest = float(np.max(values.real))
+    if abs(largest) <= NEUTRAL * max(1.0, float(np.max(np.abs(values)))):
+        return "neutral"
+    return "unstable" if largest > 0.0 else "stable"

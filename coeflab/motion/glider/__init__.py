@@ -1,0 +1,1 @@
+"""Gliders in the vertical plane."""

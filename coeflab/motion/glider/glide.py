@@ -1,0 +1,180 @@
+"""Glides of a glider: steady ones by the balance of forces and moment, and a motion in time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coeflab.core.types import Array, brief
+from coeflab.motion.glider.glider import Glider, GliderPhase
+from coeflab.motion.glider.motion import balanced, eigenvalues, glide
+from coeflab.motion.trajectory import Ended, Trajectory
+
+SETTLED = 0.01  # of the steady speed
+ABOVE = 0.5  # m over the surface, beyond what a motion overshoots by: then it flies in the air
+
+
+@dataclass(frozen=True, slots=True)
+class SteadyGlide:
+    """A glide on which all forces and the pitch moment balance.
+
+    Attributes
+    ----------
+    phase : str
+        Whose orders it flies on.
+    net_mass, position : float
+        kg and m.
+    speed : float
+        m/s.
+    alpha, zeta : float
+        Angle of attack and glide angle (below zero on a dive), rad.
+    lift, drag : float
+        N.
+    growth : float
+        Largest real part of the eigenvalues, 1/s; below zero it is stable.
+    """
+
+    phase: str
+    net_mass: float
+    position: float
+    speed: float
+    alpha: float
+    zeta: float
+    lift: float
+    drag: float
+    growth: float
+
+    @property
+    def theta(self) -> float:
+        """Pitch angle, rad."""
+        return self.zeta + self.alpha
+
+    @property
+    def ahead(self) -> float:
+        """Speed over ground, m/s."""
+        return float(self.speed * np.cos(self.zeta))
+
+    @property
+    def sinking(self) -> float:
+        """Speed downward, m/s."""
+        return float(-self.speed * np.sin(self.zeta))
+
+    @property
+    def stable(self) -> bool:
+        """Whether small disturbances die out."""
+        return self.growth < 0.0
+
+
+def steady_glides(glider: Glider, phase: GliderPhase) -> tuple[SteadyGlide, ...]:
+    """Every steady glide ahead on the orders of a phase, by rising angle of attack; none at neutral buoyancy.
+
+    Angles of attack are searched where the polar is covered, or within 30 degrees where it does not say.
+    """
+    body, weight = glider.body, phase.net_mass * glider.gravity
+    if weight == 0.0:
+        return ()
+    ahead, below = body.moments(*phase.setting)
+    out = []
+    for alpha in balanced(body.polar, weight, body.munk, ahead, below, glider.polar.searched):
+        speed, zeta = (float(v) for v in glide(body.polar, weight, alpha))
+        values = eigenvalues(body, phase.setting, speed, float(alpha), zeta + float(alpha))
+        out.append(
+            SteadyGlide(
+                phase=phase.name,
+                net_mass=phase.net_mass,
+                position=phase.position,
+                speed=speed,
+                alpha=float(alpha),
+                zeta=zeta,
+                lift=float(body.polar.lift_at(alpha)) * speed**2,
+                drag=float(body.polar.drag_at(alpha)) * speed**2,
+                growth=float(values.real.max()),
+            )
+        )
+    return tuple(out)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class GlideRun:
+    """A motion of a glider in time.
+
+    Attributes
+    ----------
+    glider : Glider
+    trajectory : Trajectory
+        Controls ``net_mass``, kg, and ``position`` of the sliding mass, m, as they stand.
+    """
+
+    glider: Glider
+    trajectory: Trajectory
+
+    @property
+    def time(self) -> Array:
+        """(n,) s."""
+        return self.trajectory.time
+
+    @property
+    def x(self) -> Array:
+        """(n,) distance over ground, m."""
+        return np.asarray(self.trajectory.position[:, 0])
+
+    @property
+    def depth(self) -> Array:
+        """(n,) m."""
+        return np.asarray(self.trajectory.position[:, 2])
+
+    @property
+    def theta(self) -> Array:
+        """(n,) pitch, rad, beyond 90 degrees in a loop."""
+        return np.asarray(2.0 * np.arctan2(self.trajectory.attitude[:, 2], self.trajectory.attitude[:, 0]))
+
+    @property
+    def speed(self) -> Array:
+        """(n,) m/s."""
+        return self.trajectory.speed
+
+    @property
+    def alpha(self) -> Array:
+        """(n,) angle of attack, rad; NaN at rest."""
+        u, w = self.trajectory.velocity[:, 0], self.trajectory.velocity[:, 2]
+        return np.where(self.speed > 0.0, np.arctan2(w, u), np.nan)
+
+    @property
+    def ends(self) -> tuple[int, ...]:
+        """Last row of each phase that was begun."""
+        phase = self.trajectory.phase
+        return tuple(int(i) for i in [*np.flatnonzero(np.diff(phase)), len(phase) - 1])
+
+    def phase_of(self, index: int) -> GliderPhase:
+        """The phase that stands under an index over all cycles."""
+        return self.glider.phases[index % len(self.glider.phases)]
+
+    def nearest(self, index: int) -> SteadyGlide | None:
+        """The steady glide nearest in speed to the end of a phase."""
+        speed = float(self.speed[self.ends[index]])
+        found = steady_glides(self.glider, self.phase_of(index))
+        return min(found, key=lambda g: abs(g.speed - speed), default=None)
+
+    def settled(self, index: int) -> bool:
+        """Whether a phase ends within 1 % of the speed of a steady glide, the engine at rest."""
+        steady, row = self.nearest(index), self.ends[index]
+        reached = abs(float(self.trajectory.controls["net_mass"][row]) - self.phase_of(index).net_mass) < 1e-9
+        return steady is not None and reached and abs(float(self.speed[row]) / steady.speed - 1.0) < SETTLED
+
+    @property
+    def statements(self) -> tuple[str, ...]:
+        """What a reader has to know, in words."""
+        t = self.trajectory
+        out = [*([] if t.ended is Ended.COMPLETE else [f"The motion ended early: {t.why}."]), *t.statements]
+        if np.min(self.depth, initial=0.0) < -ABOVE:
+            out.append(f"It rises to {-np.min(self.depth):.1f} m above the surface, which these equations do not know.")
+        missed = [
+            p.name
+            for i in range(len(self.ends))
+            if (p := self.phase_of(i)).until_depth is not None and t.reached[i] is None
+        ]
+        if missed and t.ended is Ended.COMPLETE:
+            out.append(f"Not met within the time of the phase: the depth of {', '.join(dict.fromkeys(missed))}.")
+        return tuple(out)

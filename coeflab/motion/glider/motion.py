@@ -1,0 +1,376 @@
+"""Motion of a glider in the vertical plane, with a mass that slides along x and an engine that changes its buoyancy.
+
+Kirchhoff's equations for the momentum of body, fluid and sliding mass, P1, P3 and H about the reference point, in FRD
+axes (Leonard and Graver 2001; equations 14-25 of the THAUV paper)::
+
+    x_dot     = v1 cos(theta) + v3 sin(theta)            depth_dot = -v1 sin(theta) + v3 cos(theta)      theta_dot = q
+    P1_dot    = -P3 q - m0 g sin(theta) + L sin(alpha) - D cos(alpha)
+    P3_dot    =  P1 q + m0 g cos(theta) - L cos(alpha) - D sin(alpha)
+    H_dot     =  P3 v1 - P1 v3 + M - ahead cos(theta) - below sin(theta)
+    P1 = m1 v1 + p1    P3 = m3 v3 + p3    H = J q + r3 p1 - r1 p3    p1 = m_p (v1 + q r3 + r1_dot)    p3 = m_p (v3 - q r1)
+
+The engine changes the displaced volume: m0 follows it, the momenta do not. The momenta keep the sliding mass exact
+without the forces u_p that move it. Written out, P3_dot has +m1 v1 q, where the
+paper's equation 18 prints -m1 v1 q; H_dot has the moments ahead and below of the whole centre of gravity, where its
+equation 19 prints those of the roller; m1 and m3 are mass plus added mass, where its text has added mass alone; and b in
+its equation 9 is b_dot. P3 v1 - P1 v3 holds the Munk moment (m3 - m1) v1 v3, which is left out where M has it already.
+
+Steady glides in the vertical plane: closed forms for speed and glide angle, roots of the pitch balance.
+
+Leonard and Graver (2001), section on steady glides, and equations 28-30 of the THAUV paper. FRD axes, depth positive down, alpha = atan2(w, u),
+glide angle zeta = theta - alpha (below zero on a dive), lift and drag over V^2 linear and quadratic in alpha, radians::
+
+    L = (L0 + L1 alpha) V^2      D = (D0 + D2 alpha^2) V^2      M = (M0 + M1 alpha) V^2 - damping V q
+    D = -m0 g sin(zeta)          L = m0 g cos(zeta)             V^2 = |m0| g / sqrt((L/V^2)^2 + (D/V^2)^2)
+    V^2 (munk sin(alpha) cos(alpha) + M0 + M1 alpha) - ahead cos(theta) - below sin(theta) = 0
+
+with the net mass m0 (weight less buoyancy, over g), munk = m3 - m1 where M does not hold the Munk moment and zero where it
+does, and ahead, below the sums of m g x and m g z of all masses about the reference point. The paper's equation 19 writes
+r_rx and r_rz for the latter; they are the whole centre of gravity's.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from coeflab.core.types import Array, brief
+
+SAMPLES = 1441
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Polar:
+    """Forces over V^2; angles in radians.
+
+    Attributes
+    ----------
+    lift, drag, moment : (float, float)
+        L0 and L1, D0 and D2, M0 and M1: N/(m/s)^2 and N m/(m/s)^2.
+    damping : float
+        -M_q/V, N m/(m/s rad/s); above zero damps.
+    """
+
+    lift: tuple[float, float]
+    drag: tuple[float, float]
+    moment: tuple[float, float]
+    damping: float = 0.0
+
+    def lift_at(self, alpha: Array) -> Array:
+        """L/V^2, shape of ``alpha``."""
+        return self.lift[0] + self.lift[1] * alpha
+
+    def drag_at(self, alpha: Array) -> Array:
+        """D/V^2, shape of ``alpha``."""
+        return self.drag[0] + self.drag[1] * alpha**2
+
+    def moment_at(self, alpha: Array) -> Array:
+        """M/V^2 at no pitch rate, shape of ``alpha``."""
+        return self.moment[0] + self.moment[1] * alpha
+
+
+def glide(polar: Polar, net_weight: float, alpha: Array) -> tuple[Array, Array]:
+    """Speed, m/s, and glide angle, rad, of a steady glide at an angle of attack.
+
+    Parameters
+    ----------
+    polar : Polar
+    net_weight : float
+        m0 g, N; below zero for a climb.
+    alpha : array
+        rad. Where the lift has not the sign of the net weight the glide angle lies beyond 90 degrees: it goes astern.
+    """
+    lift, drag = polar.lift_at(alpha), polar.drag_at(alpha)
+    down = np.sign(net_weight)
+    return np.sqrt(abs(net_weight) / np.hypot(lift, drag)), np.arctan2(-drag * down, lift * down)
+
+
+def shallowest(polar: Polar) -> tuple[float, float]:
+    """Glide angles, rad, nearest to level of a dive and of a climb (Leonard and Graver 2001).
+
+    Best |L|/D; zero where drag does not grow with the angle of attack, for the lift of the law has no bound.
+    """
+    if polar.drag[1] == 0.0:
+        return 0.0, 0.0
+    slope = polar.lift[1]
+    tilt = polar.drag[1] * polar.lift[0] / slope**2
+    reach = float(np.sqrt(tilt**2 + polar.drag[0] / slope * (polar.drag[1] / slope)))
+    return float(np.arctan(2.0 * (tilt - reach))), float(np.arctan(2.0 * (tilt + reach)))
+
+
+def pitch_moment(
+    polar: Polar, net_weight: float, munk: float, ahead: float, below: float, alpha: Array
+) -> Array:  # fmt: skip
+    """Moment, N m, nose up, that is left over on a glide in balance of forces; zero where it is steady."""
+    speed, zeta = glide(polar, net_weight, alpha)
+    theta = zeta + alpha
+    hydrodynamic = munk * np.sin(alpha) * np.cos(alpha) + polar.moment_at(alpha)
+    return speed**2 * hydrodynamic - ahead * np.cos(theta) - below * np.sin(theta)
+
+
+def balanced(
+    polar: Polar, net_weight: float, munk: float, ahead: float, below: float, within: tuple[float, float]
+) -> Array:  # fmt: skip
+    """Every angle of attack, rad, at which an upright glide ahead is steady.
+
+    Sign changes on `SAMPLES` angles, each brought to rounding by Brent's method; two roots closer than a sample are
+    missed. Shape (n,), rising.
+
+    Parameters
+    ----------
+    polar : Polar
+    net_weight, munk, ahead, below : float
+        N, kg, N m, N m; see the module.
+    within : (float, float)
+        Angles of attack to search, rad.
+    """
+    from scipy.optimize import brentq
+
+    def left_over(alpha: Array) -> Array:
+        return pitch_moment(polar, net_weight, munk, ahead, below, alpha)
+
+    at = np.linspace(*within, SAMPLES)
+    forward = polar.lift_at(at) * np.sign(net_weight) > 0.0
+    sign = np.sign(left_over(at))
+    found = [float(at[i]) for i in np.flatnonzero((sign == 0.0) & forward)]
+    for i in np.flatnonzero((sign[1:] * sign[:-1] < 0.0) & forward[1:] & forward[:-1]):
+        found.append(float(brentq(left_over, at[i], at[i + 1], xtol=1e-15, rtol=1e-14)))
+    roots = np.array(sorted(found))
+    return np.asarray(roots[np.abs(glide(polar, net_weight, roots)[1] + roots) < np.pi / 2])
+
+
+STATE = ("x", "depth", "theta", "P1", "P3", "H")
+FEW_CALLS, CALLS_A_SECOND = 50_000, 1_000
+Rates = Callable[[float, Array], list[float]]
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class GliderBody:
+    """What the equations need.
+
+    Attributes
+    ----------
+    polar : Polar
+    surge, heave, inertia : float
+        m1, m3, kg, and J, kg m^2: mass and added mass without the sliding mass.
+    sliding, sliding_below : float
+        m_p, kg, and its r3, m.
+    ahead, below : float
+        Sums of m g x and m g z, N m, of all other masses at neutral buoyancy.
+    engine_ahead : float
+        x at which the net weight acts, m.
+    gravity : float
+        m/s^2.
+    holds_munk : bool
+        Whether the polar's moment holds (m3 - m1) v1 v3.
+    """
+
+    polar: Polar
+    surge: float
+    heave: float
+    inertia: float
+    sliding: float
+    sliding_below: float
+    ahead: float
+    below: float
+    engine_ahead: float
+    gravity: float
+    holds_munk: bool
+
+    @property
+    def munk(self) -> float:
+        """Mass whose Munk moment the pitch balance adds, kg."""
+        return 0.0 if self.holds_munk else self.heave - self.surge
+
+    def moments(self, net_mass: float, position: float) -> tuple[float, float]:
+        """``ahead`` and ``below`` of all masses, N m, at a net mass, kg, and a position of the sliding mass, m."""
+        slide = self.sliding * self.gravity
+        lever = net_mass * self.gravity * self.engine_ahead
+        return self.ahead + slide * position + lever, self.below + slide * self.sliding_below
+
+
+class Setting(NamedTuple):
+    """Net mass, kg, and position of the sliding mass, m."""
+
+    net_mass: float
+    position: float
+
+
+class Leg(NamedTuple):
+    """A stretch of time over which net mass and position change linearly, or not at all."""
+
+    begins: float
+    ends: float
+    at: Setting
+    rate: Setting
+
+    def setting(self, time: float) -> Setting:
+        """What is set at a time of the leg."""
+        since = time - self.begins
+        return Setting(self.at.net_mass + self.rate.net_mass * since, self.at.position + self.rate.position * since)
+
+
+def legs(begins: float, lasts: float, now: Setting, ordered: Setting, rate: Setting) -> list[Leg]:
+    """The order of a phase as stretches that have no kink: both moving, one moving, at rest."""
+    change = Setting(ordered.net_mass - now.net_mass, ordered.position - now.position)
+    needs = [abs(c) / r for c, r in zip(change, rate, strict=True)]
+    speed = [math.copysign(r, c) for c, r in zip(change, rate, strict=True)]
+    out, start, at = [], 0.0, now
+    for end in sorted({*(n for n in needs if 0.0 < n < lasts), lasts}):
+        moves = Setting(*(v if start < n else 0.0 for v, n in zip(speed, needs, strict=True)))
+        leg = Leg(begins + start, begins + end, at, moves)
+        out.append(leg)
+        at = Setting(*(o if end >= n else s for o, s, n in zip(ordered, leg.setting(begins + end), needs, strict=True)))
+        start = end
+    return out
+
+
+def velocity(body: GliderBody, momentum: Sequence[float], position: float, rate: float) -> tuple[float, float, float]:
+    """v1, v3, m/s, and q, rad/s, of momenta P1, P3 and H."""
+    m, r1, r3 = body.sliding, position, body.sliding_below
+    a, b = body.surge + m, body.heave + m
+    p1, p3, h = momentum[0] - m * rate, momentum[1], momentum[2] - m * r3 * rate
+    q = (h - m * r3 * p1 / a + m * r1 * p3 / b) / (
+        body.inertia + m * (r1 * r1 + r3 * r3) - (m * r3) ** 2 / a - (m * r1) ** 2 / b
+    )
+    return (p1 - m * r3 * q) / a, (p3 + m * r1 * q) / b, q
+
+
+def momentum(body: GliderBody, moving: Sequence[float], position: float, rate: float) -> tuple[float, float, float]:
+    """P1, P3 and H of v1, v3 and q; the inverse of `velocity`."""
+    v1, v3, q = moving
+    p1 = body.sliding * (v1 + q * body.sliding_below + rate)
+    p3 = body.sliding * (v3 - q * position)
+    return body.surge * v1 + p1, body.heave * v3 + p3, body.inertia * q + body.sliding_below * p1 - position * p3
+
+
+def rates(body: GliderBody, leg: Leg) -> Rates:
+    """Right-hand side for the state `STATE` over one leg; L and D vanish smoothly with V, so rest is no exception."""
+    polar, g = body.polar, body.gravity
+    doubled = body.heave - body.surge if body.holds_munk else 0.0
+
+    def of(time: float, y: Array) -> list[float]:
+        net_mass, position = leg.setting(time)
+        _, _, theta, p1, p3, h = (float(v) for v in y)
+        v1, v3, q = velocity(body, (p1, p3, h), position, leg.rate.position)
+        speed, alpha = math.hypot(v1, v3), math.atan2(v3, v1)
+        lift = (polar.lift[0] + polar.lift[1] * alpha) * speed
+        drag = (polar.drag[0] + polar.drag[1] * alpha * alpha) * speed
+        moment = (polar.moment[0] + polar.moment[1] * alpha) * speed * speed - polar.damping * speed * q
+        ahead, below = body.moments(net_mass, position)
+        c, s = math.cos(theta), math.sin(theta)
+        return [
+            v1 * c + v3 * s,
+            v3 * c - v1 * s,
+            q,
+            -p3 * q - net_mass * g * s + lift * v3 - drag * v1,
+            p1 * q + net_mass * g * c - lift * v1 - drag * v3,
+            p3 * v1 - p1 * v3 - doubled * v1 * v3 + moment - ahead * c - below * s,
+        ]
+
+    return of
+
+
+def eigenvalues(body: GliderBody, setting: Setting, speed: float, alpha: float, theta: float) -> Array:
+    """(4,) complex eigenvalues, 1/s, of a steady glide under small disturbances of theta and the momenta."""
+    of = rates(body, Leg(0.0, 1.0, setting, Setting(0.0, 0.0)))
+    moving = momentum(body, (speed * math.cos(alpha), speed * math.sin(alpha), 0.0), setting.position, 0.0)
+    at = np.array([0.0, 0.0, theta, *moving])
+    size = np.array([1.0, body.surge * speed, body.heave * speed, body.inertia * speed])
+    columns = []
+    for i in range(4):
+        step = np.zeros(6)
+        step[2 + i] = 1e-6 * size[i]
+        columns.append((np.array(of(0.0, at + step)) - np.array(of(0.0, at - step)))[2:] / (2e-6 * size[i]))
+    return np.asarray(np.linalg.eigvals(np.array(columns).T))
+
+
+class March(NamedTuple):
+    """Times (n,) and states (n, 6) after the start of a leg, whether a depth was met, and how it ended.
+
+    ``why`` says why it stopped early, or is empty; ``finite`` whether its state was one of numbers to the end.
+    """
+
+    time: Array
+    state: Array
+    met: bool
+    why: str
+    finite: bool
+
+
+def march(
+    body: GliderBody, leg: Leg, start: Array, step: float, depth: tuple[float, bool] | None, tolerance: float
+) -> March:  # fmt: skip
+    """Integrate one leg with scipy's LSODA.
+
+    Parameters
+    ----------
+    body, leg : GliderBody, Leg
+    start : (6,) array
+    step : float
+        Between rows, s; the end of the leg is a row too.
+    depth : (float, bool) or None
+        Stop where this depth, m, is crossed: downward where the flag is set, else upward.
+    tolerance : float
+        Relative; absolute a thousandth of it.
+    """
+    from scipy.integrate import LSODA
+
+    wanted = step * np.arange(math.floor(leg.begins / step) + 1, math.ceil(leg.ends / step) + 1)
+    wanted = np.append(wanted[(wanted > leg.begins) & (wanted < leg.ends - 1e-9 * step)], leg.ends)
+    most = FEW_CALLS + CALLS_A_SECOND * (leg.ends - leg.begins)
+    times: list[float] = []
+    states: list[Array] = []
+    next_row, finite = 0, True
+    with warnings.catch_warnings(record=True) as told, np.errstate(all="ignore"):
+        warnings.simplefilter("always")
+        solver = LSODA(rates(body, leg), leg.begins, start, leg.ends, rtol=tolerance, atol=1e-3 * tolerance)
+        while solver.status == "running":
+            try:
+                why = solver.step() or ""
+            except (OverflowError, ValueError) as error:
+                why, finite = f"the state is not finite ({error})", False
+            if not why and not np.isfinite(solver.y).all():
+                why, finite = "the state is not finite", False
+            if not why and solver.nfev > most:
+                why = "the motion is too stiff or too fast to integrate"
+            if why:
+                return _march(times, states, False, str(told[-1].message) if told else why, finite)
+            at = solver.dense_output()
+            end = _crossed(at, solver.t_old, solver.t, depth)
+            reached = int(
+                np.searchsorted(wanted, solver.t if end is None else end, side="right" if end is None else "left")
+            )
+            times += wanted[next_row:reached].tolist()
+            states += [at(t) for t in wanted[next_row:reached]]
+            next_row = reached
+            if end is not None:
+                return _march([*times, end], [*states, at(end)], True)
+    return _march(times, states, False)
+
+
+def _march(times: list[float], states: list[Array], met: bool, why: str = "", finite: bool = True) -> March:
+    return March(np.array(times), np.array(states).reshape(-1, 6), met, why, finite)
+
+
+def _crossed(
+    at: Callable[[float], Array], begins: float, ends: float, depth: tuple[float, bool] | None
+) -> float | None:
+    """When a depth is crossed between two times, in its direction."""
+    from scipy.optimize import brentq
+
+    if depth is None:
+        return None
+    wanted, downward = depth
+
+    def apart(time: float) -> float:
+        return float(at(time)[1] - wanted) * (1.0 if downward else -1.0)
+
+    return float(brentq(apart, begins, ends, xtol=1e-12)) if apart(begins) < 0.0 <= apart(ends) else None

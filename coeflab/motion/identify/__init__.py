@@ -1,0 +1,1 @@
+"""Coefficients from time series of motions."""

@@ -1,0 +1,336 @@
+"""Terms and coefficients of a force balance whose columns are noisy as well as its response.
+
+Least squares on noisy columns is biased towards zero, and by far more where columns are nearly dependent. So every average
+is taken twice, over the even and over the odd rows of a series: their noises are independent, and the one half serves the
+other as instrument (Reiersol 1950; Soderstrom & Stoica, Instrumental Variable Methods, 1983)::
+
+    G = (A1' A2 + A2' A1) / 2        m = (A1' b2 + A2' b1) / 2        theta = G^-1 m
+
+The diagonal of G has no noise in it but that of chance, and the antisymmetric part of A1' A2 nothing else. Rows of one
+stretch of time share their noise, so folds and resamples are made of whole stretches. Sparse regression and inclusion
+frequency: Brunton, Proctor & Kutz (2016), Fasel et al. (2022).
+
+Candidate terms of hydrodynamic forces, named by SNAME subscripts: ``v``, ``v|v|``, ``vr``, ``dr``, ``0``.
+
+A term stands for its product of motions and controls times the power of the speed V that makes it quadratic in velocities,
+as the prime system has it (Gertler & Hagen 1967, Feldman 1979): Yv' multiplies V v, Yv|v|' v|v|, Ydr' V^2 dr. ``X0'``
+multiplies V^2 ahead and -V^2 astern. Damping about a state of rest multiplies the velocities alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.types import Array, brief
+from coeflab.fits.statistics.sparse_selection import THRESHOLDS, ZERO, Optimizer, twins
+from coeflab.law.motion_law import CONTROLS, REVERSAL, SLOWEST
+from coeflab.law.terms import Term
+
+SELDOM = 0.1
+SURE = 3.0
+RESOLVED = 1e-3
+CLEARLY = 2.0
+FOLDS = 5
+FEWEST_STRETCHES = 8
+LEVELS = (2.5, 97.5)
+ROUNDING = 1e-12
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Products:
+    """Sums over every stretch, which all that follows is made of.
+
+    Attributes
+    ----------
+    gram : (s, p, p) array
+        Columns with columns, symmetric, free of the bias of noise.
+    noise : (s, p, p) array
+        Antisymmetric part, which noise alone makes; zero where one half is both.
+    moment : (s, p) array
+        Columns with the response.
+    total : (s,) array
+        Response with itself.
+    """
+
+    gram: Array
+    noise: Array
+    moment: Array
+    total: Array
+
+    def of(self, columns: Sequence[int]) -> Products:
+        """With some of the columns alone."""
+        at = np.asarray(columns, dtype=np.int64)
+        pairs = (slice(None), at[:, None], at[None, :])
+        return Products(self.gram[pairs], self.noise[pairs], self.moment[:, at], self.total)
+
+    def taken(self, stretches: NDArray[np.int64]) -> Products:
+        """Some stretches, each as often as it is named."""
+        return Products(self.gram[stretches], self.noise[stretches], self.moment[stretches], self.total[stretches])
+
+    def solved(self, columns: Sequence[int]) -> Array:
+        """Coefficients of some columns."""
+        if not len(columns):
+            return np.zeros(0)
+        some = self.of(columns)
+        gram = some.gram.sum(axis=0)
+        size = np.sqrt(np.abs(np.diag(gram)))
+        size = np.where(size > 0.0, size, 1.0)
+        scaled = np.linalg.lstsq(gram / np.outer(size, size), some.moment.sum(axis=0) / size, rcond=ROUNDING)[0]
+        return np.asarray(scaled / size)
+
+    def misfit(self, columns: Sequence[int], coefficients: Array) -> Array:
+        """(s,) sums of squares that are left, free of the bias of noise; below zero by chance."""
+        some = self.of(columns)
+        return np.asarray((some.gram @ coefficients) @ coefficients - 2.0 * some.moment @ coefficients + self.total)
+
+
+def products(first: Array, second: Array, stretch: NDArray[np.int64]) -> Products:
+    """Sums over stretches.
+
+    Parameters
+    ----------
+    first, second : (n, p + 1) arrays
+        Columns and, last, the response, averaged over the one and the other half of the rows; the same array twice for
+        ordinary least squares.
+    stretch : (n,) int array
+        From 0, none missing.
+    """
+    p, count = first.shape[1] - 1, int(stretch.max(initial=-1)) + 1
+    whole = np.zeros((count, p + 1, p + 1))
+    np.add.at(whole, stretch, first[:, :, None] * second[:, None, :])
+    even, odd = (whole + whole.swapaxes(1, 2)) / 2.0, (whole - whole.swapaxes(1, 2)) / 2.0
+    return Products(even[:, :p, :p], odd[:, :p, :p], even[:, :p, p], even[:, p, p])
+
+
+def reliability(first: Array, second: Array) -> Array:
+    """(p,) share of the power of columns that both halves see, from 1 without noise to 0 for noise alone."""
+    both = np.sum(first * second, axis=0)
+    power = (np.sum(first**2, axis=0) + np.sum(second**2, axis=0)) / 2.0
+    return np.asarray(np.where(power > 0.0, both / np.where(power > 0.0, power, 1.0), 0.0))
+
+
+def multiples(gram: Array) -> dict[int, int]:
+    """Columns that are multiples of an earlier one, with that one, by the gram (p, p) of columns that are not zero."""
+    size = np.sqrt(np.diag(gram))
+    level, turned = np.linalg.eigh(gram / np.outer(size, size))
+    return twins(np.sqrt(np.maximum(level, 0.0))[:, None] * turned.T)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """What the products say of every column.
+
+    Attributes
+    ----------
+    coefficients : (p,) array
+        Of the kept columns; NaN for the others.
+    frequency : (p,) array
+        Share of the resamples in which the sparse fit keeps a column.
+    low, high : (p,) arrays
+        2.5 and 97.5 percentiles of the resamples, the kept columns refitted; NaN where there are too few stretches.
+    kept : tuple of int
+    threshold : float
+        Of the scaled problem, by cross-validation over stretches.
+    left : float
+        Root mean square of what is left over that of the response, free of noise; 0 where chance makes it negative.
+    """
+
+    coefficients: Array
+    frequency: Array
+    low: Array
+    high: Array
+    kept: tuple[int, ...]
+    threshold: float
+    left: float
+
+
+def square_root(p: Products) -> tuple[Array, Array]:
+    """A matrix (k, k) and a response (k,) with the gram and moment of scaled columns, for optimizers that want rows.
+
+    Directions that are below the noise are lifted to it, so that no coefficient runs away along them.
+    """
+    gram, noise, moment = p.gram.sum(axis=0), p.noise.sum(axis=0), p.moment.sum(axis=0)
+    size = np.sqrt(np.maximum(np.diag(gram), np.finfo(float).tiny))
+    height = np.sqrt(max(float(p.total.sum()), np.finfo(float).tiny))
+    level, turned = np.linalg.eigh(gram / np.outer(size, size))
+    floor = float(np.linalg.norm(noise / np.outer(size, size), ord=2))
+    level = np.sqrt(np.maximum(level, max(floor, ROUNDING * level[-1])))
+    return level[:, None] * turned.T, turned.T @ (moment / size / height) / level
+
+
+def identify(p: Products, optimizer: Optimizer, *, seed: int, resamples: int) -> Found:
+    """Choose columns and fit those.
+
+    A sparse fit of every resample says how often it needs a column. Of the columns that it ever needs, the one is left out
+    that lies nearest to zero in units of its scatter, until all lie three of them away from it. A column without which the
+    others leave less than a thousandth of the force, which straight pieces between rows do not resolve, goes first.
+
+    Parameters
+    ----------
+    p : Products
+        Columns that are excited, none a multiple of another.
+    optimizer : callable
+        (matrix, y, threshold) -> coefficients (p,), all scaled.
+    seed : int
+        Of the resamples.
+    resamples : int
+    """
+    columns, stretches = p.gram.shape[1], len(p.total)
+    threshold = _threshold(p, optimizer)
+    rng = np.random.default_rng(seed)
+    # Which stretches each resample takes; the sums of all of them at once would not fit into memory.
+    draws = [rng.integers(0, stretches, stretches) for _ in range(resamples)]
+    counts = np.zeros(columns)
+    for d in draws:
+        counts[_support(p.taken(d), optimizer, threshold)] += 1.0
+    frequency = counts / resamples
+    chosen = [int(j) for j in np.flatnonzero(frequency >= SELDOM)]
+    again = np.array([p.taken(d).solved(chosen) for d in draws])
+    while chosen:
+        sure = np.abs(p.solved(chosen)) / np.maximum(np.std(again, axis=0), np.finfo(float).tiny)
+        without = _without(p, chosen)
+        spare = without < RESOLVED**2
+        if np.min(sure) >= SURE and not np.any(spare):
+            break
+        chosen.pop(int(np.argmin(np.where(spare, without, 1.0)) if np.any(spare) else np.argmin(sure)))
+        again = np.array([p.taken(d).solved(chosen) for d in draws])
+    coefficients, low, high = np.full((3, columns), np.nan)
+    values = p.solved(chosen)
+    coefficients[chosen] = values
+    if stretches >= FEWEST_STRETCHES and chosen:
+        low[chosen], high[chosen] = np.percentile(again, LEVELS, axis=0)
+    whole = float(p.total.sum())
+    left = np.sqrt(max(float(p.misfit(chosen, values).sum()), 0.0) / whole) if whole > 0.0 else 0.0
+    return Found(coefficients, frequency, low, high, tuple(chosen), threshold, float(left))
+
+
+def _without(p: Products, columns: Sequence[int]) -> Array:
+    """For every column, at most what is left without it: share of the power of the response, with three standard errors."""
+    out = []
+    for j in columns:
+        rest = [k for k in columns if k != j]
+        left = p.misfit(rest, p.solved(rest))
+        out.append(float(left.sum()) + SURE * float(np.std(left)) * np.sqrt(len(left)))
+    return np.array(out) / max(float(p.total.sum()), np.finfo(float).tiny)
+
+
+def _support(p: Products, optimizer: Optimizer, threshold: float) -> list[int]:
+    found = optimizer(*square_root(p), threshold)
+    return [int(j) for j in np.flatnonzero(np.abs(found) > ZERO)]
+
+
+def _threshold(p: Products, optimizer: Optimizer) -> float:
+    """The threshold with the least error on left-out stretches."""
+    fold = np.arange(len(p.total)) % min(FOLDS, len(p.total))
+    errors = np.zeros(len(THRESHOLDS))
+    for k in range(int(fold.max()) + 1):
+        train, test = p.taken(np.flatnonzero(fold != k)), p.taken(np.flatnonzero(fold == k))
+        for m, threshold in enumerate(THRESHOLDS):
+            chosen = _support(train, optimizer, float(threshold))
+            errors[m] += test.misfit(chosen, train.solved(chosen)).sum()
+    return float(THRESHOLDS[len(errors) - 1 - int(np.argmin(errors[::-1]))])
+
+
+def exchangeable(p: Products, kept: Sequence[int]) -> dict[int, tuple[int, ...]]:
+    """For every kept column those left out that do as well in its place.
+
+    One does where the misfit grows by less than two standard errors over the stretches.
+    """
+    out: dict[int, tuple[int, ...]] = {}
+    best = p.misfit(kept, p.solved(kept))
+    fewest = np.finfo(float).eps * float(np.abs(p.total).sum())
+    for j in kept:
+        others = []
+        for k in sorted(set(range(p.gram.shape[1])) - set(kept)):
+            swapped = [k if i == j else i for i in kept]
+            worse = p.misfit(swapped, p.solved(swapped)) - best
+            error = float(np.std(worse)) * np.sqrt(len(worse))
+            if worse.sum() <= max(CLEARLY * error, 100.0 * fewest):
+                others.append(k)
+        out[j] = tuple(others)
+    return out
+
+
+ALONG = {"X": "u", "Y": "v", "Z": "w", "K": "p", "M": "q", "N": "r"}
+_FLIPPED = frozenset(("v", "p", "r", "dr"))
+_FLIPPED_FORCES = frozenset("YKN")
+
+
+def allowed(component: str, term: Term) -> bool:
+    """Whether a body symmetric port to starboard can have the term."""
+    odd = sum(n for v, n, absolute in term.factors if v in _FLIPPED and not absolute) % 2 == 1
+    return odd == (component in _FLIPPED_FORCES)
+
+
+def candidates(component: str, moving: Iterable[str], symmetric: bool) -> tuple[Term, ...]:
+    """Terms of the first and second order over what moves.
+
+    Parameters
+    ----------
+    component : str
+        X Y Z K M N.
+    moving : iterable of str
+        Motions and controls that vary; the forward speed enters by V alone.
+    symmetric : bool
+        Leave out what a body symmetric port to starboard cannot have.
+
+    Notes
+    -----
+    In order: the constant, x, x^2 and x|x|, x y, x|y| and |x|y, the controls and, for X, their squares.
+    """
+    moves = [m for m in moving if m not in (*CONTROLS, "u")]
+    controls = [c for c in moving if c in CONTROLS]
+    found = [Term(), *(_product(m) for m in moves)]
+    for m in moves:
+        found += [_product(m, m), Term(((m, 1, False), (m, 1, True)))]
+    for a, b in combinations(moves, 2):
+        found += [_product(a, b), Term(((a, 1, False), (b, 1, True))), Term(((b, 1, False), (a, 1, True)))]
+    found += [_product(c) for c in controls]
+    if component == "X":
+        found += [_product(c, c) for c in controls]
+    return tuple(t for t in found if not symmetric or allowed(component, t))
+
+
+def _product(a: str, b: str = "") -> Term:
+    return Term(((a, 2 if a == b else 1, False), *(((b, 1, False),) if b not in ("", a) else ())))
+
+
+def same(a: Term, b: Term) -> bool:
+    """Whether two terms are one function, whatever the order of their factors."""
+    return _counts(a) == _counts(b)
+
+
+def _counts(term: Term) -> dict[tuple[str, bool], int]:
+    out: dict[tuple[str, bool], int] = {}
+    for variable, power, absolute in term.factors:
+        key = variable, absolute
+        out[key] = out.get(key, 0) + power
+    return out
+
+
+def column(component: str, term: Term, columns: Mapping[str, Array], rest: bool = False) -> Array:
+    """(n,) values of a term with its power of the speed.
+
+    Parameters
+    ----------
+    component : str
+    term : Term
+    columns : mapping of str to (n,) array
+        u v w p q r, m/s and rad/s, and dr ds db, rad.
+    rest : bool
+        Damping about a state of rest: no power of the speed.
+    """
+    speed = np.sqrt(columns["u"] ** 2 + columns["v"] ** 2 + columns["w"] ** 2)
+    if component == "X" and not term.factors:
+        ahead = np.clip(REVERSAL * columns["u"] / np.maximum(speed, SLOWEST), -1.0, 1.0)
+        return np.asarray(speed**2 * ahead)
+    power = 0 if rest else 2 - sum(n for v, n, _ in term.factors if v not in CONTROLS)
+    out = term.evaluate(columns)
+    return out if power == 0 else np.asarray(out * np.maximum(speed, SLOWEST) ** power)

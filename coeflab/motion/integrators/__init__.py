@@ -1,0 +1,1 @@
+"""Marches through a manoeuvre."""

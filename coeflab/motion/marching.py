@@ -1,0 +1,388 @@
+"""Vehicles and ensembles through manoeuvres: the step is chosen and checked here, and the arrays become trajectories.
+
+Many vehicles that differ in their numbers alone, marched side by side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError
+from coeflab.core.limits import MOTION_STEPS, require_rows
+from coeflab.core.machine import compiles
+from coeflab.core.types import Array, brief, locked
+from coeflab.law.rigid_body import rigid_body_inertia
+from coeflab.law.symbols import CONTROLS
+from coeflab.motion.dynamics import Dynamics, ideal_pairs, rigid_body_quadratics
+from coeflab.motion.integrators import fixed_step as plain
+from coeflab.motion.integrators.adaptive import march_adaptive
+from coeflab.motion.integrators.fixed_step import fast_eigenvalues, largest_step
+from coeflab.motion.manoeuvre import Manoeuvre
+from coeflab.motion.orders import NEAR, Marching, Orders, beyond_curves, orders_of, ramp, standing_orders
+from coeflab.motion.trajectory import Ended, Trajectory, outside
+from coeflab.motion.vehicle import Vehicle
+
+SHAPES = {"coefficients": (0,), "added": (6, 6), "ideal": (6, 6, 6), "mass": (), "centre": (3,), "inertia": (3, 3)}
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Ensemble:
+    """Members of one vehicle.
+
+    Attributes
+    ----------
+    vehicle : Vehicle
+        What they share, and its values where a field is None.
+    coefficients : (m, t) array
+        SI, of the terms of the vehicle's law, in its order.
+    added : (m, 6, 6) array or None
+        Added mass.
+    ideal : (m, 6, 6, 6) array or None
+        Quadratics that the ideal fluid adds to the terms.
+    mass : (m,) array or None
+    centre : (m, 3) array or None
+        Of gravity.
+    inertia : (m, 3, 3) array or None
+        About the reference point.
+
+    Raises
+    ------
+    InputError
+        Arrays that do not fit each other, numbers that are not finite, a member with an effective mass that is not positive
+        definite.
+    """
+
+    vehicle: Vehicle
+    coefficients: Array
+    added: Array | None = None
+    ideal: Array | None = None
+    mass: Array | None = None
+    centre: Array | None = None
+    inertia: Array | None = None
+
+    def __post_init__(self) -> None:
+        count = len(self.coefficients)
+        for name, shape in SHAPES.items():
+            given = getattr(self, name)
+            if given is None:
+                continue
+            wanted = (count, len(self.vehicle.terms)) if name == "coefficients" else (count, *shape)
+            array = locked(given)
+            if array.shape != wanted or not count:
+                raise InputError(f"an array of shape {array.shape}", f"shape {wanted}, one row a member", column=name)
+            if not np.isfinite(array).all():
+                raise InputError("a value that is not finite", "finite numbers", column=name)
+            object.__setattr__(self, name, array)
+        low = np.linalg.eigvalsh((self._free_mass() + self._free_mass().swapaxes(-1, -2)) / 2.0)[:, 0]
+        if not np.all(low > 0.0):
+            raise InputError(
+                f"member {int(np.argmin(low)) + 1} with an effective mass of eigenvalue {low.min():g}",
+                "a positive definite one", column="added",
+            )  # fmt: skip
+
+    @property
+    def count(self) -> int:
+        """Number of members."""
+        return len(self.coefficients)
+
+    def member(self, i: int) -> Vehicle:
+        """One of them, as a vehicle."""
+        v = self.vehicle
+        law = replace(
+            v.law, coefficient=self.coefficients[i], ideal=v.law.ideal if self.ideal is None else self.ideal[i]
+        )
+        terms = tuple(replace(t, coefficient=float(c)) for t, c in zip(v.terms, self.coefficients[i], strict=True))
+        return replace(
+            v, law=law, terms=terms,
+            added=v.added if self.added is None else self.added[i],
+            mass=v.mass if self.mass is None else float(self.mass[i]),
+            centre=v.centre if self.centre is None else self.centre[i],
+            inertia=v.inertia if self.inertia is None else self.inertia[i],
+        )  # fmt: skip
+
+    def dynamics(self, current: Array) -> Dynamics:
+        """Arrays that a march needs, in a current (3,) north, east, down."""
+        v = self.vehicle
+        rigid = np.array([rigid_body_quadratics(*body) for body in self._bodies()])
+        weight = np.array([mass for mass, _, _ in self._bodies()]) * v.hydrostatics.gravity
+        centres = np.array([centre for _, centre, _ in self._bodies()])
+        lever = weight * centres.T - v.buoyancy * np.array(v.hydrostatics.centre_of_buoyancy)[:, None]
+        rows, columns = np.ix_(v.free_columns, v.free_columns)
+        free = np.linalg.inv(self._free_mass())
+        inverse = np.zeros((len(free), 6, 6))
+        inverse[:, rows, columns] = free
+        quadratics = ideal_pairs(v.law.ideal if self.ideal is None else self.ideal) + rigid
+        shared = replace(v.law, coefficient=self.coefficients if self.count > 1 else self.coefficients[0])
+        alike = len(quadratics) == 1
+        return Dynamics(
+            law=shared,
+            quadratics=quadratics[0] if alike else quadratics,
+            inverse=inverse[0] if len(inverse) == 1 else inverse,
+            excess=weight - v.buoyancy,
+            lever=lever,
+            current=np.asarray(current, dtype=np.float64),
+        )
+
+    def _bodies(self) -> list[tuple[float, Array, Array]]:
+        """Mass, centre and inertia, one entry where all are alike."""
+        v = self.vehicle
+        count = 1 if self.mass is None and self.centre is None and self.inertia is None else self.count
+        return [
+            (
+                v.mass if self.mass is None else float(self.mass[i]),
+                v.centre if self.centre is None else self.centre[i],
+                v.inertia if self.inertia is None else self.inertia[i],
+            )
+            for i in range(count)
+        ]
+
+    def _free_mass(self) -> Array:
+        """(1 or m, f, f) effective mass of the free motions."""
+        rigid = np.array([rigid_body_inertia(*body) for body in self._bodies()])
+        whole = rigid + (self.vehicle.added if self.added is None else self.added)
+        rows, columns = np.ix_(self.vehicle.free_columns, self.vehicle.free_columns)
+        return np.asarray(whole.reshape(-1, 6, 6)[:, rows, columns])
+
+
+def alone(vehicle: Vehicle) -> Ensemble:
+    """An ensemble of one."""
+    return Ensemble(vehicle, vehicle.law.coefficient[None, :])
+
+
+KERNELS = ("auto", "numpy", "compiled")
+ENDED = (Ended.COMPLETE, Ended.NOT_FINITE, Ended.TOO_FAST, Ended.STEP_TOO_SMALL)
+# A quarter of the fastest mode's time, of which the scheme stands 2.8, and the time for a twentieth of a length.
+PER_MODE, PER_LENGTH = 0.25, 0.05
+WIDER = "Take more time between rows: --record, or a shorter manoeuvre."
+STILL = np.zeros(3)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Marched:
+    """Motions of all members of an ensemble.
+
+    Attributes
+    ----------
+    ensemble : Ensemble
+    manoeuvres : tuple of Manoeuvre
+        One, or one a member.
+    orders : Orders
+    marching : Marching
+        Arrays: ``times`` (n,), ``records`` (m, n, 14), ``switch_time`` (m, p), ``ended`` (m,) and so on.
+    step : float
+        s; zero where the steps were adaptive.
+    """
+
+    ensemble: Ensemble
+    manoeuvres: tuple[Manoeuvre, ...]
+    orders: Orders
+    marching: Marching
+    step: float
+
+    @property
+    def ended(self) -> tuple[Ended, ...]:
+        """How each member ended."""
+        return tuple(ENDED[code] for code in self.marching.ended)
+
+    def trajectory(self, i: int = 0) -> Trajectory:
+        """Motion of one member: its records, the states where orders changed, and its end."""
+        found, phases = self.marching, self.orders.count
+        manoeuvre = self.manoeuvres[i if len(self.manoeuvres) > 1 else 0]
+        member = self.ensemble.member(i)
+        switches = found.switch_time[i]
+        kept = np.isfinite(found.records[i, :, 0])
+        done = np.isfinite(switches)
+        time = np.concatenate([found.times[kept], switches[done], found.end_time[i : i + 1]])
+        rows = np.vstack([found.records[i, kept], found.switch_state[i, done], found.end_state[i : i + 1]])
+        order = np.argsort(time, kind="stable")
+        time, rows = time[order], rows[order]
+        distinct = np.concatenate([[True], np.diff(time) > NEAR * max(float(found.times[-1]), 1.0) / len(found.times)])
+        time, rows = time[distinct], rows[distinct]
+        ends = np.where(done, switches, np.inf)
+        phase = np.minimum(np.searchsorted(ends, time, side="right"), phases - 1)
+        controls = self._controls(manoeuvre, time, phase, switches)
+        how = ENDED[int(found.ended[i])]
+        flags = outside(member, rows[:, 7:13], {c: x for c, x in controls.items() if c in CONTROLS})
+        return Trajectory(
+            time=time, position=rows[:, :3], attitude=rows[:, 3:7], velocity=rows[:, 7:13], heading=rows[:, 13],
+            controls=controls, phase=phase, phases=tuple(p.name for p in manoeuvre.phases),
+            reached=tuple(float(t) if met else None for t, met in zip(switches, found.met[i], strict=True)),
+            outside=flags, ended=how, why=_why(how, float(found.end_time[i]), found.end_state[i], self.step),
+            statements=(*member.statements, *manoeuvre.statements, *beyond_curves(member, manoeuvre)),
+        )  # fmt: skip
+
+    def _controls(
+        self, manoeuvre: Manoeuvre, time: Array, phase: NDArray[np.int64], switches: Array
+    ) -> dict[str, Array]:
+        standing = standing_orders(manoeuvre)
+        angles = np.zeros((3, len(time)))
+        begin, since = self.orders.begin[:, None], 0.0
+        for k in range(self.orders.count):
+            target, rate = self.orders.angles[k][:, None], self.orders.rate
+            at = phase == k
+            angles[:, at] = ramp(begin, target, rate, time[at] - since)
+            if not np.isfinite(switches[k]):
+                break
+            begin, since = ramp(begin, target, rate, switches[k : k + 1] - since), float(switches[k])
+        names = dict.fromkeys(name for stands in standing for name in stands)
+        surfaces = {s.control for s in self.ensemble.vehicle.surfaces}
+        out = {c: angles[k] for k, c in enumerate(CONTROLS) if c in names or c in surfaces}
+        for name in names:
+            if name not in CONTROLS:
+                out[name] = np.array([stands.get(name, 0.0) for stands in standing])[phase]
+        return out
+
+
+def march(
+    moved: Vehicle | Ensemble,
+    manoeuvre: Manoeuvre | Sequence[Manoeuvre],
+    step: float = 0.0,
+    record: float = 0.0,
+    kernel: str = "auto",
+    current: Array = STILL,
+) -> Marched:
+    """March by the fixed-step scheme; a member that fails stops alone.
+
+    Parameters
+    ----------
+    moved : Vehicle or Ensemble
+    manoeuvre : Manoeuvre, or one a member
+        Those of members may differ in their start and in what thrusters give, not in their phases.
+    step : float
+        s; zero: chosen from the fastest small motion and from the time to pass a length.
+    record : float
+        Time between records, s; zero: every step. The step is shortened until the time is a whole number of them.
+    kernel : {"auto", "numpy", "compiled"}
+        Auto: compiled where numba is installed.
+    current : (3,) array
+        North, east, down, m/s.
+
+    Raises
+    ------
+    InputError
+        Orders that the vehicle cannot follow, a step beyond what the scheme stands, no numba where it was asked for.
+    """
+    ensemble = moved if isinstance(moved, Ensemble) else alone(moved)
+    manoeuvres = (manoeuvre,) if isinstance(manoeuvre, Manoeuvre) else tuple(manoeuvre)
+    orders, start = _arrays(ensemble, manoeuvres)
+    dynamics = ensemble.dynamics(np.asarray(current, dtype=np.float64))
+    compiled = _compiled(kernel)
+    chosen = _step(ensemble, dynamics, orders, start, step)
+    every = 1
+    duration = float(np.sum(orders.longest))
+    if record > 0.0:
+        require_rows(duration / record, "record", WIDER)
+        every = max(1, int(np.ceil(record / chosen - NEAR)))
+        chosen = record / every
+    count = duration / chosen
+    if count > MOTION_STEPS:
+        raise InputError(
+            f"{count:,.0f} steps of {chosen:.3g} s", f"at most {MOTION_STEPS:,}", column="step",
+            advice="The vehicle is stiff or the manoeuvre long; the adaptive integrator takes longer steps.",
+        )  # fmt: skip
+    require_rows(count / every, "record", WIDER)
+    if compiled:
+        from coeflab.motion.integrators.compiled import march as run
+    else:
+        run = plain.march
+    return Marched(
+        ensemble, manoeuvres, orders, run(dynamics, orders, start, chosen, every, _fastest(ensemble, start)), chosen
+    )
+
+
+def chosen_step(ensemble: Ensemble, manoeuvre: Manoeuvre, current: Array = STILL) -> float:
+    """The step that `march` chooses for an ensemble, s: one for all parts of an ensemble that is marched in parts."""
+    orders, start = _arrays(ensemble, (manoeuvre,))
+    return _step(ensemble, ensemble.dynamics(np.asarray(current, dtype=np.float64)), orders, start, 0.0)
+
+
+def march_by_tolerance(
+    vehicle: Vehicle, manoeuvre: Manoeuvre, record: float = 0.0, tolerance: float = 1e-9, current: Array = STILL
+) -> Marched:
+    """March one vehicle by an adaptive integrator; ``record`` zero: a hundredth of the time, at most a tenth of L/U."""
+    ensemble = alone(vehicle)
+    orders, start = _arrays(ensemble, (manoeuvre,))
+    if record <= 0.0:
+        record = min(manoeuvre.duration / 100.0, 0.1 * vehicle.length / max(vehicle.speed, NEAR))
+    require_rows(float(np.sum(orders.longest)) / record, "record", WIDER)
+    dynamics = ensemble.dynamics(np.asarray(current, dtype=np.float64))
+    found = march_adaptive(dynamics, orders, start[0], record, _fastest(ensemble, start), tolerance)
+    return Marched(ensemble, (manoeuvre,), orders, found, 0.0)
+
+
+def _arrays(ensemble: Ensemble, manoeuvres: tuple[Manoeuvre, ...]) -> tuple[Orders, Array]:
+    """Orders, and the states at the start."""
+    if len(manoeuvres) not in (1, ensemble.count):
+        raise InputError(f"{len(manoeuvres)} manoeuvres", f"one, or one for each of {ensemble.count} members")
+    each = [orders_of(ensemble.vehicle, m) for m in manoeuvres]
+    for name in ("angles", "begin", "watched", "sign", "value", "longest"):
+        if any(not np.array_equal(getattr(o, name), getattr(each[0], name)) for o in each):
+            raise InputError(
+                "manoeuvres whose phases differ", "members that differ in start and thrust alone", column=name
+            )
+    start = np.zeros((len(manoeuvres), 14))
+    start[:, 3:7] = [m.attitude / np.linalg.norm(m.attitude) for m in manoeuvres]
+    start[:, 7:13] = [m.velocity for m in manoeuvres]
+    if not np.isfinite(start).all():
+        raise InputError("a start that is not finite", "velocities and an attitude", column=manoeuvres[0].name)
+    wrench = np.array([o.wrench for o in each]) if len(each) > 1 else each[0].wrench
+    return replace(each[0], wrench=wrench), np.repeat(start, ensemble.count // len(manoeuvres), axis=0)
+
+
+def _fastest(ensemble: Ensemble, start: Array) -> float:
+    """Speed that no sound motion reaches."""
+    return min(1e3, 100.0 * max(float(np.max(np.linalg.norm(start[:, 7:10], axis=1))), ensemble.vehicle.speed))
+
+
+def _step(ensemble: Ensemble, dynamics: Dynamics, orders: Orders, start: Array, asked: float) -> float:
+    """The step, checked against the fastest motion at the start and at the file's speed."""
+    v = ensemble.vehicle
+    ahead = start.T.copy()
+    ahead[7] = np.where(np.linalg.norm(start[:, 7:10], axis=1) < v.speed, v.speed, ahead[7])
+    size = max(float(np.max(np.abs(start[:, 7:10]))), v.speed)
+    scale = np.array([1.0] * 7 + [size] * 3 + [size / v.length] * 3 + [1.0])
+    wrench = orders.wrench.reshape(-1, orders.count, 6)[0, 0]
+    found = [fast_eigenvalues(dynamics, state, orders.angles[0], wrench, scale) for state in (start.T, ahead)]
+    if not np.isfinite(found).all():
+        raise InputError(
+            "rates of the vehicle that are not finite at the start", "finite forces", column="coefficients"
+        )
+    most = largest_step(np.array(found))
+    fastest = float(np.max(np.abs(found)))
+    if asked > most:
+        raise InputError(
+            f"a step of {asked:g} s", f"at most {most:.3g} s: the fastest small motion, {fastest:.3g} 1/s, grows beyond that",
+            column="step", advice="Or let the step be chosen (0), or take the adaptive integrator.",
+        )  # fmt: skip
+    if asked > 0.0:
+        return asked
+    return min(PER_MODE / max(fastest, NEAR), PER_LENGTH * v.length / size, float(np.min(orders.longest)))
+
+
+def _compiled(kernel: str) -> bool:
+    if kernel not in KERNELS:
+        raise InputError(kernel, f"one of {', '.join(KERNELS)}", column="kernel")
+    if kernel == "compiled" and not compiles():
+        raise InputError("the compiled kernel without numba", "numba", advice='Install "coeflab[fast]", or use numpy.')
+    return kernel != "numpy" and compiles()
+
+
+def _why(how: Ended, time: float, state: Array, step: float) -> str:
+    """What happened, with time and state; empty where nothing did."""
+    if how is Ended.COMPLETE:
+        return ""
+    shorter = f"; a step shorter than {step:.3g} s, or the adaptive integrator, may serve" if step else ""
+    happened = {
+        Ended.NOT_FINITE: f"the next state is no number{shorter}",
+        Ended.TOO_FAST: f"the speed runs away{shorter}",
+        Ended.STEP_TOO_SMALL: "the integrator finds no step that keeps its tolerance",
+    }[how]
+    values = " ".join(f"{v:.4g}" for v in state[7:13])
+    place = ", ".join(f"{v:.4g}" for v in state[:3])
+    return f"stopped at {time:.6g} s: {happened}. u v w p q r = {values}; position {place} m"

@@ -1,0 +1,142 @@
+"""Parameter files sent through manoeuvres."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import inf
+from typing import Any
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.machine import one_thread
+from coeflab.law.symbols import MOTIONS
+from coeflab.motion.approach import at_once, undetermined_at_once, unlimited
+from coeflab.motion.manoeuvre import PlannedManoeuvre, Simulation
+from coeflab.motion.manoeuvres import MANOEUVRES
+from coeflab.motion.simulators import SIMULATORS
+from coeflab.motion.trajectory import UNCOVERED, Trajectory
+from coeflab.motion.vehicle import Vehicle, vehicle
+from coeflab.vehicle.parameter_file import ParameterFile
+
+
+def manoeuvres_of(
+    planned: Iterable[PlannedManoeuvre], files: Mapping[str, ParameterFile], progress: Callable[[str], None]
+) -> tuple[Simulation, ...]:
+    """Every manoeuvre of a plan.
+
+    Parameters
+    ----------
+    planned : iterable of PlannedManoeuvre
+    files : mapping of str to ParameterFile
+        By name.
+    progress : callable
+        Takes what is being done, in words.
+
+    Raises
+    ------
+    InputError
+        By file and key: a parameter file that the study does not make, a file that cannot move so, options out of range.
+    """
+    out = []
+    for asked in planned:
+        parameters = files.get(asked.parameter_file)
+        if parameters is None:
+            raise InputError(
+                f"no parameter file {shown(asked.parameter_file)} in the study", f"one of {', '.join(files)}",
+                file=asked.file, column=asked.key("parameter_file"),
+            )  # fmt: skip
+        try:
+            out.append(simulate(parameters, asked.name, asked.options, accelerations=asked.accelerations))
+        except InputError as why:
+            raise InputError(
+                why.found, why.expected, file=asked.file, column=asked.key(why.column or "name"), advice=why.advice
+            ) from None
+        progress(f"simulated {asked.name} of {asked.parameter_file}")
+    return tuple(out)
+
+
+def moved(
+    parameters: ParameterFile, manoeuvre: str, free: Sequence[str] = (), hold: Sequence[str] = (), **how: Any
+) -> Vehicle:
+    """The vehicle of a file as a manoeuvre needs it.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    manoeuvre : str
+        Its plane is taken where the file does not know enough of all six motions.
+    free, hold : sequence of str
+        Motions that may change, and those of them that are held after all.
+    **how
+        ``tables`` and ``accelerations`` of `coeflab.motion.vehicle.vehicle`.
+
+    Raises
+    ------
+    InputError
+        Nothing may move.
+    """
+    plane = MANOEUVRES.load(manoeuvre).plane
+    wanted = tuple(free)
+    if hold:
+        whole = wanted or vehicle(parameters, plane=plane, **how).free
+        wanted = tuple(m for m in whole if m not in hold)
+        strange = [m for m in hold if m not in MOTIONS]
+        if strange or not wanted:
+            raise InputError(
+                f"{', '.join(strange or hold)} held", f"some of {', '.join(whole)}, not all of them", column="--hold"
+            )
+    return vehicle(parameters, wanted, plane, **how)
+
+
+@one_thread()
+def simulate(
+    parameters: ParameterFile,
+    manoeuvre: str,
+    options: Mapping[str, Any],
+    simulator: Mapping[str, Any] | None = None,
+    free: Sequence[str] = (),
+    hold: Sequence[str] = (),
+    **how: Any,
+) -> Simulation:
+    """Plan the manoeuvre, move the vehicle, read the figures off.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    manoeuvre : str
+        A plugin of `coeflab.motion.manoeuvres`.
+    options : mapping
+        Of the manoeuvre.
+    simulator : mapping, optional
+        Options of the simulator ``rigid_body``.
+    free, hold : sequence of str
+    **how
+        See `moved`.
+    """
+    plugin = MANOEUVRES.load(manoeuvre)
+    body = moved(parameters, manoeuvre, free, hold, **how)
+    plan = plugin.plan(body, options)
+    mover = SIMULATORS.load("rigid_body")
+    trajectory = mover.simulate(body, plan, simulator or {})
+    statements = tuple(
+        dict.fromkeys((*body.statements, *plan.statements, *at_once(body, plan.phases), *trajectory.statements))
+    )
+    until, why = determined_until(trajectory, body)
+    figures = plugin.figures(trajectory, body, options)
+    works = tuple(dict.fromkeys((*plugin.citations, *mover.citations)))
+    nothing = undetermined_at_once(body, plan)
+    return Simulation(body, plan, trajectory, figures, (*statements, *([why] if why else [])), until, works, nothing)
+
+
+def determined_until(trajectory: Trajectory, vehicle: Vehicle) -> tuple[float, str]:
+    """Time up to which the file determines the motion, and why not beyond, in words."""
+    speed = float(trajectory.velocity[0, 0])
+    for rate in ("r", "q"):
+        lacking = unlimited(vehicle, rate, speed) if rate in vehicle.free and speed > 0.0 else ""
+        if lacking:
+            beyond = [
+                trajectory.time[f] for n, f in trajectory.outside.items() if not n.endswith(UNCOVERED) and f.any()
+            ]
+            if beyond:
+                first = float(min(times[0] for times in beyond))
+                return first, f"drawn up to {first:.4g} s, from where on it is not determined: {lacking}"
+    return inf, ""

@@ -1,0 +1,33 @@
+"""From parameter files to motions: one plugin a file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from coeflab.core.registry import Plugin, Registry
+from coeflab.motion.glider.glider import Glider
+from coeflab.motion.manoeuvre import Manoeuvre
+from coeflab.motion.trajectory import Trajectory
+from coeflab.motion.vehicle import Vehicle
+
+SIMULATORS = Registry(__name__, "simulator", Simulator)  # type: ignore[type-abstract]
+
+
+@runtime_checkable
+class Simulator(Plugin, Protocol):
+    """Moves a vehicle through a manoeuvre."""
+
+    def simulate(self, vehicle: Vehicle | Glider, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -> Trajectory:
+        """The motion, as far as it goes; how it ended is a status of it.
+
+        Parameters
+        ----------
+        vehicle : Vehicle or Glider
+        manoeuvre : Manoeuvre
+        options : mapping of str to value
+            Of the plugin's `Options`.
+        """
+        ...

@@ -1,0 +1,1 @@
+"""Steady motions and operating points."""

@@ -1,0 +1,343 @@
+"""Trim: the commands of a given steady motion, or the steady motion of given commands.
+
+Steady motion of a vehicle: constant velocities, roll, pitch and rate of heading, as unknowns and equations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core import limits
+from coeflab.core.errors import InputError, shown
+from coeflab.core.machine import one_thread
+from coeflab.core.table import Table, number
+from coeflab.core.types import Array, brief
+from coeflab.law.motion_law import WIND
+from coeflab.law.symbols import COMPONENTS, CONTROLS
+from coeflab.law.transforms import incidence, rigid_body_force
+from coeflab.motion.dynamics import from_euler, growth, linearised, modes
+from coeflab.motion.trajectory import outside_in_words
+from coeflab.motion.trim.operating_point import Equation, OperatingPoint, Unknown, nearest, operating_point
+from coeflab.motion.vehicle import THRUST, Vehicle
+
+MOTION = {"u": "m/s", "v": "m/s", "w": "m/s", "yaw_rate": "rad/s", "roll": "rad", "pitch": "rad"}
+FOUND_WITH = {"u": "u", "v": "v", "w": "w", "yaw_rate": "r", "roll": "p", "pitch": "q"}
+# Bounds of the search: three times the speed, a turn on a sixth of a length, and short of 90 deg, where heading has no sense.
+FASTEST, TURNS, STEEP = 3.0, 6.0, np.radians(85.0)
+TILTED = 0.1  # rad, what counts as one unit of lean among the scaled unknowns
+UNSTATED_LIMIT = float(np.radians(30.0))  # taken where the file states none, and said; few control surfaces go further
+NAMES = {
+    "X": "surge force X", "Y": "sway force Y", "Z": "heave force Z", "K": "roll moment K", "M": "pitch moment M",
+    "N": "yaw moment N",
+}  # fmt: skip
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class SteadyMotion:
+    """A vehicle with what is given of its motion and commands.
+
+    Attributes
+    ----------
+    vehicle : Vehicle
+    unknowns : tuple of Unknown
+        Of `MOTION`, then the commands; given ones have equal bounds.
+    equations : tuple of Equation
+        Forces along what the vehicle is free to do.
+    """
+
+    vehicle: Vehicle
+    unknowns: tuple[Unknown, ...]
+    equations: tuple[Equation, ...]
+
+    def state(self, x: Array) -> tuple[Array, Array]:
+        """(6,) velocities and (2,) roll and pitch.
+
+        Notes
+        -----
+        With constant roll and pitch p, q, r follow from the rate of heading (Fossen 2011, section 2.2.1).
+        """
+        u, v, w, turn, roll, pitch = x[: len(MOTION)]
+        spin = turn * np.array([-np.sin(pitch), np.cos(pitch) * np.sin(roll), np.cos(pitch) * np.cos(roll)])
+        return np.array([u, v, w, *spin]), np.array([roll, pitch])
+
+    def commands(self, x: Array) -> tuple[Array, Array]:
+        """(3,) dr ds db and the (6,) wrench of the thrusters."""
+        values = dict(zip([u.name for u in self.unknowns], x.tolist(), strict=True))
+        ordered = {k: v for k, v in values.items() if k not in MOTION and k not in CONTROLS}
+        return np.array([values.get(c, 0.0) for c in CONTROLS]), self.vehicle.wrench(ordered)
+
+    def left(self, x: Array) -> Array:
+        """Forces that would accelerate the vehicle, along its free motions."""
+        nu, lean = self.state(x)
+        controls, wrench = self.commands(x)
+        craft = self.vehicle
+        total = craft.force(nu[None, :], controls[None, :])[0] + wrench
+        total = total + craft.restoring(from_euler(lean[0], lean[1], 0.0)[None, :])[0]
+        total = total - rigid_body_force(craft.mass, craft.centre, craft.inertia, nu[None, :])[0]
+        return np.asarray(total[list(craft.free_columns)])
+
+    def modes(self, x: Array) -> NDArray[np.complex128]:
+        """Eigenvalues of small motions about it with the commands as they are, 1/s; heading and place do not matter."""
+        nu, lean = self.state(x)
+        controls, wrench = self.commands(x)
+        craft, columns = self.vehicle, list(self.vehicle.free_columns)
+        leaning = [i for i, m in enumerate("pq") if m in craft.free]
+        speed = max(float(np.linalg.norm(nu[:3])), 0.1 * craft.speed)
+
+        def rates(small: Array) -> Array:
+            moved, leant = nu.copy(), lean.copy()
+            moved[columns], leant[leaning] = small[: len(columns)], small[len(columns) :]
+            attitude = from_euler(leant[0], leant[1], 0.0)[None, :]
+            faster = craft.acceleration(moved[None, :], attitude, controls[None, :], wrench)[0]
+            (sin, cos), (p, q, r) = (np.sin(leant[0]), np.cos(leant[0])), moved[3:]
+            turned = np.array([p + np.tan(leant[1]) * (q * sin + r * cos), q * cos - r * sin])
+            return np.concatenate([faster[columns], turned[leaning]])
+
+        scale = np.array([speed if i < 3 else speed / craft.length for i in columns] + [1.0] * len(leaning))
+        slopes = linearised(rates, np.concatenate([nu[columns], lean[leaning]]), scale)
+        if not np.isfinite(slopes).all():
+            raise InputError(
+                "rates of small motions that are not finite",
+                "a motion and coefficients whose forces are",
+                column="motion",
+            )
+        return modes(slopes)
+
+
+def steady_motion(vehicle: Vehicle, motion: Mapping[str, float], commands: Mapping[str, float]) -> SteadyMotion:
+    """Set up the unknowns of a steady motion.
+
+    Motions that the vehicle is free in and that are not given are found; the others are zero. Commands that are not given
+    are found where a motion is given, and zero otherwise.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+    motion : mapping
+        Of `MOTION`, SI.
+    commands : mapping
+        Thrusters, ``name.tilt``, ``dr`` ``ds`` ``db``, or ``thrust`` where the file has no thrusters; SI, tilts and surfaces
+        in rad.
+
+    Raises
+    ------
+    InputError
+        A name that is unknown, or a command beyond its limits.
+    """
+    strange = sorted(set(motion) - set(MOTION))
+    if strange:
+        raise InputError(shown(strange[0]), f"some of {', '.join(MOTION)}", column="motion")
+    for name, value in motion.items():
+        if not abs(value) <= limits.FASTEST:
+            raise InputError(
+                f"{name} = {value:g} {MOTION[name]}", f"at most {limits.FASTEST:g} either way", column=name
+            )
+    speed = max(abs(motion.get("u", 0.0)), vehicle.speed)
+    unknowns = [_motion(vehicle, name, motion, speed) for name in MOTION]
+    orders = command_unknowns(vehicle, speed)
+    names = [u.name for u in orders]
+    for name, value in commands.items():
+        if name not in names:
+            raise InputError(f"the command {shown(name)}", f"one of {', '.join(names)}", column="command")
+        limit = orders[names.index(name)]
+        if not limit.low <= value <= limit.high:
+            raise InputError(
+                f"{name} = {limit.shown(value)}", f"{limit.shown(limit.low)} to {limit.shown(limit.high)}",
+                column="command",
+            )  # fmt: skip
+    for u in orders:
+        if u.name in commands:
+            unknowns.append(u.at(commands[u.name]))
+        else:
+            unknowns.append(u if motion or not commands else u.at(min(max(0.0, u.low), u.high)))
+    return SteadyMotion(vehicle, tuple(unknowns), _equations(vehicle, speed))
+
+
+def _motion(vehicle: Vehicle, name: str, motion: Mapping[str, float], speed: float) -> Unknown:
+    """Straight, level and upright is what the rule of selection wants of a motion; the speed does not count."""
+    fastest, quickest = FASTEST * speed, TURNS * speed / vehicle.length
+    bound, scale = {
+        "u": (fastest, speed), "v": (fastest, speed), "w": (fastest, speed), "yaw_rate": (quickest, quickest / TURNS),
+        "roll": (np.pi / 2.0, TILTED), "pitch": (STEEP, TILTED),
+    }[name]  # fmt: skip
+    u = Unknown(name, MOTION[name], -float(bound), float(bound), float(scale), weight=0.0 if name == "u" else 1.0)
+    if name in motion:
+        return u.at(motion[name])
+    return u if FOUND_WITH[name] in vehicle.free else u.at(0.0)
+
+
+def command_unknowns(vehicle: Vehicle, speed: float) -> tuple[Unknown, ...]:
+    """Every command that moves the vehicle where it is free, with its limits."""
+    out = []
+    for t in vehicle.thrusters:
+        largest = max(abs(t.curve.low), abs(t.curve.high))
+        out.append(Unknown(t.name, t.curve.unit, t.curve.low, t.curve.high, largest))
+        if t.tilt_axis is not None:
+            out.append(Unknown(f"{t.name}.tilt", "rad", t.tilt_low, t.tilt_high, 1.0, weight=0.0))
+    if not vehicle.thrusters:
+        out.append(Unknown(THRUST, "N", -np.inf, np.inf, max(abs(vehicle.resistance(speed)), 1e-6)))
+    felt = {*WIND, *(COMPONENTS[i] for i in vehicle.free_columns)}
+    limits: dict[str, float] = {s.control: s.limit for s in vehicle.surfaces}
+    for c in CONTROLS:
+        if any(v[0] == c for term in vehicle.terms if term.component in felt for v, _, _ in term.factors):
+            limit = limits.get(c, UNSTATED_LIMIT)
+            out.append(Unknown(c, "rad", -limit, limit, limit))
+    return tuple(out)
+
+
+def _equations(vehicle: Vehicle, speed: float) -> tuple[Equation, ...]:
+    """Sizes: what turns the vehicle's own speed about within one length."""
+    mass = np.diag(vehicle.effective_mass)
+    rate = speed / vehicle.length
+    return tuple(
+        Equation(NAMES[COMPONENTS[i]], "N" if i < 3 else "N m", float(mass[i]) * rate * (speed if i < 3 else rate))
+        for i in vehicle.free_columns
+    )
+
+
+STRAIGHT = 1e-9
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Trim:
+    """A steady motion with the commands that keep it.
+
+    Attributes
+    ----------
+    motion : SteadyMotion
+    point : OperatingPoint
+    velocity : (6,) array
+        u v w p q r through the water at the reference point.
+    others : tuple of (dict of str to float, str)
+        Other solutions and their stability.
+    """
+
+    motion: SteadyMotion
+    point: OperatingPoint
+    velocity: Array
+    others: tuple[tuple[dict[str, float], str], ...]
+
+    @property
+    def figures(self) -> dict[str, tuple[float | None, str]]:
+        """Speed, incidence and radius with their units; None where there is none, as the radius of a straight course."""
+        u, v, w = self.velocity[:3]
+        speed = float(np.linalg.norm(self.velocity[:3]))
+        alpha, beta = (float(a[0]) for a in incidence(np.array([u]), np.array([v]), np.array([w])))
+        turn, pitch, roll = (self.point.values[k] for k in ("yaw_rate", "pitch", "roll"))
+        sinking = -np.sin(pitch) * u + np.cos(pitch) * (np.sin(roll) * v + np.cos(roll) * w)
+        level = float(np.sqrt(max(speed**2 - sinking**2, 0.0)))
+        turning = abs(turn) * self.motion.vehicle.length > STRAIGHT * max(level, STRAIGHT)
+        p, q, r = (float(x) + 0.0 for x in self.velocity[3:])
+        return {
+            "speed": (speed, "m/s"), "alpha": (alpha + 0.0, "rad"), "beta": (beta + 0.0, "rad"),
+            "climb": (float(-sinking) + 0.0, "m/s"), "p": (p, "rad/s"), "q": (q, "rad/s"), "r": (r, "rad/s"),
+            "radius": (level / abs(turn) if turning else None, "m"),
+        }  # fmt: skip
+
+    def figure_table(self) -> Table:
+        """What the solution means, angles in degrees."""
+        rows = []
+        for name, (value, unit) in self.figures.items():
+            factor = np.degrees(1.0) if unit.startswith("rad") else 1.0
+            rows.append((name, number(None if value is None else value * factor, 6), unit.replace("rad", "deg")))
+        return Table("Motion", ("", "value", "unit"), tuple(rows), (), frozenset({0, 2}))
+
+    def other_table(self) -> Table:
+        """Other solutions, angles in degrees."""
+        unknowns = [u for u in self.point.unknowns if u.low < u.high]
+        rows = tuple(
+            (*(u.shown(values[u.name]).partition(" ")[0] for u in unknowns), state) for values, state in self.others
+        )
+        headers = tuple(f"{u.name} [{u.shown(0.0).partition(' ')[2]}]" for u in unknowns)
+        return Table("Other solutions", (*headers, "small motions"), rows, (), frozenset({len(headers)}))
+
+
+@one_thread()
+def trim(
+    vehicle: Vehicle,
+    motion: Mapping[str, float],
+    commands: Mapping[str, float] | None = None,
+    near: Mapping[str, float] | None = None,
+    starts: int = 8,
+    seed: int = 0,
+) -> Trim:
+    """Find a steady motion and its commands.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+    motion, commands : mapping
+        What is given, SI; see `coeflab.motion.trim.trim.steady_motion`.
+    near : mapping, optional
+        A point by names of unknowns: among several solutions the nearest to it is taken, each unknown in its scale.
+        Otherwise the least effort: commands over their limits, and departures from straight, level and upright.
+    starts, seed : int
+        Seeded cold starts.
+
+    Raises
+    ------
+    InputError
+        Nothing given, nothing to be found, or a name or value that the vehicle does not have.
+    """
+    if not motion and not commands:
+        raise InputError("neither a motion nor a command", "--speed, --yaw-rate, --command or the like")
+    steady = steady_motion(vehicle, motion, commands or {})
+    unknowns = _ruled(steady.unknowns, near or {})
+    if not any(u.low < u.high for u in unknowns):
+        raise InputError("a motion and commands that leave nothing to find", "something left open", column="command")
+    start = [near[u.name] if near and u.name in near else _first(u, vehicle) for u in unknowns]
+    found = operating_point(unknowns, steady.equations, steady.left, start, starts, seed)
+    values = steady.modes(found.found.point)
+    state = growth(values)
+    statements = (*_beyond(vehicle, steady, found), *_unstated(vehicle, unknowns), *vehicle.statements)
+    if found.outcome.solved:
+        found = replace(found, modes=tuple(complex(v) for v in values), growth=state)
+    others = tuple(
+        ({u.name: float(x) + 0.0 for u, x in zip(unknowns, y, strict=True)}, growth(steady.modes(y)))
+        for y in found.found.others
+    )
+    return Trim(
+        steady, replace(found, statements=tuple(dict.fromkeys(statements))), steady.state(found.found.point)[0], others
+    )
+
+
+def _ruled(unknowns: tuple[Unknown, ...], near: Mapping[str, float]) -> tuple[Unknown, ...]:
+    names = [u.name for u in unknowns]
+    strange = [n for n in near if n not in names]
+    if strange:
+        raise InputError(shown(strange[0]), f"one of {', '.join(names)}", column="near")
+    return nearest(unknowns, near) if near else unknowns
+
+
+def _first(u: Unknown, vehicle: Vehicle) -> float:
+    """Straight ahead at the file's speed, commands in the middle between none and their upper limit."""
+    if u.name == "u":
+        start = vehicle.speed
+    elif u.name in MOTION or u.name in CONTROLS or u.name.endswith(".tilt"):
+        start = 0.0
+    else:
+        start = u.high / 2.0 if np.isfinite(u.high) else u.scale
+    return float(min(max(start, u.low), u.high))
+
+
+def _beyond(vehicle: Vehicle, steady: SteadyMotion, found: OperatingPoint) -> tuple[str, ...]:
+    """Motions of the solution that no data behind the coefficients cover."""
+    if not found.outcome.solved:
+        return ()
+    (velocity, _), (angles, _) = steady.state(found.found.point), steady.commands(found.found.point)
+    return outside_in_words(vehicle, velocity, dict(zip(CONTROLS, angles, strict=True)))
+
+
+def _unstated(vehicle: Vehicle, unknowns: tuple[Unknown, ...]) -> list[str]:
+    stated = {s.control for s in vehicle.surfaces}
+    return [
+        f"{u.name}: no limit in the file, {u.shown(u.high)} either way taken."
+        for u in unknowns
+        if u.name in CONTROLS and u.name not in stated and u.low < u.high
+    ]

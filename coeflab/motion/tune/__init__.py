@@ -1,0 +1,1 @@
+"""Parameters tuned to measured motions."""

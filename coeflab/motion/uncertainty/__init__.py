@@ -1,0 +1,1 @@
+"""Uncertainty carried through manoeuvres."""

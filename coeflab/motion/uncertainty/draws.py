@@ -1,0 +1,378 @@
+"""Draws of what a parameter file is uncertain about, from its covariance; normal distributions throughout.
+
+An ensemble out of one vehicle and draws of its parameter file, and which draws a manoeuvre does not feel.
+
+G_h and G_v of draws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from coeflab.core.errors import InputError
+from coeflab.core.types import Array, brief, locked
+from coeflab.fits.uncertainty.propagation import reaches_zero
+from coeflab.law.motion_law import WIND
+from coeflab.law.rigid_body import ideal_quadratics
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.motion.manoeuvre import Figure
+from coeflab.motion.marching import Ensemble
+from coeflab.motion.vehicle import Vehicle
+from coeflab.vehicle.derived import INDICES, stability_index
+from coeflab.vehicle.force_law import MotionTerm, open_places
+from coeflab.vehicle.inertia import MEASURED, entry_of, stated_accelerations
+from coeflab.vehicle.parameter_file import ParameterFile
+
+CELLS = Sequence[Sequence[float | None]]
+CORRELATED = 0.1  # a shared variance of 1 %: below it two coefficients are counted as sources of their own
+NEGATIVE = -1e-8  # eigenvalue of a correlation matrix: rounding of what files print
+UNSTATED = "not varied: no uncertainty is stated"
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Uncertain:
+    """What is drawn.
+
+    Attributes
+    ----------
+    symbols : tuple of str
+        Coefficients, primed, and terms of fitted tables as ``response term``.
+    values : (k,) array
+        As the file states them.
+    covariance : (k, k) array
+        Of standard uncertainties.
+    sources : tuple of str
+        Campaign or work behind each.
+    held : tuple of str
+        What enters the motion but has no stated uncertainty.
+    statements : tuple of str
+    """
+
+    symbols: tuple[str, ...]
+    values: Array
+    covariance: Array
+    sources: tuple[str, ...]
+    held: tuple[str, ...]
+    statements: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        for name in ("values", "covariance"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+    @property
+    def deviation(self) -> Array:
+        """(k,) standard uncertainties."""
+        return np.sqrt(np.diag(self.covariance))
+
+    def groups(self) -> tuple[tuple[int, ...], ...]:
+        """Blocks of the covariance: symbols that are correlated by more than 0.1, directly or through others."""
+        from scipy.sparse.csgraph import connected_components
+
+        _, label = connected_components(np.abs(self._correlation()) > CORRELATED, directed=False)
+        return tuple(tuple(int(i) for i in np.flatnonzero(label == k)) for k in dict.fromkeys(label))
+
+    def left_out(self) -> float:
+        """Largest correlation between groups, which `designed` leaves out."""
+        apart = np.abs(self._correlation())
+        for g in self.groups():
+            apart[np.ix_(g, g)] = 0.0
+        return float(np.max(apart))
+
+    def members(self, count: int, seed: int) -> Array:
+        """(count, k) deviations from the values; the first rows are the same for every count.
+
+        Parameters
+        ----------
+        count, seed : int
+        """
+        z = np.random.default_rng(seed).standard_normal((count, len(self.symbols)))
+        return self._spread(z, self._correlation())
+
+    def designed(self, z: Array) -> Array:
+        """Deviations for standard normal rows (n, k), with the correlations inside of groups only."""
+        kept = np.zeros((len(self.symbols),) * 2)
+        for g in self.groups():
+            kept[np.ix_(g, g)] = 1.0
+        return self._spread(z, self._correlation() * kept)
+
+    def _correlation(self) -> Array:
+        scale = np.where(self.deviation > 0.0, self.deviation, 1.0)
+        out = self.covariance / np.outer(scale, scale)
+        np.fill_diagonal(out, 1.0)
+        return np.asarray(out)
+
+    def _spread(self, z: Array, correlation: Array) -> Array:
+        # The symmetric root is the one that does not hang on the signs and the order of eigenvectors.
+        size, vectors = np.linalg.eigh(correlation)
+        root = (vectors * np.sqrt(np.clip(size, 0.0, None))) @ vectors.T
+        # A product of matrices may round a row differently in a larger sample; this sum does not.
+        return np.asarray(np.einsum("nj,kj->nk", z, root, optimize=False) * self.deviation)
+
+
+def uncertain(parameters: ParameterFile, used: Iterable[str]) -> Uncertain:
+    """What a parameter file is uncertain about.
+
+    The covariance speaks first; where it is null, (U95 / 2)^2 stands in, independent of everything else. What has neither is
+    held. Added mass and mass carry no uncertainty in a parameter file and are held; an acceleration derivative is varied.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    used : iterable of str
+        Names of the terms of the law, `coeflab.vehicle.force_law.MotionTerm.symbol`: tables that it does not use are left out.
+
+    Raises
+    ------
+    InputError
+        The covariance is not positive semidefinite, or nothing at all is uncertain.
+    """
+    parts = [p for p in (_of_coefficients(parameters), *_of_tables(parameters, set(used))) if p.symbols]
+    drawn = [_stated(p) for p in parts]
+    if not any(len(chosen) for chosen, _ in drawn):
+        raise InputError(
+            "a parameter file without any stated uncertainty",
+            "U95 or a covariance of some coefficient",
+            column="covariance",
+        )
+    held = [
+        p.symbols[i]
+        for p, (chosen, _) in zip(parts, drawn, strict=True)
+        for i in range(len(p.symbols))
+        if i not in chosen
+    ]
+    at = [(p, i) for p, (chosen, _) in zip(parts, drawn, strict=True) for i in chosen]
+    return Uncertain(
+        symbols=tuple(p.symbols[i] for p, i in at), values=np.array([p.values[i] for p, i in at]),
+        covariance=block_diag(*(cells for chosen, cells in drawn if chosen)), sources=tuple(p.sources[i] for p, i in at),
+        held=tuple(held), statements=_said(parameters, held),
+    )  # fmt: skip
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """Coefficients with one covariance: those of the file, or the terms of a table; ``rows`` are places in the matrix."""
+
+    column: str
+    matrix: CELLS
+    rows: tuple[int | None, ...]
+    symbols: tuple[str, ...]
+    values: tuple[float, ...]
+    halves: tuple[float | None, ...]
+    sources: tuple[str, ...]
+
+
+def _of_coefficients(parameters: ParameterFile) -> _Part:
+    at = {s: i for i, s in enumerate(parameters.covariance.symbols)}
+    known = [c for c in parameters.coefficients if c.value is not None]
+    return _Part(
+        "covariance", parameters.covariance.matrix, tuple(at.get(c.symbol) for c in known), tuple(c.symbol for c in known),
+        tuple(float(c.value or 0.0) for c in known), tuple(c.u95 for c in known),
+        tuple(c.campaign or c.citation or c.origin for c in known),
+    )  # fmt: skip
+
+
+def _of_tables(parameters: ParameterFile, used: set[str]) -> Iterator[_Part]:
+    for m in parameters.models:
+        known = [(i, t) for i, t in enumerate(m.terms) if t.value is not None and f"{m.response} {t.symbol}" in used]
+        yield _Part(
+            f"models.{m.response}", m.covariance, tuple(i for i, _ in known),
+            tuple(f"{m.response} {t.symbol}" for _, t in known), tuple(float(t.value or 0.0) for _, t in known),
+            tuple(t.half_width_95 for _, t in known), (m.campaign,) * len(known),
+        )  # fmt: skip
+
+
+def _stated(part: _Part) -> tuple[list[int], Array]:
+    """Places of what has an uncertainty, and its covariance."""
+    cells = _cells(part.matrix, part.rows, part.halves)
+    _semidefinite(cells, part.symbols, part.column)
+    chosen = [i for i in range(len(part.symbols)) if cells[i, i] > 0.0]
+    return chosen, cells[np.ix_(chosen, chosen)]
+
+
+def _cells(matrix: CELLS, rows: Sequence[int | None], halves: Sequence[float | None]) -> Array:
+    out = np.zeros((len(rows),) * 2)
+    for i, r in enumerate(rows):
+        for j, c in enumerate(rows):
+            if r is not None and c is not None:
+                out[i, j] = matrix[r][c] or 0.0
+        if (r is None or matrix[r][r] is None) and halves[i] is not None:
+            out[i, i] = (float(halves[i] or 0.0) / 2.0) ** 2
+    return out
+
+
+def _semidefinite(cells: Array, labels: Sequence[str], column: str) -> None:
+    scale = np.sqrt(np.diag(cells))
+    scale = np.where(scale > 0.0, scale, 1.0)
+    low, vectors = np.linalg.eigh(cells / np.outer(scale, scale))
+    if low[0] < NEGATIVE:
+        worst = [labels[i] for i in np.argsort(-np.abs(vectors[:, 0]), kind="stable")[:3]]
+        raise InputError(
+            f"correlations with an eigenvalue of {low[0]:.3g}, mostly of {', '.join(worst)}", "a positive semidefinite covariance",
+            column=column, advice="No random numbers have such a covariance; an entry was changed or rounded too far.",
+        )  # fmt: skip
+
+
+def _said(parameters: ParameterFile, held: Sequence[str]) -> tuple[str, ...]:
+    accelerations = [
+        c.symbol for c in parameters.coefficients if c.value is not None and derivative(c.symbol).text.endswith("dot")
+    ]
+    others = [*held, "mass, centre and inertia"]
+    if parameters.added_mass is not None:
+        others.append(
+            f"computed added mass{', apart from the acceleration derivatives of the file' if accelerations else ''}"
+        )
+    return (
+        "distribution: normal, standard uncertainty U95/2, correlated as the file's covariance says",
+        f"{UNSTATED}: {', '.join(others)}",
+    )
+
+
+VELOCITY_OF = {"alpha": "w", "beta": "v"}
+
+
+def drawn(
+    vehicle: Vehicle, parameters: ParameterFile, symbols: Sequence[str], deviations: Array, tables: bool = False
+) -> Ensemble:
+    """Members whose coefficients and acceleration derivatives deviate.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        Of ``parameters``.
+    parameters : ParameterFile
+    symbols : sequence of str
+        Of the columns of ``deviations``, as in `coeflab.motion.uncertainty.draws.Uncertain`.
+    deviations : (m, k) array
+        In the units of the file.
+    tables : bool
+        Whether fitted tables come before derivatives in the vehicle.
+
+    Raises
+    ------
+    InputError
+        A member whose effective mass is not positive definite.
+    """
+    columns = {s: k for k, s in enumerate(symbols)}
+    coefficients = np.repeat(vehicle.law.coefficient[None], len(deviations), axis=0)
+    for row, t in enumerate(vehicle.terms):
+        if t.symbol in columns:
+            coefficients[:, row] += t.per_prime * deviations[:, columns[t.symbol]]
+    change = _added(vehicle, parameters, symbols, deviations)
+    if change is None:
+        return Ensemble(vehicle, coefficients)
+    ideal = None
+    if parameters.added_mass is not None:
+        unspoken = open_places(parameters, tables)
+        ideal = vehicle.law.ideal + np.array([np.where(unspoken, ideal_quadratics(c), 0.0) for c in change])
+    return Ensemble(vehicle, coefficients, added=vehicle.added + change, ideal=ideal)
+
+
+def _added(vehicle: Vehicle, parameters: ParameterFile, symbols: Sequence[str], deviations: Array) -> Array | None:
+    """(m, 6, 6) change of the added mass, by half where the file states an entry on both sides of the diagonal; None where
+    no draw is felt in it.
+    """
+    if vehicle.water.used != MEASURED:
+        return None
+    stated = stated_accelerations(parameters)
+    moved = [(k, at, s) for k, s in enumerate(symbols) if (at := entry_of(s)) is not None]
+    if not moved:
+        return None
+    out = np.zeros((len(deviations), 6, 6))
+    for k, (i, j), s in moved:
+        change = -deviations[:, k] * 0.5 * vehicle.density * vehicle.length ** derivative(s).powers[1]
+        share = 0.5 if i != j and (j, i) in stated else 1.0
+        out[:, i, j] += share * change
+        if i != j:
+            out[:, j, i] += share * change
+    return out
+
+
+def unfelt(vehicle: Vehicle, symbols: Sequence[str], ordered: Collection[str]) -> frozenset[str]:
+    """Symbols that cannot change the motion: of held motions, of controls that are never moved, of terms that are not in the law.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        Held motions are taken to be zero, apart from u.
+    symbols : sequence of str
+    ordered : collection of str
+        Controls that the manoeuvre moves.
+    """
+    terms = {t.symbol: t for t in vehicle.terms}
+    still = ({*MOTIONS} - {*vehicle.free, "u"}) | ({*CONTROLS} - {*ordered})
+    out = set()
+    for s in symbols:
+        at = entry_of(s)
+        if at is not None:
+            felt = vehicle.water.used == MEASURED and all(MOTIONS[i] in vehicle.free for i in at)
+        else:
+            felt = s in terms and _acts(terms[s], vehicle, still)
+        if not felt:
+            out.add(s)
+    return frozenset(out)
+
+
+def _acts(term: MotionTerm, vehicle: Vehicle, still: Collection[str]) -> bool:
+    if any(VELOCITY_OF.get(v[0], v[0]) in still for v, _, _ in term.factors):
+        return False
+    return term.component in WIND or MOTIONS[COMPONENTS.index(term.component)] in vehicle.free
+
+
+DEFINITIONS = {
+    "G_h": "1 - Nv'(Yr' - m')/[Yv'(Nr' - xG'm')], positive: stable on a straight course (Feldman 1979)",
+    "G_v": "1 - Mw'(Zq' + m')/[Zw'(Mq' - xG'm')], positive: stable in the vertical plane at high speed (Feldman 1979)",
+}
+
+
+def drawn_stability(
+    parameters: ParameterFile, varied: Uncertain, deviations: Array
+) -> dict[str, tuple[Figure, Array, str]]:
+    """Name to the index at the file's values, its values at the draws (n,), and why it has no interval, in words.
+
+    The rules are those of `coeflab.vehicle.derived.stability`: every coefficient in it needs an uncertainty, and no denominator may
+    reach zero.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+        Planes without mass or without all four coefficients are left out.
+    varied : Uncertain
+    deviations : (n, k) array
+    """
+    out = {}
+    for name, (*symbols, sign) in INDICES.items():
+        found = [c for s in symbols if (c := parameters.coefficient(str(s))) is not None and c.value is not None]
+        if parameters.mass is None or len(found) < len(symbols):
+            continue
+        values = [float(c.value or 0.0) for c in found]
+        at = [varied.symbols.index(c.symbol) if c.symbol in varied.symbols else None for c in found]
+        mass, moment = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
+        deviation = np.column_stack([np.zeros(len(deviations)) if k is None else deviations[:, k] for k in at])
+        nominal, *rows = _index(np.vstack([np.zeros(4), deviation]) + values, mass, moment)
+        figure = Figure(name, float(nominal) if np.isfinite(nominal) else None, "1", DEFINITIONS[name])
+        out[name] = figure, np.array(rows), _why(found[0].symbol, found[3].symbol, values, at, varied, moment)
+    return out
+
+
+def _index(values: Array, mass: float, moment: float) -> Array:
+    force_slope, moment_slope, force_rate, moment_rate = values.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return stability_index(force_slope, moment_slope, force_rate, moment_rate, mass, moment)
+
+
+def _why(
+    force: str, moment_rate: str, values: list[float], at: list[int | None], varied: Uncertain, moment: float
+) -> str:
+    if None in at:
+        return "a coefficient in it has no U95"
+    half = [0.0 if k is None else 2.0 * float(varied.deviation[k]) for k in at]
+    for label, size, u95 in ((force, values[0], half[0]), (f"{moment_rate} - xG'm'", values[3] - moment, half[3])):
+        if reaches_zero(size, u95):
+            return f"the interval of the denominator {label} = {size:.3g} +- {u95:.2g} holds zero"
+    return ""

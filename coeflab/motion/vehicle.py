@@ -1,0 +1,293 @@
+"""A vehicle as a simulator moves it: inertia, force law, buoyancy, thrusters and control surfaces of a parameter file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.types import Array, brief, locked
+from coeflab.core.units import STANDARD_GRAVITY
+from coeflab.law.motion_law import MotionLaw
+from coeflab.law.rigid_body import rigid_body_inertia
+from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
+from coeflab.law.transforms import rigid_body_force
+from coeflab.motion.dynamics import restoring, turned_about
+from coeflab.vehicle.force_law import MotionTerm, as_arrays, motion_terms, open_products
+from coeflab.vehicle.inertia import MEASURED, WaterInertia, water_inertia, with_accelerations
+from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurface, ParameterThruster
+
+PLANES = {"horizontal": ("u", "v", "r"), "vertical": ("u", "w", "q")}
+THRUST = "thrust"
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Vehicle:
+    """What is moved, SI, FRD, about the reference point of its parameter file.
+
+    Attributes
+    ----------
+    name : str
+    mass : float
+    centre : (3,) array
+        Of gravity.
+    inertia : (3, 3) array
+        About the reference point.
+    added : (6, 6) array
+        M_A, that of ``water`` but in draws of it.
+    water : WaterInertia
+        Which accelerations were chosen, and where they come from.
+    terms : tuple of MotionTerm
+        Of ``law``, in its order.
+    law : MotionLaw
+    hydrostatics : ParameterHydrostatics
+    thrusters : tuple of ParameterThruster
+    surfaces : tuple of ParameterSurface
+    free : tuple of str
+        Those of u v w p q r that may change; the others keep their value whatever force that takes.
+    speed, length, density : float
+        Of the parameter file.
+    covered : tuple of CoveredRange
+    statements : tuple of str
+        What was assumed, in words.
+    """
+
+    name: str
+    mass: float
+    centre: Array
+    inertia: Array
+    added: Array
+    water: WaterInertia
+    terms: tuple[MotionTerm, ...]
+    law: MotionLaw
+    hydrostatics: ParameterHydrostatics
+    thrusters: tuple[ParameterThruster, ...]
+    surfaces: tuple[ParameterSurface, ...]
+    free: tuple[str, ...]
+    speed: float
+    length: float
+    density: float
+    covered: tuple[CoveredRange, ...]
+    statements: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        for name in ("centre", "inertia", "added"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+    @property
+    def effective_mass(self) -> Array:
+        """(6, 6) M_RB + M_A."""
+        return np.asarray(rigid_body_inertia(self.mass, self.centre, self.inertia) + self.added)
+
+    @property
+    def free_columns(self) -> tuple[int, ...]:
+        """Positions of ``free`` among u v w p q r."""
+        return tuple(MOTIONS.index(f) for f in self.free)
+
+    @property
+    def weight(self) -> float:
+        """M g, N."""
+        return self.mass * self.hydrostatics.gravity
+
+    @property
+    def buoyancy(self) -> float:
+        """Rho g V, N."""
+        return self.density * self.hydrostatics.gravity * self.hydrostatics.volume
+
+    def inverse_inertia(self) -> Array:
+        """(6, 6) accelerations of unit forces, zero for what is held."""
+        at = np.ix_(self.free_columns, self.free_columns)
+        out = np.zeros((6, 6))
+        out[at] = np.linalg.inv(self.effective_mass[at])
+        return out
+
+    def force(self, nu: Array, controls: Array) -> Array:
+        """(n, 6) hydrodynamic force at velocities (n, 6) and angles dr ds db (n, 3)."""
+        return self.law.force(nu, controls)
+
+    def restoring(self, attitude: Array) -> Array:
+        """(n, 6) of weight and buoyancy."""
+        h = self.hydrostatics
+        return restoring(attitude, self.weight, self.buoyancy, self.centre, np.array(h.centre_of_buoyancy))
+
+    def acceleration(self, nu: Array, attitude: Array, controls: Array, wrench: Array) -> Array:
+        """(n, 6) rates of u v w p q r, through the water.
+
+        Parameters
+        ----------
+        nu : (n, 6) array
+        attitude : (n, 4) array
+        controls : (n, 3) array
+            dr ds db.
+        wrench : (6,) or (n, 6) array
+            Of the thrusters.
+        """
+        total = self.force(nu, controls) + self.restoring(attitude) + wrench
+        total = total - rigid_body_force(self.mass, self.centre, self.inertia, nu)
+        return np.asarray(total @ self.inverse_inertia().T)
+
+    def wrench(self, commands: Mapping[str, float]) -> Array:
+        """(6,) force and moment of all thrusters about the reference point.
+
+        Parameters
+        ----------
+        commands : mapping of str to float
+            ``name`` to its command, ``name.tilt`` to rad, ``thrust`` to N ahead at the reference point. What is not named
+            is zero.
+
+        Raises
+        ------
+        InputError
+            A name that no thruster has.
+        """
+        known = {t.name for t in self.thrusters} | {THRUST}
+        known |= {f"{t.name}.tilt" for t in self.thrusters if t.tilt_axis is not None}
+        strange = sorted(set(commands) - known)
+        if strange:
+            raise InputError(
+                f"the command {shown(strange[0])}", f"one of {', '.join(sorted(known))}", column="thrusters"
+            )
+        out = np.zeros(6)
+        out[0] = commands.get(THRUST, 0.0)
+        for t in self.thrusters:
+            command = commands.get(t.name, 0.0)
+            along = np.array(t.direction)
+            if t.tilt_axis is not None:
+                along = turned_about(np.array(t.tilt_axis), commands.get(f"{t.name}.tilt", 0.0)) @ along
+            force = t.curve.at(command) * along
+            out[:3] += force
+            out[3:] += np.cross(np.array(t.position), force)
+            if t.torque_curve is not None:
+                out[3:] += t.handedness * t.torque_curve.at(command) * along
+        return out
+
+    def resistance(self, speed: float) -> float:
+        """Thrust that a straight course ahead takes, N, at no angle and no control."""
+        nu = np.zeros((1, 6))
+        nu[0, 0] = speed
+        return -float(self.force(nu, np.zeros((1, 3)))[0, 0])
+
+
+def vehicle(
+    parameters: ParameterFile,
+    free: Sequence[str] = (),
+    plane: str = "",
+    tables: bool = False,
+    accelerations: str = MEASURED,
+) -> Vehicle:
+    """The vehicle of a parameter file.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    free : sequence of str
+        Motions that may change; empty: all six where the file knows enough of each, otherwise those of ``plane``.
+    plane : {"horizontal", "vertical", ""}
+    tables : bool
+        Whether fitted tables come before derivatives.
+    accelerations : {"measured", "computed"}
+        Whether acceleration derivatives of the file come before its computed added mass; see `coeflab.vehicle.inertia`.
+
+    Raises
+    ------
+    InputError
+        No mass or none above zero, no inertia of a free rotation, an effective mass that is not positive definite, a motion of no such name.
+    """
+    mass = parameters.mass
+    if mass is None:
+        raise InputError(
+            "a parameter file without mass", "mass, centre and inertia", column="mass",
+            advice="Write them into the plan's body.toml, or into the parameter file.",
+        )  # fmt: skip
+    if not mass.mass > 0.0:  # a fit may come here with values that no file has
+        raise InputError(f"a mass of {mass.mass:g} kg", "above zero", column="mass")
+    strange = [f for f in free if f not in MOTIONS]
+    if strange or plane not in ("", *PLANES):
+        raise InputError(
+            shown(strange[0] if strange else plane), f"some of {' '.join(MOTIONS)}, or a plane: {', '.join(PLANES)}",
+            column="free" if strange else "plane",
+        )  # fmt: skip
+    water = water_inertia(parameters, accelerations)
+    parameters = with_accelerations(parameters, accelerations)
+    centre = np.array(mass.centre if mass.centre is not None else (mass.mass_moment / mass.mass, 0.0, 0.0))
+    terms, statements = motion_terms(parameters, tables)
+    known = _known(parameters, terms)
+    moves = tuple(m for m in MOTIONS if m in free) or (MOTIONS if known == MOTIONS or not plane else PLANES[plane])
+    said = list(statements)
+    if moves != MOTIONS:
+        lacking = [m for m in MOTIONS if m not in moves]
+        why = "" if free else f"; the file does not know enough of {', '.join(m for m in MOTIONS if m not in known)}"
+        said.append(f"{', '.join(lacking)} held at the values of the start{why}")
+    inertia = _inertia(parameters, moves)
+    said += water.statements
+    hydrostatics = parameters.hydrostatics
+    if hydrostatics is None:
+        hydrostatics = ParameterHydrostatics(
+            volume=mass.mass / parameters.conditions.density,
+            centre_of_buoyancy=tuple(map(float, centre)),
+            gravity=STANDARD_GRAVITY,
+        )
+        if set(moves) & set("wpq"):
+            said.append("no hydrostatics in the file: neutrally buoyant, centre of buoyancy at that of gravity")
+    made = Vehicle(
+        name=parameters.name, mass=mass.mass, centre=centre, inertia=inertia, added=water.matrix, water=water, terms=terms,
+        law=as_arrays(terms, open_products(parameters, tables)), hydrostatics=hydrostatics, thrusters=parameters.thrusters,
+        surfaces=parameters.surfaces, free=moves, speed=parameters.conditions.speed, length=parameters.scaling.length,
+        density=parameters.conditions.density, covered=parameters.covered, statements=tuple(said),
+    )  # fmt: skip
+    _positive(made)
+    return made
+
+
+def _known(parameters: ParameterFile, terms: Sequence[MotionTerm]) -> tuple[str, ...]:
+    """Motions with an inertia and with a force of their own along them."""
+    mass = parameters.mass
+    resisted = {
+        m
+        for m, c in zip(MOTIONS, COMPONENTS, strict=True)
+        for t in terms
+        if (t.component in (c, "D", "S", "L") and any(v[0] in (m, "alpha", "beta") for v, _, _ in t.factors))
+        or (m == "u" and t.component == "X")
+    }
+    turning = {"p": False, "q": False, "r": False}
+    if mass is not None:
+        whole = mass.inertia_matrix is not None
+        turning = {"p": whole, "q": whole or mass.inertia is not None, "r": whole or mass.inertia is not None}
+    return tuple(m for m in MOTIONS if m in resisted and turning.get(m, True))
+
+
+def _inertia(parameters: ParameterFile, moves: Sequence[str]) -> Array:
+    """(3, 3) about the reference point; of what is held only a place holder."""
+    mass = parameters.mass
+    if mass is not None and mass.inertia_matrix is not None:
+        return np.array(mass.inertia_matrix)
+    spinning = set(moves) & set("pqr")
+    if mass is not None and mass.inertia is not None and "p" not in spinning:
+        return np.diag([0.0, mass.inertia, mass.inertia])
+    if spinning:
+        raise InputError(
+            f"no moment of inertia for {', '.join(sorted(spinning))}", "mass.inertia_matrix and mass.centre",
+            column="mass", advice="Or hold the motion: --free with the others, such as --free u,v,r.",
+        )  # fmt: skip
+    return np.zeros((3, 3))
+
+
+def _positive(made: Vehicle) -> None:
+    at = np.ix_(made.free_columns, made.free_columns)
+    block = made.effective_mass[at]
+    low = float(np.linalg.eigvalsh((block + block.T) / 2.0)[0])
+    if not low > 0.0:
+        raise InputError(
+            f"an effective mass M_RB + M_A of {', '.join(made.free)} with an eigenvalue of {low:g}",
+            "a positive definite one", column="added_mass",
+            advice="An acceleration derivative has the wrong sign, or mass and added mass belong to different bodies.",
+        )  # fmt: skip
+
+
+def control_rows(controls: Mapping[str, Array], n: int) -> Array:
+    """(n, 3) dr ds db out of named columns; zero where a name is absent."""
+    return np.column_stack([np.broadcast_to(controls.get(c, np.zeros(1)), (n,)) for c in CONTROLS])

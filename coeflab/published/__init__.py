@@ -1,0 +1,43 @@
+"""Validations: shipped plans that hold real tables against published derivatives, and published systems reproduced."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+from pathlib import Path
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.files import shipped
+from coeflab.report.acceptance import Acceptance
+from coeflab.study.plan import read_plan
+from coeflab.study.study import Plan
+
+PLAN = "plan.toml"
+PUBLISHED = ("flyingfish", "huuv", "thauv")
+
+
+def validations() -> tuple[str, ...]:
+    """Names of the shipped validations."""
+    plans = (p.parent.name for p in shipped("cfd_data").glob(f"*/{PLAN}"))
+    return tuple(sorted((*plans, *PUBLISHED)))
+
+
+def validation(name: str) -> Plan | Acceptance:
+    """The plan of a shipped validation, or a publication as it comes out.
+
+    Raises
+    ------
+    InputError
+        No validation has that name.
+    """
+    if name not in validations():
+        near = difflib.get_close_matches(name, validations(), n=1)
+        raise InputError(
+            f"the validation {shown(name)}",
+            f"one of {', '.join(validations())}",
+            advice=f"Did you mean {near[0]}?" if near else "",
+        )
+    if name in PUBLISHED:
+        found: Acceptance = importlib.import_module(f"coeflab.studies.validations.{name}").acceptance()
+        return found
+    return read_plan(Path(shipped("cfd_data")) / name / PLAN)

@@ -1,0 +1,172 @@
+"""The report of anything that a person can name: a plan, a folder with one, a shipped validation."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.files import shipped, typed
+from coeflab.core.machine import one_thread
+from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.types import brief
+from coeflab.published import PLAN, validation, validations
+from coeflab.report import content, summary
+from coeflab.report.acceptance import Acceptance
+from coeflab.report.document import Document, Section
+from coeflab.report.formats import REPORTERS
+from coeflab.report.sections import acceptance as acceptance_document
+from coeflab.study.plan import read_plan
+from coeflab.study.study import Plan, Study
+
+Progress = Callable[[str], None]
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Report:
+    """A document and whether what it tells of fails."""
+
+    document: Document
+    failed: bool
+
+
+def studied(study: str, progress: Progress = lambda _: None) -> Study | Acceptance:
+    """Compute a study.
+
+    Parameters
+    ----------
+    study : str
+        A plan.toml, a folder with one, or the name of a shipped validation.
+    progress : callable, optional
+        Told in words what happens.
+
+    Raises
+    ------
+    InputError
+        There is no such study; or its input cannot be used.
+    """
+    from coeflab.workbench import run
+
+    found = _meant(study)
+    if isinstance(found, Plan):
+        return run(found, progress)
+    progress(f"computing {found}")
+    made = validation(found)
+    return run(made, progress) if isinstance(made, Plan) else made
+
+
+@one_thread()
+def report_of(found: Study | Acceptance, *, short: bool = False) -> Report:
+    """The report of what was computed; figures are drawn on several cores while this process has a single thread.
+
+    Parameters
+    ----------
+    found : Study or Acceptance
+    short : bool
+        One page instead of everything.
+    """
+    if isinstance(found, Study):
+        return Report(summary.study_summary(found) if short else content.document(found), found.failed)
+    whole = acceptance_document.document(found, _inputs(found.name))
+    return Report(summary.acceptance_summary(found, whole) if short else whole, not found.holds)
+
+
+def only(document: Document, names: Sequence[str]) -> Document:
+    """The document with nothing but the named sections, in its own order.
+
+    Parameters
+    ----------
+    document : Document
+    names : sequence of str
+        Anchors or titles, in any case; of subsections too.
+
+    Raises
+    ------
+    InputError
+        A name belongs to no section.
+    """
+    if not names:
+        return document
+    known = {n for s in _every(document.sections) for n in (s.anchor.casefold(), s.title.casefold())}
+    for name in names:
+        if name.casefold() not in known:
+            near = difflib.get_close_matches(name.casefold(), sorted(known), n=1)
+            raise InputError(
+                f"the section {shown(name)}",
+                f"one of {', '.join(s.anchor for s in document.sections)}, or a subsection",
+                column="--section",
+                advice=f"Did you mean {near[0]}?" if near else "",
+            )
+    return replace(document, sections=_kept(document.sections, {n.casefold() for n in names}))
+
+
+def written(document: Document, formats: Sequence[str]) -> Mapping[str, bytes]:
+    """The files of a document in some formats; nothing is written.
+
+    Raises
+    ------
+    InputError
+        No renderer has that name.
+    """
+    renderers = {name: REPORTERS.load(name) for name in formats}
+    files: dict[str, bytes] = {}
+    for name, renderer in renderers.items():
+        with REPORTERS.guarded(name):
+            files.update(renderer.render(document))
+    return files
+
+
+def _meant(study: str) -> Plan | str:
+    """The plan at a path, else the plan of a validation, else the name of a publication."""
+    try:
+        path = typed(study)
+    except InputError as why:
+        raise _unknown(study, why.found) from None
+    if path.is_file():
+        return read_plan(path)
+    if (path / PLAN).is_file():
+        return read_plan(path / PLAN)
+    if path.exists() and study not in validations():
+        raise InputError(
+            f"{shown(study, 300)}, a folder without {PLAN}", f"a {PLAN}, a folder with one, or a validation"
+        )
+    if study not in validations():
+        raise _unknown(study, shown(study, 300))
+    plan = shipped("cfd_data") / study / PLAN
+    return read_plan(plan) if plan.is_file() else study
+
+
+def _unknown(study: str, found: str) -> InputError:
+    near = difflib.get_close_matches(study, validations(), n=1)
+    return InputError(
+        f"the study {found}",
+        f"a {PLAN}, a folder with one, or a shipped validation ({', '.join(validations())})",
+        advice=f"Did you mean {near[0]}?" if near else "",
+    )
+
+
+def _inputs(name: str) -> tuple[InputFile, ...]:
+    """The shipped files of a publication."""
+    folder = shipped("cfd_data") / name
+    return tuple(
+        InputFile(f"{name}/{p.relative_to(folder).as_posix()}", sha256_of(p))
+        for p in sorted(folder.rglob("*"))
+        if p.is_file() and "__pycache__" not in p.parts
+    )
+
+
+def _every(sections: Sequence[Section]) -> list[Section]:
+    return [s for one in sections for s in (one, *_every(one.subsections))]
+
+
+def _kept(sections: Sequence[Section], names: set[str]) -> tuple[Section, ...]:
+    """Named sections whole; of the others those that hold a named one, without their own text."""
+    out = []
+    for s in sections:
+        if names & {s.anchor.casefold(), s.title.casefold()}:
+            out.append(s)
+        elif inner := _kept(s.subsections, names):
+            out.append(Section(s.anchor, s.title, subsections=inner))
+    return tuple(out)

@@ -1,0 +1,1 @@
+"""TJ-FlyingFish, a quadrotor of air and water with tilting rotors."""

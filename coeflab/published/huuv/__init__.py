@@ -1,0 +1,1 @@
+"""HUUV, a hybrid underwater vehicle steered by two thrusters."""

@@ -1,0 +1,117 @@
+"""Published vehicles as parameter files: the TJ-FlyingFish in water, and THAUV gliders as far as the format holds them."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from coeflab.core.axes import Datum
+from coeflab.core.files import shipped
+from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.units import STANDARD_GRAVITY
+from coeflab.formats.stated_file import Law, Stated, StatedMass, stated_file, stated_table
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.motion.glider.glider import Glider
+from coeflab.published.flyingfish.model import FlyingFish, thrusters
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterHydrostatics
+
+UNIT = Scaling(1.0, "unit length (the paper prints none)")
+WATER, SEA = Conditions(1000.0, 1.5), Conditions(1025.0, 0.3)
+FLYINGFISH_INERTIA = 0.02  # kg m^2, the mass at a tenth of a metre
+THAUV_MASS, THAUV_ANGLE, THAUV_RATE = 66.35, float(np.radians(15.0)), 0.1
+
+
+def flyingfish_file(fish: FlyingFish) -> ParameterFile:
+    """Damping, weight, buoyancy and rotors of the TJ-FlyingFish under water, about its centre of gravity.
+
+    Parameters
+    ----------
+    fish : FlyingFish
+        Its calibrated constants are those of the shipped file.
+    """
+    damping: dict[str, tuple[float, Law]] = {}
+    for c, m, linear, quadratic in zip(COMPONENTS, MOTIONS, fish.rotors.linear, fish.rotors.quadratic, strict=True):
+        laws: tuple[tuple[str, float, Law], ...] = ((f"{c}{m}", linear, "rest"), (f"{c}{m}|{m}|", quadratic, "motion"))
+        for symbol, value, law in laws:
+            damping[symbol] = -float(value) / UNIT.factor(symbol, WATER), law
+    mass, buoyancy = fish.constants["mass"], fish.constants["mass"] * STANDARD_GRAVITY - fish.constants["net_weight"]
+    stated = Stated(
+        "flyingfish_water", "TJ-FlyingFish in water", UNIT, WATER, damping, datum=Datum("cg"),
+        mass=StatedMass(mass, 0.0, FLYINGFISH_INERTIA, np.zeros(3), FLYINGFISH_INERTIA * np.eye(3)),
+        notes=(
+            "Damping of equation 50 and rotors of equations 47 and 48, printed. Mass, buoyancy, arm and height of the rotors are "
+            "calibrated on Table 1.",
+            "Length, density and speed of the primes are chosen. The largest rotor speed is chosen.",
+            f"The paper prints neither moments of inertia nor added mass. The file holds no added mass, and {FLYINGFISH_INERTIA:g} "
+            "kg m^2 about every axis, assumed: steady motions (coeflab trim) do not depend on it, manoeuvres do.",
+        ),
+    )  # fmt: skip
+    file = stated_file(stated, _sources("flyingfish", "vehicle.toml", "operating_points.csv"), ("tj_flyingfish",))
+    lever = fish.constants["buoyancy_moment"] / buoyancy
+    rest = ParameterHydrostatics(
+        volume=buoyancy / (WATER.density * STANDARD_GRAVITY), centre_of_buoyancy=(0.0, 0.0, lever),
+        gravity=STANDARD_GRAVITY,
+    )  # fmt: skip
+    return _of_study(file, "flyingfish").model_copy(update={"hydrostatics": rest, "thrusters": thrusters(fish)})
+
+
+def thauv_file(glider: Glider) -> ParameterFile:
+    """Polar, masses and trim of a THAUV at neutral buoyancy, the sliding masses in the middle.
+
+    Parameters
+    ----------
+    glider : Glider
+        One wing of THAUV.
+    """
+    m, polar = glider.mass, glider.polar.per_radian
+    pressure = 0.5 * SEA.density * UNIT.length**2
+    arm = pressure * UNIT.length
+    alpha = {"alpha": ("rad", -THAUV_ANGLE, THAUV_ANGLE)}
+    turning = {**alpha, "q": ("1", -THAUV_RATE, THAUV_RATE)}
+    once, twice, rate = (("alpha", 1, False),), (("alpha", 2, False),), (("q", 1, False),)
+    printed = partial(
+        stated_table, form="polar of the publication", table="Table 3", campaign=glider.name,
+        statements=("Printed as coefficients: no points and no residuals. The range of angles is chosen, the paper prints none.",),
+    )  # fmt: skip
+    damping = -glider.polar.pitch_damping / UNIT.length
+    models = (
+        printed("C_L", alpha, {"1": ((), polar.lift[0]), "alpha": (once, polar.lift[1])}, pressure),
+        printed("C_D", alpha, {"1": ((), polar.drag[0]), "alpha^2": (twice, polar.drag[1])}, pressure),
+        printed(
+            "C_m", turning, {"1": ((), polar.moment[0]), "alpha": (once, polar.moment[1]), "q": (rate, damping)}, arm
+        ),
+    )
+    weight = THAUV_MASS * glider.gravity
+    added = np.zeros((6, 6))
+    added[0, 0], added[2, 2] = m.surge - THAUV_MASS, m.heave - THAUV_MASS
+    centre = np.array([m.moment_ahead / weight, 0.0, m.moment_below / weight])
+    stated = Stated(
+        glider.name, glider.title, UNIT, SEA, {}, datum=Datum("cb"), matrix=added,
+        mass=StatedMass(THAUV_MASS, THAUV_MASS * float(centre[0]), m.pitch_inertia, centre),
+        notes=(
+            "Polar of Table 3, printed. m3 - m1 and the moments of the masses are calibrated on the six published speeds; surge "
+            "added mass, moment of inertia and pitch damping are assumed. Length and speed of the primes are chosen.",
+            "Only surge, heave and pitch are described: hold v, p and r.",
+            "The format holds neither sliding masses nor a buoyancy engine: this is the vehicle at neutral buoyancy with its masses "
+            "amidships, which does not glide by itself. `coeflab glide thauv` moves them.",
+        ),
+    )  # fmt: skip
+    file = stated_file(stated, _sources("thauv", f"{glider.name.removeprefix('thauv_')}.toml"), ("thauv",))
+    rest = ParameterHydrostatics(
+        volume=THAUV_MASS / SEA.density, centre_of_buoyancy=(0.0, 0.0, 0.0), gravity=glider.gravity
+    )
+    content = {**_of_study(file, "thauv").model_dump(), "models": models, "hydrostatics": rest.model_dump()}
+    return ParameterFile.model_validate(content)
+
+
+def _of_study(file: ParameterFile, study: str) -> ParameterFile:
+    return file.model_copy(update={"provenance": file.provenance.model_copy(update={"study": study})})
+
+
+def _sources(study: str, *names: str) -> list[InputFile]:
+    folder = Path(str(shipped("cfd_data") / study))
+    return [InputFile(f"{study}/{name}", sha256_of(folder / name)) for name in names]

@@ -1,0 +1,1 @@
+"""THAUV, a twin-hull glider."""

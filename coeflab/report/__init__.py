@@ -1,0 +1,1 @@
+"""One document for terminal, HTML, PDF and notebook."""

@@ -1,0 +1,277 @@
+"""A publication beside what we find: what a number is held against, what comes out, and whether it holds.
+
+Numbers beside what they are held against, as tables.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any, Protocol
+
+from coeflab.core.table import ABSENT, Table
+from coeflab.core.types import brief
+
+if TYPE_CHECKING:
+    from coeflab.vehicle.parameter_file import ParameterFile
+
+
+class Basis(StrEnum):
+    """Where the number comes from that ours is compared with; only the first two validate anything."""
+
+    PREDICTED = "predicted"
+    PRINTED = "printed and recomputed"
+    CALIBRATION = "calibration"
+    CONSISTENCY = "consistency"
+
+    @property
+    def validates(self) -> bool:
+        """Whether agreement says anything about the model that was not put into it."""
+        return self in (Basis.PREDICTED, Basis.PRINTED)
+
+
+BASES: dict[Basis, str] = {
+    Basis.PREDICTED: "published, and not used to make the model that meets it",
+    Basis.PRINTED: "printed by the paper, and computed here from other printed numbers",
+    Basis.CALIBRATION: "the model was calibrated on this very number, so that meeting it proves nothing new",
+    Basis.CONSISTENCY: "worked out here another way, or by theory; the paper does not print it",
+}
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """One number of ours and what it is held against.
+
+    Attributes
+    ----------
+    case, quantity : str
+        Row and column of the table, for example ``0, 60 %`` and ``u``.
+    unit : str
+        ``1`` for numbers without one.
+    against : float
+        What it is held against; ``basis`` says where that comes from.
+    found : float or None
+        None where the computation gave no number.
+    tolerance : float
+        Largest difference that counts as agreement: of ``unit``, or a ratio where ``relative``.
+    basis : Basis
+    relative : bool
+    at_most : bool
+        Whether ``against`` is a limit that ``found`` must not exceed.
+    """
+
+    case: str
+    quantity: str
+    unit: str
+    against: float
+    found: float | None
+    tolerance: float
+    basis: Basis
+    relative: bool = False
+    at_most: bool = False
+
+    @property
+    def difference(self) -> float | None:
+        """Found less what it is held against; over that where ``relative``."""
+        if self.found is None:
+            return None
+        apart = self.found - self.against
+        return apart / abs(self.against) if self.relative and self.against else apart
+
+    @property
+    def holds(self) -> bool:
+        """Whether the difference is no larger than the tolerance, for a limit to the upper side only."""
+        if self.difference is None:
+            return False
+        return (self.difference if self.at_most else abs(self.difference)) <= self.tolerance
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class ComparedTable:
+    """Rows of one published table or figure.
+
+    Attributes
+    ----------
+    key : str
+        Short, for JSON: ``steady_turns``.
+    title : str
+    rows : tuple of Compared
+    source : str
+        Table, figure or equation of the publication.
+    statements : tuple of str
+        What a reader has to know, in words.
+    repeats : str
+        Key of the table whose numbers this one meets another way; they count once.
+    """
+
+    key: str
+    title: str
+    rows: tuple[Compared, ...]
+    source: str
+    statements: tuple[str, ...] = ()
+    repeats: str = ""
+
+    @property
+    def holds(self) -> bool:
+        """Whether every row does."""
+        return all(r.holds for r in self.rows)
+
+
+class Drawing(Protocol):
+    """A figure as the report knows it; here it is only handed on."""
+
+    @property
+    def anchor(self) -> str:
+        """Unique in the report."""
+
+    @property
+    def svg(self) -> str:
+        """One ``<svg>`` element."""
+
+    @property
+    def title(self) -> str:
+        """A short name."""
+
+    @property
+    def caption(self) -> str:
+        """What it shows."""
+
+    @property
+    def description(self) -> str:
+        """The same for readers who cannot see it."""
+
+    @property
+    def panels(self) -> tuple[Any, ...]:
+        """The numbers behind it."""
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Acceptance:
+    """A publication reproduced.
+
+    Attributes
+    ----------
+    name, title : str
+    tables : tuple of ComparedTable
+    errata : tuple of str
+        Errors of the publication, each with what stands in their place.
+    statements : tuple of str
+    citations : tuple of str
+    figures : tuple of (str, Drawing)
+        File name without ending, and the drawing.
+    conventions : tuple of str
+        Axes, signs and units of its own, beside those that hold for every report.
+    parameter_files : tuple of ParameterFile
+        The system, as far as the format holds it; their notes say what it does not hold.
+    """
+
+    name: str
+    title: str
+    tables: tuple[ComparedTable, ...]
+    errata: tuple[str, ...]
+    statements: tuple[str, ...]
+    citations: tuple[str, ...]
+    figures: tuple[tuple[str, Drawing], ...] = ()
+    conventions: tuple[str, ...] = ()
+    parameter_files: tuple[ParameterFile, ...] = ()
+
+    @property
+    def holds(self) -> bool:
+        """Whether every table does."""
+        return all(t.holds for t in self.tables)
+
+    @property
+    def file_notes(self) -> tuple[str, ...]:
+        """What the parameter files say of themselves, and of what they do not hold; each once."""
+        return tuple(dict.fromkeys(note for p in self.parameter_files for note in p.provenance.notes))
+
+    @property
+    def numbers(self) -> tuple[Compared, ...]:
+        """Rows that count: those of tables that repeat another's numbers do not."""
+        return tuple(r for t in self.tables if not t.repeats for r in t.rows)
+
+    @property
+    def repeated(self) -> tuple[Compared, ...]:
+        """Rows that meet numbers of another table another way."""
+        return tuple(r for t in self.tables if t.repeats for r in t.rows)
+
+    @property
+    def counts(self) -> dict[Basis, int]:
+        """How many numbers there are of each basis, in the order of `Basis`."""
+        return {b: sum(r.basis is b for r in self.numbers) for b in Basis}
+
+
+def tables(acceptance: Acceptance) -> tuple[Table, ...]:
+    """One table for each of the publication."""
+    return tuple(_table(t) for t in acceptance.tables)
+
+
+def _table(t: ComparedTable) -> Table:
+    bases = dict.fromkeys(r.basis for r in t.rows)
+    notes = (f"{t.source}. {'; '.join(f'{b}: {BASES[b]}' for b in bases)}.", *t.statements)
+    return Table(t.title, HEADERS, tuple(_row(r) for r in t.rows), notes, frozenset({0, 1, 3, 5, 8}))
+
+
+HEADERS = ("case", "quantity", "held against", "basis", "found", "unit", "difference", "allowed", "verdict")
+
+
+def _row(r: Compared) -> tuple[str, ...]:
+    percent = r.relative
+    factor = 100.0 if percent else 1.0
+    sign = " %" if percent else ""
+    difference = ABSENT if r.difference is None else f"{factor * r.difference:+.2g}{sign}"
+    return (
+        r.case,
+        r.quantity,
+        f"{'at most ' if r.at_most else ''}{r.against:.6g}",
+        r.basis,
+        ABSENT if r.found is None else f"{r.found:.6g}",
+        "" if r.unit == "1" else r.unit,
+        difference,
+        f"{factor * r.tolerance:.2g}{sign}",
+        "pass" if r.holds else "fail",
+    )
+
+
+def errata(acceptance: Acceptance) -> Table:
+    """Errors of the publication and what stands in their place."""
+    rows = tuple((str(i), text) for i, text in enumerate(acceptance.errata, start=1))
+    return Table(
+        "Errata of the publication",
+        ("no.", "what is wrong, and what stands in its place"),
+        rows,
+        left=frozenset({0, 1}),
+    )
+
+
+def acceptance_csv(acceptance: Acceptance) -> bytes:
+    """All rows of all tables."""
+    import csv
+    import io
+
+    buffer = io.StringIO()
+    out = csv.writer(buffer, lineterminator="\n")
+    out.writerow(
+        (
+            "table",
+            "case",
+            "quantity",
+            "unit",
+            "held_against",
+            "found",
+            "difference",
+            "relative",
+            "tolerance",
+            "basis",
+            "passed",
+        )
+    )
+    for t in acceptance.tables:
+        for r in t.rows:
+            numbers = (r.against, r.found, r.difference)
+            shown = ["" if n is None else repr(float(n)) for n in numbers]
+            out.writerow((t.key, r.case, r.quantity, r.unit, *shown, r.relative, r.tolerance, r.basis, r.holds))
+    return buffer.getvalue().encode()

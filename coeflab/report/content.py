@@ -1,0 +1,308 @@
+"""What a report says about a study, in order; formats render it.
+
+Independent parts of a report, drawn on other cores while this one goes on.
+"""
+
+from __future__ import annotations
+
+import gc
+import sys
+import threading
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
+from multiprocessing import current_process, get_all_start_methods, get_context
+from typing import TypeVar
+
+from coeflab.core.machine import cores, end_with_parent
+from coeflab.core.table import Severity
+from coeflab.core.wording import listed
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.law.coefficient import Status
+from coeflab.law.symbols import primed
+from coeflab.report.document import Document, Section
+from coeflab.report.figures.svg import settings
+from coeflab.report.notation import keeping, users_texts
+from coeflab.report.reproduction import digest_of, reproduction
+from coeflab.report.sections.added_mass import added_mass_sections
+from coeflab.report.sections.body import body_sections
+from coeflab.report.sections.budget import budget_sections
+from coeflab.report.sections.campaign import anchor, campaign_section, filled, quality_sections
+from coeflab.report.sections.conventions import conventions_section
+from coeflab.report.sections.export import export_sections
+from coeflab.report.sections.manoeuvre import manoeuvre_sections
+from coeflab.report.sections.stability import in_words, stability_sections
+from coeflab.report.tables import models as model_tables
+from coeflab.report.tables import nouns as noun_tables
+from coeflab.report.tables import results as tables
+from coeflab.study.study import Study
+from coeflab.vehicle.reference import Comparison, Relation
+
+Part = TypeVar("Part")
+MOST = 4
+_JOBS: list[Callable[[], object]] = []
+
+
+@contextmanager
+def begun(jobs: Sequence[Callable[[], Part]], sizes: Sequence[int] = ()) -> Iterator[Callable[[], list[Part]]]:
+    """Start jobs; the yielded function waits for what they return, in their own order.
+
+    Copies of this process do the work, so that a job may hold anything; what it returns is pickled. Where copying is not
+    to be had or not safe (a second Python thread might hold a lock), the jobs are done here, with the same result.
+
+    Parameters
+    ----------
+    jobs : sequence of callable
+        Pure, and of numpy and matplotlib alone: libraries with threads of their own do not survive the copying.
+    sizes : sequence of int, optional
+        How much each has to do; the largest begins.
+    """
+    workers = min(MOST, len(jobs), cores())
+    if workers < 2 or _JOBS or not _safe():
+        yield lambda: [job() for job in jobs]
+        return
+    _JOBS.extend(jobs)
+    try:
+        with ProcessPoolExecutor(workers, get_context("fork"), initializer=_prepare) as pool:
+            with warnings.catch_warnings():
+                warnings.filterwarnings("ignore", message=".*fork", category=DeprecationWarning)
+                order = sorted(range(len(jobs)), key=lambda i: -sizes[i] if sizes else i)
+                waiting = {i: pool.submit(_done, i) for i in order}
+
+            def results() -> list[Part]:
+                try:
+                    return [waiting[i].result() for i in range(len(jobs))]  # type: ignore[misc]
+                except BrokenProcessPool:
+                    return [job() for job in jobs]
+
+            yield results
+    finally:
+        _JOBS.clear()
+
+
+def _prepare() -> None:
+    """What a copy does first."""
+    end_with_parent()
+    # What was there before the copying is not searched for garbage again and again.
+    gc.freeze()
+
+
+def _done(index: int) -> object:
+    return _JOBS[index]()
+
+
+def _safe() -> bool:
+    forks = "fork" in get_all_start_methods() and sys.platform != "darwin"  # whose system libraries do not survive it
+    return forks and not current_process().daemon and threading.active_count() == 1
+
+
+FEW = 8
+
+
+def document(study: Study) -> Document:
+    """The whole report of a study."""
+    verbatim = users_texts(study)
+    with keeping(verbatim):
+        return replace(_document(study), verbatim=verbatim)
+
+
+def _document(study: Study) -> Document:
+    places: set[str] = set()
+    own = [anchor(f"campaign {fit.campaign}", places) for fit in study.fits]
+    alone = [partial(_alone, study, fit, place, places) for fit, place in zip(study.fits, own, strict=True)]
+    sizes = [len(f.sweeps) for f in study.fits]
+    with settings(), begun(alone if sum(sizes) > FEW else (), sizes) as drawn:
+        about = [
+            *budget_sections(study),
+            *body_sections(study),
+            *added_mass_sections(study),
+            *stability_sections(study),
+            *manoeuvre_sections(study),
+        ]
+        campaigns = tuple(drawn() or [job() for job in alone])
+    sections = (
+        verdict(study),
+        *_comparison(study),
+        _coefficients(study),
+        *_models(study),
+        *about,
+        *export_sections(study),
+        Section(
+            "campaigns",
+            "Campaigns",
+            ("Every coefficient and every fitted model with its points, its curves and what was tried.",),
+            subsections=campaigns,
+        ),
+        *quality_sections(study),
+        _checks(study),
+        conventions_section(study),
+        _provenance(study),
+        reproduction(study),
+    )
+    names = ", ".join(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
+    return Document(
+        study.plan.title or study.plan.name, f"Coefficients of {names}", sections, study.plan.name, digest_of(study.inputs),
+        tables.works(study),
+    )  # fmt: skip
+
+
+def _alone(study: Study, fit: FitResult, place: str, places: set[str]) -> Section:
+    return campaign_section(study, fit, place, set(places))
+
+
+def _counted(n: int, one: str) -> str:
+    return f"{n} {one}" if n == 1 else f"{n} {one}s"
+
+
+def _named(c: Comparison) -> str:
+    return f"{primed(c.coefficient.symbol)} of {c.coefficient.campaign}"
+
+
+def _re_analysis(study: Study) -> list[str]:
+    ours = [c for c in study.comparisons if c.relation is Relation.RE_ANALYSIS]
+    judged = [c for c in ours if c.passed is not None]
+    if not judged:
+        return ["No published evaluation of these data is held against the results, so there is no verdict on them."]
+    failed = [c for c in judged if c.passed is False]
+    count = _counted(len(judged), "comparison")
+    if failed:
+        out = [
+            f"{len(failed)} of {count} with the authors' own evaluation of the same data failed: "
+            f"{listed([_named(c) for c in failed])} lies further from the published value than U95."
+        ]
+    else:
+        verb = "passed" if len(judged) == 1 else "all passed"
+        out = [
+            f"{count} with the authors' own evaluation of the same data {verb}: each difference lies within our U95."
+        ]
+    if len(ours) > len(judged):
+        rest = listed([_named(c) for c in ours if c.passed is None])
+        out.append(f"No verdict could be given for {rest}, which has no U95.")
+    out.append(
+        "This is a re-analysis: both sides use the same measurements. A pass says that the evaluation reproduces the "
+        "published one within its stated uncertainty; it says nothing on whether the measurements are right."
+    )
+    return out
+
+
+def verdict(study: Study) -> Section:
+    """What comes out, in sentences; the first is the verdict itself."""
+    text = [*_re_analysis(study), _harvest(study)]
+    others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
+    if others:
+        names = listed(list(dict.fromkeys(c.reference for c in others)))
+        text.append(
+            f"Cross-body comparison with {names}: those values belong to another body or come from another method, so "
+            "they stand beside ours without a verdict. A difference there may be the appendages as well as an error."
+        )
+    text += [*in_words(study), *_without_value(study)]
+    failed = [c for c in study.checks if c.severity is Severity.FAIL]
+    warned = sum(c.severity is Severity.WARN for c in study.checks)
+    if study.checks:
+        text.append(
+            f"Of {_counted(len(study.checks), 'check')}, {len(failed)} failed and {warned} warned; see Checks below."
+        )
+    if study.failed:
+        text.append("The study as a whole fails.")
+    elif study.checks or study.comparisons:
+        text.append("The study as a whole has no failing comparison or check.")
+    return Section("verdict", "Verdict", tuple(text))
+
+
+def _harvest(study: Study) -> str:
+    found = [c for c in study.coefficients if c.value is not None]
+    bounded = sum(c.u95 is not None for c in found)
+    campaigns = list(dict.fromkeys(t.campaign for t in study.tables))
+    if not campaigns:
+        return "The study holds no tables."
+    rows = _counted(sum(len(t) for t in study.tables), "row")
+    source = f"{rows} of {_counted(len(campaigns), 'campaign')}: {listed(campaigns)}."
+    models = sum(len(f.models) for f in study.fits)
+    if not found and models:
+        return (
+            f"Found: {_counted(models, 'fitted model')}, none with coefficients that have a SNAME symbol, from {source}"
+        )
+    if not found:
+        return f"No coefficient could be determined from {source}"
+    uncertain = "each with U95" if bounded == len(found) else f"{bounded} of them with U95"
+    return f"Found: {_counted(len(found), 'coefficient')}, {uncertain}, from {source}"
+
+
+def _without_value(study: Study) -> list[str]:
+    absent = [c for c in study.coefficients if c.value is None]
+    out = []
+    for status in dict.fromkeys(c.status for c in absent):
+        places: dict[str, list[str]] = {}
+        for c in absent:
+            if c.status is status:
+                places.setdefault(c.campaign or c.body, []).append(primed(c.symbol))
+        names = "; ".join(f"{listed(symbols)} of {place}" for place, symbols in places.items())
+        out.append(f"Without a value: {names}. {status.advice}".strip())
+    return out
+
+
+def _coefficients(study: Study) -> Section:
+    text: tuple[str, ...] = (
+        "A value is the median of the members: for each form of the curve, the fit in the widest window in which its "
+        "next term is not yet significant. U95 joins the random part (the members' median 95 % interval) and the "
+        "model-form part (2 / sqrt 3 times the distance of the farthest member, as for a rectangular distribution about the "
+        "value) as a root sum of squares. No published value enters.",
+        "The model-form part presumes that the true curve is close to one of the forms. In simulations with line, cubic or "
+        "v|v| as the truth U95 covers it in 97, 97 and 85 to 90 of 100 campaigns; for a mixture of v|v| and v^3, which the "
+        "points cannot tell from a polynomial, only in 25 to 50.",
+        "A lone member is compared with the fits that were dropped only because their intervals are too wide; where there "
+        "are none, no U95 is given.",
+        "A part that was not assessed is shown by a dash and is not in U95; the budget of every coefficient names what is "
+        "missing. The turbulence model of a computation is never in it.",
+    )
+    single = any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients)
+    if single:
+        text += ("Where one form only could be fitted, the value is printed without U95 and should not be relied on.",)
+    return Section("coefficients", "Coefficients", text, filled(tables.coefficients(study)))
+
+
+def _models(study: Study) -> tuple[Section, ...]:
+    models = tuple(m for f in study.fits for m in f.models)
+    if not models:
+        return ()
+    text = (
+        "Force laws and tables over one or more variables. What the data leave open is said below each table and has no "
+        "number; a reader outside the domain follows the stated rule. Pictures, influential points and correlations stand "
+        "under Campaigns.",
+    )
+    each = tuple(noun_tables.terms(m) for m in models)
+    return (Section("models", "Fitted models", text, filled(model_tables.quality(models), *each)),)
+
+
+def _comparison(study: Study) -> tuple[Section, ...]:
+    if not study.comparisons:
+        return ()
+    text = ["Published values are primed by our length before they are compared."]
+    for r in study.references:
+        if r.other_scaling is not None:
+            text.append(
+                f'"{r.name}" is shown in two readings, as the length that its coefficients are divided by is not '
+                f"certain: {r.scaling}, which is taken as printed, and {r.other_scaling}, which rescales every value."
+            )
+    shown = filled(tables.side_by_side(study), tables.differences(study), tables.verdicts(study))
+    return (Section("comparison", "Comparison with published values", tuple(text), shown),)
+
+
+def _checks(study: Study) -> Section:
+    if not study.checks:
+        return Section("checks", "Checks", ("No checks were made.",))
+    text = ("A note or a warning asks for attention; only a failure makes the study fail.",)
+    return Section("checks", "Checks", text, filled(tables.checks(study)))
+
+
+def _provenance(study: Study) -> Section:
+    text = ["The files below are known by the sha256 of their bytes. Equal inputs give this report byte for byte."]
+    settings = dict.fromkeys(
+        f"{f.fit}: {', '.join(f'{k} {v}' for k, v in sorted(f.settings.items()))}." for f in study.fits if f.settings
+    )
+    text += settings
+    return Section("provenance", "Provenance", tuple(text), filled(tables.provenance(study)))

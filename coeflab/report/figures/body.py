@@ -1,0 +1,401 @@
+"""A body of parts in three views and obliquely, with the mesh that it stands for around it.
+
+One orthographic view of a body on paper: parts solid and shaded, the mesh behind them, over them and as an outline.
+
+Axes with ticks in metres under and left of a view along a body axis.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.legend_handler import HandlerBase
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch, Polygon
+from matplotlib.path import Path
+
+from coeflab.bodies.mesh import solids as silhouette
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.solids import Surface
+from coeflab.bodies.shape import OTHER, Part, Parts
+from coeflab.core.types import Array, brief
+from coeflab.report.document import Figure
+from coeflab.report.figures.body_scene import COLOUR_OF, POOR, form_name, is_poor, normals, part_facets, picture_surface
+from coeflab.report.figures.svg import COLOURS, POINTS, settings, svg_text
+from coeflab.report.notation import as_users_wrote
+
+LIGHT = np.array([-0.35, 0.65, 0.67]) / np.linalg.norm([-0.35, 0.65, 0.67])
+SHADES, SHADE = (0.15, 0.3, 0.45, 0.6, 0.75, 0.9), 0.1
+BEHIND, FILM = 0.45, 0.3
+EDGE_ON = 1e-6
+PALE, HATCH, STRIPE = 0.5, 8.0, 2.0  # the last two in points
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """A direction to look in.
+
+    Attributes
+    ----------
+    title : str
+    axes : (3, 3) array
+        Rows are the picture's right, up and toward the viewer, in FRD.
+    """
+
+    title: str
+    axes: Array
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Sheet:
+    """A view at its place on the paper.
+
+    Attributes
+    ----------
+    axes : Axes
+        Whose units are points.
+    view : View
+    scale : float
+        Points per metre.
+    move : (2,) array
+        What is added to scaled coordinates, points.
+    extent : float
+        Largest size of what is drawn, m.
+    """
+
+    axes: Axes
+    view: View
+    scale: float
+    move: Array
+    extent: float
+
+    @property
+    def frame(self) -> Array:
+        """(2, 3) from metres in FRD to points right and up."""
+        return np.asarray(self.view.axes[:2] * self.scale)
+
+    def on_paper(self, points: Array) -> Array:
+        """(..., 2) places of (..., 3) points."""
+        return np.asarray(points @ self.frame.T + self.move)
+
+    def body(self, shape: Parts, mesh: Surface | None) -> None:
+        """Draw the mesh and the parts, those nearer to the viewer later."""
+        outline = None if mesh is None else silhouette.mesh_outline(*mesh, self.frame)
+        if outline is not None:
+            self._fill(outline, "band", BEHIND)
+        depth = [round(float(p.centre @ self.view.axes[2]), 9) for p in shape.parts]
+        for i in sorted(range(len(depth)), key=lambda i: (depth[i], i)):
+            part = shape.parts[i]
+            self._part(part_facets(part), COLOUR_OF[form_name(part.form)], is_poor(part))
+        if outline is not None:
+            self._fill(outline, "band", FILM)
+            self._line(outline, "ink", 0.9)
+
+    def outline(self, mesh: Surface) -> None:
+        """Draw a surface as a filled outline."""
+        outline = silhouette.mesh_outline(*mesh, self.frame)
+        self._fill(outline, "band", BEHIND)
+        self._line(outline, "ink", 0.9)
+
+    def _part(self, facets: Array, colour: str, poor: bool) -> None:
+        whole = silhouette.convex_outline(facets.reshape(-1, 3), self.frame)
+        if whole.area() <= EDGE_ON * (self.scale * self.extent) ** 2:
+            ends = self.on_paper(facets.reshape(-1, 3))
+            along = ends @ np.linalg.eigh(np.cov(ends.T))[1][:, 1]
+            far = ends[[int(np.argmin(along)), int(np.argmax(along))]]
+            self.axes.plot(*far.T, color=COLOURS[colour], linewidth=2.2, solid_capstyle="butt", zorder=2)
+            if poor:
+                self.axes.plot(*far.T, color=COLOURS["ink"], linewidth=2.2, linestyle=(0.0, (1.0, 1.5)), zorder=2)
+            return
+        if poor:
+            self._fill(whole, colour, PALE)
+            self._fill(silhouette.hatched(whole, HATCH, STRIPE), "ink", 1.0)
+            self._line(whole, "ink", 1.6)
+            return
+        self._fill(whole, colour, 1.0)
+        outward = normals(facets) @ self.view.axes.T
+        dark = 1.0 - np.clip(outward @ LIGHT, 0.0, 1.0)
+        for level in SHADES:
+            seen = facets[(outward[:, 2] > 1e-9) & (dark > level)]
+            if len(seen):
+                self._fill(silhouette.facets_outline(seen @ self.frame.T), "ink", SHADE)
+        self._line(whole, colour, 0.8)
+
+    def _fill(self, outline: Any, colour: str, alpha: float) -> None:
+        path = outline_path(outline, self.move)
+        if path is not None:
+            self.axes.add_patch(PathPatch(path, facecolor=COLOURS[colour], edgecolor="none", alpha=alpha, zorder=2))
+
+    def _line(self, outline: Any, colour: str, width: float) -> None:
+        path = outline_path(outline, self.move)
+        if path is not None:
+            style: dict[str, Any] = {"facecolor": "none", "edgecolor": COLOURS[colour], "linewidth": width}
+            self.axes.add_patch(PathPatch(path, zorder=2, **style))
+
+
+def outline_path(outline: Any, move: Array | tuple[float, float] = (0.0, 0.0)) -> Path | None:
+    """An outline as a path, moved by so much; None where there is none."""
+    rings = [np.round(ring + move, 2) for ring in silhouette.polygons(outline)]
+    return Path.make_compound_path(*(Path(np.vstack([r, r[:1]]), closed=True) for r in rings)) if rings else None
+
+
+LEFT, BELOW = 34.0, 24.0
+ACROSS, UP = 44.0, 20.0
+TICK, SMALL = 3.0, 7.0
+STEPS = (1.0, 2.0, 5.0, 10.0)
+
+
+def ticks(low: float, high: float, least: float) -> list[float]:
+    """Round values from low to high that are at least ``least`` apart: steps of 1, 2 or 5 times a power of ten."""
+    power = 10.0 ** np.floor(np.log10(least))
+    step = float(next(k * power for k in STEPS if k * power >= least * (1.0 - 1e-9)))
+    first, last = int(np.ceil(low / step - 1e-9)), int(np.floor(high / step + 1e-9))
+    return [float(f"{k * step:.12g}") for k in range(first, last + 1)]
+
+
+def rulers(sheet: Sheet, points: Array) -> None:
+    """Draw both axes of a view whose right and up lie along body axes.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    points : (n, 3) array
+        What the view shows, m, FRD.
+    """
+    flat = sheet.on_paper(points)
+    (left, bottom), (right, top) = flat.min(axis=0), flat.max(axis=0)
+    for k, least in ((0, ACROSS), (1, UP)):
+        axis = int(np.argmax(np.abs(sheet.view.axes[k])))
+        sign = float(np.sign(sheet.view.axes[k, axis]))
+        values = points[:, axis]
+        at = [
+            (v, sheet.scale * sign * v + float(sheet.move[k]))
+            for v in ticks(float(values.min()), float(values.max()), least / sheet.scale)
+        ]
+        _rule(sheet, k, (left, right) if k == 0 else (bottom, top), bottom if k == 0 else left, at)
+        name = f"{'xyz'[axis]} [m]"
+        if k == 0:
+            _text(sheet, right, bottom - 22.0, name, "right")
+        else:
+            _text(sheet, left - LEFT, top + 7.0, name, "left")
+
+
+def _rule(sheet: Sheet, k: int, ends: tuple[float, float], edge: float, at: list[tuple[float, float]]) -> None:
+    """One axis: 0 under the view, 1 left of it."""
+    line = edge - 4.0
+    style: dict[str, Any] = {"color": COLOURS["muted"], "linewidth": 0.6, "zorder": 1}
+    sheet.axes.plot(*((ends, [line, line]) if k == 0 else ([line, line], ends)), **style)
+    for value, place in at:
+        ends_of_tick = [line, line - TICK]
+        sheet.axes.plot(*(([place, place], ends_of_tick) if k == 0 else (ends_of_tick, [place, place])), **style)
+        if k == 0:
+            _text(sheet, place, line - TICK - 7.0, f"{value:g}", "center")
+        else:
+            _text(sheet, line - TICK - 2.0, place - 2.5, f"{value:g}", "right")
+
+
+def _text(sheet: Sheet, x: float, y: float, text: str, place: str) -> None:
+    sheet.axes.text(x, y, text, ha=place, fontsize=SMALL, color=COLOURS["muted"])
+
+
+WIDTH, MARGIN, GAP, CAPTION, LABELS = 680.0, 14.0, 18.0, 27.0, 20.0
+TALLEST_VIEWS, TALLEST_OBLIQUE = 420.0, 300.0
+LABELLED, LETTER, TITLED = 14, 4.7, 50.0
+AZIMUTH, ELEVATION = np.radians(52.0), np.radians(24.0)
+
+
+def _oblique() -> Array:
+    level = np.array([np.cos(AZIMUTH), np.sin(AZIMUTH), 0.0])
+    toward = np.cos(ELEVATION) * level + np.sin(ELEVATION) * np.array([0.0, 0.0, -1.0])
+    right = np.array([np.sin(AZIMUTH), -np.cos(AZIMUTH), 0.0])
+    return np.array([right, np.cross(toward, right), toward])
+
+
+SIDE = View("side, from starboard", np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]))
+FRONT = View("front, from ahead", np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]))
+TOP = View("top, from above", np.array([[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]]))
+OBLIQUE = View("from ahead, starboard and above", _oblique())
+
+
+@as_users_wrote
+def body_figure(name: str, shape: Parts, mesh: TriangleMesh | None, anchor: str) -> Figure:
+    """Parts solid, coloured by form; the mesh translucent over them, and as an outline.
+
+    Parameters
+    ----------
+    name : str
+        Of the body.
+    shape : Parts
+    mesh : TriangleMesh, optional
+    anchor : str
+        Unique in the document.
+    """
+    of_parts = [part_facets(p).reshape(-1, 3) for p in shape.parts]
+    drawn = None if mesh is None else picture_surface(mesh)
+    points = np.concatenate([*of_parts, *([] if drawn is None else [drawn[0]])])
+    size = np.maximum(np.ptp(points, axis=0), 1e-3 * float(np.ptp(points, axis=0).max()))
+    scale = _scale(size)
+    tilted = np.ptp(points @ OBLIQUE.axes[:2].T, axis=0)
+    larger = min((WIDTH - 2.0 * MARGIN) / tilted[0], TALLEST_OBLIQUE / tilted[1])
+    rows = [
+        CAPTION + 2.0 * LABELS + larger * tilted[1],
+        CAPTION + scale * size[2] + BELOW,
+        CAPTION + scale * size[1] + BELOW,
+    ]
+    height = sum(rows) + 3.0 * GAP + 2.0 * MARGIN
+    tops = height - MARGIN - np.cumsum([0.0, rows[0] + GAP, rows[1] + GAP])
+    first = MARGIN + LEFT
+    right = first + scale * size[0] + GAP + LEFT
+    title = f"{name}: simple parts" + (" over the mesh" if mesh is not None else "")
+    with settings():
+        figure = Drawing(figsize=(WIDTH / POINTS, height / POINTS))
+        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        axes.set_axis_off()
+        axes.set_xlim(0.0, WIDTH)
+        axes.set_ylim(0.0, height)
+        middle = (WIDTH - larger * tilted[0]) / 2.0
+        for view, left, top, by in (
+            (OBLIQUE, middle, tops[0], larger),
+            (SIDE, first, tops[1], scale),
+            (FRONT, right, tops[1], scale),
+            (TOP, first, tops[2], scale),
+        ):
+            room = LABELS if view is OBLIQUE else 0.0
+            sheet = _placed(axes, view, points, (left, top - CAPTION - room), by)
+            axes.text(MARGIN if room else left - LEFT, top - 6.0, view.title, fontsize=8.0, color=COLOURS["muted"])
+            sheet.body(shape, drawn)
+            if room:
+                _labels(sheet, shape, (tops[0] - CAPTION - room, tops[1] + GAP + room))
+            else:
+                rulers(sheet, points)
+        _legend(axes, shape, mesh is not None)
+        svg = svg_text(figure, anchor, title, _description(shape, mesh))
+    return Figure(anchor, svg, title, _caption(shape, mesh), _description(shape, mesh))
+
+
+def _scale(size: Array) -> float:
+    """Points per metre of the three views, such that side and front view with their titles fit beside each other."""
+    across = WIDTH - 2.0 * (MARGIN + LEFT) - GAP
+    tall = TALLEST_VIEWS / (size[1] + size[2])
+    both = across / (size[0] + size[1])
+    return float(min(tall, both if both * size[1] >= TITLED else (across - TITLED) / size[0]))
+
+
+def _placed(axes: Axes, view: View, points: Array, corner: tuple[float, float], scale: float) -> Sheet:
+    """A view whose left upper corner is at ``corner``, points."""
+    flat = points @ view.axes[:2].T * scale
+    move = np.array([corner[0] - flat[:, 0].min(), corner[1] - flat[:, 1].max()])
+    return Sheet(axes, view, scale, move, float(np.ptp(points, axis=0).max()))
+
+
+def _labels(sheet: Sheet, shape: Parts, between: tuple[float, float]) -> None:
+    """Names of the poor stand-ins and of the largest parts over and under the view, in their order from left to right, with lines to the parts."""
+    size = [float(np.prod(np.sort(np.ptp(part_facets(p).reshape(-1, 3), axis=0))[1:])) for p in shape.parts]
+    chosen = sorted(sorted(range(len(size)), key=lambda i: (not is_poor(shape.parts[i]), -size[i], i))[:LABELLED])
+    names = {i: _marked(shape.parts[i]) for i in chosen}
+    at = {i: sheet.on_paper(shape.parts[i].centre) for i in chosen}
+    middle = sum(between) / 2.0
+    for baseline, foot, row in (
+        (between[0] + 7.0, between[0] + 3.0, [i for i in chosen if at[i][1] >= middle]),
+        (between[1] - 15.0, between[1] - 7.0, [i for i in chosen if at[i][1] < middle]),
+    ):
+        row.sort(key=lambda i: (at[i][0], i))
+        widths = [LETTER * len(names[i]) + 10.0 for i in row]
+        for i, x in zip(row, _spread([float(at[i][0]) for i in row], widths), strict=True):
+            sheet.axes.plot([x, at[i][0]], [foot, at[i][1]], color=COLOURS["ink"], linewidth=0.6, zorder=3)
+            sheet.axes.plot(*at[i], marker="o", markersize=2.4, color=COLOURS["ink"], zorder=3)
+            sheet.axes.text(x, baseline, names[i], ha="center", fontsize=8.5)
+
+
+def _marked(part: Part) -> str:
+    """The name, with what is wrong with a poor stand-in."""
+    fit = part.fit
+    if fit is None or not fit.poor:
+        return part.name
+    return f"{part.name}: {OTHER}, {fit.likeness}" if fit.kind == OTHER else f"{part.name}: {fit.worst}"
+
+
+def _spread(wanted: list[float], widths: list[float]) -> list[float]:
+    """Centres of labels near the wanted ones, in order, that do not overlap while the paper has room."""
+    out: list[float] = []
+    for i, (x, w) in enumerate(zip(wanted, widths, strict=True)):
+        least = MARGIN + w / 2.0 if not out else out[-1] + (widths[i - 1] + w) / 2.0
+        out.append(max(x, least))
+    most = WIDTH - MARGIN
+    for i in reversed(range(len(out))):
+        out[i] = min(out[i], most - widths[i] / 2.0)
+        most = out[i] - widths[i] / 2.0
+    return out
+
+
+class _Poor(Patch):
+    """The sample of a poor stand-in."""
+
+
+class _Stripes(HandlerBase):
+    """Draws it: an outline with stripes, as in the views."""
+
+    def create_artists(self, *given: Any) -> list[Any]:
+        """Matplotlib gives legend, handle, descents, width, height, size of the letters and the transform."""
+        _, handle, across, down, width, height, _, place = given
+        corners = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]]) - (across, down)
+        frame = silhouette.ring(corners)
+        stripes = outline_path(silhouette.hatched(frame, HATCH, STRIPE))
+        edge = Polygon(corners, transform=place)
+        edge.update_from(handle)
+        edge.set_transform(place)
+        return (
+            [edge, PathPatch(stripes, facecolor=COLOURS["ink"], edgecolor="none", transform=place)]
+            if stripes
+            else [edge]
+        )
+
+
+def _legend(axes: Axes, shape: Parts, with_mesh: bool) -> None:
+    forms = {form_name(p.form) for p in shape.parts}
+    handles: list[Any] = [
+        Patch(facecolor=COLOURS[c], edgecolor="none", label=f) for f, c in COLOUR_OF.items() if f in forms
+    ]
+    if any(is_poor(p) for p in shape.parts):
+        handles.append(_Poor(edgecolor=COLOURS["ink"], facecolor="none", linewidth=1.2, label="poor stand-in"))
+    if with_mesh:
+        handles.append(Line2D([], [], color=COLOURS["ink"], linewidth=0.9, label="outline of the mesh"))
+        bare = Patch(facecolor=COLOURS["band"], alpha=BEHIND, edgecolor="none", label="mesh that no part covers")
+        handles.append(bare)
+    axes.legend(
+        handles=handles,
+        loc="lower left",
+        bbox_to_anchor=(MARGIN, MARGIN - 4.0),
+        bbox_transform=axes.transData,
+        ncols=len(handles),
+        borderpad=0.0,
+        borderaxespad=0.0,
+        handlelength=1.6,
+        columnspacing=1.4,
+        handler_map={_Poor: _Stripes()},
+    )
+
+
+def _caption(shape: Parts, mesh: TriangleMesh | None) -> str:
+    marked = " Striped: a poor stand-in for its piece of the mesh." if any(map(is_poor, shape.parts)) else ""
+    if mesh is None:
+        return (
+            "The parts of the body, coloured by form, in orthographic views at one scale; the oblique one is larger."
+            + marked
+        )
+    return (
+        "Simple parts (solid, coloured by form) under the translucent mesh with its outline: grey without colour is mesh "
+        "outside the parts, full colour beyond the outline is part outside the mesh. A plate seen from its edge is a line."
+        + marked
+    )
+
+
+def _description(shape: Parts, mesh: TriangleMesh | None) -> str:
+    parts = ", ".join(f"{p.name} ({form_name(p.form)}{POOR if is_poor(p) else ''})" for p in shape.parts)
+    return f"Side, front, top and oblique views of {parts}" + (" with the outline of the mesh." if mesh else ".")

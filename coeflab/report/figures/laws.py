@@ -1,0 +1,145 @@
+"""Curves and points over one axis, in panels one below the other: force laws, and what was found beside what was printed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from coeflab.core.types import Array, brief, locked
+from coeflab.report.document import Figure, Panel
+from coeflab.report.figures.panel import BOTTOM, GAP, LEGEND_ROW, drawing, legend, limits, panel
+from coeflab.report.figures.series import STYLES, Style, curve, numbers, points, tagged
+from coeflab.report.figures.svg import COLOURS, settings, svg_text
+
+SCALED = 26.0
+PLAIN = Style(COLOURS["ink"], "-", "o")
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Trace:
+    """A curve, or points.
+
+    Attributes
+    ----------
+    name : str
+        As the legend says it; traces of one name are one entry in all panels.
+    x, y : (n,) array
+        In the units of the panel.
+    style : int
+        Colour, line and marker: traces of one style belong together. Below zero: a plain line in the colour of the text.
+    form : str
+        ``curve``, ``filled`` or ``hollow`` points.
+    notes : tuple of str
+        One a point.
+    """
+
+    name: str
+    x: Array
+    y: Array
+    style: int
+    form: str = "curve"
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", locked(self.x))
+        object.__setattr__(self, "y", locked(self.y))
+
+    @property
+    def look(self) -> dict[str, Any]:
+        """For Matplotlib; form and marker tell it apart without colour."""
+        style = STYLES[self.style] if self.style >= 0 else PLAIN
+        if self.form == "curve":
+            return {"color": style.colour, "linestyle": style.line, "linewidth": 1.3}
+        filled = self.form == "filled"
+        return {
+            "linestyle": "none", "marker": style.marker, "markersize": 3.2 if filled else 5.6,
+            "markerfacecolor": style.colour if filled else "none", "markeredgecolor": style.colour,
+            "markeredgewidth": 0.0 if filled else 0.8,
+        }  # fmt: skip
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Plot:
+    """One panel.
+
+    Attributes
+    ----------
+    name_up, name_across : str
+        Labels, ``name  [unit]``.
+    traces : tuple of Trace
+    height : float
+        Points.
+    allowed : float or None
+        Half-width of a band about zero.
+    is_scaled : bool
+        Whether the axis across has texts; otherwise the panel below carries them.
+    """
+
+    name_up: str
+    name_across: str
+    traces: tuple[Trace, ...]
+    height: float = 110.0
+    allowed: float | None = None
+    is_scaled: bool = True
+
+
+def laws_figure(anchor: str, title: str, caption: str, description: str, plots: Sequence[Plot]) -> Figure:
+    """Panels from above, with one legend.
+
+    Parameters
+    ----------
+    anchor, title, caption, description : str
+    plots : sequence of Plot
+    """
+    named: dict[str, Trace] = {}
+    for plot in plots:
+        for trace in plot.traces:
+            named.setdefault(trace.name, trace)
+    keys = {name: f"law{i}" for i, name in enumerate(named)}
+    rooms = [GAP + (SCALED if plot.is_scaled else 0.0) for plot in plots]
+    body = sum(p.height for p in plots) + sum(rooms) - rooms[-1]
+    with settings():
+        figure = drawing(BOTTOM + body + 10.0 + LEGEND_ROW * ((len(named) + 1) // 2))
+        bottom, panels = BOTTOM + body, []
+        for plot, room in zip(plots, rooms, strict=True):
+            bottom -= plot.height
+            axes = panel(
+                figure, bottom, plot.height, across=_across(plot), up=_up(plot), name_up=plot.name_up,
+                name_across=plot.name_across if plot.is_scaled else "", most_up=5 if plot.height > 90.0 else 3,
+            )  # fmt: skip
+            panels.append(_drawn(axes, plot, keys))
+            bottom -= room
+        handles = [tagged(Line2D([], [], label=name, **t.look), keys[name]) for name, t in named.items()]
+        legend(figure, handles, BOTTOM + body)
+        svg = svg_text(figure, anchor, title, description)
+    return Figure(anchor, svg, title, caption, description, tuple(panels))
+
+
+def _across(plot: Plot) -> tuple[float, float]:
+    return limits(np.concatenate([t.x for t in plot.traces]), 0.04) or (0.0, 1.0)
+
+
+def _up(plot: Plot) -> tuple[float, float]:
+    seen = [t.y for t in plot.traces] + ([] if plot.allowed is None else [np.array([-plot.allowed, plot.allowed])])
+    return limits(np.concatenate(seen), 0.08) or (-1.0, 1.0)
+
+
+def _drawn(axes: Axes, plot: Plot, keys: dict[str, str]) -> Panel:
+    low, high = axes.get_ylim()
+    if plot.allowed is not None:
+        axes.axhspan(-plot.allowed, plot.allowed, color=COLOURS["band"], alpha=0.25, linewidth=0, zorder=0.2)
+    if low < 0.0 < high:
+        axes.axhline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=1)
+    series = []
+    for t in plot.traces:
+        key = keys[t.name]
+        tagged(axes.plot(t.x, t.y, zorder=2.5 if t.form == "curve" else 3.0, **t.look), key)
+        series.append(curve(key, t.name, t.x, t.y) if t.form == "curve" else points(key, t.name, t.x, t.y, t.notes))
+    return numbers(axes, series, plot.name_across, plot.name_up)

@@ -1,0 +1,199 @@
+"""One PDF: numbered tables and figures, symbols set as mathematics, bookmarks, vector drawings; nothing outside is used."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
+from importlib.resources import files
+from typing import Any, Literal
+
+from coeflab.core.errors import OutputError
+from coeflab.core.table import Table
+from coeflab.core.version import VERSION
+from coeflab.report.document import Document, Figure, Section
+from coeflab.report.figures.sheet import plain, size_of
+from coeflab.report.notation import Raised, Run, cell_runs, keeping, kept, runs, unit_runs
+from coeflab.report.printable import breakable, glyphs, shortened
+
+summary = "one PDF to print and to keep: typeset tables, mathematics and vector figures"
+citations: tuple[str, ...] = ()
+
+TEMPLATE = ("data", "symbols", "page", "figures", "tables", "report")
+CLOCK = datetime(2000, 1, 1, tzinfo=UTC)
+LONGEST_TITLE, LONGEST_HEAD, LONGEST_COLUMN, LONGEST_CAPTION = 300, 64, 160, 800
+WHOLE, WORDY = 20, re.compile(r"[a-df-z,]")
+LONG, DEEP = 18, 3
+FEW, ON_A_PAGE, CHAPTER = 14, 3000, 4
+
+
+def render(document: Document) -> Mapping[str, bytes]:
+    """The report as a file.
+
+    Parameters
+    ----------
+    document : Document
+
+    Returns
+    -------
+    mapping of file name to bytes
+        ``report.pdf``; equal documents give equal bytes.
+
+    Raises
+    ------
+    OutputError
+        The typesetter refuses the document.
+    """
+    return {"report.pdf": typeset(content(document))}
+
+
+def typeset(content: Mapping[str, Any]) -> bytes:
+    """A PDF from the content that the template reads as data; nothing in it is ever taken for markup."""
+    return _compiled(content, "pdf", None)[0]
+
+
+def page_pictures(document: Document, ppi: float) -> tuple[bytes, ...]:
+    """The pages of the PDF as PNG pictures, ``ppi`` pixels an inch."""
+    return _compiled(content(document), "png", ppi)
+
+
+def _compiled(content: Mapping[str, Any], form: Literal["pdf", "png"], ppi: float | None) -> tuple[bytes, ...]:
+    import typst
+    from matplotlib import get_data_path
+
+    folder = files("coeflab.report.formats") / "_pdf"
+    template = b"\n".join((folder / f"{name}.typ").read_bytes() for name in TEMPLATE)
+    try:
+        made, warnings = typst.compile_with_warnings(
+            template,
+            format=form,
+            ppi=ppi,
+            sys_inputs={"report": json.dumps(content, ensure_ascii=False)},
+            font_paths=typst.Fonts(include_system_fonts=False, font_paths=[f"{get_data_path()}/fonts/ttf"]),
+            ignore_system_fonts=True,
+            timestamp=CLOCK,
+        )
+    except typst.TypstError as why:
+        raise OutputError(f"the PDF could not be typeset: {why}") from None
+    if warnings:
+        raise OutputError(f"the PDF could not be typeset: {warnings[0].message}")
+    return tuple(map(bytes, made)) if isinstance(made, list) else (bytes(made),)
+
+
+def content(document: Document) -> dict[str, Any]:
+    """A document as plain data: texts in pieces, drawings with their colours, columns with their longest cells."""
+    with keeping(document.verbatim):
+        return _content(document)
+
+
+def _content(document: Document) -> dict[str, Any]:
+    return {
+        "title": _text(shortened(document.title, LONGEST_TITLE)),
+        "name": glyphs(shortened(document.title, LONGEST_TITLE)),
+        "subtitle": _text(shortened(document.subtitle, LONGEST_TITLE)),
+        "head": glyphs(shortened(document.name or document.title, LONGEST_HEAD)),
+        "digest": document.digest,
+        "author": f"coeflab {VERSION}",
+        "parts": [part for s in document.sections for part in _parts(s, 1)],
+        "works": [breakable(glyphs(text)) for _, text in document.works],
+    }
+
+
+def _parts(section: Section, level: int, later: bool = True) -> Iterator[dict[str, Any]]:
+    """A section and its subsections, in the order of reading; ``later``: others of its level stand before it."""
+    yield {
+        "level": level,
+        "anchor": section.anchor,
+        "fresh": level > 1 and later and len(section.subsections) >= CHAPTER,
+        "title": _text(shortened(section.title, LONGEST_TITLE)),
+        "paragraphs": [_text(p) for p in section.paragraphs],
+        "code": [breakable(glyphs(line)) for line in section.code],
+        "figures": [_figure(f) for f in section.figures],
+        "tables": [_table(t, level) for t in section.tables],
+    }
+    for i, part in enumerate(section.subsections):
+        yield from _parts(part, level + 1, i > 0)
+
+
+def _figure(figure: Figure) -> dict[str, Any]:
+    wide, tall = size_of(figure.svg)
+    drawing = plain(figure.svg).replace('font-family="Helvetica, Arial, sans-serif"', 'font-family="DejaVu Sans"')
+    return {
+        "svg": drawing,
+        "wide": wide,
+        "tall": tall,
+        "title": _text(shortened(figure.title, LONGEST_TITLE)),
+        "caption": _text(shortened(figure.caption, LONGEST_CAPTION)),
+        "description": glyphs(f"{shortened(figure.title, LONGEST_TITLE)}. {figure.description}"),
+    }
+
+
+def _table(table: Table, level: int) -> dict[str, Any]:
+    """The table; of a long one deep inside, which HTML folds, its title and what it counts."""
+    title = _text(shortened(table.title, LONGEST_TITLE))
+    if level >= DEEP and len(table.rows) > LONG:
+        return {"elsewhere": True, "title": title, "count": len(table.rows)}
+    columns = range(len(table.headers))
+    units = {i for i in columns if table.headers[i] == "unit"}
+    folds = [any(len(row[i]) > WHOLE and WORDY.search(row[i]) for row in table.rows) for i in columns]
+    rows = [[_cell(text, i in units, folds[i]) for i, text in enumerate(row)] for row in table.rows]
+    return {
+        "elsewhere": False,
+        "together": len(table.rows) <= FEW and _letters(table) < ON_A_PAGE,
+        "title": title,
+        "headers": [_text(shortened(h, LONGEST_COLUMN)) for h in table.headers],
+        "rows": rows,
+        "whole": all(len(cell) < ON_A_PAGE // 4 for row in table.rows for cell in row),
+        "left": [i in table.left for i in columns],
+        "folds": folds,
+        "longest": [_longest([row[i] for row in rows]) for i in columns],
+        "words": [_word(table, i) for i in columns],
+        "verdicts": [[text in ("fail", "warn") for text in row] for row in table.rows],
+        "notes": [_text(n) for n in table.notes],
+    }
+
+
+def _letters(table: Table) -> int:
+    return sum(map(len, table.notes)) + sum(len(cell) for row in table.rows for cell in row)
+
+
+def _longest(cells: list[list[Any]]) -> list[list[Any]]:
+    """The four longest cells of a column as they are set: what its width is measured by."""
+
+    def length(cell: list[Any]) -> int:
+        return sum(len(p) if isinstance(p, str) else len(p.get("up") or p["text"]) for p in cell)
+
+    return sorted(cells, key=length, reverse=True)[:4]
+
+
+def _word(table: Table, column: int) -> str:
+    """The longest word of a column, its header among them: the least width that it can have."""
+    texts = [table.headers[column], *(row[column] for row in table.rows)]
+    words = (w for text in texts for w in breakable(glyphs(text)).replace("\u200b", " ").split())
+    return max(words, key=len, default="")
+
+
+def _cell(text: str, unit: bool, folds: bool) -> list[Any]:
+    pieces = [_piece(p) for p in (unit_runs(text) if unit else cell_runs(text, kept()))]
+    return pieces if folds else [p.replace(" ", "\u00a0") if isinstance(p, str) else p for p in pieces]
+
+
+def _text(text: str) -> list[Any]:
+    return [_piece(p) for p in runs(text, kept())]
+
+
+def _piece(piece: Run) -> Any:
+    if isinstance(piece, str):
+        return breakable(glyphs(piece))
+    if isinstance(piece, Raised):
+        return {"up": piece.text}
+    return {
+        "letter": piece.letter,
+        "text": piece.text,
+        "index": piece.index,
+        "primed": piece.primed,
+        "factors": [
+            {"letter": f.letter, "index": f.index, "dotted": f.dotted, "absolute": f.absolute} for f in piece.factors
+        ],
+    }

@@ -1,0 +1,1 @@
+"""Reports and parameter files of a folder, in the browser."""

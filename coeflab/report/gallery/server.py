@@ -1,0 +1,240 @@
+"""The gallery's server: this machine only, read only, one folder.
+
+A page of some other site could make a browser ask this server for files under a name of its own (DNS rebinding), so the
+Host header has to be this machine's. Reports are shown sandboxed: whatever a file contains, it can fetch nothing.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler
+from io import BufferedIOBase
+from pathlib import Path
+from socketserver import ThreadingTCPServer
+from typing import BinaryIO, cast
+from urllib.parse import parse_qs, urlsplit
+
+from coeflab.core.errors import CoeflabError, InputError, OutputError, shown
+from coeflab.core.files import typed
+from coeflab.report.gallery import pages
+from coeflab.report.gallery.listing import SERVED, Shelf, fault, place_of
+from coeflab.report.notation import keeping, users_texts
+from coeflab.report.printable import shortened
+from coeflab.report.tables import models as comparison_tables
+from coeflab.vehicle.comparison import compare
+
+ADDRESS = "127.0.0.1"
+MOST_COMPARED, LONGEST_QUERY = 8, 200
+SECONDS = 30
+FIELD = re.compile(rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+:[^\r\n\0]*\r?\n")
+ALWAYS = {
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cache-Control": "no-cache",
+}
+POLICIES = {
+    ".html": "sandbox allow-scripts; default-src 'none'; img-src data:; style-src 'unsafe-inline'; "
+    "script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    ".pdf": "default-src 'none'; object-src 'self'; style-src 'unsafe-inline'; frame-ancestors 'none'",
+    ".json": "sandbox; default-src 'none'; frame-ancestors 'none'",
+}
+
+
+class GalleryServer(ThreadingTCPServer):
+    """Listens on 127.0.0.1; ``serve_forever`` answers.
+
+    Parameters
+    ----------
+    folder : Path
+        What is shown.
+    port : int
+        0 takes any that is free.
+
+    Raises
+    ------
+    InputError
+        There is no such folder.
+    OutputError
+        The port cannot be had.
+    """
+
+    daemon_threads = True
+    allow_reuse_address = os.name != "nt"
+    request_queue_size = 64
+
+    def __init__(self, folder: Path, port: int) -> None:
+        folder = typed(folder)
+        if not folder.is_dir():
+            raise InputError(f"no folder {shown(folder, 300)}", "the folder of the gallery")
+        self.shelf = Shelf(folder.resolve())
+        try:
+            super().__init__((ADDRESS, port), _Request)
+        except OSError as why:
+            raise OutputError(
+                f"port {port} of {ADDRESS} cannot be used: {why.strerror or why}. "
+                "Name another with --port, or take any free one with --port 0."
+            ) from None
+
+    @property
+    def address(self) -> str:
+        """What to type into a browser."""
+        return f"http://{ADDRESS}:{self.server_address[1]}/"
+
+    @property
+    def hosts(self) -> frozenset[str]:
+        """Host headers that mean this server."""
+        port = self.server_address[1]
+        return frozenset(f"{name}:{port}" for name in (ADDRESS, "localhost")) | (
+            frozenset((ADDRESS, "localhost")) if port == 80 else frozenset()
+        )
+
+    def handle_error(self, request: object, client_address: object) -> None:
+        """A browser that goes away is no news; anything else is."""
+        import sys
+
+        if not isinstance(sys.exception(), ConnectionError | TimeoutError):
+            super().handle_error(request, client_address)  # type: ignore[arg-type]
+
+
+class _Heard:
+    """A stream that keeps the lines read from it: readers of headers skip what they do not understand."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self.stream = stream
+        self.lines: list[bytes] = []
+
+    def readline(self, most: int = -1) -> bytes:
+        self.lines.append(self.stream.readline(most))
+        return self.lines[-1]
+
+    @property
+    def fields(self) -> list[bytes]:
+        """The lines before the empty one."""
+        return self.lines[:-1]
+
+
+class _Request(BaseHTTPRequestHandler):
+    server_version, sys_version = "coeflab", ""
+    default_request_version = "HTTP/1.0"
+    timeout = SECONDS
+
+    def parse_request(self) -> bool:
+        """Turn away what is not a look at this machine from this machine."""
+        stream, heard = self.rfile, _Heard(cast(BinaryIO, self.rfile))
+        self.rfile = cast(BufferedIOBase, heard)
+        try:
+            if not super().parse_request():
+                return False
+        finally:
+            self.rfile = stream
+        hosts = self.headers.get_all("Host", [])
+        if len(hosts) != 1 or not all(FIELD.fullmatch(line) for line in heard.fields):
+            self._refuse(
+                HTTPStatus.BAD_REQUEST, "A request needs one Host, and one name and value on every header line."
+            )
+            return False
+        if hosts[0].strip().lower() not in cast(GalleryServer, self.server).hosts:
+            self._refuse(HTTPStatus.FORBIDDEN, "This gallery answers to 127.0.0.1 and localhost only.")
+            return False
+        if self.command not in ("GET", "HEAD"):
+            self._refuse(HTTPStatus.METHOD_NOT_ALLOWED, "This gallery is read only.", {"Allow": "GET, HEAD"})
+            return False
+        return True
+
+    def do_GET(self) -> None:
+        """Answer with the index, files side by side, or a file."""
+        if not self.path.startswith("/"):
+            self._refuse(HTTPStatus.BAD_REQUEST, "This gallery is no proxy.")
+            return
+        where = urlsplit(self.path)
+        asked = parse_qs(where.query, max_num_fields=100) if where.query.count("&") < 100 else {}
+        shelf = cast(GalleryServer, self.server).shelf
+        if where.path == "/":
+            query = asked.get("q", [""])[0][:LONGEST_QUERY].strip()
+            self._page(HTTPStatus.OK, pages.index(shelf.folder.name or str(shelf.folder), shelf.listing(), query))
+        elif where.path == "/compare":
+            self._compare(shelf, list(dict.fromkeys(asked.get("file", []))))
+        elif where.path.startswith("/file/"):
+            self._file(place_of(shelf.folder, where.path.removeprefix("/file/")))
+        else:
+            self._refuse(HTTPStatus.NOT_FOUND, "There is no such page.")
+
+    def do_HEAD(self) -> None:
+        """The head of what GET answers."""
+        self.do_GET()
+
+    def _compare(self, shelf: Shelf, keys: list[str]) -> None:
+        if not 1 <= len(keys) <= MOST_COMPARED:
+            why = f"{len(keys) or 'No'} files are chosen; choose two to {MOST_COMPARED} parameter files to compare."
+            self._refuse(HTTPStatus.BAD_REQUEST, why)
+            return
+        read = []
+        for key in keys:
+            try:
+                read.append(shelf.parameters(key))
+            except CoeflabError as why:
+                path = place_of(shelf.folder, key)
+                self._refuse(HTTPStatus.UNPROCESSABLE_ENTITY, fault(why, path) if path else "It cannot be read.")
+                return
+        found = [p for p in read if p is not None]
+        if len(found) < len(keys):
+            self._refuse(HTTPStatus.NOT_FOUND, "There is no such parameter file here.")
+            return
+        names = _apart([shortened(p.name, pages.COLUMN) for p in found])
+        pairs = [compare(found[0], other) for other in found[1:]]
+        tables = [comparison_tables.side_by_side(found[0], pairs, names)]
+        said = [
+            (f"{name} against {names[0]}", (*p.statements, *comparison_tables.reasons(p)))
+            for name, p in zip(names[1:], pairs, strict=True)
+        ]
+        tables += [comparison_tables.models(p, with_statements=False) for p in pairs]
+        with keeping(users_texts(*found)):
+            self._page(HTTPStatus.OK, pages.comparison(tables, [s for s in said if s[1]], names))
+
+    def _file(self, path: Path | None) -> None:
+        if path is None:
+            self._refuse(HTTPStatus.NOT_FOUND, "There is no such file here.")
+            return
+        try:
+            with path.open("rb") as stream:
+                size = os.fstat(stream.fileno()).st_size
+                kind = path.suffix.lower()
+                self._head(HTTPStatus.OK, SERVED[kind], size, POLICIES[kind])
+                if self.command == "GET":
+                    shutil.copyfileobj(stream, self.wfile)
+        except PermissionError:
+            self._refuse(HTTPStatus.FORBIDDEN, "This file cannot be read.")
+
+    def _page(self, status: HTTPStatus, content: bytes, more: dict[str, str] | None = None) -> None:
+        self._head(status, "text/html; charset=utf-8", len(content), pages.policy(), more)
+        if self.command != "HEAD":
+            self.wfile.write(content)
+
+    def _head(self, status: HTTPStatus, kind: str, size: int, policy: str, more: dict[str, str] | None = None) -> None:
+        self.send_response(status)
+        told = {"Content-Type": kind, "Content-Length": str(size), "Content-Security-Policy": policy}
+        for name, value in (told | ALWAYS | (more or {})).items():
+            self.send_header(name, value)
+        self.end_headers()
+
+    def _refuse(self, status: HTTPStatus, why: str, more: dict[str, str] | None = None) -> None:
+        self.close_connection = True
+        self._page(status, pages.refusal(status.value, status.phrase, why), more)
+
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
+        """What the standard library finds wrong with a request, on a page of ours."""
+        self._refuse(HTTPStatus(code), explain or message or "This request cannot be read.")
+
+    def log_message(self, format: str, *args: object) -> None:  # noqa: A002
+        """Nothing: a terminal that shows a gallery is no log."""
+
+
+def _apart(names: list[str]) -> list[str]:
+    """Names of files, numbered where two are alike."""
+    return [f"{n} ({i + 1})" if names.count(n) > 1 else n for i, n in enumerate(names)]

@@ -1,0 +1,291 @@
+"""A publication reproduced, as a report: verdict, figures, every number and what it is held against, errata.
+
+Every number of a publication as one mark: its difference over what is allowed, one strip a table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+from matplotlib.lines import Line2D
+
+from coeflab.core.provenance import InputFile, work
+from coeflab.core.table import Table
+from coeflab.core.types import Array
+from coeflab.report import acceptance as acceptance_tables
+from coeflab.report.acceptance import BASES, Acceptance, Basis, Compared, ComparedTable
+from coeflab.report.document import Document, Figure, Panel, Section
+from coeflab.report.figures.panel import BOTTOM, COLUMNS, LEGEND_ROW, RIGHT, WIDTH, drawing, height_of, legend, ticks
+from coeflab.report.figures.series import numbers, points, tagged
+from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.reproduction import digest_of, published_reproduction
+from coeflab.report.sections.conventions import published_conventions
+
+ACROSS = "difference over what is allowed  [-]"
+EDGE, BEYOND = 1.28, 1.18
+HEAD, LEAST, ROW, MOST, LONGEST = 15.0, 13.0, 2.7, 80.0, 60
+INDENT = 16.0
+HOLLOW: dict[str, Any] = {"markerfacecolor": "none", "markeredgewidth": 0.9}
+FILLED: dict[str, Any] = {"markeredgewidth": 0.0}
+MARKS: dict[Basis, dict[str, Any]] = {
+    Basis.PREDICTED: {"marker": "^", "markersize": 4.4, "markeredgecolor": COLOURS["d"], "markerfacecolor": COLOURS["d"], **FILLED},
+    Basis.PRINTED: {"marker": "D", "markersize": 3.8, "markeredgecolor": COLOURS["b"], "markerfacecolor": COLOURS["b"], **FILLED},
+    Basis.CALIBRATION: {"marker": "s", "markersize": 3.8, "markeredgecolor": COLOURS["c"], **HOLLOW},
+    Basis.CONSISTENCY: {"marker": "o", "markersize": 4.0, "markeredgecolor": COLOURS["a"], "markerfacecolor": COLOURS["a"], **FILLED},
+}  # fmt: skip
+OUTSIDE: dict[str, Any] = {"marker": "x", "markersize": 5.0, "markeredgecolor": COLOURS["ink"], "markeredgewidth": 1.3}
+CAPTION = (
+    "One mark a comparison, in the order of its table. At 0 ours is what it is held against, at -1 and 1 the whole allowance is used. A "
+    "number that may be at most some limit stands at its share of the limit."
+)
+
+
+def allowance_figure(found: Acceptance, anchor: str) -> Figure:
+    """All comparisons, those that repeat others too.
+
+    Parameters
+    ----------
+    found : Acceptance
+    anchor : str
+    """
+    rows = [r for t in found.tables for r in t.rows]
+    held = sum(r.holds for r in rows)
+    title = f"{held} of {len(rows)} comparisons within what is allowed"
+    heights = [_height(len(t.rows)) for t in found.tables]
+    body = sum(heights) + HEAD * len(heights)
+    description = (
+        "One strip a table, one mark a number at its difference over what is allowed: "
+        + "; ".join(f"{t.title}: {_count(t)}" for t in found.tables)
+        + "."
+    )
+    with settings():
+        handles = _legend(rows)
+        figure = drawing(BOTTOM + body + 10.0 + LEGEND_ROW * max(2, -(-len(handles) // COLUMNS)))
+        top, panels = BOTTOM + body, []
+        for t, height in zip(found.tables, heights, strict=True):
+            _heading(figure, top, t)
+            panels.append(_strip(figure, top - HEAD - height, height, t))
+            top -= HEAD + height
+        _scale(figure)
+        legend(figure, handles, BOTTOM + body)
+        svg = svg_text(figure, anchor, title, description)
+    return Figure(anchor, svg, title, CAPTION, description, tuple(panels))
+
+
+def share(r: Compared) -> float:
+    """Difference over what is allowed, of a limit the share that is used; NaN where nothing was found."""
+    if r.found is None or r.difference is None:
+        return float("nan")
+    if r.at_most:
+        limit = r.against + r.tolerance * (abs(r.against) if r.relative else 1.0)
+        return max(r.found, 0.0) / limit if limit > 0.0 else (0.0 if r.holds else float("inf"))
+    if r.tolerance == 0.0:
+        return 0.0 if r.holds else float(np.copysign(np.inf, r.difference))
+    return r.difference / r.tolerance
+
+
+def _height(count: int) -> float:
+    return min(max(LEAST, ROW * count), MOST)
+
+
+def _count(t: ComparedTable) -> str:
+    return f"{sum(r.holds for r in t.rows)} of {len(t.rows)}"
+
+
+def _heading(figure: Drawing, top: float, t: ComparedTable) -> None:
+    name = t.title if len(t.title) <= LONGEST else t.title[:LONGEST].rsplit(" ", 1)[0].rstrip(",") + " …"
+    level = (top - HEAD + 4.0) / height_of(figure)
+    figure.text(INDENT / WIDTH, level, name, va="baseline", fontsize=8.25)
+    figure.text((WIDTH - RIGHT) / WIDTH, level, _count(t), va="baseline", ha="right", color=COLOURS["muted"])
+
+
+def _axes(figure: Drawing, bottom: float, height: float, up: tuple[float, float]) -> Axes:
+    whole = height_of(figure)
+    axes = figure.add_axes((INDENT / WIDTH, bottom / whole, (WIDTH - INDENT - RIGHT) / WIDTH, height / whole))
+    axes.set_axis_off()
+    axes.set_xlim(-EDGE, EDGE)
+    axes.set_ylim(*up)
+    return axes
+
+
+def _strip(figure: Drawing, bottom: float, height: float, t: ComparedTable) -> Panel:
+    """One table: its first row on top."""
+    count = len(t.rows)
+    axes = _axes(figure, bottom, height, (count + 0.8, 0.2))
+    axes.axvspan(-1.0, 1.0, color=COLOURS["band"], alpha=0.22, linewidth=0, zorder=0)
+    for x, width in ((-1.0, 0.9), (0.0, 0.6), (1.0, 0.9)):
+        axes.axvline(x, color=COLOURS["muted"], linewidth=width, zorder=0.5)
+    # Two decimals: further ones differ from one linear algebra to the next, and a page must not.
+    at = np.array([round(share(r), 2) + 0.0 for r in t.rows])
+    order = np.arange(1.0, count + 1.0)
+    series = []
+    for basis, look in MARKS.items():
+        mine = np.array([r.basis is basis and r.holds for r in t.rows])
+        series.append(_drawn(axes, _key(basis), basis, at, order, mine, look, t.rows))
+    series.append(_drawn(axes, "outside", "outside", at, order, ~np.array([r.holds for r in t.rows]), OUTSIDE, t.rows))
+    return numbers(axes, series, ACROSS, "row of the table")
+
+
+def _key(basis: Basis) -> str:
+    """The basis as a mark of the drawing, which is one word."""
+    return basis.name.lower()
+
+
+def _drawn(
+    axes: Axes, key: str, name: str, x: Array, y: Array, mine: Any, look: dict[str, Any], rows: Sequence[Compared]
+) -> Any:
+    """The marks of one kind, beyond the frame at its edge; values are told of those inside, where they are what is seen."""
+    if np.any(mine):
+        seen = np.where(np.isnan(x), BEYOND, np.clip(x, -BEYOND, BEYOND))
+        tagged(axes.plot(seen[mine], y[mine], linestyle="none", clip_on=False, zorder=3, **look), key)
+    told = mine & (np.abs(x) <= BEYOND)
+    return points(key, name, x[told], y[told], [_told(r) for r, yes in zip(rows, told, strict=True) if yes])
+
+
+def _told(r: Compared) -> str:
+    unit = "" if r.unit == "1" else f" {r.unit}"
+    found = "no number" if r.found is None else f"{r.found:.6g}{unit}"
+    against = f"{'at most ' if r.at_most else ''}{r.against:.6g}{unit}"
+    return f"{r.case}, {r.quantity}: held against {against} ({r.basis}), found {found}"
+
+
+def _scale(figure: Drawing) -> None:
+    whole, wide = height_of(figure), WIDTH - INDENT - RIGHT
+    for x in ticks((-1.0, 1.0), 4):
+        place = (INDENT + wide * (x + EDGE) / (2.0 * EDGE)) / WIDTH
+        text = f"{x + 0.0:g}".replace("-", "−")
+        figure.text(place, (BOTTOM - 13.5) / whole, text, ha="center", va="baseline")
+    figure.text((INDENT + wide / 2.0) / WIDTH, (BOTTOM - 27.5) / whole, ACROSS, ha="center", va="baseline")
+
+
+def _legend(rows: Sequence[Compared]) -> list[Any]:
+    kinds = [b for b in MARKS if any(r.basis is b and r.holds for r in rows)]
+    handles = [tagged(Line2D([], [], linestyle="none", label=b, **MARKS[b]), _key(b)) for b in kinds]
+    if not all(r.holds for r in rows):
+        handles.append(tagged(Line2D([], [], linestyle="none", label="outside", **OUTSIDE), "outside"))
+    return handles
+
+
+def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
+    """The report of a publication.
+
+    Parameters
+    ----------
+    found : Acceptance
+    inputs : tuple of InputFile, optional
+        The files that it was computed from.
+    """
+    tables = tuple(
+        Section(f"table-{t.key.replace('_', '-')}", t.title, tables=(shown,))
+        for t, shown in zip(found.tables, acceptance_tables.tables(found), strict=True)
+    )
+    sections = (
+        verdict(found),
+        *_section("figures", "Figures", figures=figures(found)),
+        Section("compared", "Every number and what it is held against", (DIFFERENCES,), subsections=tables),
+        *_section("statements", "What to know", found.statements),
+        *_section("parameter-files", "Parameter files", found.file_notes),
+        *_errata(found),
+        published_conventions(found.conventions),
+        *_provenance(inputs),
+        published_reproduction(found, inputs),
+    )
+    works = tuple((k, work(k)) for k in found.citations)
+    return Document(found.title, SUBTITLE, sections, found.name, digest_of(inputs), works)
+
+
+SUBTITLE = "A publication reproduced: every number and what it is held against"
+DIFFERENCES = (
+    "Held against: a number that the paper prints only where the basis beside it says so. Difference: found less what it is "
+    "held against, as a share of the latter where a per cent sign stands. A number passes when the difference is no larger than "
+    "what is allowed."
+)
+PROVENANCE = "The files below are known by the sha256 of their bytes."
+
+
+def verdict(found: Acceptance) -> Section:
+    """How many numbers hold, and which do not."""
+    rows = [*found.numbers, *found.repeated]
+    text = [*headline(found)]
+    for t in found.tables:
+        failed = [f"{r.quantity} of {r.case}" for r in t.rows if not r.holds]
+        if failed:
+            text.append(f"Outside, {t.title}: {', '.join(failed)}.")
+    kinds = [f"{b}: {meaning}" for b, meaning in BASES.items() if found.counts[b]]
+    text.append(f"What they are compared with. {'; '.join(kinds)[:1].upper()}{'; '.join(kinds)[1:]}.")
+    drawn = (allowance_figure(found, "allowances"),) if rows else ()
+    return Section("verdict", "Verdict", tuple(text), (overview(found),), drawn)
+
+
+def headline(found: Acceptance) -> tuple[str, ...]:
+    """How many numbers hold by basis, and how many of them validate anything: two sentences."""
+    numbers, again, counts = found.numbers, found.repeated, found.counts
+    held = sum(r.holds for r in numbers)
+    by_basis = ", ".join(f"{count} {b}" for b, count in counts.items())
+    first = f"{held} of {len(numbers)} numbers within what is allowed: {by_basis}."
+    if again:
+        first += f" {sum(r.holds for r in again)} of {len(again)} comparisons meet numbers among them another way, and do not count."
+    validating = sum(count for b, count in counts.items() if b.validates)
+    if validating:
+        good = sum(r.holds for r in numbers if r.basis.validates)
+        return (
+            first,
+            f"Validation rests on {validating} of them, predicted or printed and recomputed, of which {good} hold.",
+        )
+    return (
+        first,
+        "Nothing here is validation: no number of the paper is predicted, and none that it prints is recomputed.",
+    )
+
+
+def overview(found: Acceptance) -> Table:
+    """One row a table of the publication."""
+    rows = tuple(
+        (
+            t.title,
+            t.source,
+            f"{sum(r.holds for r in t.rows)} of {len(t.rows)}",
+            _closest(t),
+            "pass" if t.holds else "fail",
+        )
+        for t in found.tables
+    )
+    notes = (
+        "used: the largest difference as a share of what is allowed, where that is not zero; of a limit the share that is reached",
+    )
+    headers = ("what", "of the publication", "hold", "used", "verdict")
+    return Table("Tables of the publication", headers, rows, notes, frozenset({0, 1, 4}))
+
+
+def _closest(t: ComparedTable) -> str:
+    shares = [abs(share(r)) for r in t.rows if r.found is not None and (r.tolerance > 0.0 or r.at_most)]
+    return f"{100.0 * max(shares):.0f} %" if shares else "-"
+
+
+def figures(found: Acceptance) -> tuple[Figure, ...]:
+    """Its drawings."""
+    return tuple(Figure(d.anchor, d.svg, d.title, d.caption, d.description, d.panels) for _, d in found.figures)
+
+
+def _section(
+    anchor: str, title: str, text: tuple[str, ...] = (), figures: tuple[Figure, ...] = ()
+) -> tuple[Section, ...]:
+    return (Section(anchor, title, text, figures=figures),) if text or figures else ()
+
+
+def _errata(found: Acceptance) -> tuple[Section, ...]:
+    if not found.errata:
+        return ()
+    return (Section("errata", "Errata of the publication", tables=(acceptance_tables.errata(found),)),)
+
+
+def _provenance(inputs: tuple[InputFile, ...]) -> tuple[Section, ...]:
+    if not inputs:
+        return ()
+    rows = tuple((f.name, f.sha256) for f in inputs)
+    table = Table("Inputs", ("file", "sha256"), rows, (), frozenset({0, 1}))
+    return (Section("provenance", "Provenance", (PROVENANCE,), (table,)),)

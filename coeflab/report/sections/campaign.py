@@ -1,0 +1,275 @@
+"""One section a campaign, one part of it a coefficient.
+
+Quality of the data: forces at rest, rejected and doubtful cells, and how far repeated runs agree.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from coeflab.core.provenance import work
+from coeflab.core.table import ABSENT, Table, coefficient, number, percent
+from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.misfit import residuals_in_words
+from coeflab.fits.statistics.diagnostics import replicate_groups
+from coeflab.law.symbols import primed
+from coeflab.report.document import Figure, Section
+from coeflab.report.figures.estimator import estimator_figure
+from coeflab.report.figures.model import distinct, model_figures, over_what
+from coeflab.report.figures.sweep import sweep_figure
+from coeflab.report.figures.variables import moving, response_name
+from coeflab.report.tables import models as joint_tables
+from coeflab.report.tables import models as model_tables
+from coeflab.report.tables import results as tables
+from coeflab.study.study import Study
+from coeflab.tables.force_table import ForceTable
+from coeflab.vehicle.reference import Relation
+
+LONGEST = 80
+
+
+def filled(*several: Table) -> tuple[Table, ...]:
+    """The tables that have rows."""
+    return tuple(t for t in several if t.rows)
+
+
+def anchor(text: str, taken: set[str]) -> str:
+    """An identifier for a link, unique among those taken."""
+    base = re.sub(r"[^a-z0-9]+", "-", text.lower())[:LONGEST].strip("-") or "part"
+    name, n = base, 2
+    while name in taken:
+        name, n = f"{base}-{n}", n + 1
+    taken.add(name)
+    return name
+
+
+def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) -> Section:
+    """A campaign by one fit: its data, its coefficients, its sweeps.
+
+    Parameters
+    ----------
+    study : Study
+    fit : FitResult
+    place : str
+        Its anchor.
+    taken : set of str
+        Anchors that its parts must not have.
+    """
+    mine = [t for t in study.tables if t.campaign in fit.campaigns]
+    title = mine[0].title if len(fit.campaigns) == 1 and mine else f"Jointly: {fit.campaign}"
+    if sum(f.campaign == fit.campaign for f in study.fits) > 1:
+        title = f"{title} ({fit.fit})"
+    text = [line for t in mine for line in _about(t)]
+    if "swept about" in fit.settings:
+        text.append(
+            f"Figures and estimators are about {fit.settings['swept about']}: the coefficients in the tables are about "
+            "the study's reference point."
+        )
+    return Section(
+        place,
+        title,
+        tuple(text),
+        filled(tables.coefficients(study, fit.campaign), joint_tables.campaigns((fit,))),
+        subsections=(
+            *(_sweep_section(study, fit, s, anchor(f"{place} {s.symbol}", taken)) for s in fit.sweeps),
+            *(_model_section(m, anchor(f"{place} {m.response}", taken)) for m in distinct(fit.models)),
+        ),
+    )
+
+
+def _model_section(model: FittedModel, place: str) -> Section:
+    name = f"{response_name(model)} over {over_what(model)}" if moving(model) else response_name(model)
+    shown = filled(model_tables.influence(model), model_tables.correlations(model))
+    return Section(place, name, residuals_in_words(model), shown, model_figures(model, place))
+
+
+def _about(table: ForceTable) -> list[str]:
+    usable = sum(int(mask.sum()) for mask in table.usable.values())
+    cells = sum(mask.size for mask in table.usable.values())
+    source = table.source
+    text = [
+        f"{table.name}: {table.body.replace('_', ' ')}, {len(table)} rows; {usable} of {cells} force cells are usable. "
+        f"Speed {table.conditions.speed:.5g} m/s, density {table.conditions.density:.5g} kg/m3. "
+        f"Source: {work(source.citation)}" + (f" {source.place}." if source.place else "")
+    ]
+    if source.how_obtained:
+        text.append(source.how_obtained)
+    if source.stated_uncertainty:
+        text.append(f"Uncertainty as the source states it: {source.stated_uncertainty}.")
+    if table.notes:
+        text.append(f"Done on reading: {'; '.join(table.notes)}.")
+    return text
+
+
+def _sweep_section(study: Study, fit: FitResult, sweep: Sweep, place: str) -> Section:
+    c = fit.coefficients[sweep.symbol]
+    name = primed(sweep.symbol)
+    if c.value is None:
+        text = [f"{name} has no value. {c.status.advice}"]
+    elif c.u95 is None:
+        text = [f"{name} = {coefficient(c.value)}, no U95. {c.status.advice}"]
+    else:
+        text = [
+            f"{name} = {coefficient(c.value)} ± {coefficient(c.u95)} (U95, {percent(c.u95, c.value)}): random part "
+            f"{percent(c.parts.random, c.value)}, model-form part {percent(c.parts.model_form, c.value)}."
+        ]
+    if sweep.one_sided:
+        text.append(
+            "All points lie on one side of zero, so terms of the other parity cannot be told apart and are left out."
+        )
+    text += _caveats(sweep)
+    published = tuple(
+        k
+        for k in study.comparisons
+        if k.relation is Relation.RE_ANALYSIS
+        and k.coefficient.campaign == sweep.campaign
+        and k.coefficient.symbol == sweep.symbol
+    )
+    figures: list[Figure] = []
+    if len(sweep.x):
+        figures.append(sweep_figure(sweep, f"{place}-data"))
+    if sweep.plain or sweep.recommendation.panel:
+        figures.append(estimator_figure(sweep, published, f"{place}-estimators"))
+    shown = filled(tables.members(sweep), tables.sensitivity(sweep), tables.left_out(sweep), tables.estimators(sweep))
+    return Section(place, name, tuple(text), shown, tuple(figures))
+
+
+def _caveats(sweep: Sweep) -> list[str]:
+    out = []
+    capped = [s.value for s in sweep.sensitivity if s.value is not None]
+    if capped and sweep.recommendation.value is not None:
+        low, high = coefficient(min(capped)), coefficient(max(capped))
+        moved = f"stays at {low}" if low == high else f"lies between {low} and {high}"
+        out.append(f"When no window may exceed the limits in the table of largest windows, the value {moved}.")
+    if sweep.left_out:
+        reasons: dict[str, list[str]] = {}
+        for p in sweep.left_out:
+            reasons.setdefault(p.reason, []).append(p.label)
+        each = "; ".join(f"{', '.join(labels)} ({why})" for why, labels in reasons.items())
+        out.append(f"Left out: {each}.")
+    return out
+
+
+TEXT = (
+    "A symmetric body has no side force at no angle; what a curve has there is misalignment, an asymmetry of the model, or an "
+    "offset of the balance. Beside it stands the angle at which the recommended slope would give as much.",
+    "Repeats are usable points of one table at one setting. Their scatter is what the measurement itself gives, and no fit can be "
+    "better than it.",
+)
+AT_REST = (
+    "median of the curves: over all members at no angle; of largest: its size over the largest force of the sweep. The check of "
+    "symmetry takes one member instead, that with the most points, whose value at rest has an interval: the two may differ.",
+)
+SAME_SETTING = 1e-6
+
+
+def quality_sections(study: Study) -> tuple[Section, ...]:
+    """One section, or none where the study has no tables."""
+    if not study.tables:
+        return ()
+    shown = filled(_at_rest(study), _repeats(study.tables), _counts(study.tables), _cells(study.tables))
+    text = TEXT if len(shown) else ()
+    if not any(t.exclusions for t in study.tables):
+        text = (*text, "No row and no cell is rejected or doubtful.")
+    return (Section("data-quality", "Data quality", text, shown),)
+
+
+def _at_rest(study: Study) -> Table:
+    """Forces at no angle of the odd sweeps, from the recommended members, as force and as angle."""
+    rows = []
+    for fit in study.fits:
+        for s in fit.sweeps:
+            if s.parity != "odd" or s.target != "x" or not s.recommendation.members:
+                continue
+            value = _rest(s)
+            slope = s.recommendation.value
+            half = s.recommendation.u95
+            angle = ABSENT if not slope or not s.is_angle else f"{np.degrees(value / slope):+.2f}"
+            largest = float(np.max(np.abs(s.y)))
+            measured = [y for x, y in zip(s.x, s.y, strict=True) if abs(x) <= SAME_SETTING]
+            at_zero = ABSENT if not measured else coefficient(float(np.mean(measured)))
+            rows.append(
+                (
+                    s.campaign, f"{s.component}'", s.variable + "'", coefficient(value), at_zero,
+                    f"{100.0 * abs(value) / largest:.1f} %" if largest > 0.0 else ABSENT, angle, ABSENT if half is None else coefficient(half),
+                )
+            )  # fmt: skip
+    headers = (
+        "campaign",
+        "force",
+        "over",
+        "median of the curves",
+        "measured",
+        "of largest",
+        "as angle deg",
+        "U95 of the slope",
+    )
+    return Table("Forces at rest", headers, tuple(rows), AT_REST, frozenset({0, 1, 2}))
+
+
+def _rest(sweep: Sweep) -> float:
+    """Median of the members' values at rest."""
+    return float(np.median([float(e.curve(np.zeros(1))[0]) for e in sweep.recommendation.members]))
+
+
+def _repeats(tables: tuple[ForceTable, ...]) -> Table:
+    """Pooled standard deviation of repeated settings, per table and force."""
+    rows = []
+    for t in tables:
+        names = [*t.varies] or ["v"]
+        length = t.scaling.length
+        settings = np.column_stack([t.primed_motion(v, length) for v in names] + [t.speed / float(np.max(t.speed))])
+        for component, usable in t.usable.items():
+            kept = np.flatnonzero(usable & np.isfinite(t.forces[component]))
+            groups = _groups(settings[kept])
+            if not groups:
+                continue
+            y = t.primed_force(component, length)[kept]
+            freedom = sum(len(g) - 1 for g in groups)
+            pooled = np.sqrt(sum(float(np.sum((y[g] - y[g].mean()) ** 2)) for g in groups) / freedom)
+            largest = float(np.max(np.abs(y)))
+            share = f"{100.0 * pooled / largest:.2g} %" if largest else ABSENT
+            rows.append((t.name, f"{component}'", str(len(groups)), str(freedom), number(float(pooled), 3), share))
+    headers = ("table", "force", "settings repeated", "degrees of freedom", "standard deviation", "of largest")
+    return Table("Repeatability", headers, tuple(rows), (), frozenset({0, 1}))
+
+
+def _groups(settings: np.ndarray) -> list[np.ndarray]:
+    """Rows of equal settings, of two and more."""
+    if not len(settings):
+        return []
+    _, key = np.unique(np.round(settings / SAME_SETTING), axis=0, return_inverse=True)
+    return replicate_groups(np.asarray(key, dtype=float).ravel(), 0.5)
+
+
+def _counts(tables: tuple[ForceTable, ...]) -> Table:
+    """Rows, cells, and what is not used of them."""
+    rows = []
+    for t in tables:
+        cells = sum(mask.size for mask in t.usable.values())
+        used = sum(int(mask.sum()) for mask in t.usable.values())
+        whole = sum(not e.component for e in t.exclusions)
+        doubtful = sum(e.uncertain for e in t.exclusions)
+        rejected = len(t.exclusions) - whole - sum(e.uncertain and bool(e.component) for e in t.exclusions)
+        counts = (len(t), cells, used, rejected, doubtful, whole)
+        rows.append((t.name, *map(str, counts)))
+    headers = ("table", "rows", "force cells", "usable", "rejected cells", "doubtful", "rejected rows")
+    return Table("Rows and cells", headers, tuple(rows), (), frozenset({0}))
+
+
+def _cells(tables: tuple[ForceTable, ...]) -> Table:
+    """Cells and rows that are not used, gathered by table and reason."""
+    places: dict[tuple[str, str, str], dict[str, list[str]]] = {}
+    for t in tables:
+        for e in t.exclusions:
+            what = places.setdefault((t.name, "doubtful" if e.uncertain else "rejected", e.reason), {})
+            what.setdefault(e.component or "whole row", []).append(t.labels[e.row])
+    rows = tuple(
+        (*key, "; ".join(f"{force}: {', '.join(labels)}" for force, labels in what.items()))
+        for key, what in places.items()
+    )
+    headers = ("table", "what", "reason", "points")
+    return Table("Cells that the fits do not use", headers, rows, (), frozenset(range(4)))

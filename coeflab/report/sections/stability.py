@@ -1,0 +1,217 @@
+"""Stability of straight motion with controls fixed: indices with U95, roots against speed, critical speed.
+
+Eigenvalues of small motions against speed: real parts above, imaginary parts below where there are any.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from coeflab.core.errors import CoeflabError
+from coeflab.core.table import ABSENT, Table, number
+from coeflab.core.types import Array
+from coeflab.core.wording import listed
+from coeflab.motion.root_locus import RootLocus, root_locus
+from coeflab.report.document import Figure, Section, Series
+from coeflab.report.figures.panel import BOTTOM, GAP, drawing, legend, limits, panel
+from coeflab.report.figures.series import STYLES, curve, numbers, tagged
+from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.tables.added_mass import mass_table
+from coeflab.study.study import Study
+from coeflab.vehicle.derived import FAST, INDICES, Derived, by_mass, sense, stability
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.reference import Relation
+
+UPPER, LOWER, LEGEND = 150.0, 80.0, 34.0
+IN_PLANE = {"G_h": "the horizontal plane", "G_v": "the vertical plane"}
+ACROSS = "speed  [m/s]"
+
+
+def root_locus_figure(locus: RootLocus, name: str, anchor: str) -> Figure:
+    """Roots of one plane over speed.
+
+    Parameters
+    ----------
+    locus : RootLocus
+    name : str
+        Of the parameter file.
+    anchor : str
+    """
+    waves = bool(np.any(locus.roots.imag != 0.0))
+    bottom = BOTTOM + (LOWER + GAP if waves else 0.0)
+    title = f"{name}: roots of straight motion in {IN_PLANE[locus.index]}"
+    across = (0.0, float(locus.speed[-1]))
+    description = f"{_said('Real', locus.roots.real)}{_said('Imaginary', locus.roots.imag) if waves else ''}"
+    with settings():
+        figure = drawing(bottom + UPPER + 8.0 + LEGEND)
+        real = np.append(locus.roots.real, 0.0)
+        main = panel(
+            figure, bottom, UPPER, across=across, up=limits(real, 0.08) or (-1.0, 1.0), name_up="real part  [1/s]",
+            name_across="" if waves else ACROSS,
+        )  # fmt: skip
+        handles = _lines(main, locus, locus.roots.real)
+        panels = [numbers(main, _series(locus, locus.roots.real), ACROSS, "real part  [1/s]")]
+        if waves:
+            up = limits(locus.roots.imag, 0.1) or (-1.0, 1.0)
+            lower = panel(
+                figure, BOTTOM, LOWER, across=across, up=up, name_up="imag.  [1/s]", name_across=ACROSS, most_up=3
+            )
+            _lines(lower, locus, locus.roots.imag)
+            panels.append(numbers(lower, _series(locus, locus.roots.imag), ACROSS, "imaginary part  [1/s]"))
+        legend(figure, handles, bottom + UPPER)
+        svg = svg_text(figure, anchor, title, description)
+    caption = f"{title}, speed held. Above zero the motion grows. {locus.statement}"
+    return Figure(anchor, svg, title, caption, description, tuple(panels))
+
+
+def _lines(axes: Axes, locus: RootLocus, values: Array) -> list[Any]:
+    axes.axhline(0.0, color=COLOURS["ink"], linewidth=0.8, zorder=1)
+    if locus.critical is not None:
+        axes.axvline(locus.critical, color=COLOURS["ink"], linewidth=0.9, linestyle=(0, (1.0, 2.0)), zorder=1)
+    handles: list[Any] = []
+    for i, style in zip(range(values.shape[1]), STYLES, strict=False):
+        look: dict[str, Any] = {"color": style.colour, "linestyle": style.line, "linewidth": 1.4}
+        handles += tagged(axes.plot(locus.speed, values[:, i], label=f"root {i + 1}", zorder=2.5, **look), f"root{i}")
+    return handles
+
+
+def _series(locus: RootLocus, values: Array) -> list[Series]:
+    return [curve(f"root{i}", f"root {i + 1}", locus.speed, values[:, i]) for i in range(values.shape[1])]
+
+
+def _said(part: str, values: Array) -> str:
+    ends = ", ".join(f"{low:.3g} to {high:.3g}" for low, high in zip(values[0], values[-1], strict=True))
+    return f"{part} parts from the slowest to the fastest speed, 1/s: {ends}. "
+
+
+TEXT = (
+    "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')]: positive is "
+    "directionally stable with controls fixed, negative is unstable; where U95 holds zero it is not determined which. U95 holds the derivatives; mass and centre of gravity are not in it. G_v is the limit of high speed, without the restoring moment of weight and "
+    "buoyancy.",
+    "The roots are the eigenvalues of small motions about a straight course with the speed held, by the force law and the added "
+    "mass of the parameter file; its derivatives are taken to hold at every speed shown.",
+)
+
+
+def in_words(study: Study, *, with_values: bool = True) -> list[str]:
+    """Which parameter files are unstable, and which are not, in one sentence; none where no index can be given."""
+    said: dict[str, dict[str, list[str]]] = {}
+    for parameters in study.parameter_files.values():
+        for d in stability(parameters):
+            said.setdefault(sense(d), {}).setdefault(parameters.name, []).append(_value(d))
+    out = []
+    lacking = {p.name: p.conditions.speed for p in study.parameter_files.values() if p.hydrostatics is None}
+    for verdict, places in sorted(said.items(), key=lambda item: ("unstable" not in item[0], item[0])):
+        each = ", ".join(f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items())
+        each += ", there is no U95" if "alone" in verdict else ""
+        if FAST in verdict:
+            speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
+            each += f", at {speeds} m/s not determined, as BG is not known" if speeds else ""
+        out.append(f"{verdict.replace(FAST, f'{FAST} (no restoring moment)')}: {each}")
+    return [f"On a straight course with controls fixed {'; '.join(out)}."] if out else []
+
+
+def _value(d: Derived) -> str:
+    return f"{d.name} = {d.value:.3g}" + ("" if d.result is None else f" +- {d.result.linear:.2g}")
+
+
+def stability_sections(study: Study) -> tuple[Section, ...]:
+    """One section, or none where no parameter file has any derivative that an index needs."""
+    rows: list[tuple[str, ...]] = []
+    roots: list[tuple[str, ...]] = []
+    figures: list[Figure] = []
+    refused: list[str] = []
+    for i, (name, parameters) in enumerate(study.parameter_files.items()):
+        found = _indices(parameters)
+        rows += found
+        for index in (row[1] for row in found if row[2] != ABSENT):
+            try:
+                locus = root_locus(parameters, index)
+            except CoeflabError as why:
+                refused.append(f"{name}, {IN_PLANE[index]}: no roots, as the file has {why}")
+                continue
+            roots.append(_roots(name, locus))
+            figures.append(root_locus_figure(locus, name, f"roots-{i}-{index[-1]}"))
+    if not rows:
+        return ()
+    tables = [_shown(rows, study)]
+    if roots:
+        heads = ("parameter file", "plane", "roots 1/s", "time to double or halve s", "critical speed m/s")
+        tables.append(Table("Roots at the speed of the file", heads, tuple(roots), (), frozenset({0, 1, 2, 4})))
+    tables += mass_table(study)
+    return (Section("stability", "Stability", (*TEXT, *refused), tuple(tables), tuple(figures)),)
+
+
+def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
+    """A row for every plane of which the file has at least one derivative."""
+    given = {d.name: d for d in stability(parameters)}
+    out: list[tuple[str, ...]] = []
+    for index, (*symbols, _) in INDICES.items():
+        found = [parameters.coefficient(str(s)) for s in symbols]
+        lacking = [str(s) for s, c in zip(symbols, found, strict=True) if c is None or c.value is None]
+        if len(lacking) == len(symbols):
+            continue
+        if index not in given:
+            lacking += ["m'"] if parameters.mass is None else []
+            remark = f"missing: {', '.join(lacking)}"
+            out.append((parameters.name, index, ABSENT, ABSENT, "not determined", remark))
+            continue
+        d = given[index]
+        half = None if d.result is None else d.result.linear
+        stated = [c.symbol for c in found if c is not None and c.origin == "literature"]
+        remarks = [f"{', '.join(stated)} from literature"] if stated else []
+        remarks += [d.statement] if half is None else []
+        remarks.append(f"m' and xG' are not assessed: 1 % of m' moves it by {number(by_mass(parameters, d), 2)}")
+        out.append((parameters.name, index, number(d.value), number(half, 2), sense(d), "; ".join(remarks)))
+    return out
+
+
+def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
+    """The indices, and beside them those that the source of the same data prints."""
+    headers = ("parameter file", "index", "value", "U95", "verdict", "remark")
+    printed = [_printed(study, name, index) for name, index, *_ in rows]
+    if not any(value for value, _ in printed):
+        return Table("Stability indices", headers, tuple(rows), (), frozenset({0, 1, 4, 5}))
+    notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
+    beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
+    told = ("published indices are made of the source's own derivatives and mass; no verdict", *notes)
+    return Table(
+        "Stability indices", (*headers[:4], "published", *headers[4:]), tuple(beside), told, frozenset({0, 1, 5, 6})
+    )
+
+
+def _printed(study: Study, name: str, index: str) -> tuple[str, str]:
+    """An index as the authors of the data of a parameter file print it, and where; empty where none does."""
+    parameters = next(p for p in study.parameter_files.values() if p.name == name)
+    campaigns = {c.campaign for c in parameters.coefficients}
+    for r in study.references:
+        if r.relation is Relation.RE_ANALYSIS and r.body == parameters.body and campaigns & set(r.campaigns):
+            for value in r.indices:
+                if value.symbol == index:
+                    return value.printed, f"{index} of {name}: {r.citation}, {r.place}"
+    return "", ""
+
+
+def _roots(name: str, locus: RootLocus) -> tuple[str, ...]:
+    real = float(locus.at_speed[0].real)
+    time = f"{'doubles' if real > 0.0 else 'halves'} in {number(np.log(2.0) / abs(real), 3)}" if real else ABSENT
+    if locus.critical is not None:
+        critical = number(locus.critical)
+    else:
+        critical = "none" if locus.is_restored or locus.index == "G_h" else "not determined, no BG"
+    return name, IN_PLANE[locus.index].removeprefix("the "), _pairs(locus.at_speed), time, critical
+
+
+def _pairs(values: NDArray[np.complex128]) -> str:
+    """Eigenvalues, conjugate ones together."""
+    out = []
+    for v in values:
+        if v.imag > 0.0:
+            out.append(f"{number(v.real, 3)} ± {number(v.imag, 3)} i")
+        elif v.imag == 0.0:
+            out.append(number(v.real, 3))
+    return "; ".join(out)

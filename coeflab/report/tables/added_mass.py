@@ -1,0 +1,238 @@
+"""Added mass by several methods, as tables to be shown.
+
+Mass and inertia that indices, roots and manoeuvres are computed with.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.triangulation import Triangulation
+from coeflab.core.provenance import work
+from coeflab.core.table import ABSENT, Table, coefficient, number
+from coeflab.law.added_mass import AddedMass
+from coeflab.law.symbols import COMPONENTS
+from coeflab.study.study import Study
+from coeflab.vehicle.inertia import water_inertia
+from coeflab.vehicle.parameter_file import ParameterFile
+
+SHOWN = ("Xudot", "Yvdot", "Zwdot", "Kpdot", "Mqdot", "Nrdot", "Yrdot", "Zqdot")
+TRANSLATIONS, MARK, WIDEST, SMALLEST = "uvw", "*", 10.0, 1e-3
+
+
+def particulars(body: Body) -> Table:
+    """Volume, centre and wetted surface: of the shape, and as printed elsewhere."""
+    rows = []
+    for c in body.configurations:
+        # Rounding of a centre in a plane of symmetry is no minus zero.
+        at = None if c.centre_of_buoyancy is None else np.round(c.centre_of_buoyancy, 4) + 0.0
+        centre = [ABSENT] * 3 if at is None else [f"{x:.4f}" for x in at]
+        rows.append((c.name, number(c.volume, 6), *centre, number(c.wetted_surface, 5), c.title))
+    headers = ("particulars", "volume m^3", "xB m", "yB m", "zB m", "wetted surface m^2", "what")
+    notes = (f"B: centre of buoyancy, FRD, from: {body.datum}",)
+    return Table(f"{body.name}: {body.title}", headers, tuple(rows), notes, frozenset({0, 6}))
+
+
+def displaced(body: Body, density: float) -> Table:
+    """Projected areas and the inertia of the displaced water, where they are known."""
+    rows = []
+    for c in body.configurations:
+        inertia = c.displaced_inertia(density)
+        if inertia is None or c.projected_areas is None:
+            continue
+        products = (-inertia[0, 1], -inertia[0, 2], -inertia[1, 2])
+        cut = 1e-9 * float(np.trace(inertia))
+        moments = (*np.diag(inertia), *(p if abs(p) > cut else 0.0 for p in products))
+        rows.append((c.name, *(number(float(v)) for v in (*c.projected_areas, *moments))))
+    headers = (
+        "displaced water",
+        *(f"A{a} m^2" for a in "xyz"),
+        *(f"I{a} kg m^2" for a in ("x", "y", "z", "xy", "xz", "yz")),
+    )
+    notes = (
+        "A: area projected along the axis",
+        f"I: moments and products (integral of x y dm) of {density:g} kg/m^3 about the centre of buoyancy",
+    )
+    return Table(f"{body.name}: projected areas and inertia of the displaced water", headers, tuple(rows), notes)
+
+
+def sound(mesh: TriangleMesh) -> str:
+    """What the gates of a mesh let through, and its size."""
+    size = " x ".join(f"{v:.5g}" for v in mesh.extents)
+    return (
+        f"the mesh of {len(mesh.faces)} faces is closed, wound outward, without faces of no area or faces twice; "
+        f"{size} m along x forward, y starboard, z down: look whether unit and axes are right"
+    )
+
+
+def derivatives(found: Triangulation) -> Table:
+    """Acceleration derivatives in SI, over the displaced mass, and their spread over the methods."""
+    mass = found.density * found.shape.volume
+    spread = found.spread
+    rows = []
+    for symbol in SHOWN:
+        values = [_settled(r, symbol) for r in found.results]
+        ratios = [number(-v / mass, 3) if mass and symbol[1] in TRANSLATIONS else ABSENT for v in values]
+        i, j = COMPONENTS.index(symbol[0]), "uvwpqr".index(symbol[1])
+        rows.append(
+            (
+                symbol,
+                *(c for pair in zip([number(v) for v in values], ratios) for c in pair),
+                _apart(spread[i, j], found.original is not None),
+            )
+        )
+    headers = ("SI", *(cell for r in found.results for cell in (_marked(r, found), "/m")), "spread")
+    note = (
+        f"/m: added mass over the displaced mass, {mass:.5g} kg at {found.density:g} kg/m^3; spread: range over the methods "
+        "that speak of the entry, over the recommended one; off the diagonal over the root of both diagonal entries"
+    )
+    return Table("Acceleration derivatives", headers, tuple(rows), (note, *remarks(found)))
+
+
+def remarks(found: Triangulation) -> tuple[str, ...]:
+    """Which method is recommended and why, how far it can be trusted, and what each assumed."""
+    notes = [f"{MARK} recommended: {found.recommended.method}, by the rule: {found.rule}"]
+    notes += [found.caution] if found.caution else []
+    notes += _verdicts(found)
+    notes += [f"{r.method}: {'; '.join(r.statements)}" for r in found.results if r.statements]
+    notes += [f"{name}: not used: {why}" for name, why in found.refused.items()]
+    return tuple(notes)
+
+
+def _apart(spread: float, stood_in: bool) -> str:
+    """A spread in per cent; over tenfold it says only that the methods have nothing in common there.
+
+    Methods that compute stand-ins and a mesh never agree to nothing, whatever the last digit says.
+    """
+    if np.isnan(spread):
+        return ABSENT
+    if stood_in and spread < SMALLEST:
+        return f"< {100.0 * SMALLEST:g} %"
+    return f"{100.0 * spread:.1f} %" if spread <= WIDEST else f"> {100.0 * WIDEST:.0f} %"
+
+
+def _marked(result: AddedMass, found: Triangulation) -> str:
+    return f"{MARK} {result.method}" if result.method == found.recommended.method else result.method
+
+
+def _verdicts(found: Triangulation) -> list[str]:
+    """Each verdict once, and the methods that it is on unless it is on all."""
+    by: dict[str, list[str]] = {}
+    for r in found.results:
+        by.setdefault(r.verdict, []).append(r.method)
+    return [f"{'every matrix' if len(by) == 1 else ', '.join(methods)}: {verdict}" for verdict, methods in by.items()]
+
+
+def symmetry(found: Triangulation) -> Table:
+    """Which entries the planes of symmetry make vanish, and how large they are all the same."""
+    zero, left = found.vanishing()
+    rows = tuple((m, f"{v:.1e}") for m, v in left.items()) if np.any(zero) else ()
+    planes = ", ".join(found.mirror_planes) or "none"
+    notes = (
+        f"planes of symmetry, as volume moments up to the third degree tell: {planes}; vanish about the reference point: {', '.join(found.vanishing_symbols())}",
+        "largest: over the root of the two diagonal entries; zero but for rounding and the mesh",
+    )
+    return Table("Entries that symmetry makes vanish", ("method", "largest"), rows, notes)
+
+
+def primes(found: Triangulation) -> Table:
+    """Primed acceleration derivatives beside measured ones; no rows where the body names no length."""
+    by = found.body.scaling
+    if by is None:
+        return Table("Primes", (), ())
+    rows, notes = [], [f"primed by {by} and 1/2 rho; {MARK} recommended"]
+    measured = {m.symbol: m for m in found.body.measured}
+    for symbol in dict.fromkeys((*SHOWN, *measured)):
+        values = [r.primed(symbol, by, found.density) if _settled(r, symbol) else 0.0 for r in found.results]
+        cells = [coefficient(v) if v else "0" for v in values]
+        if measured:
+            beside = measured.get(symbol)
+            gaps = [ABSENT if beside is None else _gap(v, beside.bounds) for v in values]
+            cells = [c for pair in zip(cells, gaps) for c in pair]
+            cells.append(ABSENT if beside is None else beside.printed)
+        rows.append((f"{symbol}'", *cells))
+    headers: list[str] = ["prime"]
+    for r in found.results:
+        headers += [_marked(r, found), "gap"] if measured else [_marked(r, found)]
+    if measured:
+        headers.append("measured")
+        notes.append("gap: computed over measured, less one; potential theory is not tuned to the measurement")
+        notes += dict.fromkeys(f"measured: {work(m.citation)} {m.place}" for m in measured.values())
+        if any("?" in m.printed for m in measured.values()):
+            notes.append("?: an illegible last digit; the gap is given for 0 and for 9 where that shows")
+    return Table("Primes", tuple(headers), tuple(rows), tuple(notes))
+
+
+def _rounding(result: AddedMass) -> float:
+    """Entries below this are rounding and shown as zero."""
+    return 1e-12 * float(np.max(np.abs(result.matrix)))
+
+
+def _settled(result: AddedMass, symbol: str) -> float:
+    value = result.derivatives()[symbol]
+    return value if abs(value) > _rounding(result) else 0.0
+
+
+def _gap(value: float, bounds: tuple[float, float]) -> str:
+    low, high = sorted(100.0 * (value / b - 1.0) for b in bounds)
+    return f"{low:+.1f} %" if f"{low:.1f}" == f"{high:.1f}" else f"{low:+.1f} to {high:+.1f} %"
+
+
+NOT_STATED, DIGITS = "not stated", 5
+MASS = ("m", "m'")
+
+
+def mass_table(study: Study) -> tuple[Table, ...]:
+    """Value, unit, source and stated uncertainty of every parameter file that has a mass, those of one body together; none where none has."""
+    names: dict[tuple[tuple[str, ...], ...], list[str]] = {}
+    for p in study.parameter_files.values():
+        names.setdefault(_rows(p, *_source(study, p)), []).append(p.name)
+    rows = [(", ".join(those), *row) for found, those in names.items() for row in found]
+    if not rows:
+        return ()
+    headers = ("parameter file", "quantity", "value", "unit", "source", "stated uncertainty")
+    notes = (
+        "m' = m / (1/2 rho L^3); xG' = x_G / L, from the reference point, forward; Iy = Iz about the reference point",
+        "No uncertainty of mass and inertia is in U95 of indices, roots or manoeuvres: it is not assessed.",
+        *_added(study),
+    )
+    return (Table("Mass and inertia used", headers, tuple(rows), notes, frozenset({0, 1, 3, 4, 5})),)
+
+
+def _added(study: Study) -> tuple[str, ...]:
+    """The added mass that goes with them, of each parameter file with a mass."""
+    massive = [p for p in study.parameter_files.values() if p.mass is not None]
+    said = [(p.name, *water_inertia(p).statements) for p in massive]
+    return tuple(f"{name}: {'; '.join(each)}" for name, *each in said)
+
+
+def _rows(parameters: ParameterFile, source: str, stated: str) -> tuple[tuple[str, ...], ...]:
+    mass = parameters.mass
+    if mass is None:
+        return ()
+    values = [
+        ("m", mass.mass, "kg"),
+        ("m'", mass.mass_prime, ""),
+        ("xG'", mass.mass_moment_prime / mass.mass_prime, ""),
+        ("xG' m'", mass.mass_moment_prime, ""),
+    ]
+    if mass.inertia_matrix is not None:
+        values += [(f"I{axis}", mass.inertia_matrix[i][i], "kg m^2") for i, axis in enumerate("xyz")]
+    elif mass.inertia is not None:
+        values.append(("Iy = Iz", mass.inertia, "kg m^2"))
+    return tuple(
+        (name, number(v, DIGITS), unit, source, stated if name in MASS else NOT_STATED) for name, v, unit in values
+    )
+
+
+def _source(study: Study, parameters: ParameterFile) -> tuple[str, str]:
+    """Where the body's file has them from, whether they were moved, and what that source says of the uncertainty of mass."""
+    configuration = study.body.configuration(parameters.body) if study.body else None
+    if study.body is None or configuration is None or configuration.mass is None:
+        return NOT_STATED, NOT_STATED
+    moved = any(note.startswith("mass properties moved") for note in parameters.provenance.notes)
+    given = study.body.source
+    source = f"{given.citation}, {given.place}{', moved to the reference point' if moved else ''}"
+    return source, given.stated_uncertainty if "mass" in given.stated_uncertainty else NOT_STATED

@@ -1,0 +1,307 @@
+"""What an export loses, as tables and as the text beside the files.
+
+A model file as tables: what it holds, and what was found.
+
+The parameter file field by field, as a page in Markdown; the JSON Schema is its only source.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from coeflab.core.table import ABSENT, Check, Table, coefficient, number
+from coeflab.formats.loss import LOSSLESS, Apart, Loss
+from coeflab.formats.lost import Kind
+from coeflab.law.added_mass import potential_part
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.vehicle.inertia import WaterInertia
+from coeflab.vehicle.parameter_file import FIRST_VERSION, SCHEMA_VERSION, VERSIONS, ParameterFile, is_later, schema
+
+NAMED = 3
+
+
+def forces(loss: Loss) -> Table:
+    """Difference of the target's force, and of the acceleration it gives the vehicle, from the file's."""
+    rows = [_row(c, "N*m" if c in "KMN" else "N", loss.forces, i) for i, c in enumerate(COMPONENTS)]
+    if loss.accelerations is not None:
+        rows += [
+            _row(f"d{m}/dt", "rad/s^2" if m in "pqr" else "m/s^2", loss.accelerations, i) for i, m in enumerate(MOTIONS)
+        ]
+    notes = [
+        f"over {loss.grid}; steady motion, FRD, about the file's reference point; 0 is less than {LOSSLESS:g} of the largest; worst of "
+        "largest: both over these states"
+    ]
+    if loss.accelerations is not None:
+        notes.append(
+            "du/dt to dr/dt: accelerations of the file's rigid body in these states, and from rest under a push along each axis as "
+            "large as the file's largest force or moment; the target's with the added mass in its own files"
+        )
+    if loss.not_compared:
+        notes.append(loss.not_compared)
+    notes.append(loss.water.source)
+    notes += [
+        f"worse than no force at all: {c}, whose rms difference is {number(loss.rms[i], 3)} where the file's own rms is {number(loss.size[i], 3)}"
+        for i, c in enumerate(COMPONENTS)
+        if c in loss.worse_than_nothing
+    ]
+    notes += [f"not held: {what}" for what in loss.not_held]
+    notes += [str(each) for each in loss.lost]
+    notes += [f"changed: {what}" for what in loss.changes]
+    headers = ("", "unit", "largest", "worst difference", "rms difference", "worst of largest")
+    return Table(
+        f"Force law of {loss.target} against the parameter file", headers, tuple(rows), tuple(notes), frozenset({0, 1})
+    )
+
+
+def _row(name: str, unit: str, found: Apart, i: int) -> tuple[str, ...]:
+    """One component; no number where it is not compared."""
+    share = found.relative[i]
+    if not share <= LOSSLESS and not share > LOSSLESS:
+        return name, unit, *[ABSENT] * 4
+    seen = float(share > LOSSLESS)
+    worst, rms = (number(x[i] * seen, 3) for x in (found.worst, found.rms))
+    return name, unit, number(found.largest[i], 4), worst, rms, percent(share)
+
+
+def percent(share: float) -> str:
+    """A relative difference in per cent, 0 where it is rounding."""
+    return f"{100.0 * share if share > LOSSLESS else 0.0:.2g} %"
+
+
+def in_short(loss: Loss) -> str:
+    """The loss on one line: what is not held, what else is lost, and the largest difference of a force and of an acceleration."""
+    said = [f"it has no {_some(loss.not_held, NAMED)}"] if loss.not_held else []
+    said += [_some([str(x) for x in loss.lost], 1)] if loss.lost else []
+    found: list[tuple[int, float, Sequence[str]]] = [(*loss.forces.furthest, COMPONENTS)]
+    if loss.accelerations is not None:
+        found.append((*loss.accelerations.furthest, tuple(f"d{m}/dt" for m in MOTIONS)))
+    for i, share, names in found:
+        if share > LOSSLESS or not said:
+            said.append(f"{names[i]} differs by up to {percent(share)} of its largest")
+    return ", and ".join(said)
+
+
+def counted(loss: Loss) -> str:
+    """How much is lost, by kind."""
+    kinds = Counter(x.kind for x in loss.lost)
+    kinds[Kind.NOT_HELD] += len(loss.not_held)
+    return ", ".join(f"{kinds[kind]} {kind}" for kind in Kind if kinds[kind])
+
+
+def _some(words: Sequence[str], most: int) -> str:
+    return ", ".join(words[:most]) + (f" and {len(words) - most} more" if len(words) > most else "")
+
+
+def parts(parameters: ParameterFile, water: WaterInertia | None = None) -> Table:
+    """Total, potential and viscous part of every coefficient; no rows without added mass.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    water : WaterInertia, optional
+        The added mass that gives the potential parts; without it that of the file, as booked there.
+    """
+    hull = parameters.added_mass
+    booked = [(c, c.value, c.potential) for c in parameters.coefficients]
+    if water is not None and hull is not None:
+        scaling = Scaling(parameters.scaling.length, parameters.scaling.length_name)
+        noun = water.as_noun(parameters)
+        booked = [
+            (c, v, None if p is None else potential_part(c.symbol, noun, scaling, parameters.conditions.density))
+            for c, v, p in booked
+        ]
+    rows = tuple(
+        (c.symbol, coefficient(v), coefficient(p), coefficient(v - p), c.origin)
+        for c, v, p in booked
+        if v is not None and p is not None
+    )
+    notes = []
+    if hull is not None:
+        by = f"the added mass of {hull.body}, method {hull.method}"
+        notes.append(f"potential part by {by if water is None else f'the added mass in use; {water.source}'}")
+        if hull.body != parameters.body:
+            notes.append(f"not of one body: the coefficients are those of {parameters.body}")
+    headers = ("", "total", "potential", "viscous", "origin")
+    return Table("Parts of the coefficients", headers, rows, tuple(notes), frozenset({0, 4}))
+
+
+def as_text(loss: Loss, parameters: ParameterFile) -> str:
+    """The loss report: plain text, the same bytes for the same file."""
+    lines = [f"Loss report: {parameters.name} ({parameters.body}) for {loss.target}", ""]
+    lines.append(
+        "Lossless."
+        if loss.lossless
+        else f"This export is not lossless: {counted(loss) or 'force or acceleration differs'}."
+    )
+    for table in (forces(loss), parts(parameters, loss.water)):
+        if table.rows:
+            lines += ["", table.title, *_aligned(table), *(f"  {n}" for n in table.notes)]
+    return "\n".join(lines) + "\n"
+
+
+def _aligned(table: Table) -> list[str]:
+    rows = [table.headers, *table.rows]
+    widths = [max(len(r[i]) for r in rows) for i in range(len(table.headers))]
+    return [
+        "  "
+        + "  ".join(
+            cell.ljust(w) if i in table.left else cell.rjust(w)
+            for i, (cell, w) in enumerate(zip(r, widths, strict=True))
+        ).rstrip()
+        for r in rows
+    ]
+
+
+def contents(parameters: ParameterFile, kind: str) -> Table:
+    """Every coefficient, primed and in SI."""
+    p = parameters
+    rows = tuple(
+        (c.symbol, coefficient(c.value), number(c.value_si), c.unit_si, coefficient(c.u95), c.status.replace("_", " "),
+         c.origin, c.estimator or ABSENT)
+        for c in p.coefficients
+    )  # fmt: skip
+    point = ", ".join(f"{x:g}" for x in p.reference_point.point)
+    notes = (
+        f"primed by {_length(p)}; about ({point}) m from: {p.reference_point.datum}",
+        f"schema {p.schema_version}, written by coeflab {p.provenance.coeflab_version}; valid"
+        if kind == "coeflab"
+        else f"read as {kind}; SI values at {p.conditions.density:g} kg/m^3 and {p.conditions.speed:g} m/s",
+        *(
+            (
+                f"schema {p.schema_version} is later than {SCHEMA_VERSION}, which this release writes; empty keys passed over",
+            )
+            if is_later(p.schema_version, SCHEMA_VERSION)
+            else ()
+        ),
+        *p.provenance.notes,
+    )
+    headers = ("", "value", "SI", "unit", "U95", "status", "origin", "how")
+    return Table(f"{p.name} ({p.body})", headers, rows, notes, frozenset({0, 3, 5, 6, 7}))
+
+
+def _length(p: ParameterFile) -> str:
+    size = f"{p.scaling.length:.6g} m"
+    return size if p.scaling.length_name == size else f"{p.scaling.length_name} {size}"
+
+
+def findings(found: Sequence[Check]) -> Table:
+    """Findings with their severity."""
+    rows = tuple((str(c.severity), c.subject, c.statistic, c.rule, c.comment or ABSENT) for c in found)
+    return Table("Findings", ("severity", "what", "found", "expected", "means"), rows, (), frozenset(range(5)))
+
+
+Json = dict[str, Any]
+HEAD = f"""# The parameter file, version {SCHEMA_VERSION}
+
+Generated by `coeflab params schema` from the models that read and write the file; `coeflab params schema --json` prints the
+JSON Schema. A program that reads these files should refuse a first digit of `schema_version` other than 1.
+
+- One JSON object in UTF-8. A key that is not named here is refused, and so are NaN and infinity; what is not known is null.
+- SI units and radians. Axes x forward, y starboard, z down; forces are those of the water on the body.
+- Primes: `Y' = Y / (1/2 rho U^2 L^2)`, `N' = N / (1/2 rho U^2 L^3)`, `v' = v/U`, `r' = r L/U`.
+- Values are totals: a measured velocity derivative contains its potential part, an entry of `-C_A(nu) nu`. A simulator that
+  adds `C_A(nu) nu` itself must be given `value - potential`.
+- A fitted table in `models` holds whole forces, potential part and all, and a simulation leaves out the products of
+  `-C_A(nu) nu` that it speaks of. Where only viscous parts are tabulated, `contains_potential` is false.
+- U95 is a 95 % half-width, twice the standard uncertainty of the covariances.
+- A file of an earlier version loads in every later release, and is written back as what it is.
+- A later minor version adds keys and changes the meaning of none; its writers set what says nothing to null or leave it empty.
+  So a file of a later version is read where every key that is not named here is null or empty: those are passed over.
+  Otherwise it is refused, because a key that is not understood may change what the rest means, as `law` did in 1.2.
+
+## Versions
+
+| Version | What came with it |
+| --- | --- |
+"""
+COLUMNS = "| Key | Type | Unit | Since | If absent | Meaning |\n| --- | --- | --- | --- | --- | --- |\n"
+
+
+def schema_page() -> bytes:
+    """The page, the same bytes for the same schema."""
+    content = json.loads(schema())
+    out = [HEAD, *(f"| {version} | {_cell(what)} |\n" for version, what in VERSIONS.items())]
+    for place, name, table, since in _tables(content):
+        out += [f"\n## {place}\n\n", f"{_plain(table.get('description', name))}\n\n", COLUMNS]
+        required = table.get("required", ())
+        for key, field in table["properties"].items():
+            absent = "refused" if key in required else f"`{json.dumps(field['default'])}`"
+            came = _later(field.get("since", since), since)
+            cells: tuple[str, ...] = (
+                f"`{key}`",
+                _type(field),
+                field.get("unit", ""),
+                came,
+                absent,
+                _plain(field["description"]),
+            )
+            out.append(f"| {' | '.join(map(_cell, cells))} |\n")
+    return "".join(out).encode()
+
+
+def _tables(content: Json) -> Iterator[tuple[str, str, Json, str]]:
+    """Every table of the schema: where it stands, its name, itself, and the version that brought it; the file first."""
+    waiting = [("The file", ParameterFile.__name__, content, FIRST_VERSION)]
+    seen = set()
+    while waiting:
+        place, name, table, since = waiting.pop(0)
+        yield place, name, table, since
+        inner = []
+        for key, field in table["properties"].items():
+            for kind, many in _named(field):
+                if kind not in seen:
+                    seen.add(kind)
+                    path = (
+                        f"{'' if name == ParameterFile.__name__ else place.strip('`') + '.'}{key}{'[]' if many else ''}"
+                    )
+                    inner.append((f"`{path}`", kind, content["$defs"][kind], _later(field.get("since", since), since)))
+        waiting = inner + waiting
+
+
+def _later(one: str, other: str) -> str:
+    return one if is_later(one, other) else other
+
+
+def _named(field: Json, many: bool = False) -> Iterator[tuple[str, bool]]:
+    """Tables that a field holds, and whether it holds a list of them."""
+    if "$ref" in field:
+        yield field["$ref"].rpartition("/")[2], many
+    for choice in field.get("anyOf", ()):
+        yield from _named(choice, many)
+    if isinstance(field.get("items"), dict):
+        yield from _named(field["items"], True)
+
+
+def _type(field: Json) -> str:
+    if "$ref" in field:
+        return "object"
+    if "anyOf" in field:
+        return " or ".join(_type(choice) for choice in field["anyOf"])
+    if "const" in field or "enum" in field:
+        return ", ".join(f"`{value}`" for value in field.get("enum", [field.get("const")]))
+    if field["type"] == "array":
+        if "prefixItems" in field:
+            first = _type(field["prefixItems"][0])
+            return f"{len(field['prefixItems'])} {'numbers' if first == 'number' else f'x {first}'}"
+        each = _type(field["items"])
+        return f"list of ({each})" if " or " in each else f"list of {each}"
+    bounds = {"exclusiveMinimum": ">", "minimum": ">=", "maximum": "<="}
+    limits = [f"{sign} {field[name]:g}" for name, sign in bounds.items() if name in field]
+    limits += [f"of at most {field['maxLength']} characters"] if "maxLength" in field else []
+    limits += [f"like `{field['pattern']}`"] if "pattern" in field else []
+    kind = str(field["type"])
+    words = {"string": "text", "boolean": "true or false", "integer": "whole number"}
+    return " ".join([words.get(kind, kind), *limits])
+
+
+def _plain(text: str) -> str:
+    """One line, however the docstring is broken."""
+    return " ".join(text.split()).rstrip(".")
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")

@@ -1,0 +1,258 @@
+"""Fitted force laws and tables, as tables to be shown.
+
+Campaigns of a joint fit, side by side.
+
+Comparisons of parameter files as tables: pair by pair in full, or several files beside the first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+from math import degrees
+
+import numpy as np
+
+from coeflab.core.table import ABSENT, Table, coefficient, number, percent, probability
+from coeflab.fits.results.fit_result import FitResult, Pooling
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.misfit import OutOfSample
+from coeflab.law.symbols import CONTROLS, FLOW_ANGLES
+from coeflab.report.figures.variables import domain_in_words
+from coeflab.vehicle.comparison import Compared, ComparedModel, Comparison, Verdict
+from coeflab.vehicle.parameter_file import ParameterFile
+
+
+def quality(models: tuple[FittedModel, ...]) -> Table:
+    """How well each response is held, and how well a left-out point is predicted."""
+    rows = tuple(
+        (
+            m.response,
+            m.form,
+            str(m.n_points),
+            str(m.fit.rank),
+            number(m.fit.rms, 3),
+            number(m.fit.press_rms, 3),
+            percent(m.fit.press_rms, float(m.y.max() - m.y.min()) or None),
+            number(m.fit.r_squared, 5),
+            number(m.fit.aicc, 5),
+            probability(m.fit.runs_probability),
+            number(m.fit.condition, 3),
+            domain_in_words(m),
+            m.domain.rule.value,
+        )
+        for m in models
+    )
+    headers = (
+        "", "form", "n", "terms", "rms", "left out", "of range", "R2", "AICc", "runs", "condition", "domain", "outside",
+    )  # fmt: skip
+    notes: tuple[str, ...] = (
+        "left out: rms error of every point predicted from the others (PRESS); runs: probability of so few or so many "
+        "runs of one sign by chance; outside: what a reader beyond the domain is to do.",
+    )
+    angles = dict.fromkeys(v for m in models for v in m.domain.variables if v in FLOW_ANGLES)
+    notes = (*notes, *(FLOW_ANGLES[v] for v in angles))
+    return Table("Quality of the fitted models", headers, rows, notes, frozenset({0, 1, 11, 12}))
+
+
+MOST_POINTS = 5
+LARGEST_MATRIX = 8
+CLOSE, MOST_PAIRS = 0.9, 12
+
+
+def influence(model: FittedModel) -> Table:
+    """The points that move the fit most, by Cook's distance."""
+    d = model.fit.cooks_distance
+    order = [int(i) for i in np.argsort(-np.nan_to_num(d), kind="stable")[:MOST_POINTS] if np.isfinite(d[i])]
+    rows = tuple(
+        (
+            model.labels[i],
+            number(float(d[i]), 3),
+            number(float(model.fit.leverage[i]), 3),
+            number(float(model.fit.residuals[i]), 3),
+            number(float(model.fit.left_out[i]), 3),
+        )
+        for i in order
+    )
+    headers = ("point", "Cook's distance", "leverage", "residual", "left out")
+    notes = ("left out: residual when the point is predicted from the others.",)
+    return Table(f"Most influential points of {model.response}: {model.campaign}", headers, rows, notes, frozenset({0}))
+
+
+def correlations(model: FittedModel) -> Table:
+    """Correlations of the coefficients; of more than eight, the pairs beyond 0.9."""
+    title = f"Correlations of the coefficients of {model.response}: {model.campaign}"
+    if len(model.symbols) > LARGEST_MATRIX:
+        return _close_pairs(model, title)
+    rows = tuple(
+        (
+            symbol,
+            *(number(float(c), 2) if np.isfinite(c) else ABSENT for c in model.fit.correlation[i, : i + 1]),
+            *([""] * (len(model.symbols) - i - 1)),
+        )
+        for i, symbol in enumerate(model.symbols)
+    )
+    return Table(title, ("", *model.symbols), rows, (), frozenset({0}))
+
+
+def _close_pairs(model: FittedModel, title: str) -> Table:
+    pairs = [(float(model.fit.correlation[i, j]), i, j) for i, j in combinations(range(len(model.symbols)), 2)]
+    close = sorted((p for p in pairs if abs(p[0]) > CLOSE), key=lambda p: (-abs(p[0]), p[1:]))
+    rows = tuple((model.symbols[i], model.symbols[j], number(r, 3)) for r, i, j in close[:MOST_PAIRS])
+    said = f"{len(close)} of {len(pairs)} pairs lie beyond {CLOSE} in magnitude"
+    notes = (f"{said}; the closest {MOST_PAIRS} are shown." if len(close) > MOST_PAIRS else f"{said}.",)
+    return Table(title, ("", "with", "correlation"), rows, notes, frozenset({0, 1}))
+
+
+def diagnostics(models: Sequence[FittedModel]) -> Table:
+    """Influence, prediction, conditioning and the order of signs, one row a model."""
+    rows = []
+    for m in models:
+        f = m.fit
+        with_left_out = f.left_out[np.isfinite(f.left_out)]
+        spread = float(np.sum((m.y - m.y.mean()) ** 2))
+        whole = len(with_left_out) == m.n_points and spread > 0.0
+        most = 2.0 * f.rank / m.n_points
+        rows.append(
+            (
+                m.response,
+                m.form,
+                number(float(np.sum(with_left_out**2)), 3) if len(with_left_out) else ABSENT,
+                number(1.0 - float(np.sum(with_left_out**2)) / spread, 5) if whole else ABSENT,
+                number(float(np.max(f.leverage)), 3),
+                f"{int(np.sum(f.leverage > most))} > {number(most, 2)}",
+                number(float(np.nanmax(f.cooks_distance)), 3) if np.any(np.isfinite(f.cooks_distance)) else ABSENT,
+                number(f.condition, 3),
+                f"{max(f.digits, 0.0):.0f}",
+                probability(f.runs_probability),
+            )
+        )
+    headers = (
+        "", "form", "PRESS", "predicted R2", "largest leverage", "high leverage", "largest Cook", "condition", "digits", "runs",
+    )  # fmt: skip
+    notes = (
+        "PRESS: sum of squares of every point predicted from the others (Allen 1974); high leverage: points above 2 rank / n; "
+        "largest Cook: above 1 a point decides the fit (Cook 1977); condition: of the column-scaled terms; digits: those "
+        "of the worst coefficient that it leaves sure; runs: probability of the runs test (Wald & Wolfowitz 1940), rows in "
+        "the order of the table.",
+    )
+    return Table("Diagnostics of the fitted models", headers, tuple(rows), notes, frozenset({0, 1}))
+
+
+NOT_AVAILABLE = "not available"
+
+
+def campaigns(fits: Sequence[FitResult]) -> Table:
+    """What every campaign adds to a joint fit, and how well the others predict it; no rows without a joint fit."""
+    rows = tuple(row for f in fits for p in f.poolings for row in _rows(p))
+    headers = ("", "campaign", "n", "own intercept", "95 %", "noise", "rms", "rms alone", "left out", "one law")
+    notes = (
+        "own intercept: force at rest, taken off the rows; noise: scatter about the campaign's own law, which weighs its "
+        "rows; rms, rms alone: residuals about the joint law and about the same terms fitted to this campaign alone; left "
+        "out: rms error of a campaign predicted from the others, as a share of its range, one constant of its own free; on "
+        "the line of all campaigns every third point is left out; one law: Wald test by campaign (HC2, approximate "
+        "Hotelling T^2).",
+    )
+    return Table("Campaigns of the joint fit", headers, rows, notes, frozenset({0, 1, 9}))
+
+
+def _rows(p: Pooling) -> list[tuple[str, ...]]:
+    out: list[tuple[str, ...]] = [
+        (p.response, s.campaign, str(s.n_points), coefficient(s.intercept), coefficient(s.half_width), number(s.noise, 3),
+         number(s.rms, 3), number(s.rms_alone, 3), _share(s.left_out), "")
+        for s in p.shares
+    ]  # fmt: skip
+    n = sum(s.n_points for s in p.shares)
+    whole = (sum(s.n_points * s.rms**2 for s in p.shares) / n) ** 0.5
+    verdict = {None: NOT_AVAILABLE, True: f"rejected, {p.statistic}", False: p.statistic}[p.rejected]
+    out.append(
+        (p.response, "all", str(n), ABSENT, ABSENT, ABSENT, number(whole, 3), ABSENT, _share(p.every_third), verdict)
+    )
+    return out
+
+
+def _share(seen: OutOfSample) -> str:
+    return f"{100.0 * seen.rms:.2f} %" if seen.told else NOT_AVAILABLE
+
+
+ANGLES = ("alpha", "beta", *CONTROLS)
+
+
+def coefficients(found: Comparison) -> Table:
+    """Every coefficient of a pair, with its verdict and reason; the statements follow where no fitted table does."""
+    rows = tuple(
+        (
+            r.symbol, coefficient(r.a), coefficient(r.u95_a), coefficient(r.b), coefficient(r.u95_b),
+            coefficient(r.difference), coefficient(r.combined), number(r.ratio, 3), r.verdict.value, r.reason,
+        )
+        for r in found.rows
+    )  # fmt: skip
+    headers = ("", "first", "U95", "second", "U95", "difference", "combined", "ratio", "verdict", "")
+    title = f"{found.b} against {found.a}"
+    return Table(title, headers, rows, () if found.models else found.statements, frozenset({0, 8, 9}))
+
+
+def models(found: Comparison, *, with_statements: bool = True) -> Table:
+    """Every fitted table of a pair."""
+    rows = tuple(
+        (
+            m.name, str(m.n_points) if m.n_points else ABSENT, number(m.rms, 3), number(m.largest, 3), _place(m),
+            number(m.combined, 3), number(None if m.share is None else 100.0 * m.share, 3), m.verdict.value, m.reason,
+        )
+        for m in found.models
+    )  # fmt: skip
+    headers = ("", "points", "rms diff.", "largest", "at", "combined", "% within", "verdict", "")
+    left = frozenset({0, 4, 7, 8})
+    return Table("Fitted tables", headers, rows, found.statements if with_statements else (), left)
+
+
+def side_by_side(first: ParameterFile, others: Sequence[Comparison], names: Sequence[str]) -> Table:
+    """The values of several files in the first one's length and about its point, with U95 and ratio.
+
+    Parameters
+    ----------
+    first : ParameterFile
+    others : sequence of Comparison
+        Each of another file against the first; none shows the first alone.
+    names : sequence of str
+        Heads of the columns, the first file's among them.
+    """
+    found: list[dict[str, Compared]] = [{r.symbol: r for r in c.rows} for c in others]
+    own = {c.symbol: c for c in first.coefficients}
+    headers = ["", names[0], "U95"]
+    for name in names[1:]:
+        headers += [name, "U95", "diff. / combined", "verdict"]
+    rows = []
+    for symbol in dict.fromkeys((*own, *(s for rows in found for s in rows))):
+        here = own.get(symbol)
+        row = [symbol, *((coefficient(here.value), coefficient(here.u95)) if here else (ABSENT, ABSENT))]
+        for other in found:
+            r = other.get(symbol)
+            row += _cells(r) if r else [ABSENT, ABSENT, ABSENT, Verdict.NOT_COMPARABLE.value]
+        rows.append(tuple(row))
+    left = frozenset({0, *(6 + 4 * i for i in range(len(others)))})
+    notes = (
+        (f"Primed by {first.scaling.length_name} {first.scaling.length:g} m of {names[0]}, about its reference point. "
+         "A difference is apart where it exceeds the root sum of squares of both U95.",) if others else ()
+    )  # fmt: skip
+    return Table("Coefficients side by side" if others else "Coefficients", tuple(headers), tuple(rows), notes, left)
+
+
+def reasons(found: Comparison) -> tuple[str, ...]:
+    """What a pair's rows have to say, each reason once with its symbols."""
+    said: dict[str, list[str]] = {}
+    for r in found.rows:
+        if r.reason:
+            said.setdefault(r.reason, []).append(r.symbol)
+    return tuple(f"{', '.join(symbols)}: {reason}" for reason, symbols in said.items())
+
+
+def _cells(r: Compared) -> list[str]:
+    return [coefficient(r.b), coefficient(r.u95_b), number(r.ratio, 3), r.verdict.value]
+
+
+def _place(m: ComparedModel) -> str:
+    """Where the largest difference is: angles in degrees, primes as such."""
+    return ", ".join(
+        f"{v} {degrees(x) + 0.0:.3g} deg" if v in ANGLES else f"{v} {x + 0.0:.3g}" for v, x in (m.at or {}).items()
+    )

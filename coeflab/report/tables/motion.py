@@ -1,0 +1,287 @@
+"""Motions and their figures as tables and as CSV.
+
+Tables of glides: steady ones, the phases of a motion, and where the numbers of a glider come from.
+
+A tuning as tables: parameters, quantities, correlations and what stays open.
+
+What was identified from motions as tables and as CSV.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+
+import numpy as np
+
+from coeflab.core.table import ABSENT, Table, coefficient, number
+from coeflab.core.types import Array
+from coeflab.law.symbols import CONTROLS
+from coeflab.motion.glider.glide import GlideRun, SteadyGlide
+from coeflab.motion.glider.glider import Glider
+from coeflab.motion.glider.motion import shallowest
+from coeflab.motion.identify.identified import Identified, IdentifiedTerm
+from coeflab.motion.manoeuvre import Figure
+from coeflab.motion.trajectory import Trajectory
+from coeflab.motion.tune.tuning import STATUSES, Tuning, largest_correlations
+
+DEGREES = {"rad": "deg", "rad/s": "deg/s"}
+
+
+def figure_table(figures: tuple[Figure, ...], title: str, length: float) -> Table:
+    """Value, unit, the value in body lengths, interval, status and definition of every figure."""
+    rows = []
+    bounded = any(f.low is not None for f in figures)
+    for f in figures:
+        factor, unit = (180.0 / np.pi, DEGREES[f.unit]) if f.unit in DEGREES else (1.0, f.unit)
+        lengths = f"{f.value / length:.3f}" if f.value is not None and f.unit == "m" else ""
+        value = ABSENT if f.value is None else f"{f.value * factor:.5g}"
+        interval = "" if f.low is None or f.high is None else f"{f.low * factor:.4g} .. {f.high * factor:.4g}"
+        rows.append(
+            (f.name, value, "" if unit == "1" else unit, lengths, *((interval,) if bounded else ()), f.status,
+             f.definition)
+        )  # fmt: skip
+    headers = ("figure", "value", "unit", "in L", *(("95 % interval",) if bounded else ()), "status", "definition")
+    reasons: dict[str, list[str]] = {}
+    for f in figures:
+        if f.why:
+            reasons.setdefault(f.why, []).append(f.name)
+    notes = tuple(f"{_listed(names, len(figures))}: {why}" for why, names in reasons.items())
+    return Table(title, headers, tuple(rows), notes, frozenset({0, 2, len(headers) - 2, len(headers) - 1}))
+
+
+def _listed(names: list[str], everything: int) -> str:
+    return "All" if len(names) == everything > 1 else ", ".join(names)
+
+
+def columns(trajectory: Trajectory) -> dict[str, Array]:
+    """Every column with its unit in the name, in the order of the CSV."""
+    t, x, nu, angles = trajectory, trajectory.position, trajectory.velocity, trajectory.angles
+    out: dict[str, Array] = {"t [s]": t.time}
+    for i, name in enumerate(("north", "east", "down")):
+        out[f"{name} [m]"] = x[:, i]
+    for i, name in enumerate(("phi", "theta", "psi")):
+        out[f"{name} [rad]"] = angles[:, i]
+    out["heading [rad]"] = t.heading
+    for i, (name, unit) in enumerate(zip("uvwpqr", ("m/s",) * 3 + ("rad/s",) * 3, strict=True)):
+        out[f"{name} [{unit}]"] = nu[:, i]
+    for name, values in t.controls.items():
+        unit = "rad" if name in CONTROLS or name.endswith(".tilt") else "command" if name != "thrust" else "N"
+        out[f"{name} [{unit}]"] = values
+    outside = np.zeros(len(t.time), dtype=bool)
+    for flags in t.outside.values():
+        outside |= flags
+    out["phase [-]"] = t.phase.astype(float)
+    out["outside [-]"] = outside.astype(float)
+    return out
+
+
+def motion_csv(trajectory: Trajectory) -> bytes:
+    """One row a time, seventeen digits at most, so that reading gives back the numbers."""
+    named = columns(trajectory)
+    whole = {"phase [-]", "outside [-]"}
+    lines = [",".join(named)]
+    for row in zip(*named.values(), strict=True):
+        lines.append(",".join(f"{int(v)}" if k in whole else repr(float(v)) for k, v in zip(named, row, strict=True)))
+    return ("\n".join(lines) + "\n").encode()
+
+
+def motion_parquet(trajectory: Trajectory) -> bytes:
+    """The same columns as Parquet.
+
+    Raises
+    ------
+    ImportError
+        No pyarrow.
+    """
+    import io
+
+    import pandas as pd
+
+    buffer = io.BytesIO()
+    pd.DataFrame(columns(trajectory)).to_parquet(buffer, index=False, engine="pyarrow")
+    return buffer.getvalue()
+
+
+def _degrees(angle: float) -> str:
+    return f"{np.degrees(angle):.3f}"
+
+
+def steady(glider: Glider, glides: Sequence[SteadyGlide]) -> Table:
+    """Steady glides on the orders of the phases."""
+    rows = tuple(
+        (
+            g.phase,
+            f"{g.net_mass:.5f}",
+            number(g.position),
+            f"{g.speed:.4f}",
+            _degrees(g.alpha),
+            _degrees(g.zeta),
+            _degrees(g.theta),
+            f"{g.ahead:.4f}",
+            f"{g.sinking:.4f}",
+            f"{abs(g.lift) / g.drag:.3f}",
+            f"{g.drag * g.speed:.4f}",
+            f"{'stable' if g.stable else 'unstable'}, {g.growth:.3g}",
+        )
+        for g in glides
+    )
+    low, high = np.degrees(glider.polar.searched)
+    dive, climb = np.degrees(shallowest(glider.body.polar))
+    notes = [
+        f"zeta = theta - alpha, below zero on a dive. Shallowest glides of this polar: {dive:.2f} and {climb:.2f} deg. "
+        f"Angles of attack searched: {low:.4g} to {high:.4g} deg. Growth: largest real part of the eigenvalues, 1/s."
+    ]
+    for phase in glider.phases:
+        count = sum((g.net_mass, g.position) == phase.setting for g in glides)
+        if count != 1:
+            notes.append(f"{phase.name}: {count or 'no'} steady glide{'s' if count > 1 else ''} ahead.")
+    return Table(
+        f"{glider.title}: steady glides",
+        (
+            "phase", "m0 kg", "position m", "V m/s", "alpha deg", "zeta deg", "theta deg", "ahead m/s", "sinking m/s",
+            "L/D", "power W", "growth 1/s",
+        ),
+        rows or ((glider.phases[0].name, *([ABSENT] * 11)),),
+        tuple(notes),
+        frozenset({0, 11}),
+    )  # fmt: skip
+
+
+def phases(run: GlideRun) -> Table:
+    """How every phase of a motion ended."""
+    rows = []
+    for i, row in enumerate(run.ends):
+        near = run.nearest(i)
+        rows.append(
+            (
+                run.phase_of(i).name,
+                f"{run.time[row]:.1f}",
+                "time" if run.trajectory.reached[i] is None else "depth",
+                f"{round(float(run.depth[row]), 2) + 0.0:.2f}",
+                f"{run.x[row]:.2f}",
+                f"{run.speed[row]:.4f}",
+                ABSENT if near is None else f"{near.speed:.4f}",
+                "yes" if run.settled(i) else "no",
+            )
+        )
+    return Table(
+        f"{run.glider.title}: phases in time",
+        ("phase", "ends s", "by", "depth m", "x m", "V m/s", "steady V m/s", "settled"),
+        tuple(rows),
+        ("settled: within 1 % of the speed of a steady glide, the engine at rest.", *run.statements),
+        frozenset({0, 2, 7}),
+    )
+
+
+def basis(glider: Glider) -> Table:
+    """Where the numbers come from."""
+    return Table(f"{glider.title}: basis", ("of", "what it rests on"), glider.basis, (), frozenset({0, 1}))
+
+
+def parameters(tuning: Tuning) -> Table:
+    """Every parameter from where to where, with its interval or why there is none."""
+    rows = tuple(
+        (
+            p.name,
+            p.unit,
+            number(p.before, 5),
+            number(p.after, 5),
+            ABSENT if p.u95 is None else number(p.u95, 2),
+            ABSENT if p.u95 is None else f"{100.0 * p.prior_share:.0f} %",
+            p.status,
+        )
+        for p in tuning.parameters
+    )
+    used = dict.fromkeys(p.status for p in tuning.parameters)
+    notes = (*(f"{s}: {STATUSES[s]}." for s in used), *tuning.statements)
+    headers = ("parameter", "unit", "before", "after", "U95", "prior", "status")
+    return Table(f"{tuning.name}: parameters", headers, rows, notes, frozenset({0, 1, 6}))
+
+
+def quantities(tuning: Tuning) -> Table:
+    """Root mean squares before and after."""
+    rows = tuple(
+        (q.name, q.unit, str(q.count), number(q.rms(after=False), 3), number(q.rms(), 3), number(q.worst, 3))
+        for q in tuning.quantities
+    )
+    headers = ("quantity", "unit", "cases", "rms before", "rms after", "largest after")
+    return Table(f"{tuning.name}: model less data", headers, rows, (), frozenset({0, 1}))
+
+
+def correlations(tuning: Tuning) -> Table:
+    """Pairs of parameters with a correlation of 0.7 and more; without rows where there are none."""
+    rows = tuple((a, b, f"{r:+.2f}") for a, b, r in largest_correlations(tuning))
+    return Table(f"{tuning.name}: correlations", ("parameter", "with", "correlation"), rows, (), frozenset({0, 1}))
+
+
+def together(tuning: Tuning) -> Table:
+    """What the data determine only together; without rows where there is nothing."""
+    rows = tuple((text,) for text in tuning.together)
+    return Table(f"{tuning.name}: what the data do not determine", ("combination",), rows)
+
+
+PER_CENT = 100.0
+
+
+def terms(found: Identified) -> Table:
+    """Every candidate beside the file's value."""
+    rows = tuple(
+        (
+            t.symbol,
+            coefficient(t.value),
+            _interval(t),
+            ABSENT if t.frequency is None else f"{PER_CENT * t.frequency:.0f} %",
+            coefficient(t.file_value),
+            coefficient(t.file_u95),
+            t.file_source,
+            t.verdict.value,
+            t.outcome.value,
+            t.why,
+        )
+        for t in found.terms
+    )
+    used = dict.fromkeys(t.outcome for t in found.terms)
+    notes = (*(f"{o.value}: {o.meaning}." for o in used), *found.statements)
+    headers = (
+        "term", "identified", "2.5 .. 97.5 % of resamples", "kept in", "file", "U95 of file", "source", "verdict", "outcome", "why",
+    )  # fmt: skip
+    return Table(
+        f"{found.name}: identified from {', '.join(found.series)}", headers, rows, notes, frozenset({0, 6, 7, 8, 9})
+    )
+
+
+def balances(found: Identified) -> Table:
+    """Every component: rows, and what is left unexplained."""
+    rows = tuple(
+        (
+            b.component,
+            str(b.stretches),
+            number(b.threshold, 2),
+            number(None if b.left is None else PER_CENT * b.left, 2),
+        )
+        for b in found.balances
+    )
+    title = f"{found.name}: balances, {found.method}, windows of {2.0 * found.half:.3g} s"
+    headers = ("component", "stretches", "threshold", "unexplained [%]")
+    return Table(title, headers, rows, ("Unexplained: root mean square over that of the force, the noise taken out.",))
+
+
+def terms_csv(found: Identified) -> bytes:
+    """One row a candidate; blank where there is no number."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(
+        ["term", "identified [-]", "low [-]", "high [-]", "inclusion frequency [-]", "file [-]", "U95 of file [-]",
+         "source", "verdict", "outcome", "why"]
+    )  # fmt: skip
+    for t in found.terms:
+        numbers = (t.value, t.low, t.high, t.frequency, t.file_value, t.file_u95)
+        cells = ["" if x is None else f"{x:.9g}" for x in numbers]
+        writer.writerow([t.symbol, *cells, t.file_source, t.verdict.value, t.outcome.value, t.why])
+    return out.getvalue().encode()
+
+
+def _interval(t: IdentifiedTerm) -> str:
+    return ABSENT if t.low is None or t.high is None else f"{coefficient(t.low)} .. {coefficient(t.high)}"

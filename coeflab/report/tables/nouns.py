@@ -1,0 +1,135 @@
+"""Nouns as tables: the same for terminal, report and notebook."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from coeflab.core.table import ABSENT, Table, coefficient, number, percent
+from coeflab.law.symbols import ANGULAR, COMPONENTS, derivative, primed
+
+if TYPE_CHECKING:
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.fits.results.fitted_model import FittedModel
+    from coeflab.law.added_mass import AddedMass
+    from coeflab.law.coefficient import Coefficient
+    from coeflab.motion.trajectory import Trajectory
+    from coeflab.vehicle.parameter_file import ParameterFile
+
+
+SCATTER_ONLY = ("Without a form part: U95 is the scatter of the points about that one form alone.",)
+DEFINED = (
+    "U95: 95 % half-width, from the scatter of the points (random), the spread between the member estimators (form) and "
+    "what enters from outside, declared inputs and grid (input).",
+)
+ROUNDING = 1e-12
+
+
+def window_text(c: Coefficient) -> str:
+    """Range of the motion variable that the widest member uses."""
+    if c.window is None:
+        return ABSENT
+    low, high = c.window
+    rate = any(f in ANGULAR for f in derivative(c.symbol).factors)
+    unit = "" if rate else " deg"
+    if not rate:
+        low, high = math.degrees(low), math.degrees(high)
+    return f"{number(low, 3)} .. {number(high, 3)}{unit}"
+
+
+def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, primed") -> Table:
+    """Coefficients with their uncertainty and how they were made."""
+    rows = [
+        (
+            primed(c.symbol),
+            coefficient(c.value) if c.value is not None else c.status.replace("_", " "),
+            coefficient(c.u95),
+            percent(c.u95, c.value),
+            percent(c.parts.random, c.value),
+            percent(c.parts.model_form, c.value),
+            percent(c.parts.input, c.value),
+            window_text(c),
+            str(c.n_points) if c.n_points else ABSENT,
+            c.campaign or ABSENT,
+            c.estimator or ABSENT,
+        )
+        for c in several
+    ]
+    headers = ("", "value", "U95", "U95", "random", "form", "input", "window", "n", "campaign", "estimator")
+    fitted = [c for c in several if c.u95 is not None and c.origin == "fit"]
+    notes = DEFINED + (SCATTER_ONLY if any(c.parts.model_form is None for c in fitted) else ())
+    notes += tuple(f"{s.replace('_', ' ')}: {s.advice}" for s in sorted({c.status for c in several}) if s.advice)
+    return Table(title, headers, tuple(rows), notes, frozenset({0, 7, 9, 10}))
+
+
+def terms(model: FittedModel) -> Table:
+    """Every coefficient with its interval; what the data leave open is said below, not printed as a number."""
+    rows = []
+    for symbol, term, value, half in zip(
+        model.symbols, model.terms, model.fit.coefficients, model.half_width, strict=True
+    ):
+        known = math.isfinite(value)
+        rows.append(
+            (
+                symbol,
+                str(term),
+                number(float(value), 5) if known else "not determined",
+                number(float(half), 3) if known else ABSENT,
+                percent(float(half), float(value)) if known else ABSENT,
+            )
+        )
+    title = f"{model.response} [{model.unit if model.unit != '1' else '-'}], {model.form}: {model.campaign}"
+    return Table(title, ("", "term", "value", "95 %", "95 %"), tuple(rows), model.statements, frozenset({0, 1}))
+
+
+def fit_tables(result: FitResult) -> tuple[Table, ...]:
+    """The coefficients of a fit, and the terms of each of its models."""
+    title = f"{result.fit} of {result.campaign} ({result.body}), primed"
+    found = (coefficients(result.coefficients.coefficients, title),) if result.coefficients.coefficients else ()
+    return (*found, *(terms(m) for m in result.models))
+
+
+def matrix(result: AddedMass) -> Table:
+    """One 6 x 6 matrix."""
+    cut = ROUNDING * float(np.max(np.abs(result.matrix)))
+    rows = [(a, *(number(v if abs(v) > cut else 0.0) for v in row)) for a, row in zip(COMPONENTS, result.matrix)]
+    at = ", ".join(f"{x:g}" for x in result.reference_point)
+    title = f"{result.method}: M_A, kg, kg m, kg m^2, FRD about ({at}) m from: {result.datum}"
+    return Table(title, ("", "u", "v", "w", "p", "q", "r"), tuple(rows))
+
+
+def parameters(file: ParameterFile) -> Table:
+    """The coefficients of a parameter file, primed and in SI at its conditions."""
+    rows = tuple(
+        (
+            c.symbol, coefficient(c.value) if c.value is not None else c.status.replace("_", " "), coefficient(c.u95),
+            number(c.value_si), c.unit_si, c.origin, c.campaign or c.citation or ABSENT,
+        )
+        for c in file.coefficients
+    )  # fmt: skip
+    at = f"{file.conditions.speed:.5g} m/s and {file.conditions.density:.5g} kg/m^3"
+    notes = (f"primed by {file.scaling.length_name} {file.scaling.length:.5g} m; SI at {at}", *file.provenance.notes)
+    headers = ("", "value", "U95", f"at {file.conditions.speed:.4g} m/s", "unit", "origin", "from")
+    return Table(f"{file.name}: {file.body}", headers, rows, notes, frozenset({0, 4, 5, 6}))
+
+
+def motion(trajectory: Trajectory) -> Table:
+    """Beginning, end and range of what a motion is described by."""
+    degrees = 180.0 / np.pi
+    columns = {f"{n} [m/s]": trajectory.velocity[:, i] for i, n in enumerate("uvw")}
+    columns |= {f"{n} [deg/s]": trajectory.velocity[:, 3 + i] * degrees for i, n in enumerate("pqr")}
+    columns |= {f"{n} [m]": trajectory.position[:, i] for i, n in enumerate(("north", "east", "depth"))}
+    columns["heading turned [deg]"] = trajectory.heading * degrees
+    rows = tuple(
+        (name, *(number(float(v) + 0.0) for v in (x[0], x[-1], x.min(), x.max()))) for name, x in columns.items()
+    )
+    beyond = [name for name, flags in trajectory.outside.items() if flags.any()]
+    notes: tuple[str, ...] = (
+        f"ended: {trajectory.ended.value.replace('_', ' ')}{': ' * bool(trajectory.why)}{trajectory.why}",
+    )
+    notes += (f"beyond the data: {', '.join(beyond)}",) if beyond else ()
+    title = f"Motion over {trajectory.time[-1] - trajectory.time[0]:g} s in {len(trajectory.time)} rows"
+    return Table(title, ("", "start", "end", "least", "largest"), rows, notes)

@@ -1,1 +1,0 @@
-"""Floor 4: what needs several rooms."""

@@ -1,1 +1,0 @@
-"""Published vehicles reproduced: each module gives an ``Acceptance``."""

@@ -1,0 +1,1 @@
+"""A plan, the study it becomes, and what stands out in it."""

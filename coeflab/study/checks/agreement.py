@@ -1,0 +1,49 @@
+"""Two campaigns of one body that give the same coefficient: do they agree within their uncertainties?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+
+from coeflab.core.table import Check, Severity
+from coeflab.law.symbols import primed
+from coeflab.study.study import Study
+
+summary = "the same coefficient from two campaigns against the combined U95"
+citations = ("ittc_uncertainty",)
+
+
+def check(study: Study) -> Sequence[Check]:
+    """One finding per pair of campaigns and coefficient."""
+    out = []
+    for a, b in combinations(study.fits, 2):
+        if a.campaign == b.campaign or a.body != b.body or a.coefficients.datum != b.coefficients.datum:
+            continue
+        if not np.allclose(a.coefficients.reference_point, b.coefficients.reference_point, atol=1e-9):
+            continue
+        for c in a.coefficients.coefficients:
+            if c.symbol not in b.coefficients:
+                continue
+            d = b.coefficients.to_length(a.coefficients.scaling)[c.symbol]
+            if c.parts.model_form is None or d.parts.model_form is None:
+                continue
+            if c.value is None or d.value is None or c.u95 is None or d.u95 is None:
+                continue
+            difference, combined = abs(c.value - d.value), float(np.hypot(c.u95, d.u95))
+            agree = difference <= combined
+            out.append(
+                Check(
+                    "agreement",
+                    f"{primed(c.symbol)} {a.campaign}, {b.campaign}",
+                    Severity.PASS if agree else Severity.WARN,
+                    f"{c.value:.4g} and {d.value:.4g}, apart by {difference:.2g}",
+                    f"within the combined U95 {combined:.2g}",
+                    "Agree."
+                    if agree
+                    else "Apart by more than the assessed parts explain: Reynolds number, rig, grid and "
+                    "modelling errors are not in these U95.",
+                )
+            )
+    return out

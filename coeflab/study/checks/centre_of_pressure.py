@@ -1,0 +1,34 @@
+"""Where the side force acts: x = Nv'/Yv' forward of the reference point, and -Mw'/Zw' in the vertical plane."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.core.table import Check, Severity
+from coeflab.study.study import Study
+from coeflab.vehicle.derived import centre_of_pressure
+
+summary = "x = Nv'/Yv' and -Mw'/Zw' with intervals"
+citations = ("feldman1979",)
+
+
+def check(study: Study) -> Sequence[Check]:
+    """One note per campaign and plane; a centre outside the hull only says that the moment is mostly a couple."""
+    out = []
+    for fit in study.fits:
+        for d in centre_of_pressure(fit.coefficients, fit.campaign):
+            within = "" if d.result is None else f" +- {d.result.linear:.2g}"
+            metres = d.value * fit.coefficients.scaling.length
+            out.append(
+                Check(
+                    "centre_of_pressure",
+                    f"{fit.campaign} {d.name}",
+                    Severity.NOTE,
+                    f"x/L = {d.value:.3f}{within}, {metres:.3f} m forward of the reference point",
+                    "none",
+                    "Beyond the hull's ends: the Munk moment outweighs the lever of the force."
+                    if abs(d.value) > 0.5
+                    else "The force acts within the hull.",
+                )
+            )
+    return out

@@ -1,0 +1,156 @@
+"""Do the runs carry the fit: enough points, both sides, no extrapolation, nothing hidden in replicates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from coeflab.core.table import Check, Severity
+from coeflab.fits.results.fit_result import Sweep
+from coeflab.fits.statistics.diagnostics import high_leverage, outliers, replicate_groups
+from coeflab.fits.statistics.least_squares import factorise, solve
+from coeflab.fits.statistics.slopes import design
+from coeflab.law.coefficient import Status
+from coeflab.law.symbols import primed
+from coeflab.study.study import Study
+
+summary = "points, symmetry of the window, distance of the first angle, replicates, outliers, leverage"
+citations = ("roddy1990",)
+
+FEW = 7
+REPLICATE_LIMIT = 3.0
+
+
+def _points(s: Sweep, status: Status) -> Check:
+    n = len(s.x)
+    subject = f"{s.campaign} {primed(s.symbol)}"
+    if status in (Status.TOO_FEW_POINTS, Status.SINGLE_ESTIMATOR):
+        return Check(
+            "coverage",
+            subject,
+            Severity.WARN,
+            f"{n} points, {status.replace('_', ' ')}",
+            "two forms to compare",
+            status.advice,
+        )
+    severity = Severity.PASS if n >= FEW else Severity.NOTE
+    comment = "Enough to compare forms." if n >= FEW else "Few points: intervals rest on very few degrees of freedom."
+    return Check("coverage", subject, severity, f"{n} points", f"at least {FEW}", comment)
+
+
+def _sides(s: Sweep) -> Check | None:
+    if not s.recommendation.members:
+        return None
+    subject = f"{s.table} {s.variable}'"
+    if s.one_sided:
+        return Check(
+            "coverage",
+            subject,
+            Severity.WARN,
+            "all points on one side",
+            "points on both sides of zero",
+            "Even and odd terms cannot be told apart; the body is taken as symmetric.",
+        )
+    low, high = float(s.x.min()), float(s.x.max())
+    if min(-low, high) < 0.5 * max(-low, high):
+        return Check(
+            "coverage",
+            subject,
+            Severity.NOTE,
+            f"window from {low:.3g} to {high:.3g}",
+            "both sides within a factor of two",
+            "The window is not symmetric about zero.",
+        )
+    return None
+
+
+def _extrapolation(s: Sweep) -> Check | None:
+    """The slope at the origin is an extrapolation when no run lies near it."""
+    size = np.abs(s.x)
+    if not len(size) or size.max() == 0.0 or size.min() <= 0.25 * size.max():
+        return None
+    return Check(
+        "coverage",
+        f"{s.table} {s.variable}'",
+        Severity.WARN,
+        f"smallest |{s.variable}'| = {size.min():.3g} of {size.max():.3g}",
+        "a run within a quarter of the range from zero",
+        "The value at the origin is extrapolated. Run smaller settings.",
+    )
+
+
+def _replicates(s: Sweep) -> list[Check]:
+    """Replicates that differ by more than three standard deviations pooled over the other rows.
+
+    The rows outside the group are fitted by the full polynomial with even term; their residual spread is the scale, so
+    that a bad pair cannot hide in its own scatter.
+    """
+    out = []
+    size = float(np.max(np.abs(s.x), initial=0.0))
+    if s.parity != "odd" or size == 0.0:
+        return []
+    for group in replicate_groups(s.x, 1e-4 * size):
+        rest = np.setdiff1d(np.arange(len(s.x)), group)
+        terms = ("1", "x", "x2", "x3")
+        if len(rest) < len(terms) + 2:
+            continue
+        f = factorise(design(terms, s.x[rest]))
+        _, residuals = solve(f, s.y[rest])
+        spread = float(np.sqrt(np.sum(residuals**2) / max(f.freedom, 1)))
+        gap = float(np.ptp(s.y[group]))
+        if gap > REPLICATE_LIMIT * spread and gap > 1e-9 * float(np.max(np.abs(s.y))):
+            names = ", ".join(s.labels[i] for i in group)
+            out.append(
+                Check(
+                    "replicates",
+                    f"{s.campaign} {primed(s.symbol)}",
+                    Severity.WARN,
+                    f"points {names} differ by {gap:.3g}, {gap / spread if spread else np.inf:.1f} standard deviations",
+                    f"within {REPLICATE_LIMIT:g} pooled standard deviations",
+                    "One of them may be a bad run; all are in the fit.",
+                )
+            )
+    return out
+
+
+def _influential(s: Sweep) -> list[Check]:
+    out = []
+    for e in s.recommendation.members[:1]:
+        subject = f"{s.campaign} {primed(s.symbol)}"
+        odd = [s.labels[int(e.rows[i])] for i in np.flatnonzero(outliers(e.factorised, e.residuals))]
+        if odd:
+            out.append(
+                Check(
+                    "outliers",
+                    subject,
+                    Severity.NOTE,
+                    f"points {', '.join(odd)}",
+                    "studentised residual, Bonferroni 5 %",
+                    "Look at these runs; they stay in the fit.",
+                )
+            )
+        heavy = [s.labels[int(e.rows[i])] for i in np.flatnonzero(high_leverage(e.factorised))]
+        if heavy:
+            out.append(
+                Check(
+                    "leverage",
+                    subject,
+                    Severity.NOTE,
+                    f"points {', '.join(heavy)}",
+                    "leverage below three times the mean",
+                    "Single points carry this form.",
+                )
+            )
+    return out
+
+
+def check(study: Study) -> Sequence[Check]:
+    """Findings on every sweep."""
+    out: list[Check] = []
+    for f in study.fits:
+        for s in f.sweeps:
+            out.append(_points(s, f.coefficients[s.symbol].status))
+            out += [c for c in (_sides(s), _extrapolation(s)) if c is not None and c not in out]
+            out += _replicates(s) + _influential(s)
+    return out

@@ -1,0 +1,48 @@
+"""Whether the body whose added mass a parameter file holds can be the vehicle whose forces were measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.bodies.body import likeness
+from coeflab.core.table import Check, Severity
+from coeflab.study.study import Study
+
+summary = "length and volume of the added mass's body against the vehicle's"
+citations = ("sname1950",)
+
+LENGTH, VOLUME, ABSURD = 0.1, 0.05, 0.5
+
+
+def check(study: Study) -> Sequence[Check]:
+    """The hull's length against that of the primes, its volume against the particulars, and whether both are one body."""
+    out = []
+    for name, found in study.hulls.items():
+        file, hull = study.parameter_files[name], found.body
+        shape = hull.require_shape()
+        pairs = [(f"{file.scaling.length_name} of the primes", shape.length, file.scaling.length, "m", LENGTH)]
+        stated = study.body.configuration(file.body) if study.body else None
+        if stated is not None and stated.volume and shape.volume:
+            pairs.append((f"volume of {stated.name}", shape.volume, stated.volume, "m^3", VOLUME))
+        for what, ours, theirs, unit, limit in pairs:
+            out.append(_held(f"{name}: {hull.name}", what, ours, theirs, unit, limit))
+        alike = likeness(hull, file.body, stated, own_file=study.body is not None and study.body.files == hull.files)
+        if not alike.same:
+            severity = Severity.NOTE if alike.same is None else Severity.WARN
+            out.append(
+                Check("hull", f"{name}: {hull.name}", severity, f"the forces are those of {file.body}; {alike.words}", "one body",
+                      "Potential parts are those of another shape; say why that will do, or give the body itself.")
+            )  # fmt: skip
+    return out
+
+
+def _held(subject: str, what: str, ours: float, theirs: float, unit: str, limit: float) -> Check:
+    apart = abs(ours / theirs - 1.0)
+    severity = Severity.PASS if apart <= limit else Severity.FAIL if apart > ABSURD else Severity.WARN
+    comment = {
+        Severity.PASS: "The body fits the vehicle.",
+        Severity.WARN: "Is this the body that was towed?",
+        Severity.FAIL: "This is another vehicle: its added mass says nothing about these forces.",
+    }[severity]
+    statistic = f"{ours:.4g} {unit} against {theirs:.4g} {unit}, {what}"
+    return Check("hull", subject, severity, statistic, f"within {limit:.0%}", comment)

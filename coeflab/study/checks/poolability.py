@@ -1,0 +1,36 @@
+"""Whether one law serves all campaigns of a joint fit, and what sets them apart."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.core.table import Check, Severity
+from coeflab.study.study import Study
+
+summary = "campaigns of a joint fit against one common law"
+citations = ("chow1960", "tipton2015")
+
+
+def check(study: Study) -> Sequence[Check]:
+    """One finding per component that several campaigns hold, and a note on their differences."""
+    out = []
+    for fit in study.fits:
+        if fit.differences:
+            out.append(
+                Check("poolability", fit.campaign, Severity.NOTE, " ".join(fit.differences), "campaigns of one kind",
+                      "The joint fit takes the forces of these campaigns as those of one law.")
+            )  # fmt: skip
+        for p in fit.poolings:
+            if len(p.shares) < 2:
+                continue
+            severity, said = {
+                None: (Severity.NOTE, "The rows cannot tell whether one law serves all campaigns."),
+                False: (Severity.PASS, "The campaigns do not contradict one law."),
+                True: (Severity.WARN, f"The campaigns disagree. {p.values_alone} U95 does not hold their difference."),
+            }[p.rejected]
+            if p.doubtful:
+                severity, said = Severity.WARN, f"One law is not contradicted, nor is it shown. {p.values_alone}"
+            out.append(
+                Check("poolability", f"{fit.campaign} {p.response}'", severity, p.statistic, "p of 0.1 or more", said)
+            )
+    return out

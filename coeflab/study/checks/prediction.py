@@ -1,0 +1,34 @@
+"""Whether a fitted model predicts a row that it has not seen better than the mean of the others does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+
+import numpy as np
+
+from coeflab.core.table import Check, Severity
+from coeflab.study.study import Study
+
+summary = "left-out rows of fitted models against their own scatter"
+citations = ("allen1974",)
+
+
+def check(study: Study) -> Sequence[Check]:
+    """A warning for every model that predicts left-out rows worse than their mean."""
+    out = []
+    for model in (m for f in study.fits for m in f.models):
+        spread, error = float(np.std(model.y)), model.fit.press_rms
+        if not isfinite(error) or not spread > 0.0 or error <= spread:
+            continue
+        out.append(
+            Check(
+                "prediction",
+                f"{model.campaign} {model.response}",
+                Severity.WARN,
+                f"left-out rows are missed by {error / spread:.3g} of their own scatter",
+                "below 1",
+                "The form has too many terms for these rows, or a point far from the others carries it.",
+            )
+        )
+    return out

@@ -1,0 +1,88 @@
+"""Signs that every ordinary hull has: the quickest way to catch a wrong axis or angle, in a table or in a printed value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from coeflab.core.table import Check, Severity
+from coeflab.law.coefficient import Coefficient
+from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
+from coeflab.study.study import Study
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterCoefficient
+from coeflab.vehicle.plausibility import MISTYPED
+
+summary = "Yv', Zw', Nr', Mq', X0' and accelerations negative, added mass symmetric; fitted and literature"
+citations = ("gertler1967",)
+
+NEGATIVE = {
+    "Yv": "side force opposes side velocity",
+    "Zw": "normal force opposes normal velocity",
+    "Nr": "yaw moment opposes yaw rate",
+    "Mq": "pitch moment opposes pitch rate",
+    "X0": "drag points aft",
+} | {f"{c}{m}dot": "water moves with the body" for c, m in zip(COMPONENTS, MOTIONS, strict=True)}
+TWINS = (("Nvdot", "Yrdot"), ("Mwdot", "Zqdot"))
+
+
+def check(study: Study) -> Sequence[Check]:
+    """One finding per coefficient whose sign is known, and per pair of acceleration derivatives that ought to be equal."""
+    out = [f for c in study.coefficients if (f := _signed(c.campaign, c, "")) is not None]
+    for name, file in study.parameter_files.items():
+        for stated in (c for c in file.coefficients if c.origin == "literature"):
+            found = _signed(name, stated, f"Stated in {stated.estimator}. ")
+            out += [] if found is None else [found]
+        out += _twins(name, file)
+    return out
+
+
+def _signed(owner: str | None, c: Coefficient | ParameterCoefficient, source: str) -> Check | None:
+    symbol = c.symbol.removesuffix("'")
+    if symbol not in NEGATIVE or c.value is None:
+        return None
+    good = c.value < 0.0
+    sure = c.u95 is not None and abs(c.value) > c.u95
+    severity = Severity.PASS if good else Severity.FAIL if sure else Severity.WARN
+    if good:
+        comment = f"As it must be: {NEGATIVE[symbol]}."
+    elif source:
+        comment = f"{source}Check its axes and the convention of its sign; {NEGATIVE[symbol]}."
+    else:
+        comment = (
+            "Check the declared axes and the sign of the angle; for Nr' and Mq' whether the force contains inertia."
+        )
+    found = f"{primed(symbol)} = {c.value:.3g}"
+    return Check("signs", f"{owner} {primed(symbol)}", severity, found, "below zero", comment)
+
+
+def _twins(name: str, file: ParameterFile) -> Iterator[Check]:
+    """Nvdot and Yrdot, Mwdot and Zqdot, as both stand for one entry of the symmetric added mass."""
+    for symbols in TWINS:
+        one, other = (file.coefficient(s) for s in symbols)
+        size = _size(file, symbols)
+        if one is None or other is None or one.value is None or other.value is None or not size:
+            continue
+        apart = abs(one.value - other.value)
+        good = apart <= max(MISTYPED * size, float(np.hypot(one.u95 or 0.0, other.u95 or 0.0)))
+        yield Check(
+            "signs", f"{name} {one.symbol}, {other.symbol}", Severity.PASS if good else Severity.WARN,
+            f"{one.value:.3g} and {other.value:.3g}", f"equal within {MISTYPED:.0%} of the diagonal {size:.3g}",
+            "An added mass is symmetric." if good else "An added mass is symmetric: one has a wrong sign or another point.",
+        )  # fmt: skip
+
+
+def _size(file: ParameterFile, symbols: tuple[str, str]) -> float:
+    """Root of the two diagonal entries that a pair lies between, primed; zero where one is not known."""
+    out = 1.0
+    for symbol, power in zip(symbols[::-1], (3, 5), strict=True):
+        at = COMPONENTS.index(symbol[0])
+        own = file.coefficient(f"{COMPONENTS[at]}{MOTIONS[at]}dot")
+        if own is not None and own.value is not None:
+            out *= abs(own.value)
+        elif file.added_mass is not None:
+            out *= file.added_mass.matrix[at][at] / (0.5 * file.added_mass.density * file.scaling.length**power)
+        else:
+            return 0.0
+    return float(np.sqrt(out))

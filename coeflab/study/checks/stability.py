@@ -1,0 +1,46 @@
+"""Directional stability: G_h and G_v with intervals, from every parameter file that has what they need."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.core.table import Check, Severity
+from coeflab.study.study import Study
+from coeflab.vehicle.derived import INDICES, sense, stability, without_restoring
+from coeflab.vehicle.parameter_file import ParameterFile
+
+summary = "stability indices G_h and G_v with U95 and verdict"
+citations = ("feldman1979", "roddy1990")
+
+
+def _indices(parameters: ParameterFile) -> list[Check]:
+    given = {d.name: d for d in stability(parameters)}
+    out = []
+    for name, (*symbols, _) in INDICES.items():
+        found = [parameters.coefficient(str(s)) for s in symbols]
+        lacking = [str(s) for s, c in zip(symbols, found, strict=True) if c is None or c.value is None]
+        if len(lacking) == len(symbols):
+            continue
+        if name not in given:
+            lacking += ["m'"] if parameters.mass is None else []
+            statistic, comment = "not determined", f"Missing: {', '.join(lacking)}."
+        else:
+            d = given[name]
+            half = None if d.result is None else d.result.linear
+            verdict = sense(d)
+            statistic = f"{name} = {d.value:.3f}{'' if half is None else f' +- {half:.2g}'}: {verdict}"
+            literature = [c.symbol for c in found if c is not None and c.origin == "literature"]
+            whether = "Directional stability with controls fixed is" if verdict == "not determined" else "Directionally"
+            comment = f"{whether} {verdict}{'.' if whether[-2:] == 'is' else ' with controls fixed.'}"
+            comment += " The interval holds zero." if verdict == "not determined" else ""
+            comment += f" {without_restoring(parameters)}" if name == "G_v" else ""
+            comment += f" {', '.join(literature)} from literature (PMM)." if literature else ""
+            comment += f" {d.statement}." if half is None else " Mass is not assessed in U95."
+        subject = f"{parameters.name} {name}"
+        out.append(Check("stability", subject, Severity.NOTE, statistic, "above zero is stable", comment))
+    return out
+
+
+def check(study: Study) -> Sequence[Check]:
+    """Indices of every parameter file; an unstable vehicle is a finding, not a failure."""
+    return [c for p in study.parameter_files.values() for c in _indices(p)]

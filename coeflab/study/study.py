@@ -1,0 +1,144 @@
+"""A plan, and the study that it becomes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.bodies.body import Body
+from coeflab.bodies.triangulation import Triangulation
+from coeflab.core.axes import Datum
+from coeflab.core.provenance import InputFile
+from coeflab.core.table import Check, Severity
+from coeflab.core.types import brief, locked
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.uncertainty.budget import Budget
+from coeflab.formats.export import PlannedExport
+from coeflab.law.coefficient import Coefficient
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.motion.manoeuvre import PlannedManoeuvre
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import PlannedTable
+from coeflab.vehicle.assemble import PlannedParameterFile
+from coeflab.vehicle.reference import Comparison, Reference
+
+if TYPE_CHECKING:
+    from coeflab.formats.export import Export, Refused
+    from coeflab.motion.manoeuvre import Simulation
+    from coeflab.vehicle.parameter_file import ParameterFile
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class PlannedJoint:
+    """One ``[[joint]]``: one fit over several tables or campaigns."""
+
+    tables: tuple[PlannedTable, ...]
+    fit: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """What to do, with paths resolved.
+
+    Attributes
+    ----------
+    name, title : str
+    reference_point : (3,) array or None
+        m, FRD, from the datum; None leaves every campaign where it is.
+    datum : Datum or None
+        From which the reference point counts; None takes each campaign's own.
+    scaling : Scaling or None
+        None keeps each campaign's own length.
+    conditions : Conditions or None
+        For dimensional values; None takes the first campaign's.
+    body : Path or None
+    tables : tuple of PlannedTable
+    joint : tuple of PlannedJoint
+        Fits over several campaigns, after those of the tables.
+    references : tuple of Path
+    parameter_files : tuple of PlannedParameterFile
+    exports : tuple of PlannedExport
+    manoeuvres : tuple of PlannedManoeuvre
+    wanted : tuple of str
+        Coefficients that must appear, with a status if no table gives them.
+    include_uncertain : bool
+        Use cells that their source marks as doubtful.
+    file : InputFile or None
+    """
+
+    name: str
+    title: str
+    tables: tuple[PlannedTable, ...]
+    reference_point: NDArray[np.float64] | None = None
+    datum: Datum | None = None
+    scaling: Scaling | None = None
+    conditions: Conditions | None = None
+    body: Path | None = None
+    references: tuple[Path, ...] = ()
+    parameter_files: tuple[PlannedParameterFile, ...] = ()
+    exports: tuple[PlannedExport, ...] = ()
+    wanted: tuple[str, ...] = ()
+    include_uncertain: bool = False
+    file: InputFile | None = None
+    joint: tuple[PlannedJoint, ...] = ()
+    hull: Path | None = None
+    method: str = "all"
+    manoeuvres: tuple[PlannedManoeuvre, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.reference_point is not None:
+            object.__setattr__(self, "reference_point", locked(self.reference_point))
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Study:
+    """Everything that a run found; export and report are two leaves of this one object.
+
+    ``parameter_files`` and ``hulls``, the added mass of those that have one, go by the name of the file. ``refused`` are
+    planned exports that were not made; all else stands.
+    """
+
+    plan: Plan
+    tables: tuple[ForceTable, ...]
+    fits: tuple[FitResult, ...]
+    missing: tuple[Coefficient, ...]
+    body: Body | None
+    references: tuple[Reference, ...]
+    comparisons: tuple[Comparison, ...]
+    parameter_files: Mapping[str, ParameterFile]
+    inputs: tuple[InputFile, ...]
+    budgets: tuple[Budget, ...] = ()
+    checks: tuple[Check, ...] = ()
+    hulls: Mapping[str, Triangulation] = field(default_factory=dict)
+    exports: tuple[Export, ...] = ()
+    refused: tuple[Refused, ...] = ()
+    manoeuvres: tuple[Simulation, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "parameter_files", MappingProxyType(dict(self.parameter_files)))
+        object.__setattr__(self, "hulls", MappingProxyType(dict(self.hulls)))
+
+    @property
+    def coefficients(self) -> tuple[Coefficient, ...]:
+        """All fitted coefficients in the plan's order, then those that no table gives."""
+        return tuple(c for f in self.fits for c in f.coefficients.coefficients) + self.missing
+
+    @property
+    def failed(self) -> bool:
+        """Whether a finding or a comparison fails, or an export was refused."""
+        findings = any(c.severity is Severity.FAIL for c in self.checks)
+        return findings or any(c.passed is False for c in self.comparisons) or bool(self.refused)
+
+    def with_checks(self, checks: tuple[Check, ...]) -> Study:
+        """The study with its findings."""
+        return replace(self, checks=checks)

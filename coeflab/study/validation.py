@@ -1,0 +1,125 @@
+"""Validation of a computation against an experiment: comparison error against validation uncertainty.
+
+ASME V&V 20-2009, section 1-5; ITTC 7.5-03-01-01: E = S - D, U_V^2 = U_D^2 + U_SN^2 + U_input^2. When |E| lies within
+U_V, a modelling error cannot be told from the uncertainties; otherwise E is about the modelling error, known to U_V.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from coeflab.core.types import brief
+from coeflab.fits.uncertainty.budget import Budget
+from coeflab.law.coefficient import CoefficientSet
+from coeflab.study.study import Study
+
+NUMERICAL = ("random", "grid")
+REDUCTION = ("model form", "random and model form")
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Validation:
+    """One coefficient computed and measured.
+
+    Attributes
+    ----------
+    symbol, body, simulation, experiment : str
+    computed, measured : float
+        S and D, primed by one length.
+    u_measured : float or None
+        U_D.
+    u_numerical : float
+        U_SN: grid and iteration noise of the computation, as far as they were assessed.
+    u_reduction : float
+        Of drawing a slope through computed points: the model form.
+    u_input : float or None
+        Inputs of the computation.
+    lacking, lacking_measured : tuple of str
+        What U_V does not hold of the computation and of the experiment.
+    """
+
+    symbol: str
+    body: str
+    simulation: str
+    experiment: str
+    computed: float
+    measured: float
+    u_measured: float | None
+    u_numerical: float
+    u_reduction: float
+    u_input: float | None
+    lacking: tuple[str, ...]
+    lacking_measured: tuple[str, ...]
+
+    @property
+    def error(self) -> float:
+        """Comparison error E = S - D."""
+        return self.computed - self.measured
+
+    @property
+    def u_validation(self) -> float | None:
+        """U_V; None where the measurement has no U95."""
+        if self.u_measured is None:
+            return None
+        return float(
+            np.sqrt(self.u_measured**2 + self.u_numerical**2 + self.u_reduction**2 + (self.u_input or 0.0) ** 2)
+        )
+
+    @property
+    def within(self) -> bool | None:
+        """Whether the error lies within U_V; None where there is no U_V."""
+        return None if self.u_validation is None else abs(self.error) < self.u_validation
+
+    @property
+    def statement(self) -> str:
+        """The verdict in words."""
+        if self.u_validation is None:
+            return "no verdict: the measurement has no U95"
+        if self.within:
+            text = "|E| < U_V: a modelling error cannot be told from the uncertainties at this level"
+        else:
+            low, high = self.error - self.u_validation, self.error + self.u_validation
+            text = f"|E| > U_V: modelling error, or parts that U_V lacks, between {low:.3g} and {high:.3g}"
+        for side, names in (("computation", self.lacking), ("experiment", self.lacking_measured)):
+            text += f"; not in U_V, {side}: {', '.join(names)}" if names else ""
+        return text
+
+
+def validations(study: Study, found: Sequence[Budget]) -> tuple[Validation, ...]:
+    """Every pair of a computed and a measured coefficient of one body about one reference point."""
+    sets = {f.campaign: f.coefficients for f in study.fits if f.sweeps}
+    out = []
+    for s in found:
+        for d in found:
+            if s.kind != "cfd" or d.kind != "experiment" or s.symbol != d.symbol or s.body != d.body:
+                continue
+            if not _alike(sets[s.campaign], sets[d.campaign]):
+                continue
+            out.append(validation(s, d, sets[d.campaign].scaling.ratio(d.symbol, sets[s.campaign].scaling)))
+    return tuple(out)
+
+
+def validation(s: Budget, d: Budget, ratio: float = 1.0) -> Validation:
+    """S against D; ``ratio`` brings D to the length that S is primed by."""
+    return Validation(
+        symbol=s.symbol,
+        body=s.body,
+        simulation=s.campaign,
+        experiment=d.campaign,
+        computed=s.value,
+        measured=d.value * ratio,
+        u_measured=None if d.u95 is None else d.u95 * abs(ratio),
+        u_numerical=s.joined(*NUMERICAL),
+        u_reduction=s.joined(*REDUCTION),
+        u_input=s.input,
+        lacking=s.unassessed,
+        lacking_measured=d.unassessed,
+    )
+
+
+def _alike(a: CoefficientSet, b: CoefficientSet) -> bool:
+    return a.datum == b.datum and bool(np.allclose(a.reference_point, b.reference_point, atol=1e-6))

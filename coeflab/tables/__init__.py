@@ -1,0 +1,1 @@
+"""Force tables and the campaigns that they come from."""

@@ -1,0 +1,216 @@
+"""A table of steady forces: SI, FRD, one reference point, every excluded cell with its reason."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.axes import Datum
+from coeflab.core.provenance import InputFile, Source
+from coeflab.core.types import Array, brief, locked, locked_columns
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.law.transforms import force_transfer, velocity_transfer
+from coeflab.tables.campaign import InputUncertainty
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+AT_REST = float(np.sin(np.radians(0.05)))
+ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class Exclusion:
+    """A cell (or a whole row) that no fit uses.
+
+    Attributes
+    ----------
+    row : int
+        Index in the table.
+    line : int
+        Line in the file.
+    component : str
+        Force component, or empty for the whole row.
+    reason : str
+    uncertain : bool
+        True when the source marks the value as doubtful, so that a reader may choose to use it after all.
+    """
+
+    row: int
+    line: int
+    component: str
+    reason: str
+    uncertain: bool = False
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class ForceTable:
+    """Forces that the fluid exerts on a body in steady motion.
+
+    Attributes
+    ----------
+    name : str
+        Campaign and table, for example ``suboff_roddy_2/table``.
+    campaign, title, body : str
+        Names; ``body`` says which hull with which appendages.
+    motion : mapping of str to (n,) array
+        u v w p q r in m/s and rad/s, FRD, at the reference point.
+    controls : mapping of str to (n,) array
+        Angles of control surfaces in radians, keys ``dr`` ``ds`` ``db``.
+    speed : (n,) array
+        Speed U that the test was run at, m/s.
+    forces : mapping of str to (n,) array
+        The measured ones of X Y Z K M N, N and N m, FRD; NaN where blank.
+    errors : mapping of str to (n,) array
+        Standard errors of forces, where the table has them.
+    usable : mapping of str to (n,) boolean array
+        Whether fits may use a cell.
+    exclusions : tuple of Exclusion
+    labels : tuple of str
+        One text per row for figures and messages (run or point number).
+    reference_point : (3,) array
+        m, FRD, from the datum.
+    datum : Datum
+        The body point that reference points are measured from.
+    conditions : Conditions
+    scaling : Scaling
+        Length that the campaign itself uses.
+    source : Source
+    files : tuple of InputFile
+    notes : tuple of str
+        What the importer did: inertia taken out, half model doubled, axes turned.
+    cells : (n,) array or None
+        Cells of the grid that computed each row, NaN where blank; None where the table does not say.
+    uncertainty : InputUncertainty or None
+        Of the inputs, as the campaign declares it; None where it does not.
+    """
+
+    name: str
+    campaign: str
+    title: str
+    body: str
+    motion: Mapping[str, Array]
+    controls: Mapping[str, Array]
+    speed: Array
+    forces: Mapping[str, Array]
+    errors: Mapping[str, Array]
+    usable: Mapping[str, NDArray[np.bool_]]
+    exclusions: tuple[Exclusion, ...]
+    labels: tuple[str, ...]
+    reference_point: Array
+    datum: Datum
+    conditions: Conditions
+    scaling: Scaling
+    source: Source
+    files: tuple[InputFile, ...] = ()
+    notes: tuple[str, ...] = field(default=())
+    cells: Array | None = None
+    uncertainty: InputUncertainty | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("motion", "controls", "forces", "errors"):
+            object.__setattr__(self, name, locked_columns(getattr(self, name)))
+        object.__setattr__(self, "usable", locked_columns(self.usable, bool))
+        object.__setattr__(self, "speed", locked(self.speed))
+        if self.cells is not None:
+            object.__setattr__(self, "cells", locked(self.cells))
+        object.__setattr__(self, "reference_point", locked(self.reference_point))
+
+    def __len__(self) -> int:
+        return len(self.speed)
+
+    @property
+    def varies(self) -> tuple[str, ...]:
+        """Motion variables and control angles that a row of the table holds, beyond rounding (surge does not count)."""
+        names = [m for m in MOTIONS if m != "u"] + list(self.controls)
+        length = self.scaling.length
+        return tuple(m for m in names if np.any(np.abs(self.primed_motion(m, length)) > AT_REST))
+
+    def primed_motion(self, variable: str, length: float) -> Array:
+        """v/U, r L/U or a control angle, shape (n,); what rounding leaves of a zero is zero."""
+        if variable in self.controls:
+            return np.asarray(self.controls[variable])
+        scale = length if variable in "pqr" else 1.0
+        primes = np.asarray(self.motion[variable] * scale / self.speed)
+        return np.where(np.abs(primes) > ROUNDING, primes, 0.0)
+
+    def primed_force(self, component: str, length: float, values: Array | None = None) -> Array:
+        """Y' = Y / (1/2 rho U^2 L^2), moments with L^3, shape (n,)."""
+        power = 3 if component in "KMN" else 2
+        q = 0.5 * self.conditions.density * self.speed**2 * length**power
+        return np.asarray((self.forces[component] if values is None else values) / q)
+
+    def frame(self) -> pd.DataFrame:
+        """The table as a pandas DataFrame for notebooks: SI, FRD, cells that no fit may use are NaN."""
+        import pandas as pd
+
+        columns: dict[str, Array] = {f"{m} [{'m/s' if m in 'uvw' else 'rad/s'}]": a for m, a in self.motion.items()}
+        columns |= {f"{c} [rad]": a for c, a in self.controls.items()}
+        for c, values in self.forces.items():
+            columns[f"{c} [{'N*m' if c in 'KMN' else 'N'}]"] = np.where(self.usable[c], values, np.nan)
+        return pd.DataFrame(columns, index=pd.Index(self.labels, name="point"))
+
+    def about(self, point: Array) -> ForceTable:
+        """The same runs with velocities and moments about another point (m, FRD, from the same datum).
+
+        Standard errors of moments become the bound |se_N| + |shift| |se_Y|, which holds for any correlation of force
+        and moment errors, as tables do not state it.
+        """
+        shift = np.asarray(point, dtype=float) - self.reference_point
+        if not np.any(shift):
+            return self
+        nu = np.column_stack([self.motion[m] for m in MOTIONS]) @ velocity_transfer(shift).T
+        transfer = force_transfer(shift)
+        forces, errors, usable = dict(self.forces), dict(self.errors), dict(self.usable)
+        exclusions = list(self.exclusions)
+        for i, component in enumerate(COMPONENTS):
+            needed = [(c, transfer[i, j]) for j, c in enumerate(COMPONENTS) if transfer[i, j] != 0.0]
+            if len(needed) == 1 or component not in forces:
+                continue
+            if any(c not in forces for c, _ in needed):
+                del forces[component], usable[component]
+                errors.pop(component, None)
+                exclusions = [e for e in exclusions if e.component != component]
+                continue
+            forces[component] = np.asarray(sum(self.forces[c] * k for c, k in needed))
+            usable[component] = np.logical_and.reduce([self.usable[c] for c, _ in needed])
+            exclusions += self._passed_on(component, [c for c, _ in needed if c != component])
+            if all(c in self.errors for c, _ in needed):
+                errors[component] = np.asarray(sum(self.errors[c] * abs(k) for c, k in needed))
+            else:
+                errors.pop(component, None)
+        return replace(
+            self,
+            motion=dict(zip(MOTIONS, nu.T, strict=True)),
+            forces=forces,
+            errors=errors,
+            usable=usable,
+            exclusions=tuple(exclusions),
+            reference_point=np.asarray(point, dtype=float),
+            notes=(*self.notes, f"moments moved by ({', '.join(f'{s:+.6g}' for s in shift)}) m"),
+        )
+
+    def _passed_on(self, component: str, needed: list[str]) -> list[Exclusion]:
+        """Exclusions of a moment that it inherits from the forces in its transfer."""
+        own = {e.row for e in self.exclusions if e.component == component}
+        return [
+            replace(e, component=component, reason=f"{e.component}: {e.reason}")
+            for e in self.exclusions
+            if e.component in needed and e.row not in own
+        ]
+
+    def with_uncertain_cells(self) -> ForceTable:
+        """The table with the cells in use that its source marks as doubtful but prints."""
+        kept = [e for e in self.exclusions if not (e.uncertain and np.isfinite(self.forces[e.component][e.row]))]
+        usable = {c: np.ones(len(self), dtype=bool) for c in self.usable}
+        for e in kept:
+            for component in [e.component] if e.component else usable:
+                usable[component][e.row] = False
+        return replace(self, usable=usable, exclusions=tuple(kept), notes=(*self.notes, "doubtful cells in use"))

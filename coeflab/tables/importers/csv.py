@@ -1,0 +1,216 @@
+"""CSV tables with units in their headers, beside a campaign.toml that declares what the numbers mean."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from coeflab.core.errors import InputError, UnitsError, shown
+from coeflab.core.limits import LARGEST_NUMBER
+from coeflab.core.text.delimited import Cells, read_cells, require_unit
+from coeflab.core.types import Array
+from coeflab.core.units import Header, factor
+from coeflab.core.wording import Verbatim
+from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS, MOTIONS
+from coeflab.tables.campaign import Campaign, TableDeclaration
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.to_frd import Columns, force_table, surge_column
+
+summary = "CSV with units in the headers (beta [deg], Y [N], Y' [-]) and a campaign.toml"
+citations = ("sname1950",)
+
+ANGLES = ("alpha", "beta")
+UNCERTAIN, POINT = "uncertain", "point"
+EXAMPLES = {
+    **dict.fromkeys(("X", "Y", "Z"), "N"),
+    **dict.fromkeys(MOMENTS, "N*m"),
+    **dict.fromkeys((*ANGLES, *CONTROL_COLUMNS), "deg"),
+    **dict.fromkeys((*LINEAR, "U"), "m/s"),
+    **dict.fromkeys(ANGULAR, "rad/s"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Kind:
+    """What a column is: its role, dimension, plain name, and whether it is nondimensional."""
+
+    role: str
+    dimension: str
+    name: str
+    primed: bool
+
+
+def _kind(name: str) -> _Kind | None:
+    """The kind of a column by its name, None for an unknown one."""
+    primed = name.endswith("'")
+    plain = name.removesuffix("'")
+    force = plain.removeprefix("se_")
+    if force in COMPONENTS:
+        role = "error" if plain != force else "force"
+        return _Kind(role, "moment" if force in MOMENTS else "force", force, primed)
+    if plain in MOTIONS:
+        return _Kind("velocity", "speed" if plain in LINEAR else "rate", plain, primed)
+    if primed:
+        return None
+    if plain in ANGLES:
+        return _Kind("angle", "angle", plain, primed)
+    if plain in CONTROL_COLUMNS:
+        return _Kind("control", "angle", CONTROL_COLUMNS[plain], primed)
+    return _Kind("speed", "speed", "U", primed) if plain == "U" else None
+
+
+def _factor(header: Header, kind: _Kind, cells: Cells) -> float:
+    """SI factor of a column, errors placed at its header."""
+    line = cells.first_line - 1
+    bare = header.name.removeprefix("se_")
+    unit = require_unit(header, cells.file, line, f"{header.name} [{'-' if kind.primed else EXAMPLES[bare]}]")
+    try:
+        return factor(unit, "none" if kind.primed else kind.dimension)
+    except UnitsError as why:
+        advice = why.advice
+        if kind.primed:
+            advice = f"A primed column has the unit [-]; for a dimensional one write {header.name[:-1]} [...]."
+        elif unit == "-" and kind.dimension != "angle":
+            advice = f"For the nondimensional (prime) form write {header.name}' [-]."
+        raise UnitsError(
+            why.found, why.expected, file=cells.file, line=line, column=header.text, advice=advice
+        ) from None
+
+
+def _values(cells: Cells, header: Header, kind: _Kind) -> Array:
+    with np.errstate(over="ignore"):
+        values = cells.numbers(header.name) * _factor(header, kind, cells)
+    wild = np.abs(values) > LARGEST_NUMBER
+    if np.any(wild):
+        row = int(np.flatnonzero(wild)[0])
+        raise InputError(
+            shown(cells.texts(header.name)[row]), f"a number of at most {LARGEST_NUMBER:g} in SI units", file=cells.file,
+            line=cells.line(row), column=header.text,
+        )  # fmt: skip
+    return values
+
+
+def _unknown(cells: Cells, header: Header) -> InputError:
+    known = ", ".join((*ANGLES, "U", *MOTIONS, *CONTROL_COLUMNS, *COMPONENTS))
+    return InputError(
+        f"the unknown column {shown(header.text)}",
+        f"one of {known}, se_..., {POINT}, {UNCERTAIN}",
+        file=cells.file,
+        line=cells.first_line - 1,
+        column=header.text,
+        advice="Name other columns under labels or ignore of the [[table]] in campaign.toml.",
+    )
+
+
+def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Columns:
+    """The columns in SI. Primed ones need the speed, so they are made dimensional last."""
+    given: dict[str, dict[str, Array]] = {r: {} for r in ("angle", "control", "error", "force", "speed", "velocity")}
+    labels: dict[str, list[str]] = {}
+    headers: dict[str, str] = {}
+    primes: list[tuple[_Kind, Array]] = []
+    for header in cells.headers:
+        if header.name in table.ignore:
+            continue
+        if header.name in (*table.labels, UNCERTAIN, POINT):
+            labels[header.name] = list(map(Verbatim, cells.texts(header.name)))
+            continue
+        kind = _kind(header.name)
+        if kind is None:
+            raise _unknown(cells, header)
+        name = f"se_{kind.name}" if kind.role == "error" else kind.name
+        if name in headers:
+            raise InputError(
+                f"{headers[name]} and {header.text}", "one of them", file=cells.file, line=cells.first_line - 1,
+                column=header.text,
+            )  # fmt: skip
+        headers[name] = header.text
+        values = _values(cells, header, kind)
+        if kind.primed:
+            primes.append((kind, values))
+        else:
+            given[kind.role][kind.name] = values
+    speed = _speed(given, primes, campaign, len(cells))
+    length, density = campaign.scaling.length, campaign.conditions.density
+    for kind, values in primes:
+        if kind.role == "velocity":
+            unit = speed / (length if kind.name in ANGULAR else 1.0)
+        else:
+            unit = 0.5 * density * speed**2 * length ** (3 if kind.name in MOMENTS else 2)
+        given[kind.role][kind.name] = values * unit
+    return Columns(
+        file=cells.file,
+        header_line=cells.first_line - 1,
+        lines=tuple(cells.line(i) for i in range(len(cells))),
+        headers=headers,
+        angles=given["angle"],
+        velocity=given["velocity"],
+        controls=given["control"],
+        speed=speed,
+        forces=given["force"],
+        errors=given["error"],
+        labels=labels,
+        doubtful=_doubtful(cells, labels.get(UNCERTAIN, [""] * len(cells)), headers),
+        row_labels=tuple(labels.get(POINT, ())),
+    )
+
+
+def _speed(given: dict[str, dict[str, Array]], primes: list[tuple[_Kind, Array]], campaign: Campaign, n: int) -> Array:
+    """U: its column, else the length of a full velocity vector, else the campaign's."""
+    if "U" in given["speed"]:
+        return given["speed"]["U"]
+    velocity = given["velocity"]
+    if surge_column(campaign) not in velocity or given["angle"]:
+        return np.full(n, campaign.conditions.speed)
+    squares: Array = np.sum([velocity[c] ** 2 for c in LINEAR if c in velocity], axis=0)
+    # v' = v / U, so the dimensional part is U^2 (1 - v'^2).
+    shares = [values**2 for kind, values in primes if kind.name in LINEAR]
+    rest = 1.0 - np.sum(shares, axis=0) if shares else np.ones(n)
+    return np.asarray(np.sqrt(np.divide(squares, rest, out=np.zeros(n), where=rest > 0.0)))
+
+
+def _doubtful(cells: Cells, texts: list[str], headers: dict[str, str]) -> tuple[frozenset[str], ...]:
+    """Plain names of the columns that a row's ``uncertain`` cell names."""
+    out = []
+    for row, text in enumerate(texts):
+        names = set()
+        for token in text.replace(";", " ").split():
+            name = CONTROL_COLUMNS.get(token, token.removesuffix("'"))
+            if name not in headers or name.startswith("se_"):
+                raise InputError(
+                    shown(token), "names of columns, separated by blanks", file=cells.file, line=cells.line(row),
+                    column=UNCERTAIN,
+                )  # fmt: skip
+            names.add(name)
+        out.append(frozenset(names))
+    return tuple(out)
+
+
+def read(campaign: Campaign, only: str | None = None) -> tuple[ForceTable, ...]:
+    """Read the tables of a campaign.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    only : str, optional
+        File name of the one table that is wanted.
+
+    Returns
+    -------
+    tuple of ForceTable
+
+    Raises
+    ------
+    InputError
+        Names file, line and column, what was found and what was expected.
+    """
+    wanted = [t for t in campaign.tables if only is None or Path(t.file).name == only]
+    if not wanted:
+        known = ", ".join(t.file for t in campaign.tables)
+        raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=campaign.path, column="table")
+    tables = []
+    for table in wanted:
+        cells = read_cells(campaign.path.parent / table.file)
+        tables.append(force_table(_columns(cells, campaign, table), campaign, table))
+    return tuple(tables)

@@ -1,0 +1,305 @@
+"""From the columns of any importer to a ForceTable: axes, angle signs, half models, inertia, exclusions.
+
+Columns of a table in SI but in its own axes: what every importer makes of its file before the common turn to FRD.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.axes import angle_sign
+from coeflab.core.errors import InputError, shown
+from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.types import Array, brief
+from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
+from coeflab.law.transforms import rigid_body_force
+from coeflab.tables.campaign import Campaign, Inertia, TableDeclaration
+from coeflab.tables.force_table import Exclusion, ForceTable
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Columns:
+    """Columns in SI, by their plain names, in the axes that the campaign declares.
+
+    Attributes
+    ----------
+    file : Path
+    header_line : int
+    lines : tuple of int
+        Line number of every row.
+    headers : dict of str to str
+        Header of a column as written, by its plain name (``Y`` for ``Y' [-]``).
+    angles : dict of str to array
+        ``alpha``, ``beta`` in radians, in the sign that the table uses.
+    velocity : dict of str to array
+        u v w p q r, m/s and rad/s.
+    controls : dict of str to array
+        ``dr``, ``ds``, ``db`` in radians.
+    speed : (n,) array
+        U, m/s.
+    forces, errors : dict of str to array
+        X Y Z K M N and their standard errors, N and N m; NaN where blank.
+    labels : dict of str to list of str
+    doubtful : tuple of frozenset of str
+        For every row the plain names of columns whose digits are doubtful in the source.
+    row_labels : tuple of str
+        One short name per row.
+    """
+
+    file: Path
+    header_line: int
+    lines: tuple[int, ...]
+    headers: Mapping[str, str]
+    angles: Mapping[str, Array]
+    velocity: Mapping[str, Array]
+    controls: Mapping[str, Array]
+    speed: Array
+    forces: Mapping[str, Array]
+    errors: Mapping[str, Array]
+    labels: Mapping[str, list[str]]
+    doubtful: tuple[frozenset[str], ...]
+    row_labels: tuple[str, ...] = field(default=())
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+    def fail(
+        self, found: str, expected: str, *, row: int | None = None, name: str = "", advice: str = ""
+    ) -> InputError:
+        """An error about one cell, a column or the header, to be raised by the caller."""
+        return InputError(
+            found,
+            expected,
+            file=self.file,
+            line=self.header_line if row is None else self.lines[row],
+            column=self.headers.get(name, name) or None,
+            advice=advice,
+        )
+
+    @property
+    def settings(self) -> dict[str, Array]:
+        """What the test was set to: angles, velocities, control angles."""
+        return {**self.angles, **self.velocity, **self.controls}
+
+    def check(self) -> None:
+        """Refuse settings that are blank, angles beyond a half turn, and standard errors that are none.
+
+        Raises
+        ------
+        InputError
+            By line and column.
+        """
+        if not self.forces:
+            raise self.fail("no force column", "at least one of X Y Z K M N")
+        if (row := _first(~(self.speed > 0.0))) is not None:
+            found = "a blank cell" if np.isnan(self.speed[row]) else f"a speed of {self.speed[row]:g} m/s"
+            raise self.fail(found, "a speed above zero", row=row, name="U")
+        for name, values in self.settings.items():
+            if (row := _first(np.isnan(values))) is not None:
+                raise self.fail("a blank cell", "a number", row=row, name=name)
+            if name in self.velocity or (row := _first(np.abs(values) > np.pi)) is None:
+                continue
+            raise self.fail(
+                f"an angle of {values[row]:.4g} rad",
+                "an angle within half a turn",
+                row=row,
+                name=name,
+                advice=f"If the column is in degrees, write {self.headers[name].partition(' [')[0]} [deg].",
+            )
+        for name, values in self.errors.items():
+            if name not in self.forces:
+                raise self.fail(f"se_{name} without {name}", f"a column {name}", name=f"se_{name}")
+            unused = np.isnan(self.forces[name]) & np.isnan(values)
+            if (row := _first(~(values > 0.0) & ~unused)) is not None:
+                found = "a blank cell" if np.isnan(values[row]) else f"{values[row]:g}"
+                raise self.fail(found, "a standard error above zero", row=row, name=f"se_{name}")
+
+
+def _first(where: NDArray[np.bool_]) -> int | None:
+    rows = np.flatnonzero(where)
+    return int(rows[0]) if rows.size else None
+
+
+SYMMETRIC = ("X", "Z", "M")
+TAKEN_OUT = "inertia of the model taken out"
+
+
+def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -> ForceTable:
+    """Turn columns into the fluid's force on the body in FRD about the campaign's reference point.
+
+    Raises
+    ------
+    InputError
+        A cell that cannot be, or something that campaign.toml leaves open or contradicts.
+    """
+    columns.check()
+    digest = sha256_of(columns.file)
+    if table.sha256 and table.sha256 != digest:
+        raise InputError(
+            f"sha256 {digest[:12]}...", f"{table.sha256[:12]}... as campaign.toml declares", file=columns.file,
+            advice="The table was changed after it was entered; restore it or update table.sha256.",
+        )  # fmt: skip
+    motion = _motion(columns, campaign)
+    notes = [] if campaign.axes.name == "FRD" else [f"axes turned from {campaign.axes.name} to FRD"]
+    sources = _sources(campaign)
+    usable, exclusions = _exclusions(columns, campaign, table, {c: s for c, (s, _) in sources.items()})
+    forces = {c: sign * columns.forces[s] for c, (s, sign) in sources.items() if s in columns.forces}
+    errors = {c: columns.errors[s] for c, (s, _) in sources.items() if s in columns.errors}
+    if campaign.half_model:
+        _require_symmetry(columns, forces, motion)
+        forces, errors = ({c: 2.0 * v for c, v in x.items()} for x in (forces, errors))
+        notes.append("half model: X, Z, M doubled")
+    if any(np.any(motion[m] != 0.0) for m in ANGULAR) and (inertia := _contained(campaign, table)):
+        forces = _without_inertia(inertia, campaign, forces, motion)
+        notes.append(f"{TAKEN_OUT} (m = {inertia.mass:g} kg)")
+    return ForceTable(
+        name=f"{campaign.name}/{table.file}",
+        campaign=campaign.name,
+        title=campaign.title,
+        body=campaign.body,
+        motion=motion,
+        controls=columns.controls,
+        speed=columns.speed,
+        forces=forces,
+        errors=errors,
+        usable=usable,
+        exclusions=exclusions,
+        labels=columns.row_labels or tuple(f"line {line}" for line in columns.lines),
+        reference_point=campaign.reference_point,
+        datum=campaign.datum,
+        conditions=campaign.conditions,
+        scaling=campaign.scaling,
+        source=campaign.source,
+        files=(
+            InputFile(f"{campaign.name}/{campaign.path.name}", sha256_of(campaign.path)),
+            InputFile(f"{campaign.name}/{table.file}", digest),
+        ),
+        notes=tuple(notes),
+    )
+
+
+def _motion(columns: Columns, campaign: Campaign) -> dict[str, Array]:
+    """Velocities in FRD."""
+    linear_columns = [c for c in LINEAR if c in columns.velocity]
+    if columns.angles and linear_columns:
+        raise columns.fail(
+            f"angles and {', '.join(linear_columns)}", "one or the other", advice="Write the speed as U [m/s]."
+        )
+    zero = np.zeros(len(columns))
+    angle = {
+        name: angle_sign(name, campaign.signs.get(name), campaign.path) * values
+        for name, values in columns.angles.items()
+    }
+    alpha, beta = angle.get("alpha", zero), angle.get("beta", zero)
+    if angle:
+        flow = (np.cos(alpha) * np.cos(beta), np.sin(beta), np.sin(alpha) * np.cos(beta))
+        linear = np.column_stack([columns.speed * part for part in flow])
+    else:
+        own = np.column_stack([columns.velocity.get(c, zero) for c in LINEAR])
+        linear = own @ campaign.axes.rotation.T
+        if surge_column(campaign) not in columns.velocity:
+            rest = columns.speed**2 - np.sum(linear**2, axis=1)
+            if np.any(rest < 0.0):
+                row = int(np.flatnonzero(rest < 0.0)[0])
+                raise columns.fail("a cross-flow faster than U", "v and w within U", row=row)
+            linear[:, 0] = np.sqrt(rest)
+    angular = np.column_stack([columns.velocity.get(c, zero) for c in ANGULAR]) @ campaign.axes.rotation.T
+    return {**dict(zip(LINEAR, linear.T, strict=True)), **dict(zip(ANGULAR, angular.T, strict=True))}
+
+
+def surge_column(campaign: Campaign) -> str:
+    """The table's velocity column along the body's length."""
+    return LINEAR[int(np.argmax(np.abs(campaign.axes.rotation[0])))]
+
+
+def _sources(campaign: Campaign) -> dict[str, tuple[str, float]]:
+    """For every FRD component the table's column and its sign; axes are at right angles, so each is one column."""
+    out = {}
+    for group in (COMPONENTS[:3], COMPONENTS[3:]):
+        for i, name in enumerate(group):
+            j = int(np.argmax(np.abs(campaign.axes.rotation[i])))
+            out[name] = group[j], float(campaign.axes.rotation[i, j])
+    return out
+
+
+def _require_symmetry(columns: Columns, forces: Mapping[str, Array], motion: Mapping[str, Array]) -> None:
+    """Refuse what a half model cannot measure."""
+    odd = [c for c in forces if c not in SYMMETRIC]
+    moving = [m for m in ("v", "p", "r") if np.any(motion[m] != 0.0)]
+    moving += [c for c in ("dr",) if np.any(columns.controls.get(c, 0.0) != 0.0)]
+    if odd or moving:
+        what = f"the antisymmetric {', '.join(odd)}" if odd else f"motion {', '.join(moving)}"
+        raise columns.fail(
+            f"{what} on a half model",
+            "X, Z, M in symmetric flow",
+            advice="A symmetry plane cannot carry side force, roll or yaw; compute the whole model for those.",
+        )
+
+
+def _exclusions(
+    columns: Columns, campaign: Campaign, table: TableDeclaration, frd: Mapping[str, str]
+) -> tuple[dict[str, NDArray[np.bool_]], tuple[Exclusion, ...]]:
+    """Which cells fits may use, and why not the others. ``frd`` maps FRD components to the table's columns."""
+    have = {c: column for c, column in frd.items() if column in columns.forces}
+    usable = {c: np.ones(len(columns), dtype=bool) for c in have}
+    settings = {*columns.settings, "U"}
+    out: list[Exclusion] = []
+    for label in table.select:
+        if label not in columns.labels:
+            raise InputError(
+                f"a selection by {shown(label)}", "a label column of the table", file=campaign.path,
+                column="table.select", advice=f"Name {label} under labels.",
+            )  # fmt: skip
+    for row, (line, doubtful) in enumerate(zip(columns.lines, columns.doubtful, strict=True)):
+        for component, column in have.items():
+            value = columns.forces[column][row]
+            if column in doubtful or settings & doubtful:
+                usable[component][row] = False
+                reason = "blank in the source" if np.isnan(value) else 'digit doubtful in the source ("uncertain")'
+                out.append(Exclusion(row, line, component, reason, uncertain=not np.isnan(value)))
+            elif np.isnan(value):
+                raise columns.fail(
+                    "a blank cell", "a number", row=row, name=column,
+                    advice=f'If the source has no readable value there, name {column} under "uncertain".',
+                )  # fmt: skip
+        for label, wanted in table.select.items():
+            if columns.labels[label][row] != wanted:
+                out.append(Exclusion(row, line, "", f"{label} {columns.labels[label][row]}: {table.select_reason}"))
+                for mask in usable.values():
+                    mask[row] = False
+    return usable, tuple(out)
+
+
+def _contained(campaign: Campaign, table: TableDeclaration) -> Inertia | None:
+    """The inertia that the forces of a rotating test contain, if they do."""
+    if table.contains_inertia is None:
+        raise InputError(
+            "no declaration", "contains_inertia = true or false", file=campaign.path, column="table.contains_inertia",
+            advice="A balance on a rotating arm carries the model's inertia, a solver in a rotating frame does not; "
+            "for a slender body the sign of Yr' depends on it.",
+        )  # fmt: skip
+    if table.contains_inertia and campaign.inertia is None:
+        raise InputError(
+            "contains_inertia = true without mass",
+            "[inertia] with mass, centre_of_gravity, inertia",
+            file=campaign.path,
+            column="inertia",
+        )
+    return campaign.inertia if table.contains_inertia else None
+
+
+def _without_inertia(
+    inertia: Inertia, campaign: Campaign, forces: Mapping[str, Array], motion: Mapping[str, Array]
+) -> dict[str, Array]:
+    """Add what holds the model on its circle, so that the fluid's force remains."""
+    centre = np.array(inertia.centre) - campaign.reference_point
+    tensor = np.diag(inertia.tensor) + inertia.mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+    nu = np.column_stack([motion[m] for m in MOTIONS])
+    held = rigid_body_force(inertia.mass, centre, tensor, nu)
+    return {c: values + held[:, COMPONENTS.index(c)] for c, values in forces.items()}

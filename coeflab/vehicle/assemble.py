@@ -1,0 +1,479 @@
+"""From fits and literature to one parameter file.
+
+Which coefficients a parameter file holds: those of fits, of literature, and the wanted ones that nothing gives.
+
+From fitted models to those of a parameter file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.bodies.body import Body, MassProperties, likeness
+from coeflab.bodies.triangulation import Triangulation
+from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.provenance import InputFile
+from coeflab.core.types import brief
+from coeflab.core.version import VERSION
+from coeflab.core.wording import finite
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.law.added_mass import AddedMass, potential_part
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.rigid_body import about_another
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivative, primed
+from coeflab.tables.force_table import ForceTable
+from coeflab.vehicle.parameter_file import (
+    CoveredRange,
+    InputRecord,
+    ParameterConditions,
+    ParameterFile,
+    ParameterPoint,
+    ParameterScaling,
+    Provenance,
+)
+from coeflab.vehicle.parameter_model import (
+    ModelArea,
+    ModelDomain,
+    ModelFactor,
+    ModelTerm,
+    ModelVariable,
+    ParameterModel,
+)
+from coeflab.vehicle.parameter_parts import (
+    ParameterCoefficient,
+    ParameterCovariance,
+    ParameterMass,
+    UncertaintyParts,
+    added_mass_record,
+)
+from coeflab.vehicle.reference import Reference
+
+
+def _literature(
+    group: PlannedParameterFile, references: Sequence[Reference], among: CoefficientSet
+) -> list[Coefficient]:
+    """Literature coefficients of a group, rescaled to its length, labelled with method and source."""
+    out = []
+    known = {r.name: r for r in references}
+    for name in group.literature:
+        if name not in known:
+            raise InputError(
+                f"no reference {shown(name)}", f"one of {', '.join(known) or 'none'}",
+                column=f"parameter_file.{group.name}.literature",
+            )  # fmt: skip
+        reference, point = known[name], among.reference_point
+        if reference.datum is not None and reference.datum != among.datum:
+            raise ScalingMismatchError(
+                f"{name} measures points from {shown(reference.datum.id)}, the parameter file from {shown(among.datum.id)}: "
+                "literature values are taken only about their own point."
+            )
+        if reference.reference_point is not None and not np.allclose(reference.reference_point, point, atol=1e-9):
+            raise ScalingMismatchError(
+                f"{name} is about {tuple(reference.reference_point)}, the parameter file about {tuple(point)}: "
+                "literature values are taken only about their own point."
+            )
+        for kind in reference.literature:
+            for v in kind.values:
+                value = None if v.value is None else v.value * reference.scaling.ratio(v.symbol, among.scaling)
+                what = f"{kind.method} {kind.kind}, {reference.place}"
+                out.append(
+                    Coefficient(
+                        symbol=v.symbol,
+                        value=value,
+                        u95=None if value is None else abs(value) * kind.uncertainty,
+                        status=Status.STATED if value is not None else Status.NOT_DETERMINED,
+                        body=reference.body,
+                        origin="literature",
+                        estimator=what if value is not None else f"{what}: printed {v.printed}, a digit is illegible",
+                        citation=reference.citation,
+                    )
+                )
+    return out
+
+
+def _owners(chosen: Sequence[FitResult]) -> tuple[dict[str, str], list[str]]:
+    """Which fit gives each force component, and notes on what the other fits give for it.
+
+    Terms of one force law belong together: a linear term of one fit beside a quadratic one of another is the law of
+    neither.
+    """
+    owner: dict[str, str] = {}
+    left: dict[tuple[str, str], list[str]] = {}
+    for f in chosen:
+        for c in f.coefficients.coefficients:
+            component = derivative(c.symbol).component
+            if c.value is not None and owner.setdefault(component, f.fit) != f.fit:
+                left.setdefault((component, f.fit), []).append(primed(c.symbol))
+    return owner, [
+        f"{component}' is that of {owner[component]}; left out, from {fit}: {', '.join(dict.fromkeys(symbols))}"
+        for (component, fit), symbols in left.items()
+    ]
+
+
+def gathered(
+    group: PlannedParameterFile,
+    chosen: Sequence[FitResult],
+    missing: Sequence[Coefficient],
+    references: Sequence[Reference],
+) -> tuple[list[Coefficient], NDArray[np.float64], list[str]]:
+    """The coefficients of a group, one of each symbol, with their covariance and notes on what was left out."""
+    sets = [f.coefficients for f in chosen]
+    first = sets[0]
+    owner, notes = _owners(chosen)
+    entries: dict[str, tuple[Coefficient, int, int]] = {}
+    for k, s in enumerate(sets):
+        for i, c in enumerate(s.coefficients):
+            if owner.get(derivative(c.symbol).component, chosen[k].fit) != chosen[k].fit:
+                continue
+            earlier = entries[c.symbol][0] if c.symbol in entries else None
+            used, other = (
+                (c, earlier) if earlier is None or (earlier.value is None and c.value is not None) else (earlier, c)
+            )
+            if other is not None:
+                given = "no value" if other.value is None else f"{other.value:.6g}"
+                notes.append(f"{primed(c.symbol)} from {used.campaign}; {other.campaign} gives {given}")
+            if used is c:
+                entries[c.symbol] = (c, k, i)
+    extra = {c.symbol: c for c in _literature(group, references, first)}
+    entries = {s: e for s, e in entries.items() if e[0].value is not None or s not in extra or extra[s].value is None}
+    absent = [c for c in missing if c.campaign == ", ".join(group.campaigns) and c.body == group.body]
+    coefficients = [c for c, _, _ in entries.values()]
+    coefficients += [c for s, c in extra.items() if s not in entries]
+    coefficients += [c for c in absent if c.symbol not in entries and c.symbol not in extra]
+    covariance = np.zeros((len(coefficients), len(coefficients)))
+    for i, c in enumerate(coefficients):
+        if c.symbol in entries:
+            _, k, row = entries[c.symbol]
+            for j, d in enumerate(coefficients):
+                if d.symbol in entries and entries[d.symbol][1] == k:
+                    covariance[i, j] = sets[k].covariance[row, entries[d.symbol][2]]
+        elif c.u95 is not None:
+            covariance[i, i] = (c.u95 / 2.0) ** 2
+    void = np.array([c.u95 is None for c in coefficients], dtype=bool)
+    covariance[void, :] = covariance[:, void] = np.nan
+    return coefficients, covariance, notes
+
+
+ANGLES = ("alpha", "beta")
+
+
+def _variable_unit(name: str, unit: str) -> str:
+    """Angles in radians; velocities and rates primed in a nondimensional model, SI in a dimensional one; else 1."""
+    if name in LINEAR:
+        return "1" if unit == "1" else "m/s"
+    if name in ANGULAR:
+        return "1" if unit == "1" else "rad/s"
+    return "rad" if name in (*ANGLES, *CONTROLS) else "1"
+
+
+def record(model: FittedModel, area: ModelArea | None = None) -> ParameterModel:
+    """A fitted model as the parameter file holds it.
+
+    The covariance is that of standard uncertainties, half_width_95 / 2, as everywhere in the file. A half-width of a
+    point is then twice the root of its variance, and for one term alone the term's own.
+    """
+    names = model.domain.variables
+    return ParameterModel.model_validate(
+        {
+            "response": model.response,
+            "unit": model.unit,
+            "form": model.form,
+            "variables": tuple(
+                ModelVariable.model_validate({"name": v, "unit": _variable_unit(v, model.unit)}) for v in names
+            ),
+            "terms": tuple(
+                ModelTerm(
+                    symbol=s,
+                    factors=tuple(ModelFactor(variable=v, power=n, absolute=a) for v, n, a in t.factors),
+                    value=finite(c),
+                    half_width_95=finite(h),
+                )
+                for s, t, c, h in zip(model.symbols, model.terms, model.fit.coefficients, model.half_width, strict=True)
+            ),
+            "holds": ("random", *model.shared),
+            "covariance": tuple(tuple(finite(x) for x in row) for row in model.covariance),
+            "domain": ModelDomain(
+                low=tuple(map(float, model.domain.low)),
+                high=tuple(map(float, model.domain.high)),
+                half_spaces=tuple(tuple(map(float, row)) for row in model.domain.spaces),
+                extrapolation=model.domain.rule.value,
+            ),
+            "n_points": model.n_points,
+            "rms": model.fit.rms,
+            "press_rms": finite(model.fit.press_rms),
+            "table": model.table,
+            "campaign": model.campaign,
+            "post_selection": model.post_selection,
+            "statements": (*model.statements, *(f"{FLOW_ANGLES[v]}." for v in names if v in FLOW_ANGLES)),
+            "area": area,
+        }
+    )
+
+
+def recorded(fits: Sequence[FitResult]) -> tuple[tuple[ParameterModel, ...], list[str]]:
+    """The models of some fits, and notes on those that repeat a response over the same variables.
+
+    Of such models the earliest in the plan counts, as with coefficients. A fit of area coefficients names the area in
+    its settings ``area`` (m^2) and ``area_name``.
+    """
+    out: dict[tuple[str, tuple[str, ...]], ParameterModel] = {}
+    notes = []
+    for f in fits:
+        area = None
+        if "area" in f.settings:
+            area = ModelArea(value=float(f.settings["area"]), name=f.settings["area_name"])
+        for model in f.models:
+            key = (model.response, model.domain.variables)
+            if key in out:
+                kept = out[key]
+                notes.append(
+                    f"{model.response} over {', '.join(key[1])}: {kept.form} of {kept.campaign} is kept, {model.form} of "
+                    f"{model.campaign} is in the report only"
+                )
+            else:
+                out[key] = record(model, area if model.unit == "1" else None)
+    return tuple(out.values()), notes
+
+
+def _written(
+    c: Coefficient, scaling: Scaling, conditions: Conditions, hull: AddedMass | None, density: float
+) -> ParameterCoefficient:
+    factor = scaling.factor(c.symbol, conditions)
+    return ParameterCoefficient(
+        symbol=primed(c.symbol),
+        value=c.value,
+        u95=c.u95,
+        unit="1",
+        value_si=None if c.value is None else c.value * factor,
+        unit_si=derivative(c.symbol).unit,
+        status=c.status.value,
+        origin=c.origin,
+        parts=UncertaintyParts(
+            random=c.parts.random, model_form=c.parts.model_form, window=c.parts.window, input=c.parts.input
+        ),
+        table=c.table,
+        campaign=c.campaign,
+        estimator=c.estimator,
+        window=c.window,
+        n_points=c.n_points,
+        citation=c.citation,
+        law=c.law,
+        potential=None
+        if hull is None or c.value is None or c.law == "rest"
+        else potential_part(c.symbol, hull, scaling, density),
+    )
+
+
+def _covered(tables: Sequence[ForceTable], length: float) -> tuple[CoveredRange, ...]:
+    out = []
+    for t in tables:
+        for variable in t.varies:
+            x = t.primed_motion(variable, length)
+            low, high = float(np.min(x)), float(np.max(x))
+            angle = variable in ("v", "w") and max(-low, high) <= 1.0
+            if angle:
+                low, high = float(np.arcsin(low)), float(np.arcsin(high))
+            unit: Literal["rad", "1"] = "rad" if angle or variable in t.controls else "1"
+            name = f"asin({variable}/U)" if angle else variable if variable in t.controls else f"{variable}'"
+            out.append(CoveredRange(variable=name, low=low, high=high, unit=unit, campaign=t.campaign))
+    return tuple(out)
+
+
+def _triple(values: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = map(float, values)
+    return x, y, z
+
+
+def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tuple[MassProperties | None, list[str]]:
+    """Mass properties about the set's reference point; none where only another datum or another axis leads there."""
+    shift = among.reference_point - body.reference_point
+    if body.datum != among.datum:
+        return None, [
+            f"mass properties left out: {body.name} counts from {shown(body.datum.id)}, the coefficients from "
+            f"{shown(among.datum.id)}"
+        ]
+    if np.any(np.abs(shift[1:]) > 1e-6):
+        return None, ["mass properties left out: the body states them about a point that no shift along x leads from"]
+    if abs(shift[0]) <= 1e-6:
+        return mass, []
+    dx = float(shift[0])
+    inertia = None if mass.inertia is None else mass.inertia - 2.0 * mass.mass_moment * dx + mass.mass * dx**2
+    centre = None if mass.centre is None else mass.centre - shift
+    matrix = None
+    if centre is not None and mass.centre is not None and mass.inertia_matrix is not None:
+        matrix = about_another(mass.inertia_matrix, mass.mass, mass.centre, centre)
+    moved = MassProperties(mass.mass, mass.mass_moment - mass.mass * dx, inertia, centre, matrix)
+    return moved, [f"mass properties moved by {dx:+.6g} m along x to the reference point"]
+
+
+def assemble(
+    group: PlannedParameterFile,
+    study: str,
+    fits: Sequence[FitResult],
+    tables: Sequence[ForceTable],
+    missing: Sequence[Coefficient],
+    references: Sequence[Reference],
+    body: Body | None,
+    conditions: Conditions,
+    inputs: Sequence[InputFile],
+    found: Triangulation | None = None,
+) -> ParameterFile:
+    """Build the parameter file of a group of campaigns.
+
+    Every force component comes from one fit, the first in the plan that gives it. Where two campaigns give one value
+    the earlier in the plan counts, and a note says so; a fitted value comes before literature, and a symbol that
+    neither gives is written with its status.
+
+    Parameters
+    ----------
+    group : PlannedParameterFile
+    study : str
+        Its name, for the provenance.
+    fits, tables, missing, references : sequence
+        Of the whole study: results, what they were fitted to, coefficients that were asked for and not found, published values.
+    body : Body or None
+    conditions : Conditions
+    inputs : sequence of InputFile
+        Files that were read.
+    found : Triangulation, optional
+        Added mass; the potential part by the recommended method is booked in every coefficient.
+
+    Raises
+    ------
+    ScalingMismatchError
+        Campaigns of another body, scaling or reference point; a shape of another datum.
+    """
+    chosen = [f for name in group.campaigns for f in fits if f.campaign == name]
+    if not chosen:
+        raise InputError(
+            "no campaign", "campaigns that the study fits", column=f"parameter_file.{group.name}.campaigns"
+        )
+    sets = [f.coefficients for f in chosen]
+    first = sets[0]
+    for s, f in zip(sets, chosen, strict=True):
+        first.scaling.require(s.scaling)
+        if f.body != group.body:
+            raise ScalingMismatchError(f"{f.campaign} is about {f.body}, the parameter file {group.name} {group.body}.")
+        if s.datum != first.datum:
+            raise ScalingMismatchError(
+                f"{chosen[0].campaign} measures points from {shown(first.datum.id)}, {f.campaign} from {shown(s.datum.id)}; "
+                "nothing says how far apart they are. Give both the same datum; words of explanation go into datum_note."
+            )
+        if not np.allclose(s.reference_point, first.reference_point, atol=1e-9):
+            raise ScalingMismatchError(
+                f"{f.campaign} and {chosen[0].campaign} have other reference points; give the study a reference_point."
+            )
+    coefficients, covariance, notes = gathered(group, chosen, missing, references)
+    models, repeated = recorded(chosen)
+    notes += repeated
+    if first.datum.note:
+        notes.append(f"points count from {first.datum}")
+    configuration = body.configuration(group.body) if body else None
+    mass = configuration.mass if configuration else None
+    if mass and body:
+        mass, note = _mass_about(mass, body, first)
+        notes += note
+    prime = mass.primed(first.scaling, conditions.density) if mass else (1.0, 0.0)
+    hull, record = None, None
+    if found is not None:
+        alike = likeness(
+            found.body, group.body, configuration, own_file=body is not None and body.files == found.body.files
+        )
+        shape, label = found.body, ""
+        if alike.same is False and shape.name == group.body:
+            label = f"{shape.name}, of another shape"
+        record = added_mass_record(found, first.reference_point, first.datum, group.body if alike.same else label)
+        hull = record.as_noun(first.reference_point.tolist(), first.datum)
+        if alike.same is None:
+            notes.append(
+                f"added mass is that of {shape.name}, the coefficients are those of {group.body}: whether both are one body is "
+                f"not known ({alike.words})"
+            )
+        elif not alike.same:
+            notes.append(
+                f"added mass is that of {shape.name}, the coefficients are those of {group.body}: their potential parts are "
+                f"those of another shape ({alike.words})"
+            )
+        elif shape.name != group.body:
+            notes.append(
+                f"added mass of {group.body} computed from the shape {shape.name} ({shape.title}): {alike.words}"
+            )
+    return ParameterFile(
+        name=group.name,
+        body=group.body,
+        scaling=ParameterScaling(length=first.scaling.length, length_name=first.scaling.length_name),
+        reference_point=ParameterPoint(point=tuple(map(float, first.reference_point)), datum=first.datum.id),
+        conditions=ParameterConditions(
+            density=conditions.density, speed=conditions.speed, viscosity=conditions.viscosity
+        ),
+        mass=ParameterMass(
+            mass=mass.mass,
+            mass_moment=mass.mass_moment,
+            inertia=mass.inertia,
+            mass_prime=prime[0],
+            mass_moment_prime=prime[1],
+            centre=None if mass.centre is None else _triple(mass.centre),
+            inertia_matrix=None
+            if mass.inertia_matrix is None
+            else (
+                _triple(mass.inertia_matrix[0]),
+                _triple(mass.inertia_matrix[1]),
+                _triple(mass.inertia_matrix[2]),
+            ),
+        )
+        if mass
+        else None,
+        coefficients=tuple(
+            _written(c, first.scaling, conditions, hull, found.density if found else 0.0) for c in coefficients
+        ),
+        covariance=ParameterCovariance(
+            symbols=tuple(primed(c.symbol) for c in coefficients),
+            matrix=tuple(tuple(None if np.isnan(v) else float(v) for v in row) for row in covariance),
+        ),
+        covered=_covered([t for t in tables if any(t.campaign in f.campaigns for f in chosen)], first.scaling.length),
+        models=models,
+        added_mass=record,
+        provenance=Provenance(
+            coeflab_version=VERSION,
+            study=study,
+            inputs=tuple(InputRecord(name=i.name, sha256=i.sha256) for i in inputs),
+            citations=tuple(
+                dict.fromkeys(
+                    [k for c in coefficients if c.citation for k in c.citation.split(", ")]
+                    + [k for f in chosen for k in f.citations]
+                )
+            ),
+            notes=tuple(notes),
+        ),
+    )
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class PlannedParameterFile:
+    """One ``[[parameter_file]]``: which campaigns, which literature and whose added mass it holds.
+
+    Attributes
+    ----------
+    name, body : str
+    campaigns, literature : tuple of str
+    hull : Path or None
+        The body.toml of the added mass.
+    method : str
+        ``all`` recommends one by the stated rule, else a method's name.
+    """
+
+    name: str
+    body: str
+    campaigns: tuple[str, ...]
+    literature: tuple[str, ...]
+    hull: Path | None = None
+    method: str = "all"

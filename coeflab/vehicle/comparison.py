@@ -1,0 +1,441 @@
+"""Two parameter files side by side: brought to one length and one reference point, then held against their U95.
+
+Which data tables two results of two parameter files have in common, and the verdicts of a comparison.
+
+Fitted tables of two parameter files side by side, on a grid inside the data of both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Protocol
+
+import numpy as np
+
+from coeflab.core.machine import one_thread
+from coeflab.core.types import Array, brief
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status, transfer_matrix
+from coeflab.law.domain import clamped, inside
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import ANGULAR, primed
+from coeflab.vehicle.parameter_file import ParameterFile, Provenance
+from coeflab.vehicle.parameter_model import ParameterModel
+
+
+class Verdict(StrEnum):
+    """What the difference of two coefficients says."""
+
+    WITHIN = "within"
+    APART = "apart"
+    NOT_COMPARABLE = "not comparable"
+
+
+class FromTable(Protocol):
+    """Something fitted, with the table and campaign it comes from: comma lists where there are several."""
+
+    @property
+    def table(self) -> str | None:
+        """``campaign/file.csv``."""
+
+    @property
+    def campaign(self) -> str | None:
+        """Name of the campaign."""
+
+
+def _hashes(of: FromTable, provenance: Provenance) -> dict[str, str]:
+    """Names by sha256 of the tables behind a result; declarations are no data."""
+    tables = set((of.table or "").split(", ")) | {of.table}
+    found = {i.sha256: i.name for i in provenance.inputs if i.name in tables}
+    if found or not of.campaign:
+        return found
+    folders = {*of.campaign.split(", "), of.campaign}
+    inputs = [i for i in provenance.inputs if not i.name.endswith(".toml")]
+    return {i.sha256: i.name for i in inputs if i.name.rpartition("/")[0] in folders}
+
+
+def shared_tables(a: FromTable, b: FromTable, inputs_a: Provenance, inputs_b: Provenance) -> tuple[str, ...]:
+    """Tables with the same bytes behind both, by the first file's names.
+
+    A result names its table; where it does not, or not as the file's provenance does, all tables of its campaign count.
+
+    Parameters
+    ----------
+    a, b : FromTable
+        Results of the two files.
+    inputs_a, inputs_b : Provenance
+        Of the two files.
+    """
+    ours, theirs = _hashes(a, inputs_a), _hashes(b, inputs_b)
+    return tuple(sorted({name for sha256, name in ours.items() if sha256 in theirs}))
+
+
+MOST = 2000  # points of the grid: a share to half a per cent
+SHARE = 0.95  # of them, as the half-widths are of 95 %
+MOMENTS = frozenset("KMNlmn")
+SAME = 1e-9
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class ComparedModel:
+    """One response over the same variables in two files, in the units, area and length of the first.
+
+    Attributes
+    ----------
+    response : str
+    variables : tuple of str
+    n_points : int
+        Points of the grid inside both domains at which both models have a value.
+    rms, largest : float or None
+        Of the difference, second minus first.
+    at : mapping of variable to float
+        Where the largest difference is; angles in radians.
+    combined : float or None
+        Root mean square over the grid of the root sum of squares of both 95 % half-widths, taken as independent.
+    share : float or None
+        Of the points with both half-widths, those whose difference is within the combined one.
+    verdict : Verdict
+        ``within`` where that share is at least `SHARE`. The half-widths hold point by point, not for a whole curve.
+    reason : str
+        Why not comparable, or what to keep in mind.
+    shared : tuple of str
+        Tables behind both.
+    """
+
+    response: str
+    variables: tuple[str, ...]
+    n_points: int = 0
+    rms: float | None = None
+    largest: float | None = None
+    at: Mapping[str, float] | None = None
+    combined: float | None = None
+    share: float | None = None
+    verdict: Verdict = Verdict.NOT_COMPARABLE
+    reason: str = ""
+    shared: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Response and variables."""
+        return f"{self.response} over {', '.join(self.variables)}"
+
+
+def compare_models(a: ParameterFile, b: ParameterFile) -> tuple[ComparedModel, ...]:
+    """Every fitted table of either file: compared where both have the response over the same variables."""
+    ours, theirs = ({(m.response, frozenset(m.names)): m for m in f.models} for f in (a, b))
+    out = []
+    for key in dict.fromkeys((*ours, *theirs)):
+        first, second = ours.get(key), theirs.get(key)
+        if first is None or second is None:
+            only = second if first is None else first
+            which = "first" if first is None else "second"
+            if only is not None:
+                out.append(ComparedModel(only.response, only.names, reason=f"not in the {which} file"))
+        else:
+            out.append(_compared(first, second, a, b))
+    return tuple(out)
+
+
+def _compared(first: ParameterModel, second: ParameterModel, a: ParameterFile, b: ParameterFile) -> ComparedModel:
+    blank = ComparedModel(first.response, first.names)
+    if why := _obstacle(first, second, a, b):
+        return replace(blank, reason=why)
+    blank = replace(blank, shared=shared_tables(first, second, a.provenance, b.provenance))
+    factor, rates = _factors(first, second, a.scaling.length, b.scaling.length)
+    columns = _common_grid(first, second, rates)
+    if not len(columns[first.names[0]]):
+        return replace(blank, reason="the domains have no point of the grid in common")
+    value_a, half_a, _ = first.evaluate(columns)
+    value_b, half_b, _ = second.evaluate({v: x * rates.get(v, 1.0) for v, x in columns.items()})
+    difference, combined = factor * value_b - value_a, np.hypot(half_a, factor * half_b)
+    known = np.isfinite(difference)
+    sure = known & np.isfinite(combined)
+    if not np.any(known):
+        return replace(blank, reason="nowhere in common do both have a value")
+    worst = int(np.nanargmax(np.abs(difference)))
+    found = replace(
+        blank,
+        n_points=int(np.sum(known)),
+        rms=_rms(difference[known]),
+        largest=float(difference[worst]),
+        at={v: float(x[worst]) for v, x in columns.items()},
+    )
+    said = []
+    if factor != 1.0 or rates:
+        said.append("second converted to the area and length of the first")
+    said += [f"terms of the {n} chosen on its data" for n, m in (("first", first), ("second", second))
+             if m.post_selection]  # fmt: skip
+    if not np.any(sure):
+        return replace(found, reason="; ".join(["no interval on one side", *said]))
+    share = float(np.mean(np.abs(difference[sure]) <= combined[sure]))
+    if found.shared:
+        said.append("same data, intervals not independent")
+    return replace(
+        found,
+        combined=_rms(combined[sure]),
+        share=share,
+        verdict=Verdict.WITHIN if share >= SHARE else Verdict.APART,
+        reason="; ".join(said),
+    )
+
+
+def _rms(x: Array) -> float:
+    return float(np.sqrt(np.mean(x**2)))
+
+
+def _moment(response: str) -> bool:
+    return response.removeprefix("C_").split("/")[0].removesuffix("'").split(" ")[0] in MOMENTS
+
+
+def _obstacle(first: ParameterModel, second: ParameterModel, a: ParameterFile, b: ParameterFile) -> str:
+    """Why two models cannot be compared; empty if they can."""
+    units_a, units_b = ({v.name: v.unit for v in m.variables} for m in (first, second))
+    if first.unit != second.unit or units_a != units_b:
+        return "in other units"
+    if first.unit != "1" and abs(a.conditions.density / b.conditions.density - 1.0) > SAME:
+        return "dimensional, at other densities"
+    if (first.area is None) != (second.area is None):
+        return "only one states its area"
+    longer = abs(a.scaling.length / b.scaling.length - 1.0) > SAME
+    if first.unit == "1" and first.area is None and longer:
+        return "no area stated, and other lengths"
+    if _moment(first.response) or set(first.names) & set(ANGULAR):
+        here, there = a.reference_point, b.reference_point
+        if here.origin != there.origin:
+            return "the reference points are measured from other datums"
+        if not np.allclose(here.point, there.point, rtol=0.0, atol=SAME):
+            return "about other reference points: moments and rates of a table are not transferred"
+    return ""
+
+
+def _factors(
+    first: ParameterModel, second: ParameterModel, length_a: float, length_b: float
+) -> tuple[float, dict[str, float]]:
+    """What turns values of the second into the first's, and rates of the first into the second's, r' = r L/U."""
+    if first.unit != "1":
+        return 1.0, {}
+    area = second.area.value / first.area.value if first.area and second.area else 1.0
+    longer = length_b / length_a
+    rates = {v: longer for v in first.names if v in ANGULAR and longer != 1.0}
+    return area * (longer if _moment(first.response) else 1.0), rates
+
+
+def _common_grid(first: ParameterModel, second: ParameterModel, rates: Mapping[str, float]) -> dict[str, Array]:
+    """A regular grid of at most `MOST` points over the common box, those inside both convex hulls; first's units.
+
+    Data on an oblique line or plane meet no grid; the grid is then moved to the nearest points of the first hull.
+    """
+    names = first.names
+    order = [second.names.index(v) for v in names]
+    scale = np.array([rates.get(v, 1.0) for v in names])
+    low = np.maximum(first.domain.low, np.array(second.domain.low)[order] / scale)
+    high = np.minimum(first.domain.high, np.array(second.domain.high)[order] / scale)
+    if np.any(high < low):
+        return {v: np.zeros(0) for v in names}
+    each = int(MOST ** (1.0 / max(1, int(np.sum(high > low)))) + 1e-9)
+    axes = [np.linspace(p, q, each) if q > p else np.array([p]) for p, q in zip(low, high, strict=True)]
+    grid = np.column_stack([x.ravel() for x in np.meshgrid(*axes, indexing="ij")])
+    spaces_a, spaces_b = (np.array(m.domain.half_spaces).reshape(-1, len(names) + 1) for m in (first, second))
+
+    def common(points: Array) -> Array:
+        at_b = (points * scale)[:, np.argsort(order)]
+        return points[np.logical_and(inside(spaces_a, points), inside(spaces_b, at_b))]
+
+    kept = common(grid)
+    if not len(kept):
+        kept = common(clamped(grid, spaces_a, np.array(first.domain.low), np.array(first.domain.high)))
+    return dict(zip(names, kept.T, strict=True))
+
+
+SAME_POINT = 1e-9
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """One coefficient of two files, primed by the first file's length about its point.
+
+    Attributes
+    ----------
+    symbol : str
+        With prime.
+    a, b, u95_a, u95_b : float or None
+    difference : float or None
+        b - a.
+    combined : float or None
+        Root sum of squares of both U95, taken as independent.
+    verdict : Verdict
+    reason : str
+        Why not comparable, or what to keep in mind.
+    shared : tuple of str
+        Tables behind both values.
+    """
+
+    symbol: str
+    a: float | None
+    b: float | None
+    u95_a: float | None
+    u95_b: float | None
+    difference: float | None
+    combined: float | None
+    verdict: Verdict
+    reason: str
+    shared: tuple[str, ...] = ()
+
+    @property
+    def ratio(self) -> float | None:
+        """Absolute difference over the combined uncertainty."""
+        return abs(self.difference) / self.combined if self.difference is not None and self.combined else None
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two parameter files.
+
+    Attributes
+    ----------
+    a, b : str
+        Names of the files' contents.
+    same_body : bool
+    rows : tuple of Compared
+    statements : tuple of str
+        What was converted, what else differs, and which data are behind both.
+    models : tuple of ComparedModel
+        Fitted tables.
+    """
+
+    a: str
+    b: str
+    same_body: bool
+    rows: tuple[Compared, ...]
+    statements: tuple[str, ...]
+    models: tuple[ComparedModel, ...] = ()
+
+    @property
+    def disagrees(self) -> bool:
+        """Whether files of one body are apart in anything; different bodies owe each other nothing."""
+        return self.same_body and Verdict.APART in (*(r.verdict for r in self.rows), *(m.verdict for m in self.models))
+
+
+def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
+    """The coefficients of a parameter file as a set with covariance; those without U95 have NaN rows."""
+    listed = {s: i for i, s in enumerate(parameters.covariance.symbols)}
+    k = len(parameters.coefficients)
+    covariance = np.full((k, k), np.nan)
+    for i, c in enumerate(parameters.coefficients):
+        for j, d in enumerate(parameters.coefficients):
+            if c.symbol in listed and d.symbol in listed:
+                cell = parameters.covariance.matrix[listed[c.symbol]][listed[d.symbol]]
+                covariance[i, j] = np.nan if cell is None else cell
+        if c.symbol not in listed and c.u95 is not None:
+            covariance[i, :] = covariance[:, i] = 0.0
+            covariance[i, i] = (c.u95 / 2.0) ** 2
+    return CoefficientSet(
+        tuple(
+            Coefficient(
+                c.symbol.removesuffix("'"), c.value, c.u95, Status(c.status), parameters.body, origin=c.origin,
+                table=c.table, campaign=c.campaign, citation=c.citation,
+            )
+            for c in parameters.coefficients
+        ),
+        covariance,
+        Scaling(parameters.scaling.length, parameters.scaling.length_name),
+        np.array(parameters.reference_point.point),
+        parameters.reference_point.origin,
+        parameters.body,
+    )  # fmt: skip
+
+
+@one_thread()
+def compare(a: ParameterFile, b: ParameterFile) -> Comparison:
+    """Hold the second file against the first.
+
+    The second is primed by the first one's length and moved to its reference point where both are measured from one
+    datum. Differences of other bodies are shown, with a statement that they are of other bodies.
+    """
+    ours, theirs = coefficient_set(a), coefficient_set(b)
+    said = []
+    if a.body != b.body:
+        said.append(f"different bodies, {a.body} and {b.body}: a difference may be the body as well as an error")
+    if abs(ours.scaling.length / theirs.scaling.length - 1.0) > 1e-9:
+        said.append(f"{b.name} converted from {theirs.scaling} to {ours.scaling}")
+    theirs = theirs.to_length(ours.scaling)
+    moved = theirs
+    same_datum = ours.datum == theirs.datum
+    if not same_datum:
+        said.append(
+            f'reference points are measured from other datums, "{ours.datum.id}" and "{theirs.datum.id}": moments and rates '
+            "are not comparable"
+        )
+    elif not np.allclose(ours.reference_point, theirs.reference_point, rtol=0.0, atol=SAME_POINT):
+        at = ", ".join(f"{x:g}" for x in ours.reference_point)
+        said.append(f"{b.name} moved to the reference point of {a.name}, ({at}) m")
+        moved = theirs.about(ours.reference_point)
+    behind = _contributors(theirs, moved)
+    rows = []
+    for symbol in dict.fromkeys((*ours.symbols, *theirs.symbols)):
+        row = _row(symbol, ours, theirs, moved, same_datum)
+        if row.difference is not None:
+            first = ours[symbol]
+            pairs = [shared_tables(first, c, a.provenance, b.provenance) for c in behind[symbol] if c.origin == "fit"]
+            shared = tuple(sorted({t for p in pairs for t in p})) if first.origin == "fit" else ()
+            row = replace(
+                row, shared=shared, reason=row.reason or (f"both rest on {', '.join(shared)}" if shared else "")
+            )
+        rows.append(row)
+    models = compare_models(a, b)
+    alike: dict[str, list[str]] = {}
+    for name, tables in [(r.symbol, r.shared) for r in rows] + [(m.name, m.shared) for m in models]:
+        for table in tables:
+            alike.setdefault(table, []).append(name)
+    said += [
+        f"{table} is behind {'; '.join(names)} of both files: their errors are not independent"
+        for table, names in alike.items()
+    ]
+    return Comparison(a.name, b.name, a.body == b.body, tuple(rows), tuple(said), models)
+
+
+def _contributors(before: CoefficientSet, moved: CoefficientSet) -> dict[str, list[Coefficient]]:
+    """The coefficients that each one consists of after a move of the reference point."""
+    shift = (moved.reference_point - before.reference_point) / before.scaling.length
+    matrix, _ = transfer_matrix(before.symbols, before.available, shift)
+    return {
+        s: [c for c, weight in zip(before.coefficients, row, strict=True) if weight != 0.0 or c.symbol == s]
+        for s, row in zip(before.symbols, matrix, strict=True)
+    }
+
+
+def _row(
+    symbol: str, ours: CoefficientSet, theirs: CoefficientSet, moved: CoefficientSet, same_datum: bool
+) -> Compared:
+    a, b, before = (next((c for c in s.coefficients if c.symbol == symbol), None) for s in (ours, moved, theirs))
+    why = ""
+    for name, c in (("first", a), ("second", b)):
+        if c is None:
+            why = why or f"not in the {name} file"
+        elif c.value is None and not (name == "second" and before is not None and before.value is not None):
+            why = why or f"no value in the {name} file ({c.status.replace('_', ' ')})"
+    if not why and b is not None and b.value is None:
+        why = "its move to the other reference point needs coefficients that the second file does not give"
+    if not why and not same_datum and _feels_the_point(symbol):
+        why = "the reference points are measured from other datums"
+    value_a, value_b = None if a is None else a.value, None if b is None else b.value
+    u95_a, u95_b = None if a is None else a.u95, None if b is None else b.u95
+    difference = value_b - value_a if not why and value_a is not None and value_b is not None else None
+    combined = float(np.hypot(u95_a, u95_b)) if u95_a is not None and u95_b is not None else None
+    if not why and combined is None:
+        why = "no U95 on one side"
+    verdict = Verdict.NOT_COMPARABLE
+    if not why and difference is not None and combined is not None:
+        verdict = Verdict.WITHIN if abs(difference) <= combined else Verdict.APART
+        if a is not None and b is not None and a.origin == b.origin == "literature" and a.citation == b.citation:
+            why = f"both quoted from {a.citation}"
+    return Compared(primed(symbol), value_a, value_b, u95_a, u95_b, difference, combined, verdict, why)
+
+
+def _feels_the_point(symbol: str) -> bool:
+    """Moments and derivatives by rates change with the reference point; forces by velocities do not."""
+    return symbol[0] in "KMN" or any(letter in symbol[1:] for letter in "pqr" if f"d{letter}" not in symbol)

@@ -1,0 +1,189 @@
+"""Quantities made of several coefficients: centre of pressure and stability indices, with their uncertainty.
+
+Linear propagation with covariance beside Monte Carlo of the same function. Both are ratios: where the interval of a
+denominator holds zero, neither is an interval, and none is given.
+
+Directional stability indices of a submerged body, with their first-order uncertainty.
+
+Feldman (1979); Roddy (1990) Table 4: G = 1 - N_v (Y_r - m) / [Y_v (N_r - x_G m)], all primed; positive is stable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from coeflab.core.table import number
+from coeflab.core.types import Array, brief
+from coeflab.fits.uncertainty.propagation import Propagated, propagate, reaches_zero
+from coeflab.law.coefficient import CoefficientSet
+from coeflab.law.symbols import primed
+from coeflab.vehicle.parameter_file import ParameterFile
+
+
+def stability_index(
+    force_slope: Array, moment_slope: Array, force_rate: Array, moment_rate: Array, mass: float, mass_moment: float
+) -> Array:
+    """G_h from (Yv', Nv', Yr', Nr', m', xG'm'), numbers or arrays of one shape.
+
+    For G_v pass (Zw', Mw', Zq', Mq', -m', xG'm'): there the mass term changes its sign, G_v = 1 - Mw'(Zq' + m') /
+    [Zw'(Mq' - xG'm')], the limit of high speed without restoring moment.
+    """
+    lever = moment_slope * (np.asarray(force_rate) - mass)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        return np.asarray(1.0 - lever / (force_slope * (np.asarray(moment_rate) - mass_moment)))
+
+
+def index_gradient(
+    force_slope: float, moment_slope: float, force_rate: float, moment_rate: float, mass: float, mass_moment: float
+) -> Array:
+    """Derivatives of the index by its first four arguments, shape (4,); not finite where a denominator is zero."""
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        slope, lever = np.float64(force_slope), np.float64(moment_slope)
+        a, b = force_rate - mass, np.float64(moment_rate - mass_moment)
+        product = lever * a / (slope * b)
+        return np.array([product / slope, -a / (slope * b), -lever / (slope * b), product / b])
+
+
+CENTRES = {"Nv'/Yv'": ("Nv", "Yv", 1.0), "-Mw'/Zw'": ("Mw", "Zw", -1.0)}
+INDICES = {"G_h": ("Yv'", "Nv'", "Yr'", "Nr'", 1.0), "G_v": ("Zw'", "Mw'", "Zq'", "Mq'", -1.0)}
+FAST = "at high speed"
+DRAWS, SEED = 20_000, 1
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Derived:
+    """One quantity.
+
+    Attributes
+    ----------
+    name, subject : str
+        ``subject`` is the campaign or parameter file.
+    value : float
+    result : Propagated or None
+        None where no interval can be given.
+    statement : str
+        Why not, or how far the two half-widths agree.
+    """
+
+    name: str
+    subject: str
+    value: float
+    result: Propagated | None
+    statement: str
+
+
+def sense(index: Derived) -> str:
+    """What a stability index says: not determined where its interval holds zero, by its value alone where there is none.
+
+    G_v leaves out the restoring moment, so that it speaks of high speed only.
+    """
+    by_value = "stable" if index.value > 0.0 else "unstable"
+    by_value += f" {FAST}" if index.name == "G_v" else ""
+    if index.result is None:
+        return f"{by_value} by its value alone"
+    return by_value if abs(index.value) > index.result.linear else "not determined"
+
+
+def without_restoring(parameters: ParameterFile) -> str:
+    """What G_v leaves out, a sentence."""
+    said = "G_v is the limit of high speed, without the restoring moment of weight and buoyancy"
+    if parameters.hydrostatics is None:
+        speed = number(parameters.conditions.speed, 3)
+        said += f"; at {speed} m/s the vertical plane is not determined, as BG is not known"
+    return f"{said}."
+
+
+def by_mass(parameters: ParameterFile, index: Derived, share: float = 0.01) -> float:
+    """How much an index of `stability` changes where the mass is larger by a share, about the same centre of gravity."""
+    *symbols, sign = INDICES[index.name]
+    chosen = [c for s in symbols if (c := parameters.coefficient(str(s)))]
+    if parameters.mass is None:
+        return 0.0
+    slope, lever, rate, moment_rate = (np.array(float(c.value or 0.0)) for c in chosen)
+    mass, moment = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
+    more = stability_index(slope, lever, rate, moment_rate, mass * (1.0 + share), moment * (1.0 + share))
+    return float(more) - index.value
+
+
+def centre_of_pressure(
+    among: CoefficientSet, subject: str, draws: int = DRAWS, seed: int = SEED
+) -> tuple[Derived, ...]:
+    """x/L = Nv'/Yv' and -Mw'/Zw', forward of the reference point, of the planes that a set has."""
+    whole = among.covariance
+    out = []
+    for name, (moment, force, sign) in CENTRES.items():
+        if any(s not in among or among[s].value is None for s in (moment, force)):
+            continue
+        at = [among.symbols.index(s) for s in (moment, force)]
+        m, f = (float(among.coefficients[i].value or 0.0) for i in at)
+        if f == 0.0:
+            continue
+        cells = whole[np.ix_(at, at)]
+        gradient = sign * np.array([1.0 / f, -m / f**2])
+
+        def ratio(d: Array, m: float = m, f: float = f, sign: float = sign) -> Array:
+            return np.asarray(sign * (m + d[:, 0]) / (f + d[:, 1]))
+
+        denominators = [(primed(force), f, 2.0 * float(cells[1, 1]) ** 0.5)]
+        out.append(_derived(name, subject, sign * m / f, ratio, gradient, cells, denominators, draws, seed))
+    return tuple(out)
+
+
+def stability(parameters: ParameterFile, draws: int = DRAWS, seed: int = SEED) -> tuple[Derived, ...]:
+    """G_h and G_v of a parameter file that has the mass and all four derivatives of a plane."""
+    out = []
+    for name, (*symbols, sign) in INDICES.items():
+        chosen = [c for s in symbols if (c := parameters.coefficient(str(s))) is not None and c.value is not None]
+        if parameters.mass is None or len(chosen) < len(symbols):
+            continue
+        values = np.array([float(c.value or 0.0) for c in chosen])
+        mass, moment = float(sign) * parameters.mass.mass_prime, parameters.mass.mass_moment_prime
+        place = {s: i for i, s in enumerate(parameters.covariance.symbols)}
+        rows = [place.get(c.symbol) for c in chosen]
+        cells = [[None if i is None or j is None else parameters.covariance.matrix[i][j] for j in rows] for i in rows]
+        whole = np.array([[np.nan if v is None else v for v in row] for row in cells])
+        gradient = index_gradient(
+            float(values[0]), float(values[1]), float(values[2]), float(values[3]), mass, moment
+        )  # fmt: skip
+
+        def index(d: Array, at: Array = values, mass: float = mass, moment: float = moment) -> Array:
+            force_slope, moment_slope, force_rate, moment_rate = (at + d).T
+            return stability_index(force_slope, moment_slope, force_rate, moment_rate, mass, moment)
+
+        halves = 2.0 * np.sqrt(np.diag(whole))
+        denominators = [
+            (chosen[0].symbol, float(values[0]), float(halves[0])),
+            (f"{chosen[3].symbol} - xG'm'", float(values[3]) - moment, float(halves[3])),
+        ]
+        value = float(index(np.zeros((1, 4)))[0])
+        out.append(_derived(name, parameters.name, value, index, gradient, whole, denominators, draws, seed))
+    return tuple(out)
+
+
+def _derived(
+    name: str,
+    subject: str,
+    value: float,
+    function: Callable[[Array], Array],
+    gradient: Array,
+    cells: Array,
+    denominators: Sequence[tuple[str, float, float]],
+    draws: int,
+    seed: int,
+) -> Derived:
+    if not np.all(np.isfinite(cells)):
+        return Derived(name, subject, value, None, "no interval: a coefficient in it has no U95")
+    for label, size, half in denominators:
+        if reaches_zero(size, half):
+            text = f"no interval: that of the denominator {label} = {size:.3g} +- {half:.2g} holds zero"
+            return Derived(name, subject, value, None, text)
+    result = propagate(function, gradient, cells, draws, seed)
+    apart = abs(result.linear / result.monte_carlo - 1.0) if result.monte_carlo > 0.0 else 0.0
+    text = f"linear and Monte Carlo half-widths differ by {100.0 * apart:.1f} %"
+    if apart > 0.1:
+        text += ": the interval is skew, read the percentiles"
+    return Derived(name, subject, value, result, text)

@@ -1,0 +1,378 @@
+"""The parameter file: JSON, one body, one scaling, one reference point.
+
+The models below are the schema; ``parameter_file.schema.json`` beside them is generated from them.
+
+Versions of the parameter file: what came when, and files of earlier versions written as such.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, Field, ValidationError, model_validator
+from pydantic.fields import FieldInfo
+
+from coeflab.core.axes import Datum
+from coeflab.core.errors import CoeflabError, InputError, shown
+from coeflab.core.limits import JSON_BYTES
+from coeflab.core.text.json import parse_json
+from coeflab.core.text.toml import read_text
+from coeflab.core.wording import repeated
+from coeflab.law.added_mass import potential_part
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.report.tables import nouns as noun_tables
+from coeflab.vehicle.parameter_model import ParameterModel
+from coeflab.vehicle.parameter_parts import (
+    Finite,
+    Name,
+    ParameterAddedMass,
+    ParameterCoefficient,
+    ParameterCovariance,
+    ParameterHydrostatics,
+    ParameterMass,
+    ParameterSurface,
+    ParameterThruster,
+    Positive,
+    Strict,
+    Words,
+    told,
+)
+
+VERSIONS = {
+    "1.0": "Coefficients with uncertainty and covariance, scaling, conditions, mass, covered ranges, provenance.",
+    "1.1": "Fitted tables and force laws (models).",
+    "1.2": "Added mass and the potential part of every coefficient; damping about a state of rest; centre of gravity and "
+    "inertia matrix; what the half-widths of models hold; the status form_assumed.",
+    "1.3": "Buoyancy, gravity, thrusters and the limits of control surfaces.",
+}
+_MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)
+FIRST_VERSION, SCHEMA_VERSION = next(iter(VERSIONS)), next(reversed(VERSIONS))
+
+
+def since(field: FieldInfo) -> str:
+    """The version that brought a field."""
+    extra = field.json_schema_extra
+    return str(extra["since"]) if isinstance(extra, dict) and "since" in extra else FIRST_VERSION
+
+
+def is_later(version: str, other: str) -> bool:
+    """Whether a version came after another."""
+    return tuple(map(int, version.split("."))) > tuple(map(int, other.split(".")))
+
+
+def readable(version: object, file: Path) -> str:
+    """The version that a file states.
+
+    Raises
+    ------
+    InputError
+        None, or not one of the first digit that is read here.
+    """
+    if isinstance(version, str) and _MINOR.fullmatch(version):
+        return version
+    raise InputError(
+        "no schema_version" if version is None else f"schema_version {shown(version)}",
+        f"{FIRST_VERSION} to {SCHEMA_VERSION}, which this release of coeflab reads", file=file, column="schema_version",
+        advice="Is it a parameter file of coeflab?" if version is None else "Read it with the release that wrote it.",
+    )  # fmt: skip
+
+
+def advice(version: str) -> str:
+    """What to do about a file that is refused."""
+    if not is_later(version, SCHEMA_VERSION):
+        return ""
+    return f"Update coeflab, or have the file written as version {SCHEMA_VERSION}."
+
+
+def without(content: Any, places: Sequence[Sequence[int | str]]) -> Any:
+    """A copy of JSON content without the keys at these places."""
+    out = copy.deepcopy(content)
+    for *path, last in places:
+        holder = out
+        for key in path:
+            holder = holder[key]
+        del holder[last]
+    return out
+
+
+def too_new(model: BaseModel, version: str) -> str:
+    """The first field with a value of its own that came after a version, in words; empty where there is none."""
+    for name, field in type(model).model_fields.items():
+        value = getattr(model, name)
+        if is_later(since(field), version):
+            if value != field.get_default(call_default_factory=True):
+                return f"{name} came with version {since(field)}; this file says {version}"
+        else:
+            for part in value if isinstance(value, tuple) else (value,):
+                found = too_new(part, version) if isinstance(part, BaseModel) else ""
+                if found:
+                    return f"{name}.{found}"
+    return ""
+
+
+def as_of(version: str, model: BaseModel) -> dict[str, Any]:
+    """The JSON content of a model without the fields that came after a version."""
+    return _without_later(model, model.model_dump(mode="json"), version)
+
+
+def _without_later(model: BaseModel, content: dict[str, Any], version: str) -> dict[str, Any]:
+    return {
+        name: _inside(getattr(model, name), content[name], version)
+        for name, field in type(model).model_fields.items()
+        if not is_later(since(field), version)
+    }
+
+
+def _inside(value: Any, content: Any, version: str) -> Any:
+    if isinstance(value, BaseModel):
+        return _without_later(value, content, version)
+    if isinstance(value, tuple):
+        return [_inside(v, c, version) for v, c in zip(value, content, strict=True)]
+    return content
+
+
+SCHEMA_FILE = Path(__file__).with_name("parameter_file.schema.json")
+
+
+class ParameterScaling(Strict):
+    """Length of the primes."""
+
+    length: Annotated[Positive, told("length L of the primes", "m")]
+    length_name: Annotated[Words, told("which length it is, for example LBP or LOA")]
+
+
+class ParameterConditions(Strict):
+    """Conditions of the dimensional values."""
+
+    density: Annotated[Positive, told("density rho of the water", "kg/m^3")]
+    speed: Annotated[Positive, told("speed U at the reference point", "m/s")]
+    viscosity: Annotated[Positive | None, told("kinematic", "m^2/s")] = None
+
+
+class ParameterPoint(Strict):
+    """Point that moments, rates and mass moments refer to."""
+
+    point: Annotated[tuple[Finite, Finite, Finite], told("x y z from the datum, in `axes`", "m")]
+    datum: Annotated[
+        Words,
+        told(
+            "id of the point of the body that points are measured from, for example nose, cg or midship; compared letter by letter"
+        ),
+    ]
+    axes: Annotated[Literal["FRD"], told("x forward, y starboard, z down")] = "FRD"
+
+    @property
+    def origin(self) -> Datum:
+        """The datum; phrases of files up to 1.3 stand for ids, as in `coeflab.core.axes`."""
+        return Datum.named(self.datum)
+
+
+class CoveredRange(Strict):
+    """Range of a motion variable that a campaign covers."""
+
+    variable: Annotated[Name, told("asin(v/U) and asin(w/U) as angles; r' = r L/U and other primes; dr ds db")]
+    low: Annotated[Finite, told("lowest value", "see unit")]
+    high: Annotated[Finite, told("highest value", "see unit")]
+    unit: Annotated[Literal["rad", "1"], told("of low and high")]
+    campaign: Annotated[str, told("which campaign covers it")]
+
+
+class InputRecord(Strict):
+    """A file that went in."""
+
+    name: Annotated[str, told("file name")]
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$"), told("of its bytes, hexadecimal")]
+
+
+class Provenance(Strict):
+    """Where it all comes from."""
+
+    coeflab_version: Annotated[str, told("release that wrote the file")]
+    study: Annotated[str, told("name of the study, or of the model file that was read")]
+    inputs: Annotated[tuple[InputRecord, ...], told("every file that went in")]
+    citations: Annotated[tuple[str, ...], told("keys of the works that methods and values rest on")]
+    notes: Annotated[tuple[str, ...], told("what a reader has to know, in words")] = ()
+
+
+class ParameterFile(Strict):
+    """Hydrodynamic coefficients of one body with uncertainty and provenance."""
+
+    schema_version: Annotated[str, Field(pattern=r"^1\.\d+$"), told("version of this schema that the file follows")] = (
+        SCHEMA_VERSION
+    )
+    name: Annotated[Words, told("name of the set of coefficients; exports are named after it")]
+    body: Annotated[Words, told("the vehicle, and in which configuration")]
+    scaling: Annotated[ParameterScaling, told("the prime system: Y' = Y / (1/2 rho U^2 L^2), N' with L^3")]
+    reference_point: Annotated[ParameterPoint, told("where all moments and velocities are taken")]
+    conditions: Annotated[ParameterConditions, told("density and speed of the dimensional values")]
+    mass: Annotated[ParameterMass | None, told("mass properties; null where they are not known")]
+    coefficients: Annotated[tuple[ParameterCoefficient, ...], told("one entry a symbol, none twice")]
+    covariance: Annotated[ParameterCovariance, told("of the coefficients, as far as it is known")]
+    covered: Annotated[tuple[CoveredRange, ...], told("motions that the tables behind the coefficients cover")]
+    models: Annotated[tuple[ParameterModel, ...], told("fitted tables and force laws", since="1.1")] = ()
+    added_mass: Annotated[
+        ParameterAddedMass | None, told("added mass in unbounded fluid; null where it is not known", since="1.2")
+    ] = None
+    hydrostatics: Annotated[
+        ParameterHydrostatics | None,
+        told("buoyancy and gravity; null: neutrally buoyant, centres together", since="1.3"),
+    ] = None
+    thrusters: Annotated[tuple[ParameterThruster, ...], told("thrusters, none twice", since="1.3")] = ()
+    surfaces: Annotated[tuple[ParameterSurface, ...], told("limits of control surfaces, none twice", since="1.3")] = ()
+    provenance: Annotated[Provenance, told("where it all comes from")]
+
+    @model_validator(mode="after")
+    def _consistent(self) -> ParameterFile:
+        symbols = [c.symbol for c in self.coefficients]
+        twice = repeated(symbols)
+        if twice:
+            raise ValueError(f"{', '.join(twice)} stands more than once")
+        primes = Scaling(self.scaling.length, self.scaling.length_name)
+        at = Conditions(self.conditions.density, self.conditions.speed)
+        for c in self.coefficients:
+            if c.value is None or c.value_si is None:
+                continue
+            si = c.value * primes.factor(c.symbol, at)
+            if not math.isclose(c.value_si, si, rel_tol=1e-6, abs_tol=1e-12 * abs(si)):
+                raise ValueError(f"{c.symbol}: value_si {c.value_si:g} is not its value at these conditions, {si:g}")
+        unknown = sorted(set(self.covariance.symbols) - set(symbols))
+        if unknown:
+            raise ValueError(f"the covariance names {', '.join(unknown)}, which are no coefficients")
+        named = [t.name for t in self.thrusters] + [c.control for c in self.surfaces]
+        again = repeated(named)
+        if again:
+            raise ValueError(f"{', '.join(again)} stands more than once")
+        tables = [(m.response, m.names) for m in self.models]
+        for response, names in repeated(tables):
+            raise ValueError(f"{response} over {', '.join(names)} stands more than once")
+        strange = too_new(self, self.schema_version)
+        if strange:
+            raise ValueError(strange)
+        self._potential_parts(primes)
+        return self
+
+    def _potential_parts(self, primes: Scaling) -> None:
+        """Raise where a potential part is not what the added mass gives."""
+        booked = [c for c in self.coefficients if c.potential is not None]
+        if booked and self.added_mass is None:
+            raise ValueError(f"{booked[0].symbol}: a potential part without an added mass")
+        if self.added_mass is None:
+            return
+        hull = self.added_mass.as_noun(self.reference_point.point, self.reference_point.origin)
+        for c in booked:
+            due = potential_part(c.symbol, hull, primes, self.added_mass.density) or 0.0
+            if not math.isclose(c.potential or 0.0, due, rel_tol=1e-6, abs_tol=1e-9):
+                raise ValueError(f"{c.symbol}: potential {c.potential:g} is not that of the added mass, {due:g}")
+
+    def coefficient(self, symbol: str) -> ParameterCoefficient | None:
+        """The coefficient of a symbol, with or without prime."""
+        wanted = symbol.removesuffix("'") + "'"
+        return next((c for c in self.coefficients if c.symbol == wanted), None)
+
+    def _repr_html_(self) -> str:
+        """The coefficients, for notebooks."""
+        return noun_tables.parameters(self)._repr_html_()
+
+    def to_json(self) -> bytes:
+        """The file's bytes: sorted as declared, two blanks of indent, a closing newline, never NaN.
+
+        A file of an earlier version is written as one, without the keys that came later.
+        """
+        content = as_of(self.schema_version, self)
+        text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+        return (text + "\n").encode()
+
+
+def schema() -> bytes:
+    """The JSON Schema, as shipped."""
+    content: dict[str, Any] = ParameterFile.model_json_schema()
+    content["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    content["$id"] = f"coeflab-parameter-file-{SCHEMA_VERSION}"
+    return (json.dumps(content, indent=2) + "\n").encode()
+
+
+def _in_words(kind: str, message: str, value: object) -> tuple[str, str]:
+    """What pydantic found and expected."""
+    if kind == "missing":
+        return "nothing", "a value"
+    if kind == "extra_forbidden":
+        return "an unknown key", "only the keys of the schema"
+    if kind == "value_error":
+        return message.removeprefix("Value error, "), "a parameter file that agrees with itself"
+    return shown(value), message.removeprefix("Input should be ").removeprefix("String should ").removeprefix("have ")
+
+
+@contextmanager
+def refusals_told(place: str) -> Iterator[None]:
+    """What the models refuse while a file is put together, as one error.
+
+    Parameters
+    ----------
+    place : str
+        Key that the refused key stands below, for example ``parameter_file.hull``.
+
+    Raises
+    ------
+    InputError
+        In place of pydantic's error.
+    """
+    try:
+        yield
+    except ValidationError as why:
+        first = why.errors()[0]
+        found, expected = _in_words(first["type"], first["msg"], first["input"])
+        raise InputError(found, expected, column=".".join(map(str, (place, *first["loc"])))) from None
+
+
+def read_parameter_file(path: Path) -> ParameterFile:
+    """Read and validate a parameter file.
+
+    Raises
+    ------
+    InputError
+        Not JSON (with line and column), or the first thing that breaks the schema.
+    """
+    text = read_text(path, JSON_BYTES)
+    content = parse_json(text, path, "a parameter file in JSON")
+    if not isinstance(content, dict):
+        raise InputError(f"a {type(content).__name__}", "an object", file=path, column="file")
+    version = readable(content.get("schema_version"), path)
+    del content  # a large file's content is held once only
+    try:
+        return _validated(text, version)
+    except ValidationError as why:
+        first = why.errors()[0]
+        place = ".".join(str(p) for p in first["loc"]) or "file"
+        more = f" ({why.error_count() - 1} more)" if why.error_count() > 1 else ""
+        found, expected = _in_words(first["type"], first["msg"], first["input"])
+        if is_later(version, SCHEMA_VERSION):
+            found += f" in a file of schema_version {version}"
+            expected, more = (
+                f"schema_version {FIRST_VERSION} to {SCHEMA_VERSION}, which this release of coeflab reads",
+                "",
+            )
+        raise InputError(found, expected + more, file=path, column=place, advice=advice(version)) from None
+    except CoeflabError as why:
+        raise InputError(str(why), "a valid parameter file", file=path) from None
+
+
+def _validated(text: str, version: str) -> ParameterFile:
+    """The file; of a later version without the keys that nobody here knows and that say nothing."""
+    try:
+        return ParameterFile.model_validate_json(text)
+    except ValidationError as why:
+        if not is_later(version, SCHEMA_VERSION):
+            raise
+        unknown = [
+            e["loc"] for e in why.errors() if e["type"] == "extra_forbidden" and e["input"] in (None, [], {}, "")
+        ]
+        if not unknown:
+            raise
+    return ParameterFile.model_validate_json(json.dumps(without(json.loads(text), unknown)))

@@ -1,0 +1,260 @@
+"""A fitted table or force law as the parameter file holds it, since version 1.1, and the way back to its values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.types import Array
+from coeflab.fits.results.fitted_model import Extrapolation
+from coeflab.law.domain import clamped, inside, taper_weight
+from coeflab.law.terms import Term, design
+from coeflab.vehicle.parameter_parts import Finite, Name, NotNegative, Positive, Strict, told
+
+ANGLE_OF = {"alpha": "w", "beta": "v"}
+
+
+class ModelVariable(Strict):
+    """A variable of a fitted model."""
+
+    name: Annotated[Name, told("alpha beta u v w p q r dr ds db")]
+    unit: Annotated[Literal["rad", "1", "m/s", "rad/s"], told("1: v/U for velocities, r L/U for rates")]
+
+
+class ModelFactor(Strict):
+    """A power of a variable."""
+
+    variable: Annotated[Name, told("one of `variables`")]
+    power: Annotated[int, Field(ge=1, le=40), told("exponent")]
+    absolute: Annotated[bool, told("true: |variable|^power")] = False
+
+
+class ModelTerm(Strict):
+    """A product of powers with its coefficient; null where the data do not determine it."""
+
+    symbol: Annotated[Name, told("name of the coefficient")]
+    factors: Annotated[tuple[ModelFactor, ...], told("their product multiplies the value; empty for the constant")]
+    value: Annotated[Finite | None, told("coefficient of the term", "of the response over that of the factors")]
+    half_width_95: Annotated[NotNegative | None, told("95 % half-width of the value", "as the value")]
+
+
+class ModelDomain(Strict):
+    """Where the model may be read, in the order of `variables`."""
+
+    low: Annotated[tuple[Finite, ...], told("lowest value of each variable", "of the variable")]
+    high: Annotated[tuple[Finite, ...], told("highest value of each variable", "of the variable")]
+    half_spaces: Annotated[
+        tuple[tuple[Finite, ...], ...], told("rows [a, b] with a.x + b <= 0 inside the convex hull of the data")
+    ]
+    extrapolation: Annotated[
+        Literal["refuse", "clamp", "taper"],
+        told("outside: no value; that of the nearest point of the hull; a blend into that"),
+    ]
+
+
+class ModelArea(Strict):
+    """What the coefficient is divided by beside 1/2 rho V^2; moments also by the length of `scaling`."""
+
+    value: Annotated[Positive, told("the area", "m^2")]
+    name: Annotated[Name, told("what area it is, for example frontal, or L^2")]
+
+
+class ParameterModel(Strict):
+    """One response as a linear combination of terms."""
+
+    response: Annotated[Name, told("force component or coefficient, for example Y' or C_D")]
+    unit: Annotated[Name, told("of the response; 1: nondimensional")]
+    form: Annotated[str, told("family of the form, in words")]
+    variables: Annotated[tuple[ModelVariable, ...], Field(min_length=1), told("what the response depends on")]
+    terms: Annotated[tuple[ModelTerm, ...], Field(min_length=1), told("the response is their sum")]
+    covariance: Annotated[
+        tuple[tuple[Finite | None, ...], ...],
+        told("of standard uncertainties (half_width_95 / 2) of the terms; null where not determined", "of the values"),
+    ]
+    domain: Annotated[ModelDomain, told("where it may be read")]
+    n_points: Annotated[int, Field(ge=0), told("points that it was fitted to")]
+    rms: Annotated[NotNegative, told("root mean square of the residuals", "of the response")]
+    press_rms: Annotated[
+        NotNegative | None, told("root mean square of every point predicted from the others", "of the response")
+    ]
+    table: Annotated[str, told("file of the table")]
+    campaign: Annotated[str, told("campaign of the table")]
+    post_selection: Annotated[bool, told("true: terms chosen on the same data, intervals too narrow")] = False
+    statements: Annotated[tuple[str, ...], told("assumptions and limits, in words")] = ()
+    area: Annotated[ModelArea | None, told("of a coefficient by an area; null where there is none")] = None
+    holds: Annotated[
+        tuple[Name, ...],
+        told(
+            "what half widths and covariance hold: the scatter, the grid, declared inputs; never the form", since="1.2"
+        ),
+    ] = ("random",)
+    contains_potential: Annotated[
+        bool,
+        told(
+            "true: the values are whole forces, as measured; false: -C_A(nu) nu of `added_mass` comes on top",
+            since="1.3",
+        ),
+    ] = True
+
+    @model_validator(mode="after")
+    def _consistent(self) -> ParameterModel:
+        names = self.names
+        if len(set(names)) != len(names):
+            raise ValueError(f"{self.response}: a variable stands more than once")
+        for t in self.terms:
+            strange = sorted({f.variable for f in t.factors} - set(names))
+            if strange:
+                raise ValueError(f"{self.response}: {t.symbol} uses {', '.join(strange)}, which is no variable")
+            if t.value is None and t.half_width_95 is not None:
+                raise ValueError(f"{t.symbol}: an interval without a value")
+        d, k = len(names), len(self.terms)
+        edges = (self.domain.low, self.domain.high)
+        if any(len(e) != d for e in edges) or any(len(row) != d + 1 for row in self.domain.half_spaces):
+            raise ValueError(f"{self.response}: the domain does not have {d} variables")
+        if any(a > b for a, b in zip(*edges, strict=True)):
+            raise ValueError(f"{self.response}: the domain's low is above its high")
+        if len(self.covariance) != k or any(len(row) != k for row in self.covariance):
+            raise ValueError(f"{self.response}: the covariance of {k} terms must be {k} x {k}")
+        for i, row in enumerate(self.covariance):
+            diagonal = row[i]
+            if diagonal is not None and diagonal < 0.0:
+                raise ValueError(f"{self.response}: the variance of {self.terms[i].symbol} is negative")
+            if any(not _same(value, self.covariance[j][i]) for j, value in enumerate(row)):
+                raise ValueError(f"{self.response}: the covariance is not symmetric")
+        return self
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The variables."""
+        return tuple(v.name for v in self.variables)
+
+    def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Values, 95 % half-widths of the mean, and whether each point lies inside the convex hull of the data.
+
+        Outside the hull the model's rule decides. ``refuse`` gives NaN. ``clamp`` gives the value at the nearest
+        point of the hull, in coordinates divided by the widths of its bounding box
+        (`coeflab.law.domain.clamped`). ``taper`` blends the free continuation into that value within a
+        tenth of a box width from the hull (`coeflab.law.domain.taper_weight`). A point at which an
+        undetermined term counts is NaN, and so are one without a nearest point and a half-width without covariance.
+
+        Parameters
+        ----------
+        columns : mapping of variable to (n,) array
+            In the units of `variables`.
+
+        Raises
+        ------
+        InputError
+            A variable is missing or unknown.
+        """
+        if set(columns) != set(self.names):
+            raise InputError(
+                f"values for {', '.join(columns) or 'nothing'}", f"values for {', '.join(self.names)}",
+                column=self.response,
+            )  # fmt: skip
+        points = np.column_stack([np.asarray(columns[v], dtype=np.float64) for v in self.names])
+        domain = self.domain
+        spaces = np.array(domain.half_spaces, dtype=np.float64).reshape(-1, len(self.names) + 1)
+        within = np.asarray(inside(spaces, points), dtype=bool)
+        rule = Extrapolation(domain.extrapolation)
+        rows = self._rows(points)
+        if rule is not Extrapolation.REFUSE:
+            low, high = np.array(domain.low), np.array(domain.high)
+            nearest = clamped(points, spaces, low, high)
+            edge = self._rows(nearest)
+            tapers = rule is Extrapolation.TAPER
+            free = taper_weight(points, nearest, low, high) if tapers else np.zeros(len(points))
+            some = free[:, None] > 0.0
+            rows = np.where(some, edge + free[:, None] * np.where(some, rows - edge, 0.0), edge)
+        values = rows @ np.array([0.0 if t.value is None else t.value for t in self.terms])
+        unknown = np.array([t.value is None for t in self.terms])
+        covariance = np.array([[np.nan if c is None else c for c in row] for row in self.covariance], dtype=np.float64)
+        bare = ~unknown & np.isnan(np.diag(covariance))
+        spread = np.sqrt(np.maximum(np.einsum("ij,ij->i", rows @ np.nan_to_num(covariance), rows), 0.0))
+        void = np.any(rows[:, unknown] != 0.0, axis=1)
+        if rule is Extrapolation.REFUSE:
+            void |= ~within
+        half = np.where(void | np.any(rows[:, bare] != 0.0, axis=1), np.nan, 2.0 * spread)
+        return np.where(void, np.nan, values), half, within
+
+    def _rows(self, points: Array) -> Array:
+        terms = tuple(Term(tuple((f.variable, f.power, f.absolute) for f in t.factors)) for t in self.terms)
+        return design(terms, dict(zip(self.names, points.T, strict=True)))
+
+
+def _same(a: float | None, b: float | None) -> bool:
+    if a is None or b is None:
+        return a is b
+    return math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-300)
+
+
+def chosen(models: tuple[ParameterModel, ...], response: str, variables: tuple[str, ...]) -> tuple[ParameterModel, ...]:
+    """The models of a response (empty: of all) over exactly these variables.
+
+    Where there is none, alpha may stand for w' and beta for v'; `from_angles` then gives the columns.
+
+    Raises
+    ------
+    InputError
+        No models, no such response, an unknown variable, or one without values.
+    """
+    if not models:
+        raise InputError(
+            "a parameter file without fitted tables", "one with models",
+            advice="Run a study with a fit such as polynomial or surface.",
+        )  # fmt: skip
+    wanted = response.removesuffix("'")
+    found = [m for m in models if not response or m.response.removesuffix("'") == wanted]
+    if not found:
+        known = dict.fromkeys(m.response for m in models)
+        raise InputError(f"no fitted table of {shown(response)}", f"one of {', '.join(known)}", column="--response")
+    names = dict.fromkeys(v for m in found for v in m.names)
+    for v in variables:
+        if v not in names and not any(_by_angle(m, v) for m in found):
+            raise InputError(f"the unknown variable {shown(v)}", f"one of {', '.join(names)}")
+    exact = tuple(m for m in found if set(m.names) == set(variables))
+    matching = exact or tuple(m for m in found if {_by_angle(m, v) or v for v in variables} == set(m.names))
+    matching = tuple(m for m in matching if len(m.names) == len(variables))
+    if not matching:
+        forms = ", or for ".join(dict.fromkeys(" and ".join(map(_spoken, m.variables)) for m in found))
+        raise InputError(f"values for {' and '.join(variables) or 'no variable'}", f"values for {forms}")
+    return matching
+
+
+def _by_angle(model: ParameterModel, angle: str) -> str:
+    """The primed velocity of a model that an angle stands for; empty where none does."""
+    velocity = ANGLE_OF.get(angle, "")
+    primed = any(v.name == velocity and v.unit == "1" for v in model.variables)
+    return velocity if primed and angle not in model.names else ""
+
+
+def _spoken(variable: ModelVariable) -> str:
+    angle = next((a for a, v in ANGLE_OF.items() if v == variable.name), "")
+    return f"{variable.name} (or {angle})" if angle and variable.unit == "1" else variable.name
+
+
+def from_angles(model: ParameterModel, columns: Mapping[str, Array]) -> dict[str, Array]:
+    """Columns of a model's variables, where v' = sin(beta) and w' = sin(alpha) cos(beta) may stand as angles.
+
+    Where the model has w' but not v', beta is zero; where v' is given as such, cos(beta) = sqrt(1 - v'^2).
+
+    Parameters
+    ----------
+    model : ParameterModel
+        As `chosen` for the names of `columns`.
+    columns : mapping of variable to (n,) array
+        Angles in radians.
+    """
+    out = {v: x for v, x in columns.items() if v in model.names}
+    if "v" in model.names and "v" not in out:
+        out["v"] = np.sin(columns["beta"])
+    if "w" in model.names and "w" not in out:
+        v = out.get("v", np.sin(columns["beta"]) if "beta" in columns else np.zeros_like(columns["alpha"]))
+        out["w"] = np.sin(columns["alpha"]) * np.sqrt(np.maximum(1.0 - v**2, 0.0))
+    return out

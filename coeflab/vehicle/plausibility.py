@@ -1,0 +1,377 @@
+"""Whether the numbers of a parameter file can be those of a body in water: units, buoyancy, added mass, signs of the damping.
+
+Whether a stated added mass can be that of a body in water.
+
+Whether damping damps, its rates are in radians, and both planes are written in one set of axes.
+
+A Munk moment counted twice: written as damping into a file whose simulator adds that of its added mass itself.
+
+The moment of an ideal fluid on a body in steady drift is (Yvdot - Xudot) u v in yaw and its like in pitch (Lamb 1932, article
+124). A measured derivative contains it; what remains of a hull once it is taken out is the lift of tail and fins, of the
+other sign. So a written slope of the same sign and size as the ideal fluid's is the measured total.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.table import Check, Severity
+from coeflab.core.types import Array, brief
+from coeflab.law.added_mass import ROUNDING, definiteness
+from coeflab.law.rigid_body import ideal_quadratics
+from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
+from coeflab.vehicle.force_law import LawTerm, force_law, force_of_tables
+from coeflab.vehicle.imperial_units import displaced, gravity, gyration, water
+from coeflab.vehicle.inertia import centre_of_gravity
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.second_order import products_once
+
+# A product u v over the ideal fluid's; a linear term over it is a speed, m/s.
+SIMILAR = (0.5, 2.0)
+USUAL_SPEEDS = (0.5, 4.0)
+MOMENTS = {"N": (5, 0, 1), "M": (4, 0, 2)}
+PRODUCTS = {"N": "u v", "M": "u w"}
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """One term of a file that turns a body in drift.
+
+    Attributes
+    ----------
+    component : str
+        ``N`` for what goes with v, ``M`` for what goes with w.
+    key : str
+        Where it stands in the file.
+    value : float
+        FRD; of u v or u w in kg, or of v or w in N m/(m/s).
+    with_speed : bool
+        Whether the force is that of the product with u.
+    """
+
+    component: str
+    key: str
+    value: float
+    with_speed: bool
+
+
+def munk_twice(kind: str, written: Sequence[Written], added: Array, ideal: Array) -> tuple[Check, ...]:
+    """Findings about yaw and pitch.
+
+    Parameters
+    ----------
+    kind : str
+        Format of the file.
+    written : sequence of Written
+    added : (6, 6, 6) array
+        Quadratics that the simulator adds itself, FRD.
+    ideal : (6, 6, 6) array
+        Those of an ideal fluid for the file's added mass.
+
+    Notes
+    -----
+    A term of the product u v fails from half to twice the ideal fluid's. A linear one does not grow with the speed as the
+    Munk moment does; it is pointed at where both are equal at a usual speed of a vehicle, 0.5 to 4 m/s.
+    """
+    out = []
+    for component, at in MOMENTS.items():
+        own, potential = products_once(added)[at], products_once(ideal)[at]
+        if own == 0.0 or potential == 0.0:
+            continue
+        for with_speed in (True, False):
+            terms = [w for w in written if (w.component, w.with_speed) == (component, with_speed) and w.value != 0.0]
+            total = sum(w.value for w in terms)
+            share = total / potential
+            low, high = SIMILAR if with_speed else USUAL_SPEEDS
+            if low <= share <= high:
+                keys = ", ".join(w.key for w in terms)
+                out.append(_check(kind, component, keys, total, own, share, with_speed, bool(own * potential > 0.0)))
+    return tuple(out)
+
+
+def _check(
+    kind: str, component: str, keys: str, total: float, own: float, share: float, with_speed: bool, same: bool
+) -> Check:
+    product = PRODUCTS[component]
+    mine = f"{total:.4g} {product}" if with_speed else f"{total:.4g} {product[-1]}, equal at {share:.3g} m/s"
+    viscous = f", here {total - own:.4g} {product}" if with_speed else ""
+    comment = (
+        f"Munk moment twice: the simulator adds it from the added mass. Write the total less that{viscous}."
+        if same
+        else "The Coriolis term of the simulator has the reverse sign: the two cancel. Disable it and keep the total here."
+    )
+    return Check(
+        kind, keys, Severity.FAIL if with_speed else Severity.WARN,
+        f"{component} of {mine}, beside {own:.4g} {product} of the simulator's C_A(nu)", "the Munk moment once", comment,
+    )  # fmt: skip
+
+
+MISTYPED = 0.05  # asymmetry of one wrong digit; more is another convention
+HEAVY = 5.0  # of the mass: a disc or plate in a vehicle's place
+SMALLEST_PRIME = 1e-5  # of 1/2 rho L^3: a cylinder 400 diameters long
+NAME = "plausibility"
+
+
+def stated_matrix(parameters: ParameterFile) -> Array:
+    """Added mass (6, 6) as stated, SI; NaN where nothing is."""
+    density, length = parameters.conditions.density, parameters.scaling.length
+    if parameters.added_mass is not None:
+        return np.array(parameters.added_mass.matrix) * (density / parameters.added_mass.density)
+    out = np.full((6, 6), np.nan)
+    for c in parameters.coefficients:
+        d = derivative(c.symbol)
+        if c.value is not None and len(d.factors) == 1 and d.factors[0].endswith("dot"):
+            at = COMPONENTS.index(d.component), MOTIONS.index(d.factors[0][0])
+            out[at] = 0.0 - c.value * 0.5 * density * length ** d.powers[1]
+    return out
+
+
+def added_mass_findings(p: ParameterFile) -> list[Check]:
+    """Zeros, signs, symmetry, definiteness and size; at least one finding."""
+    stated = stated_matrix(p)
+    if not np.any(np.nan_to_num(stated)):
+        return [
+            _added_mass_check("added mass", Severity.WARN, "none", "a matrix", "The body accelerates as if in air.")
+        ]
+    matrix = np.nan_to_num(np.where(np.isnan(stated), stated.T, stated))
+    out = _diagonal(np.diag(stated))
+    unknown = np.isnan(np.diag(stated)) & np.any(matrix, axis=1)
+    if np.any(unknown):
+        out.append(_added_mass_check("M_A", Severity.WARN, f"no {_names(unknown)}", "a diagonal beside its products",
+                          "Its products cannot be used."))  # fmt: skip
+        matrix = np.where(unknown[:, None] | unknown, 0.0, matrix)
+    out += _asymmetry(matrix)
+    found = definiteness((matrix + matrix.T) / 2.0)
+    if np.all(np.diag(matrix) >= 0.0) and found.smallest < -ROUNDING:
+        least = "without a bound" if np.isinf(found.smallest) else f"{found.smallest:.3g}"
+        out.append(_added_mass_check("M_A", Severity.FAIL, f"smallest scaled eigenvalue {least}", "not below zero",
+                          "No kinetic energy: a product entry is too large for its diagonals."))  # fmt: skip
+    elif not out:
+        out.append(_added_mass_check("M_A", Severity.PASS, f"smallest scaled eigenvalue {found.smallest:.3g}",
+                          "symmetric, not below zero"))  # fmt: skip
+    return out + _size(p, np.diag(matrix)[:3])
+
+
+def _added_mass_check(subject: str, severity: Severity, statistic: str, rule: str, comment: str = "") -> Check:
+    return Check(NAME, subject, severity, statistic, rule, comment)
+
+
+def _names(which: NDArray[np.bool_]) -> str:
+    return ", ".join(f"{COMPONENTS[i]}{MOTIONS[i]}" for i in np.flatnonzero(which))
+
+
+def _diagonal(stated: Array) -> list[Check]:
+    out = []
+    negative = np.nan_to_num(stated) < 0.0
+    if np.any(negative):
+        values = ", ".join(f"{x:.4g}" for x in stated[negative])
+        out.append(_added_mass_check(f"M_A {_names(negative)}", Severity.FAIL, values, "not below zero",
+                          "Acceleration derivatives are the negatives of added masses: a sign is wrong."))  # fmt: skip
+    across = (stated == 0.0) & (np.arange(6) < 3)
+    if np.any(across):
+        out.append(_added_mass_check(f"M_A {_names(across)}", Severity.WARN, "0", "above zero",
+                          "The body accelerates in this direction as if in air."))  # fmt: skip
+    return out
+
+
+def _size(p: ParameterFile, diagonal: Array) -> list[Check]:
+    out = []
+    prime = float(np.max(diagonal[1:])) / (0.5 * p.conditions.density * p.scaling.length**3)
+    if p.scaling.length_name != "1 m" and 0.0 < prime < SMALLEST_PRIME:
+        out.append(_added_mass_check("M_A Yv, Zw", Severity.FAIL, f"{prime:.1e} of 1/2 rho L^3", f"at least {SMALLEST_PRIME:g}",
+                          "Primes read as SI? Convert them; in a .m file r3 = rho*L^3/2 tells that they are primes."))  # fmt: skip
+    if p.mass is not None and (heaviest := float(np.max(diagonal))) > HEAVY * p.mass.mass:
+        out.append(_added_mass_check("M_A", Severity.WARN, f"{heaviest / p.mass.mass:.3g} of the mass", f"at most {HEAVY:g}",
+                          "Usual for flat bodies only."))  # fmt: skip
+    return out
+
+
+def _asymmetry(matrix: Array) -> list[Check]:
+    out = []
+    root = np.sqrt(np.abs(np.diag(matrix)))
+    for i, j in np.argwhere(np.triu(matrix != matrix.T)):
+        scale = root[i] * root[j] or max(abs(matrix[i, j]), abs(matrix[j, i]))
+        apart = abs(matrix[i, j] - matrix[j, i]) / scale
+        if apart > ROUNDING:
+            severity = Severity.WARN if apart <= MISTYPED else Severity.FAIL
+            pair = f"M_A {COMPONENTS[i]}{MOTIONS[j]} and {COMPONENTS[j]}{MOTIONS[i]}"
+            out.append(_added_mass_check(pair, severity, f"{matrix[i, j]:.8g} and {matrix[j, i]:.8g}", "equal",
+                              f"Apart by {apart:.1e} of the diagonal. An added mass is symmetric."))  # fmt: skip
+    return out
+
+
+PLANES = (("Y", "N", 1, 5), ("Z", "M", 2, 4))
+SMALLEST = {1: 0.15, 2: 0.05}
+MIRRORED = (("Nv", "Mw"), ("Nuv", "Muw"), ("Yr", "Zq"), ("Yur", "Zuq"))
+ALIKE = 0.01
+WRONG = "a sign is wrong."
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class _Own:
+    """A term of a motion on itself."""
+
+    term: LawTerm
+    motion: str
+    odd: bool
+
+
+def damping_findings(p: ParameterFile) -> list[Check]:
+    """Signs, rates and axes; at least one finding about the signs."""
+    own = _own_terms(p)
+    out = _signs(own)
+    if not own:
+        out.append(
+            _damping_check(
+                "damping", Severity.WARN, "none of X0', Xu, Yv, Zw, Kp, Mq, Nr", "at least one", "Nothing damps."
+            )
+        )
+    elif not any(c.severity is Severity.FAIL for c in out):
+        out.append(_damping_check("damping", Severity.PASS, f"{len(own)} terms of a motion on itself", "below zero"))
+    return [*out, *_rates(p, own), *_mirrored(p)]
+
+
+def _damping_check(subject: str, severity: Severity, statistic: str, rule: str, comment: str = "") -> Check:
+    return Check(NAME, subject, severity, statistic, rule, comment)
+
+
+def _own_terms(p: ParameterFile) -> list[_Own]:
+    out = []
+    for t in force_law(p).terms:
+        variables = {v for v, _, _ in t.term.factors}
+        motion = MOTIONS[COMPONENTS.index(t.component)]
+        resistance = t.component == "X" and not variables and t.speed_power == 2
+        if t.coefficient != 0.0 and (variables == {motion} or resistance):
+            out.append(_Own(t, motion, t.term.odd_in(motion) or resistance))
+    return out
+
+
+def _signs(own: list[_Own]) -> list[Check]:
+    out = []
+    drives = [o for o in own if o.odd and o.term.coefficient > 0.0]
+    if drives:
+        it = "It drives the motion that it" if len(drives) == 1 else "They drive the motions that they"
+        out.append(_damping_check(", ".join(primed(o.term.symbol) for o in drives), Severity.FAIL,
+                          ", ".join(f"{o.term.coefficient:.4g}" for o in drives) + " (SI)", "below zero",
+                          f"{it} should damp: {WRONG}"))  # fmt: skip
+    for o in own:
+        if not o.odd and o.term.component in "YKN":
+            name = primed(o.term.symbol)
+            out.append(_damping_check(name, Severity.WARN, f"{o.term.coefficient:.4g} (SI)",
+                              "zero for a body symmetric port to starboard",
+                              f"It pushes one way in both directions; {name[0]}{o.motion}|{o.motion}|' is meant?"))  # fmt: skip
+    return out
+
+
+def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:
+    """Damping of pitch and yaw against that of heave and sway by the radius of gyration k of the added mass.
+
+    Nr is of the order of k^2 Yv, Nr|r| of k^3 Yv|v|; published vehicles have 1 to 8 times that. A rate in degrees makes it 57
+    and 3283 times smaller.
+    """
+    diagonal = np.nan_to_num(np.diag(stated_matrix(p)))
+    out = []
+    for force, moment, i, j in PLANES:
+        if diagonal[i] <= 0.0 or diagonal[j] <= 0.0:
+            continue
+        for a in own:
+            for b in own:
+                n = a.term.term.degree
+                same = n == b.term.term.degree and a.term.speed_power == b.term.speed_power and a.odd and b.odd
+                if (a.term.component, b.term.component) != (force, moment) or not same or n not in SMALLEST:
+                    continue
+                usual = a.term.coefficient * (diagonal[j] / diagonal[i]) ** (0.5 * (n + 1))
+                if 0.0 < (share := b.term.coefficient / usual) < SMALLEST[n]:
+                    out.append(_damping_check(
+                        primed(b.term.symbol), Severity.WARN, f"{b.term.coefficient:.4g}, {share:.2g} of k^{n + 1} {a.term.symbol}",
+                        f"at least {SMALLEST[n]:g}; k = {(diagonal[j] / diagonal[i]) ** 0.5:.3g} m of the added mass",
+                        "Is it per degree and second? Rates are in rad/s.",
+                    ))  # fmt: skip
+    return out
+
+
+def _mirrored(p: ParameterFile) -> list[Check]:
+    """Yaw and pitch of the same size and sign, which x forward, y starboard, z down turn against each other."""
+    found = []
+    for a, b in MIRRORED:
+        first, second = p.coefficient(a), p.coefficient(b)
+        if first and second and first.value_si and second.value_si and _alike(first.value_si, second.value_si):
+            found.append((f"{a} and {b}", first.value_si, second.value_si))
+    matrix = np.nan_to_num(stated_matrix(p))
+    if matrix[1, 5] and _alike(matrix[1, 5], matrix[2, 4]):
+        found.append(("M_A Yr and Zq", matrix[1, 5], matrix[2, 4]))
+    if not found:
+        return []
+    return [_damping_check(
+        "; ".join(f[0] for f in found), Severity.WARN, "; ".join(f"{x:.4g} and {y:.4g}" for _, x, y in found), "of opposite signs",
+        "A body alike in both planes has them opposite with z down (FRD). Were the planes copied from different axes?",
+    )]  # fmt: skip
+
+
+def _alike(a: float, b: float) -> bool:
+    return abs(a - b) <= ALIKE * max(abs(a), abs(b))
+
+
+SMALL = 1e-4  # of the speed: a slope at zero, by central difference
+
+
+def plausibility(parameters: ParameterFile) -> tuple[Check, ...]:
+    """Findings in the order units, buoyancy, added mass, Munk moment, damping; every question that could be asked has at least one."""
+    return (
+        *_units(parameters),
+        *_buoyancy(parameters),
+        *added_mass_findings(parameters),
+        *_munk(parameters),
+        *damping_findings(parameters),
+    )
+
+
+def _units(p: ParameterFile) -> list[Check]:
+    density = p.conditions.density
+    out = [water(NAME, density)]
+    if p.mass is not None:
+        diagonal = np.nan_to_num(np.diag(stated_matrix(p)))
+        out += gyration(NAME, p.mass.mass, density, float(diagonal[1]), float(diagonal[5]))
+    return out
+
+
+def _buoyancy(p: ParameterFile) -> list[Check]:
+    """Volume against mass, gravity, and which of the two centres is above the other."""
+    h = p.hydrostatics
+    if h is None:
+        return []
+    out = [*gravity(NAME, h.gravity, "hydrostatics.gravity")]
+    if p.mass is None:
+        return out
+    out += displaced(NAME, p.mass.mass, h.volume, p.conditions.density, "mass and hydrostatics.volume")
+    below = h.centre_of_buoyancy[2] - float(centre_of_gravity(p)[2])
+    if below > 0.0:
+        out.append(Check(
+            NAME, "hydrostatics.centre_of_buoyancy", Severity.WARN, f"{below:.4g} m below the centre of gravity", "above it",
+            "The vehicle turns over. z is down: was the point copied from axes with z up?",
+        ))  # fmt: skip
+    return out
+
+
+def _munk(p: ParameterFile) -> tuple[Check, ...]:
+    """Tables of N or M that are said to be without the potential part and look like measured totals."""
+    apart = tuple(m for m in p.models if not m.contains_potential)
+    hull = p.added_mass
+    if hull is None or not apart:
+        return ()
+    p = p.model_copy(update={"models": apart})
+    written, speed = [], p.conditions.speed
+    for component, (force, _, across) in MOMENTS.items():
+        nu = np.zeros((2, 6))
+        nu[:, 0], nu[:, across] = speed, (-SMALL * speed, SMALL * speed)
+        tables = force_of_tables(p, nu)
+        if tables is not None:
+            slope = float(tables[1, force] - tables[0, force]) / (2.0 * SMALL * speed**2)
+            written.append(Written(component, f"models of {component}", slope, True))
+    ideal = ideal_quadratics(np.array(hull.matrix)) * (p.conditions.density / hull.density)
+    return munk_twice(NAME, written, force_law(p).ideal, ideal)

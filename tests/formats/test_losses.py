@@ -1,0 +1,187 @@
+"""What every simulator loses beside terms: inertia, accelerations, another body, other water, fitted tables, names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coeflab.core.errors import InputError
+from coeflab.formats import EXPORTERS, SimulatorExporter
+from coeflab.formats.loss import covered_grid
+from coeflab.formats.lost import Kind, missing_mass, missing_water
+from coeflab.motion.vehicle import vehicle
+from coeflab.published.huuv.model import parameter_file as huuv_file
+from coeflab.published.huuv.model import read_huuv
+from coeflab.report.tables.formats import in_short
+from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.workbench.exports import export
+from tests.formats import files as made
+from tests.formats.massed import ADDED, VALUES, torpedo, with_mass
+from tests.vehicle.test_force_law import HULL, LENGTH, parameters
+
+TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
+NEED_MASS = [
+    "fmi",
+    "gazebo",
+    "gazebo_plugin",
+    "mujoco",
+    "python_vehicle_simulator",
+    "stonefish",
+    "uuv_simulator",
+    "xdyn",
+]
+each_target = pytest.mark.parametrize("target", TARGETS)
+
+
+def lost(file: ParameterFile, target: str, kind: Kind, accelerations: str = "measured") -> list[str]:
+    loss = export(file, target, accelerations).loss
+    assert loss is not None
+    return [x.what for x in loss.lost if x.kind is kind]
+
+
+def with_added(file: ParameterFile, **changed: object) -> ParameterFile:
+    assert file.added_mass is not None
+    return file.model_copy(update={"added_mass": file.added_mass.model_copy(update=changed)})
+
+
+@each_target
+def test_a_whole_file_lacks_nothing(target: str) -> None:
+    loss = export(torpedo(), target).loss
+    assert loss is not None
+    assert loss.lost == ()
+
+
+@pytest.mark.parametrize("target", NEED_MASS)
+def test_a_mass_that_is_needed_and_not_there_is_a_loss(target: str) -> None:
+    file = made.plain()
+    (said,) = lost(file, target, Kind.MISSING)
+    assert "inertia" in said
+    made_of = export(file, target)
+    assert not made_of.lossless
+    assert said in next(c for n, c in made_of.files.items() if n.endswith(".loss.txt")).decode()
+
+
+def test_the_transverse_moment_alone_leaves_the_roll_inertia_open() -> None:
+    file = torpedo()
+    assert file.mass is not None
+    one = file.model_copy(update={"mass": file.mass.model_copy(update={"inertia": 14.0, "inertia_matrix": None})})
+    none = file.model_copy(update={"mass": file.mass.model_copy(update={"inertia_matrix": None})})
+    assert missing_mass(file, "x") == ()
+    assert missing_mass(one, "x")[0].startswith("roll inertia: the file has the transverse one alone")
+    assert missing_mass(none, "x") == ("moments of inertia: the file has none; x",)
+    assert lost(one, "xdyn", Kind.MISSING)[0].startswith("Rigid-body inertia: the parameter file has no centre and")
+
+
+def test_added_mass_that_is_not_there_is_a_loss() -> None:
+    bare, some = with_mass(parameters(VALUES)), with_mass(parameters({**VALUES, "Yvdot": -0.01, "Nrdot": -1e-3}))
+    assert missing_water(bare) == ("added mass: the file has none; the vehicle accelerates as if in air",)
+    assert missing_water(some) == ("added mass in surge, heave, roll, pitch: not in the file; zero is written",)
+    for target in ("gazebo", "mss", "xdyn"):
+        assert lost(bare, target, Kind.MISSING) == list(missing_water(bare))
+        assert not export(bare, target).lossless
+
+
+@each_target
+def test_a_measured_acceleration_that_gives_way_is_a_loss_with_both_values(target: str) -> None:
+    """-Yvdot of 600 kg at 1/2 rho L^3 = 4000 kg is -0.15."""
+    file = with_mass(parameters({**VALUES, "Yvdot": -0.12, "Nrdot": -72.0 / (500.0 * LENGTH.length**5)}, HULL))
+    assert lost(file, target, Kind.REPLACED) == []
+    (said,) = lost(file, target, Kind.REPLACED, "computed")
+    assert said == "Yvdot' -0.12 (fit) is not used: the added mass of body of tow by ellipsoid has -0.15, 1.25 times it"
+    assert not export(file, target, "computed").lossless
+
+
+@each_target
+def test_an_added_mass_of_another_body_is_a_loss(target: str) -> None:
+    file = with_added(torpedo(), body="AFF-8")
+    (said,) = lost(file, target, Kind.MISMATCH)
+    assert said.startswith("the added mass is that of AFF-8, the coefficients are those of body of tow")
+    found = export(file, target)
+    assert not found.lossless
+    assert "mismatch: the added mass is that of AFF-8" in in_short(found.loss)
+
+
+@each_target
+def test_added_mass_of_other_water_is_converted_and_said(target: str) -> None:
+    """1.5 times the matrix for 1.5 times the density is the same vehicle in the same water."""
+    file = torpedo()
+    other = with_added(file, density=1500.0, matrix=tuple(tuple(row) for row in (1.5 * ADDED).tolist()))
+    again = ParameterFile.model_validate_json(other.model_dump_json())
+    nu = np.random.default_rng(3).normal(size=(20, 6))
+    to = EXPORTERS.load(target)
+    np.testing.assert_allclose(to.force(to.render(again), nu), to.force(to.render(file), nu), rtol=1e-9, atol=1e-9)
+    mine, theirs = export(file, target).loss, export(again, target).loss
+    assert lost(again, target, Kind.REPLACED) == []
+    (said,) = set(theirs.changes) - set(mine.changes)
+    assert said.startswith("the added mass of body of tow is stated for 1500 kg/m^3 and multiplied by 0.666667")
+
+
+def test_fitted_tables_over_two_angles_are_not_held_by_simulators() -> None:
+    """C_D and C_n over alpha and beta are lost; the curve of Y' stands as its coefficients."""
+    file = read_parameter_file(Path(__file__).parents[1] / "data" / "parameters_1_1.json")
+    said = lost(file, "xdyn", Kind.NOT_HELD)
+    assert [s.split(" (")[0] for s in said] == ["C_D over alpha, beta", "C_n over alpha, beta"]
+    assert "the targets csv and toml hold the table" in said[0]
+    assert any("hydrodynamic polar" in c and "one angle" in c for c in export(file, "xdyn").loss.changes)
+    assert export(file, "toml").lossless
+
+
+@each_target
+def test_a_file_of_tables_alone_is_no_proof_of_an_export_without_them(target: str) -> None:
+    """The HUUV's drag and side force are tables: a target that is given none of them is not near the file."""
+    file = huuv_file(read_huuv())
+    if target == "mujoco":
+        with pytest.raises(InputError, match="no added mass along x, y and z"):
+            export(file, target)
+        return
+    loss = export(file, target).loss
+    ours = vehicle(file, free=("u", "v", "r")).law
+    nu, _ = covered_grid(file)
+    assert np.ptp(nu[:, 5]) > 0.0
+    np.testing.assert_allclose(loss.largest, np.abs(ours.force(nu, np.zeros((len(nu), 3)))).max(axis=0), rtol=1e-12)
+    assert loss.largest[0] > 1.0
+    assert loss.relative[0] > 0.9
+    assert loss.relative[1] > 0.5
+    assert "the file's force with its fitted tables" in loss.grid
+
+
+@pytest.mark.parametrize(("target", "name"), [("mss", "sin"), ("mss", "class"), ("python_vehicle_simulator", "print")])
+def test_a_name_that_is_taken_is_changed_and_said(target: str, name: str) -> None:
+    found = export(made.named(name), target)
+    assert any(n.startswith(f"vehicle_{name}.") for n in found.files)
+    assert f"{name}.{target}.loss.txt" in found.files
+    assert any(c.startswith(f'files are called vehicle_{name}: of the name "{name}"') for c in found.loss.changes)
+
+
+@pytest.mark.parametrize("name", made.HOSTILE)
+@pytest.mark.parametrize("target", [*TARGETS, "csv", "toml"])
+def test_no_name_leads_out_of_the_folder(target: str, name: str) -> None:
+    found = export(with_mass(made.named(name)), target)
+    for path in (*found.files, found.folder or "x"):
+        assert Path(path).name == path
+        assert path.isprintable()
+        assert not path.startswith(".")
+        assert len(path.encode()) < 200
+
+
+def test_a_plugin_that_uses_the_name_as_it_is_names_the_key(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("coeflab.formats.mss.write.render", lambda p: {f"{p.name}.m": b""})
+    with pytest.raises(InputError) as caught:
+        export(made.named("../a"), "mss")
+    assert caught.value.column == "name"
+
+
+def test_a_force_that_is_worse_than_none_is_said() -> None:
+    """HoloOcean's drag in drift is several times this torpedo's resistance."""
+    loss = export(torpedo(), "holoocean").loss
+    nu, _ = covered_grid(torpedo())
+    ours = force_law(torpedo()).force(nu)
+    worse = [c for c, r, o in zip("XYZKMN", loss.rms, np.sqrt((ours**2).mean(axis=0)), strict=True) if r > o]
+    assert list(loss.worse_than_nothing) == worse
+    assert worse == ["X"]
+    text = export(torpedo(), "holoocean").files["file.holoocean.loss.txt"].decode()
+    assert text.count("worse than no force at all: ") == len(worse)
+    assert export(torpedo(), "xdyn").loss.worse_than_nothing == ()

@@ -1,0 +1,92 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from coeflab.report.gallery import listing
+from coeflab.report.gallery.listing import Shelf
+from coeflab.report.printable import visible
+from tests.cli.test_compare import VALUES, made
+from tests.report.gallery.conftest import report
+from tests.report.studies import ENDLESS, HOSTILE
+
+
+def test_reports_say_title_study_and_digest_and_stand_with_their_pdf(folder):
+    (found,) = Shelf(folder).listing().reports
+    assert (found.title, found.study, found.digest) == ("Tow of a boat", "boat", "0123456789abcdef")
+    assert found.keys == (("HTML", "boat/report.html"), ("PDF", "boat/report.pdf"))
+
+
+def test_parameter_files_say_body_symbols_and_version(folder):
+    found = {e.path: e for e in Shelf(folder).listing().parameters}
+    assert set(found) == {"a.parameters.json", "alias.parameters.json", "b.parameters.json"}
+    entry = found["b.parameters.json"]
+    assert (entry.name, entry.body, entry.length, entry.fault) == ("second", "hull", "LBP 4.26086 m", "")
+    assert entry.symbols == tuple(VALUES)
+    assert entry.version == made(VALUES).schema_version
+
+
+def test_bad_files_stand_there_with_one_line(folder):
+    (folder / "broken.parameters.json").write_text('{"schema_version": "1.0",\n "name": }')
+    (folder / "report.html").write_text("<p>another page")
+    (folder / "report.pdf").write_text("no pdf")
+    (folder / "other.json").write_text('{"speed": 1}')
+    (folder / "page.html").write_text("<p>another page")
+    found = Shelf(folder).listing()
+    faults = {e.path: e.fault for e in (*found.reports, *found.parameters) if e.fault}
+    assert set(faults) == {"broken.parameters.json", "report.html"}
+    assert faults["broken.parameters.json"].startswith("line 2")
+    assert not any("\n" in f or str(folder) in f for f in faults.values())
+    assert not {"other.json", "page.html"} & {e.path for e in (*found.reports, *found.parameters)}
+
+
+def test_a_locked_file_is_listed_as_such(folder, monkeypatch):
+    """By a stand-in for the system, because root may read everything."""
+    whole = Path.open
+
+    def refuse(path, *args, **kwargs):
+        if path.name == "a.parameters.json":
+            raise PermissionError(13, "Permission denied")
+        return whole(path, *args, **kwargs)
+
+    monkeypatch.setattr(Path, "open", refuse)
+    assert any("Permission" in e.fault for e in Shelf(folder).listing().parameters)
+
+
+def test_a_search_wants_every_word_in_any_case(folder):
+    found = Shelf(folder).listing()
+    assert [e.path for e in found.having("BOAT tow").reports] == ["boat/report.html"]
+    assert [e.path for e in found.having("0123456789ABCDEF").reports] == ["boat/report.html"]
+    assert found.having("boat nowhere").reports == ()
+    assert [e.name for e in found.having("hull yr' second").parameters] == ["second"]
+
+
+def test_a_changed_file_is_read_again_and_an_unchanged_one_is_not(folder, monkeypatch):
+    shelf = Shelf(folder)
+    shelf.listing()
+    read = []
+    plain = listing.read_parameter_file
+    monkeypatch.setattr(listing, "read_parameter_file", lambda path: read.append(path.name) or plain(path))
+    shelf.listing()
+    assert read == []
+    (folder / "b.parameters.json").write_bytes(made(VALUES, name="renamed").to_json())
+    assert "renamed" in [e.name for e in shelf.listing().parameters]
+    assert read == ["b.parameters.json"]
+    (folder / "b.parameters.json").unlink()
+    assert "b.parameters.json" not in [e.path for e in shelf.listing().parameters]
+
+
+def test_a_folder_of_many_files_is_cut_and_says_so(folder, monkeypatch):
+    monkeypatch.setattr(listing, "MOST_FILES", 3)
+    found = Shelf(folder).listing()
+    assert found.more
+    assert len(found.reports) + len(found.parameters) <= 3
+
+
+@pytest.mark.parametrize("title", [HOSTILE, ENDLESS])
+def test_titles_come_out_with_every_character_seen_but_not_endless(folder, title):
+    (folder / "boat" / "report.html").write_bytes(report(title))
+    (found,) = Shelf(folder).listing().reports
+    assert len(found.title) <= listing.LONGEST
+    assert visible(title)[:40] in found.title

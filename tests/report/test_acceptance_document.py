@@ -1,0 +1,126 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+from coeflab.core.provenance import InputFile
+from coeflab.report import acceptance as acceptance_tables
+from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
+from coeflab.report.document import Figure
+from coeflab.report.sections import acceptance as acceptance_document
+from coeflab.report.summary import acceptance_summary
+
+DRAWN = Figure("a-b", '<svg viewBox="0 0 340 100"></svg>', "A & B", "cap", "two lines")
+
+
+def found(second: float, **changes) -> Acceptance:
+    rows = (
+        Compared("case 1", "u", "m/s", 1.0, 1.05, 0.1, Basis.PRINTED),
+        Compared("case 2", "u", "m/s", 2.0, second, 0.1, Basis.CALIBRATION),
+        Compared("case 3", "rms", "1", 0.5, 0.1, 0.0, Basis.PRINTED, at_most=True),
+    )
+    table = ComparedTable("turns_a", "Turns", rows, "Table 1", ("a statement",))
+    made = {
+        "errata": ("one",),
+        "statements": ("know this",),
+        "citations": ("huuv2025",),
+        "figures": (("a_b", DRAWN),),
+        "conventions": ("y points to port in the paper.",),
+    }
+    return Acceptance("boat", "Boat", (table,), **(made | changes))
+
+
+def test_all_parts_are_there():
+    document = acceptance_document.document(found(2.05), (InputFile("boat/a.csv", "0" * 64),))
+    assert [s.anchor for s in document.sections] == [
+        "verdict",
+        "figures",
+        "compared",
+        "statements",
+        "errata",
+        "conventions",
+        "provenance",
+        "reproduce",
+    ]
+    assert document.name == "boat"
+    assert len(document.digest) == 16
+    assert document.works[0][0] == "huuv2025"
+    (figure,) = document.sections[1].figures
+    assert figure == DRAWN
+    assert document.sections[2].subsections[0].anchor == "table-turns-a"
+    assert "y points to port in the paper." in document.sections[5].paragraphs
+    assert [f.anchor for f in document.sections[5].figures] == ["axes-plan", "axes-profile", "axes-triad"]
+    assert document.sections[6].tables[0].rows == (("boat/a.csv", "0" * 64),)
+    assert document.sections[7].code == ("coeflab report boat --to html,pdf",)
+
+
+def test_parts_without_content_are_left_out():
+    document = acceptance_document.document(found(2.05, errata=(), statements=(), figures=()))
+    assert [s.anchor for s in document.sections] == ["verdict", "compared", "conventions", "reproduce"]
+    assert document.digest == ""
+
+
+def test_the_verdict_counts_and_names_what_fails():
+    assert acceptance_document.verdict(found(2.05)).paragraphs[0] == (
+        "3 of 3 numbers within what is allowed: 0 predicted, 2 printed and recomputed, 1 calibration, 0 consistency."
+    )
+    failed = acceptance_document.verdict(found(2.5))
+    assert failed.paragraphs[0].startswith("2 of 3 numbers within what is allowed: ")
+    assert (
+        failed.paragraphs[1] == "Validation rests on 2 of them, predicted or printed and recomputed, of which 2 hold."
+    )
+    assert failed.paragraphs[2] == "Outside, Turns: u of case 2."
+    assert "calibration: the model was calibrated on this very number" in failed.paragraphs[3].lower()
+
+
+def test_numbers_met_another_way_count_once():
+    """25 turns three ways were "all 100 numbers of HUUV"."""
+    made = found(2.05)
+    again = replace(made.tables[0], key="again", repeats="turns_a")
+    first, second = acceptance_document.headline(replace(made, tables=(*made.tables, again)))
+    assert first.startswith("3 of 3 numbers within")
+    assert first.endswith("3 of 3 comparisons meet numbers among them another way, and do not count.")
+    assert "rests on 2 of them" in second
+    failing = replace(again, rows=(*again.rows, Compared("case 4", "u", "m/s", 1.0, 2.0, 0.1, Basis.PRINTED)))
+    assert not replace(made, tables=(*made.tables, failing)).holds
+
+
+def test_a_number_is_called_printed_only_where_it_is():
+    """Basis beside every number; no column says paper, and a report without printed numbers says so."""
+    (shown,) = acceptance_tables.tables(found(2.05))
+    assert shown.headers[2:5] == ("held against", "basis", "found")
+    assert [row[2:4] for row in shown.rows] == [
+        ("1", "printed and recomputed"),
+        ("2", "calibration"),
+        ("at most 0.5", "printed and recomputed"),
+    ]
+    assert b"held_against" in acceptance_tables.acceptance_csv(found(2.05)).splitlines()[0]
+    none = "Nothing here is validation: no number of the paper is predicted, and none that it prints is recomputed."
+    assert none not in acceptance_document.verdict(found(2.05)).paragraphs
+    rows = (Compared("case", "mass", "kg", 2.2297, 2.2297, 5e-5, Basis.CONSISTENCY),)
+    made = Acceptance("boat", "Boat", (ComparedTable("t", "T", rows, "Table 1"),), (), (), ())
+    said = acceptance_document.verdict(made)
+    assert none in said.paragraphs
+    assert said.figures[0].panels[0].series[0].notes == (
+        "case, mass: held against 2.2297 kg (consistency), found 2.2297 kg",
+    )
+    assert all("paper " not in note for p in said.figures[0].panels for s in p.series for note in s.notes)
+
+
+def test_the_overview_shows_how_much_of_the_allowance_is_used():
+    assert acceptance_document.overview(found(2.08)).rows == (("Turns", "Table 1", "3 of 3", "80 %", "pass"),)
+    assert acceptance_document.overview(found(2.5)).rows[0][2:] == ("2 of 3", "500 %", "fail")
+
+
+def test_a_limit_that_is_nearly_reached_shows_in_the_overview():
+    rows = (Compared("case", "rms", "1", 0.5, 0.45, 0.0, Basis.PRINTED, at_most=True),)
+    made = Acceptance("boat", "Boat", (ComparedTable("t", "T", rows, "Table 1"),), (), (), ())
+    assert acceptance_document.overview(made).rows[0][2:] == ("1 of 1", "90 %", "pass")
+
+
+def test_the_summary_keeps_verdict_first_figure_and_all_numbers():
+    made = found(2.05)
+    short = acceptance_summary(made, acceptance_document.document(made))
+    assert [s.anchor for s in short.sections] == ["verdict", "figure"]
+    assert short.sections[0].figures == ()
+    assert [f.anchor for f in short.sections[1].figures] == ["a-b", "allowances"]
+    assert short.works == ()

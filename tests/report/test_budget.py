@@ -1,0 +1,77 @@
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+
+from coeflab.report.figures.svg import COLOURS
+from coeflab.report.sections.budget import tornado_figure
+from coeflab.report.tables import budget as budget_tables
+from coeflab.study.validation import validation
+from coeflab.tables.campaign import InputUncertainty
+from coeflab.vehicle.derived import centre_of_pressure
+from tests.report.studies import FULL, HOSTILE, budgets, small_study
+
+DECLARED = InputUncertainty(angle=float(np.radians(0.1)), speed=0.005, reference_point=0.01)
+
+
+def declared_study(angles=FULL, named="tow"):
+    study = small_study(angles, named=named)
+    return replace(study, tables=tuple(replace(t, uncertainty=DECLARED) for t in study.tables))
+
+
+def test_every_table_has_cells_for_its_headers():
+    study = declared_study()
+    found = budgets(study)
+    fit = study.fits[0]
+    made = [
+        budget_tables.overview(found),
+        *(budget_tables.budget(b) for b in found),
+        budget_tables.grids(found),
+        budget_tables.validation([validation(found[0], found[0])]),
+        budget_tables.derived(centre_of_pressure(fit.coefficients, fit.campaign)),
+    ]
+    for table in made:
+        assert all(len(row) == len(table.headers) for row in table.rows)
+        assert "nan" not in str(table.rows)
+    assert len(made[0].rows) == len(found)
+    assert made[-1].rows
+
+
+def test_a_budget_shows_both_ways_and_what_is_missing():
+    b = budgets(declared_study())[1]
+    table = budget_tables.budget(b)
+    assert [row[0] for row in table.rows] == [*(p.name for p in b.parts), "U95"]
+    assert any("Monte Carlo" in n and "seed 1" in n for n in table.notes)
+    assert table.notes[-1] == "Not assessed: moment, length, density."
+
+
+def test_parts_that_are_not_assessed_are_a_dash_and_not_zero():
+    table = budget_tables.overview(budgets(small_study(FULL)))
+    assert "speed" not in table.headers
+    assert not any(cell in ("0", "0.0 %") for cell in table.rows[0][5:7])
+
+
+@pytest.mark.parametrize("angles", [FULL, [-4.0, -2.0, 0.0, 2.0]])
+def test_the_tornado_is_well_formed_and_named_by_the_page(angles):
+    for i, b in enumerate(budgets(declared_study(angles, HOSTILE))):
+        figure = tornado_figure(b, f"t{i}")
+        root = ET.fromstring(figure.svg)
+        assert root.find("{http://www.w3.org/2000/svg}title").text
+        assert "<script" not in figure.svg
+        bare = re.sub(r"var\(--fig-\w+, #[0-9a-f]{6}\)", "", figure.svg)
+        assert not re.search(r"#[0-9a-f]{6}\b", bare)
+        assert set(re.findall(r"--fig-(\w+)", figure.svg)) <= set(COLOURS)
+        assert figure.svg == tornado_figure(b, f"t{i}").svg
+
+
+def test_the_longest_bar_stands_on_top_and_u95_below():
+    b = budgets(declared_study())[0]
+    figure = tornado_figure(b, "t")
+    said = figure.description
+    order = sorted(b.parts, key=lambda p: -p.half_width)
+    places = [said.index(f"{p.name} ") for p in order] + [said.index("U95")]
+    assert places == sorted(places)

@@ -1,0 +1,192 @@
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+
+from coeflab.core.files import shipped
+from coeflab.report.content import document
+from coeflab.report.document import Document, Section
+from coeflab.report.formats import REPORTERS, Renderer
+from coeflab.study.plan import read_plan
+from coeflab.workbench import run
+from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
+
+VOID = {"meta", "link", "br", "hr", "img", "input"}
+
+
+class Page(HTMLParser):
+    """Elements with their attributes, and whether every one is closed in order."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+        self.crossed: list[str] = []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.crossed.append(tag)
+
+    def named(self, tag):
+        return [attributes for name, attributes in self.elements if name == tag]
+
+
+def text_of(study) -> str:
+    return REPORTERS.load("html").render(document(study))["report.html"].decode()
+
+
+def test_it_is_a_plugin():
+    assert "html" in REPORTERS.names()
+    assert isinstance(REPORTERS.load("html"), Renderer)
+
+
+@pytest.mark.parametrize("angles", [FULL, HALF, FEW, [3.0]])
+@pytest.mark.parametrize("published", [False, True])
+def test_a_small_study_gives_a_well_formed_page(angles, published):
+    page = Page(text_of(small_study(angles, published=published)))
+    assert page.crossed == []
+    assert page.open == []
+    assert len(page.named("h1")) == 1
+    assert page.named("html")[0]["lang"] == "en"
+    identifiers = [a["id"] for _, a in page.elements if "id" in a]
+    assert len(identifiers) == len(set(identifiers))
+
+
+def test_equal_studies_give_equal_bytes():
+    assert text_of(small_study(FULL)) == text_of(small_study(FULL))
+
+
+def test_names_of_users_are_text():
+    text = text_of(small_study(FULL, named=HOSTILE, published=True))
+    assert {a["type"] for a in Page(text).named("script")} == {"application/json", "module"}
+    assert "&lt;script&gt;" in text
+    assert "<script>alert" not in text
+
+
+def test_symbols_are_set_as_mathematics():
+    text = text_of(small_study(FULL, published=True))
+    assert "<i>Y</i><sub><i>v</i></sub><u><b>'</b></u></td>" in text
+    assert "½ <i>ρ</i> <i>U</i><sup><b>^</b>2</sup> <i>L</i><sup><b>^</b>2</sup>" in text
+    tables = "".join(re.findall(r"<tbody>.*?</tbody>", text, flags=re.DOTALL))
+    assert re.findall(r">-\d|e-0\d|\^\d| deg<", tables) == []
+    assert re.search(r"<title id=[^>]*>Yv&#x27;, tow: data", text)
+
+
+def test_code_is_shown_as_it_is_typed():
+    code = Section("again", "Again", code=("coeflab report Yv' --to a_b^2", "rho > -1e-05"))
+    page = REPORTERS.load("html").render(Document("t", "s", (code,)))["report.html"].decode()
+    assert "<code>coeflab report Yv&#39; --to a_b^2\nrho &gt; -1e-05</code>" in page
+
+
+def test_no_character_of_a_user_steers_the_page():
+    text = text_of(small_study(FULL, named="ab\u202edc\u2066\u200b \u05e9\u05dc", published=True))
+    assert set("\u202e\u2066\u200b") & set(text) == set()
+    assert "<bdi>abU+202EdcU+2066U+200B \u05e9\u05dc" in text
+
+
+def test_numbers_of_figures_are_json_that_cannot_leave_its_element():
+    text = text_of(small_study(FULL, named=HOSTILE))
+    found = re.findall(r'<script type="application/json" class="numbers">(.*?)</script>', text, flags=re.DOTALL)
+    assert len(found) == text.count('class="numbers"') >= 4
+    read = [json.loads(f) for f in found]
+    (data, *_) = (r for r in read if "data, curves" in r["title"])
+    assert all("<" not in f and "&" not in f for f in found)
+    assert any(HOSTILE in panel for panel in (r["title"] for r in read))
+    points = data["panels"][0]["series"][0]
+    assert points["x"] == pytest.approx([a for a in FULL if a != -10.0])
+    assert len(points["notes"]) == len(points["x"]) == len(points["y"])
+
+
+def test_the_policy_names_the_script_and_nothing_else():
+    text = text_of(small_study(FULL))
+    script = re.search(r'<script type="module">(.*?)</script>', text, flags=re.DOTALL)[1]
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    assert f"default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'sha256-{digest}'" in text
+
+
+def test_nothing_is_loaded_from_elsewhere():
+    text = text_of(small_study(FULL, published=True))
+    page = Page(text)
+    for _, attributes in page.elements:
+        for key in ("src", "srcset", "action", "data", "poster", "xlink:href"):
+            assert key not in attributes
+        assert re.match(r"#|data:,$", attributes.get("href") or "#")
+    assert "@import" not in text
+    assert re.findall(r"url\((?!#)", text) == []
+    assert set(re.findall(r"https?://[^\s\"<]+", text)) <= {"http://www.w3.org/2000/svg"}
+
+
+def test_links_inside_the_page_lead_somewhere():
+    page = Page(text_of(small_study(FULL)))
+    identifiers = {a["id"] for _, a in page.elements if "id" in a}
+    assert {a["href"][1:] for _, a in page.elements if str(a.get("href", "")).startswith("#")} <= identifiers
+
+
+def test_every_figure_is_described():
+    text = text_of(small_study(FULL))
+    figures = re.findall(r"<figure.*?</figure>", text, flags=re.DOTALL)
+    assert len(figures) == 9
+    for figure in figures:
+        assert 'role="img"' in figure
+        for element in ("title", "desc"):
+            assert re.search(rf"<{element}[^>]*>[^<]+</{element}>", figure)
+        assert re.search(r"<figcaption[^>]*>.+</figcaption>", figure)
+
+
+def test_every_figure_shows_its_title_before_its_caption():
+    made = document(small_study(FULL))
+    text = REPORTERS.load("html").render(made)["report.html"].decode()
+    shown = re.findall(r"<figcaption><strong>(.*?)\.</strong> .+?</figcaption>", text)
+    assert len(shown) == text.count("<figure") == len(set(shown))
+    assert "<i>Y</i><sub><i>v</i></sub><u><b>'</b></u>, tow: data, curves and residuals" in shown
+
+
+def test_the_contents_are_open_and_their_list_takes_the_keyboard():
+    page = Page(text_of(small_study(FULL)))
+    (contents,) = [a for a in page.named("details") if a.get("class") == "contents"]
+    assert "open" in contents
+    assert [a["tabindex"] for a in page.named("nav")] == ["0"]
+
+
+def test_every_table_has_a_caption_and_column_headers():
+    page = Page(text_of(small_study(FULL, published=True)))
+    assert len(page.named("caption")) == len(page.named("table")) > 3
+    assert all(a.get("scope") == "col" for a in page.named("th"))
+
+
+def test_no_path_of_this_machine_is_in_it():
+    assert str(Path.cwd()) not in text_of(small_study(FULL))
+
+
+@pytest.mark.slow
+def test_the_validation_makes_a_page_of_moderate_size():
+    study = run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
+    text = text_of(study)
+    assert len(text.encode()) < 3_000_000
+    drawings = re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)
+    budgeted = [c for c in study.coefficients if c.symbol in study.plan.wanted and c.value is not None]
+    hulls = {h.body.name for h in study.hulls.values()}
+    assert hulls == {"suboff_aff8", "suboff_bare_hull"}
+    planes, sketches, motions = 4, 3, 2 * 4
+    sweeps = 2 * sum(len(f.sweeps) for f in study.fits)
+    assert len(drawings) == sweeps + len(budgeted) + len(hulls) + planes + sketches + motions
+    assert text.count('class="space" hidden') == len(hulls)
+    assert max(len(d.encode()) for d in drawings) < 60_000
+    assert Page(text).crossed == []
+    assert text == text_of(study)

@@ -1,0 +1,273 @@
+from __future__ import annotations
+
+import unicodedata
+from dataclasses import replace
+
+import pymupdf
+import pytest
+
+from coeflab.core.errors import OutputError
+from coeflab.core.files import shipped
+from coeflab.core.table import Table
+from coeflab.core.version import VERSION
+from coeflab.published import validation
+from coeflab.report import summary
+from coeflab.report.content import document
+from coeflab.report.document import Document, Figure, Section
+from coeflab.report.formats import REPORTERS, Renderer, pdf
+from coeflab.report.sections import acceptance as acceptance_document
+from coeflab.study.plan import read_plan
+from coeflab.workbench import run
+from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
+
+LONG = "".join(chr(ord("a") + i % 26) for i in range(5000))
+NAMES = {
+    "script": HOSTILE,
+    "typst": '#panic("no") #import "x.typ" *bold* _it_ $ x^2 $ @ref <label> [a] `raw` // end',
+    "latex": r"\input{/etc/passwd} \(x_1\) $\frac{1}{2}$ % end",
+    "right to left": "שלום مرحبا",
+    "steering": "a\u202etxt.exe\u200fb\x07",
+    "emoji": "rocket 🚀 👩‍🚀 flag 🇳🇴",
+    "long": LONG,
+    "words": "five thousand letters " * 230,
+    "lines": "one\ntwo\ttab\rthree",
+}
+
+
+def opened(what: Document) -> pymupdf.Document:
+    return pymupdf.open(stream=pdf.render(what)["report.pdf"], filetype="pdf")
+
+
+def text_of(made: pymupdf.Document) -> str:
+    """All text without breaks and spaces, compatible letters made equal."""
+    whole = "".join(page.get_text() for page in made)
+    return "".join(c for c in unicodedata.normalize("NFKC", whole) if not c.isspace() and c != "\u00ad")
+
+
+def squeezed(text: str) -> str:
+    return "".join(unicodedata.normalize("NFKC", text).split())
+
+
+def flaws(made: pymupdf.Document) -> list[str]:
+    """Missing glyphs, and text beyond the margins of its page."""
+    out = []
+    for page in made:
+        frame = pymupdf.Rect(52, 30, page.rect.x1 - 52, page.rect.y1 - 30)
+        for span in page.get_texttrace():
+            out += [f"page {page.number + 1}: no glyph for U+{c[0]:04X}" for c in span["chars"] if c[1] == 0]
+            box = pymupdf.Rect(span["bbox"]) * page.rotation_matrix
+            if span["dir"] == (1.0, 0.0) and (box.x0 < frame.x0 or box.x1 > frame.x1 or box.y1 > page.rect.y1):
+                words = "".join(chr(c[0]) for c in span["chars"])
+                out.append(f"page {page.number + 1}: {words!r} at {box}")
+    return out
+
+
+def with_table(table: Table) -> Document:
+    return Document("Tables", "", (Section("one", "One", tables=(table,)),))
+
+
+def test_it_is_a_plugin():
+    assert "pdf" in REPORTERS.names()
+    assert isinstance(REPORTERS.load("pdf"), Renderer)
+
+
+@pytest.mark.parametrize("angles", [FULL, HALF, FEW, [3.0]])
+@pytest.mark.parametrize("published", [False, True])
+def test_a_small_study_is_typeset_without_flaws(angles, published):
+    assert flaws(opened(document(small_study(angles, published=published)))) == []
+
+
+def test_equal_studies_give_equal_bytes():
+    first, second = (pdf.render(document(small_study(FULL)))["report.pdf"] for _ in range(2))
+    assert first == second
+
+
+def test_metadata_names_the_study_and_no_time():
+    made = opened(document(small_study(FULL)))
+    assert made.metadata["title"] == "Study tow"
+    assert made.metadata["author"] == f"coeflab {VERSION}"
+    assert not made.metadata["creationDate"]
+    assert not made.metadata["modDate"]
+
+
+def test_it_is_tagged_and_in_english():
+    made = opened(document(small_study(FULL)))
+    catalog = made.xref_object(made.pdf_catalog())
+    assert "/StructTreeRoot" in catalog
+    assert "/Lang (en)" in catalog
+
+
+def test_all_sections_are_bookmarks_in_order():
+    whole = document(small_study(FULL))
+    titles = [title for _, title, _ in opened(whole).get_toc()]
+    at = [next(i for i, t in enumerate(titles) if t.endswith(s.title)) for s in whole.sections]
+    assert at == sorted(at)
+
+
+def test_text_is_found_by_a_search():
+    text = text_of(opened(document(small_study(FULL, published=True))))
+    assert "Yv′" in text
+    assert "−0.0" in text
+    assert "Modelsandvelocitiesrefertothepoint" not in text
+    assert "Momentsandvelocitiesrefertothepoint" in text
+
+
+def test_a_hash_is_copied_as_it_is():
+    """Long words may break over lines, by nothing that stands in the text."""
+    digest = "0123456789abcdef" * 4
+    made = opened(with_table(Table("Inputs", ("file", "sha256"), (("drift_of_the_bare_hull.csv", digest),))))
+    text = "".join(page.get_text() for page in made)
+    assert "\u200b" not in text
+    assert digest in "".join(text.split())
+
+
+def test_every_page_says_what_it_belongs_to():
+    whole = document(small_study(FULL))
+    made = opened(whole)
+    assert len(whole.digest) == 16
+    for page in made:
+        text = squeezed(page.get_text())
+        assert "small" in text
+        assert whole.digest in text
+        assert f"{page.number + 1}of{len(made)}" in text
+
+
+def figures_of(section: Section) -> list[Figure]:
+    return [*section.figures, *(f for s in section.subsections for f in figures_of(s))]
+
+
+def tables_of(section: Section) -> list[Table]:
+    return [*section.tables, *(t for s in section.subsections for t in tables_of(s))]
+
+
+def test_every_figure_and_table_is_there_and_numbered():
+    whole = document(small_study(FULL, published=True))
+    text = text_of(opened(whole))
+    figures = [f for s in whole.sections for f in figures_of(s)]
+    tables, elsewhere = on_paper(whole)
+    assert len(tables) + len(elsewhere) == sum(1 for s in whole.sections for _ in tables_of(s))
+    assert len(figures) >= 6
+    for word, n in (("Figure", len(figures)), ("Table", len(tables))):
+        for i in range(1, n + 1):
+            assert f"{word}{i}" in text
+        assert f"{word}{n + 1}" not in text
+
+
+def test_figures_are_vectors():
+    made = opened(document(small_study(FULL)))
+    assert sum(len(page.get_images()) for page in made) == 0
+    assert max(len(page.get_drawings()) for page in made) > 30
+
+
+@pytest.mark.parametrize("kind", NAMES)
+def test_names_of_users_are_text_and_stay_inside_the_page(kind):
+    name = NAMES[kind]
+    table = Table(name, ("", name, "value"), ((name, name, "1.0"), ("a", "b", "2.0")), (name,), frozenset({0, 1}))
+    svg = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 340 93"><path d="M0 0L340 93"/></svg>'
+    part = Section("part", name, (name,), (table,), (Figure("f", svg, name, name, name),), code=(name,))
+    made = opened(Document(name, name, (Section("verdict", name, (name,), subsections=(part,)), part), name, "0" * 16))
+    assert flaws(made) == []
+    assert len(made) < 14
+
+
+@pytest.mark.parametrize("kind", ["script", "typst", "latex", "right to left"])
+def test_names_of_users_are_found_as_they_were_written(kind):
+    name = NAMES[kind]
+    text = text_of(opened(Document("Title", "", (Section("a", "A", (name,)),))))
+    if kind == "right to left":
+        assert all(c in text for c in squeezed(name))
+    else:
+        plain = text.replace("’", "'").replace("‘", "'").replace("“", '"').replace("”", '"')
+        assert squeezed(name) in plain
+
+
+def test_a_table_that_is_too_wide_is_continued_with_its_first_column():
+    headers = ("row", *(f"column {i}" for i in range(60)))
+    rows = tuple((f"row {r}", *(f"{r}.{i:06d}" for i in range(60))) for r in range(3))
+    made = opened(with_table(Table("Wide", headers, rows)))
+    text = text_of(made)
+    assert flaws(made) == []
+    assert text.count("row2") > 1
+    assert all(f"2.{i:06d}" in text for i in range(60))
+    assert "(continued)" in text
+    assert "Table2" not in text
+
+
+def test_a_table_a_little_too_wide_lies_across_the_page():
+    headers = tuple(f"number {i}" for i in range(15))
+    rows = tuple(tuple(f"{r}.{i:09d}" for i in range(15)) for r in range(4))
+    made = opened(with_table(Table("Wide", headers, rows)))
+    assert flaws(made) == []
+    assert any(page.rect.width > page.rect.height for page in made)
+    assert "(continued)" not in text_of(made)
+
+
+def test_a_long_table_repeats_its_head():
+    rows = tuple((f"row {r}", f"{r}.0") for r in range(200))
+    made = opened(with_table(Table("Long", ("name", "magnitude"), rows)))
+    assert len(made) > 2
+    assert flaws(made) == []
+    assert all("magnitude" in page.get_text() for page in made)
+
+
+def test_an_empty_document_is_a_page():
+    assert len(opened(Document("", "", ()))) == 1
+
+
+def test_works_are_numbered():
+    text = text_of(opened(Document("T", "", (), works=(("a", "First work, 1990."), ("b", "Second work.")))))
+    assert "[1]Firstwork,1990." in text
+    assert "[2]Secondwork." in text
+
+
+def test_what_cannot_be_typeset_is_an_error():
+    bad = Figure("f", '<svg viewBox="0 0 10 10"><unclosed></svg>', "", "", "")
+    with pytest.raises(OutputError, match="could not be typeset"):
+        pdf.render(Document("T", "", (Section("a", "A", figures=(bad,)),)))
+
+
+def test_a_summary_of_a_small_study_has_one_page():
+    made = opened(summary.study_summary(small_study(FULL, published=True)))
+    assert len(made) == 1
+    assert flaws(made) == []
+    assert "Yv′" in text_of(made)
+
+
+@pytest.mark.slow
+def test_the_validation_is_printed_whole():
+    study = run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
+    whole = document(study)
+    made = opened(whole)
+    assert flaws(made) == []
+    assert len(made) < 110
+    text = text_of(made)
+    figures = [f for s in whole.sections for f in figures_of(s)]
+    tables, elsewhere = on_paper(whole)
+    assert f"Figure{len(figures)}" in text
+    assert f"Table{len(tables)}" in text
+    assert len(elsewhere) > 10
+    assert all(f"atableof{t['count']}rows,intheHTMLofthisreport" in text for t in elsewhere)
+    short = opened(summary.study_summary(study))
+    assert len(short) == 1
+    assert flaws(short) == []
+
+
+def on_paper(whole):
+    """Tables that are printed, and long ones that the paper only names."""
+    tables = [t for part in pdf.content(whole)["parts"] for t in part["tables"]]
+    return [t for t in tables if not t["elsewhere"]], [t for t in tables if t["elsewhere"]]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "pages"), [("huuv", 12), ("flyingfish", 11), ("thauv", 10)])
+def test_publications_are_printed(name, pages):
+    found = validation(name)
+    whole = acceptance_document.document(found)
+    made = opened(whole)
+    assert flaws(made) == []
+    assert len(made) <= pages
+    assert f"Table{len(found.tables)}" in text_of(made)
+    short = opened(summary.acceptance_summary(found, whole))
+    assert len(short) == 1
+    assert flaws(short) == []
+    assert pdf.render(replace(whole, title="Another"))["report.pdf"] != pdf.render(whole)["report.pdf"]

@@ -1,0 +1,137 @@
+"""Stability in reports: indices with their senses, the mass that they are made of, and what the same source prints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coeflab.core.files import shipped
+from coeflab.report.content import document
+from coeflab.report.sections.stability import in_words, stability_sections
+from coeflab.report.summary import study_summary
+from coeflab.report.tables.added_mass import mass_table
+from coeflab.study.checks.stability import check as stability_check
+from coeflab.vehicle.reference import read_references
+from coeflab.workbench import read_body
+from tests.motion.vehicles import STABLE, UNSTABLE, made
+from tests.report.studies import FULL, small_study
+
+M = 60.0 / (0.5 * 1000.0 * 2.0**3)
+NEARLY = {**STABLE, "Nv": -4e-2 * -1e-2 / (4e-3 - M) * 1.01}  # G_h = 1 - 1.01: next to nothing, below zero
+
+
+def with_files(*files):
+    return replace(small_study(FULL), parameter_files={f.name: f for f in files})
+
+
+def test_stability_has_indices_roots_and_figures():
+    (section,) = stability_sections(with_files(made()))
+    indices, roots, _ = section.tables
+    assert [row[1] for row in indices.rows] == ["G_h", "G_v"]
+    assert [row[4] for row in indices.rows] == ["stable by its value alone", "stable at high speed by its value alone"]
+    assert all("no U95" in row[5] for row in indices.rows)
+    assert [row[-1] for row in roots.rows] == ["none", "none"]
+    assert len(section.figures) == 2
+    assert all(f.panels for f in section.figures)
+
+
+def test_stability_without_hydrostatics_says_what_is_missing():
+    (section,) = stability_sections(with_files(made().model_copy(update={"hydrostatics": None})))
+    assert section.tables[1].rows[1][-1] == "not determined, no BG"
+    assert "no hydrostatics" in section.figures[1].caption
+
+
+def with_u95(values, half):
+    """A file whose derivatives of sway and yaw are independent, with such half-widths as shares of their sizes."""
+    file = made(values)
+    deviations = [half * values[s] / 2.0 for s in ("Yv", "Nv", "Yr", "Nr")]
+    symbols = tuple(file.coefficient(s).symbol for s in ("Yv'", "Nv'", "Yr'", "Nr'"))
+    matrix = tuple(map(tuple, np.diag(np.square(deviations)).tolist()))
+    covariance = file.covariance.model_copy(update={"symbols": symbols, "matrix": matrix})
+    return file.model_copy(update={"covariance": covariance})
+
+
+@pytest.mark.parametrize(
+    ("values", "half", "said"),
+    [(STABLE, 0.05, "stable"), (UNSTABLE, 0.05, "unstable"), (NEARLY, 0.05, "not determined")],
+)
+def test_an_index_is_stable_unstable_or_not_determined_by_its_interval(values, half, said):
+    study = with_files(with_u95(values, half))
+    (section,) = stability_sections(study)
+    by_index = {row[1]: row for row in section.tables[0].rows}
+    assert by_index["G_h"][4] == said
+    (sentence,) = [text for text in in_words(study) if "G_h" in text]
+    assert sentence.startswith(f"On a straight course with controls fixed {said}: synthetic (G_h")
+    assert sentence in document(study).sections[0].paragraphs
+    summary = study_summary(study).sections
+    assert in_words(study, with_values=False)[0] in summary[0].paragraphs
+    assert said in next(s for s in summary if s.anchor == "stability").tables[0].rows[0]
+
+
+def test_a_missing_rate_derivative_is_named():
+    few = {s: v for s, v in STABLE.items() if s not in ("Nr", "Zq", "Mq", "Zw", "Mw")}
+    (section,) = stability_sections(with_files(made(few)))
+    assert [t.title for t in section.tables] == ["Stability indices", "Mass and inertia used"]
+    assert section.tables[0].rows == (("synthetic", "G_h", "-", "-", "not determined", "missing: Nr'"),)
+
+
+def test_the_mass_that_an_index_is_made_of_is_shown_and_named_as_not_assessed():
+    (section,) = stability_sections(with_files(with_u95(STABLE, 0.05), made().model_copy(update={"name": "twin"})))
+    indices, _, used = section.tables
+    assert all(row[0] == "synthetic, twin" for row in used.rows)
+    shown = {row[1]: row for row in used.rows}
+    assert float(shown["m'"][2]) == pytest.approx(M, rel=1e-4)
+    assert shown["Iz"][2:4] == ("14.000", "kg m^2")
+    assert {row[4:] for row in used.rows} == {("not stated", "not stated")}
+    v = STABLE
+    heavier, plain = (1.0 - v["Nv"] * (v["Yr"] - m) / (v["Yv"] * v["Nr"]) for m in (1.01 * M, M))
+    remark = next(row[-1] for row in indices.rows if row[1] == "G_h")
+    assert "m' and xG' are not assessed" in remark
+    assert float(remark.rpartition(" ")[2]) == pytest.approx(heavier - plain, rel=0.05)
+
+
+def test_where_the_mass_comes_from_and_what_is_said_of_it():
+    body = read_body(shipped("geometry") / "suboff" / "body.toml")
+    file = made().model_copy(update={"body": "suboff_bare_hull"})
+    (used,) = mass_table(replace(with_files(file), body=body))
+    by_name = {row[1]: row[4:] for row in used.rows}
+    assert by_name["m'"] == ("roddy1990, Table 1, report pp. 14-15", "mass about 2 %")
+    assert by_name["Iz"][1] == "not stated"
+
+
+def test_an_index_stands_beside_the_one_that_the_same_source_prints():
+    """Roddy's Table 4: -0.443297 for the body with its appendages; a file of other campaigns gets none."""
+    published = read_references(shipped("cfd_data") / "suboff" / "published.toml")
+    own = made().coefficients[0].model_copy(update={"campaign": "suboff_roddy_2"})
+    file = made().model_copy(update={"body": "suboff_fully_appended", "coefficients": (*made().coefficients[1:], own)})
+    other = file.model_copy(update={"name": "other", "coefficients": made().coefficients})
+    (section,) = stability_sections(replace(with_files(file, other), references=published))
+    indices = section.tables[0]
+    assert indices.headers[4] == "published"
+    assert [row[4] for row in indices.rows] == ["-0.443297", "-", "-", "-"]
+    assert "published: G_h of synthetic: roddy1990, Table 4, report p. 19, configuration 2" in indices.notes
+
+
+def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
+    """Without the restoring moment it says nothing of the speed of the file where BG is not known."""
+    diving = made({**STABLE, "Mw": 6e-2}).model_copy(update={"hydrostatics": None})
+    study = with_files(diving)
+    (said,) = in_words(study)
+    start = "On a straight course with controls fixed unstable at high speed (no restoring moment) by its value alone: synthetic"
+    assert said.startswith(start)
+    assert ", at 1.50 m/s not determined, as BG is not known; stable by its value alone: synthetic (G_h" in said
+    assert "BG is not known" in in_words(study, with_values=False)[0]
+    (known,) = in_words(with_files(made({**STABLE, "Mw": 6e-2})))
+    assert known.startswith(start)
+    assert "BG" not in known
+    row = next(s for s in study_summary(study).sections if s.anchor == "stability").tables[0].rows[0]
+    assert (row[2], row[4]) == ("stable by its value alone", "unstable at high speed by its value alone")
+    (found,) = [c for c in stability_check(study) if c.subject.endswith("G_v")]
+    assert "unstable at high speed" in found.statistic
+    assert "as BG is not known" in found.comment
+
+
+def test_no_parameter_file_no_stability():
+    assert stability_sections(small_study(FULL)) == ()

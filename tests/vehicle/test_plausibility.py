@@ -1,0 +1,134 @@
+"""Numbers that cannot be those of a body in water are found."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from coeflab.core.table import Severity
+from coeflab.published.huuv.model import parameter_file as huuv_file
+from coeflab.published.huuv.model import read_huuv
+from coeflab.study.study import Study
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_model import ParameterModel
+from coeflab.vehicle.plausibility import plausibility, stated_matrix
+from tests.formats import of_second_order as second
+from tests.formats.massed import ADDED
+from tests.formats.of_a_vehicle import floating
+from tests.vehicle.test_force_law import HULL, LENGTH, parameters
+
+DERIVATIVES = {"Yv": -0.03, "Yvdot": -0.016, "Nrdot": -9e-4, "Xudot": -4e-4}
+
+
+def found(file: ParameterFile, severity: Severity = Severity.FAIL) -> dict[str, str]:
+    return {c.subject: c.comment for c in plausibility(file) if c.severity is severity}
+
+
+def test_real_vehicles_pass(suboff: Study) -> None:
+    for file in (second.bluerov2_heavy(), second.golden(), *suboff.parameter_files.values()):
+        assert found(file) == {}, file.name
+
+
+@pytest.mark.parametrize("density", [1.94, 64.0, 1.2, 998000.0])
+def test_a_density_that_is_none_of_water(density: float) -> None:
+    file = second.bluerov2_heavy()
+    wrong = file.model_copy(update={"conditions": file.conditions.model_copy(update={"density": density})})
+    assert "density" in found(wrong)
+    assert ("Convert to SI" in found(wrong)["density"]) == (density in (1.94, 64.0))
+
+
+def test_slugs_and_feet_beside_a_density_in_si() -> None:
+    """The torpedo of the reference vehicles: 1.97 slug, added masses in slug and slug ft^2, called SI."""
+    file = second.bluerov2_heavy()
+    matrix = np.diag([0.35, 1.48, 1.32, 0.025, 0.41, 0.38]).tolist()
+    hull = file.added_mass.model_copy(update={"matrix": matrix})
+    mass = file.mass.model_copy(update={"mass": 1.97})
+    told = found(file.model_copy(update={"added_mass": hull, "mass": mass}))
+    assert any("one system of units" in c for c in told.values())
+
+
+def test_asymmetry_by_its_size() -> None:
+    slight = parameters({**DERIVATIVES, "Yrdot": 4.000e-4, "Nvdot": 4.001e-4})
+    assert "M_A Yr and Nv" in found(slight, Severity.WARN)
+    assert found(slight) == {}
+    gross = parameters({**DERIVATIVES, "Yrdot": 4e-4, "Nvdot": -4e-4})
+    assert "M_A Yr and Nv" in found(gross)
+    alone = parameters({**DERIVATIVES, "Yrdot": 4e-4})
+    assert found(alone) == {}
+
+
+def test_negative_and_indefinite_added_mass() -> None:
+    assert set(found(parameters({**DERIVATIVES, "Yvdot": 0.016}))) == {"M_A Yv"}
+    assert set(found(parameters({**DERIVATIVES, "Yrdot": 9e-3, "Nvdot": 9e-3}))) == {"M_A"}
+    missing = parameters({"Yv": -0.03, "Nrdot": -9e-4, "Yrdot": 4e-4, "Nvdot": 4e-4})
+    assert found(missing) == {}
+    assert set(found(missing, Severity.WARN)) == {"M_A"}
+    assert "added mass" in found(parameters({"Yv": -0.03}), Severity.WARN)
+
+
+def test_the_matrix_of_derivatives_knows_what_is_not_stated() -> None:
+    matrix = stated_matrix(parameters(DERIVATIVES))
+    assert matrix[1, 1] == pytest.approx(0.016 * 0.5 * 1000.0 * 8.0)
+    assert np.isnan(matrix[1, 5])
+    assert np.array_equal(stated_matrix(parameters({"Yv": -0.03}, HULL)), HULL.matrix)
+
+
+@pytest.mark.parametrize("symbol", ["X0", "Xu", "Xu|u|", "Yv", "Yv|v|", "Yvvv", "Zw", "Kp", "Mq", "Nr", "Nr|r|"])
+def test_damping_that_drives(symbol: str) -> None:
+    assert set(found(parameters({symbol: 1e-3}, HULL))) == {f"{symbol}'"}
+    assert found(parameters({symbol: -1e-3}, HULL)) == {}
+
+
+def test_what_is_no_damping_has_any_sign() -> None:
+    assert found(parameters({"Yr": 5e-3, "Nv": 1e-3, "Mw": 1e-2, "Kv": 1e-3, "Zq": 1e-3, "Yv": -0.03}, HULL)) == {}
+    assert "damping" in found(parameters({"Nv": -1e-2}, HULL), Severity.WARN)
+
+
+def test_a_square_in_the_place_of_damping() -> None:
+    assert "Yvv'" in found(parameters({"Yvv": -0.1, "Nr": -1e-3}, HULL), Severity.WARN)
+
+
+def afloat(**changed: object) -> ParameterFile:
+    file = floating()
+    return file.model_copy(update={"hydrostatics": file.hydrostatics.model_copy(update=changed)})
+
+
+def test_a_volume_that_does_not_belong_to_the_mass() -> None:
+    """60 kg displace about 0.06 m^3, which is 2.1 cubic feet."""
+    assert found(floating()) == {}
+    assert "the volume in cubic feet" in found(afloat(volume=0.06 / 0.3048**3))["mass and hydrostatics.volume"]
+    assert "do not belong together" in found(afloat(volume=0.6))["mass and hydrostatics.volume"]
+    assert "Gravity in ft/s^2" in found(afloat(gravity=32.174))["hydrostatics.gravity"]
+
+
+def test_a_centre_of_buoyancy_below_that_of_gravity_turns_over() -> None:
+    """The centre of gravity is at z = 0.03 m, down."""
+    key = "hydrostatics.centre_of_buoyancy"
+    assert key not in found(afloat(centre_of_buoyancy=(0.0, 0.0, 0.029)), Severity.WARN)
+    assert "z is down" in found(afloat(centre_of_buoyancy=(0.0, 0.0, 0.05)), Severity.WARN)[key]
+
+
+def tabled(slope: float, contains: bool = False) -> ParameterFile:
+    """The torpedo whose yaw moment is a table over v', of that slope, in place of its derivatives."""
+    file = floating()
+    table = ParameterModel.model_validate({
+        "response": "N'", "unit": "1", "form": "line", "variables": [{"name": "v", "unit": "1"}],
+        "terms": [{"symbol": "Nv", "factors": [{"variable": "v", "power": 1}], "value": slope, "half_width_95": None}],
+        "covariance": [[None]], "n_points": 9, "rms": 0.0, "press_rms": None, "table": "t.csv", "campaign": "c",
+        "contains_potential": contains,
+        "domain": {"low": [-0.3], "high": [0.3], "half_spaces": [[1.0, -0.3], [-1.0, -0.3]], "extrapolation": "clamp"},
+    })  # fmt: skip
+    others = tuple(c for c in file.coefficients if not c.symbol.startswith("N"))
+    return file.model_copy(update={"coefficients": others, "models": (table,)})
+
+
+def test_a_table_that_is_said_to_lack_the_munk_moment_but_has_it() -> None:
+    """Munk moment (Yvdot - Xudot) u v = (3 - 55) u v: a table of that slope is taken for a total, one of the reverse is not."""
+    munk = (ADDED[0, 0] - ADDED[1, 1]) / (0.5 * 1000.0 * LENGTH.length**3)
+    said = found(tabled(0.8 * munk))["models of N"]
+    assert said.startswith("Munk moment twice: ")
+    assert "models of N" not in found(tabled(0.8 * munk, contains=True))
+    for slope in (-0.8 * munk, 0.2 * munk, 3.0 * munk):
+        assert "models of N" not in found(tabled(slope))
+    assert "models of N" not in found(floating())
+    assert "models of N" not in found(huuv_file(read_huuv()))
