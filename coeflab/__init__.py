@@ -15,39 +15,43 @@ from typing import TYPE_CHECKING, Any
 from coeflab.core.version import VERSION
 
 if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
+    from coeflab.bodies.readers import read_body
     from coeflab.core.errors import AxesError, CoeflabError, InputError, ScalingMismatchError, UnitsError
     from coeflab.core.files import shipped
-    from coeflab.model.body import Body
-    from coeflab.model.campaign import read_campaign
-    from coeflab.model.check import Check
-    from coeflab.model.coefficient import Coefficient, CoefficientSet, Status
-    from coeflab.model.fit_result import FitResult
-    from coeflab.model.fitted_model import FittedModel
-    from coeflab.model.force_table import ForceTable
-    from coeflab.model.parameter_file import ParameterFile, read_parameter_file
-    from coeflab.model.plan import read_plan
-    from coeflab.model.scaling import Conditions, Scaling
-    from coeflab.model.study import Plan, PlannedTable, Study
-    from coeflab.studies.validate import validation
-    from coeflab.workbench import read_body, read_tables, rendered, run
+    from coeflab.core.table import Check
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.fits.results.fitted_model import FittedModel
+    from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+    from coeflab.law.scaling import Conditions, Scaling
+    from coeflab.published import validation
+    from coeflab.study.plan import read_plan
+    from coeflab.study.study import Plan, Study
+    from coeflab.tables.campaign import read_campaign
+    from coeflab.tables.force_table import ForceTable
+    from coeflab.tables.importers import PlannedTable, read_tables
+    from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+    from coeflab.workbench import rendered, run
 
 __version__ = VERSION
 _HOMES = {
     "core.errors": ("AxesError", "CoeflabError", "InputError", "ScalingMismatchError", "UnitsError"),
     "core.files": ("shipped",),
-    "model.body": ("Body",),
-    "model.campaign": ("read_campaign",),
-    "model.check": ("Check",),
-    "model.coefficient": ("Coefficient", "CoefficientSet", "Status"),
-    "model.fit_result": ("FitResult",),
-    "model.fitted_model": ("FittedModel",),
-    "model.force_table": ("ForceTable",),
-    "model.parameter_file": ("ParameterFile", "read_parameter_file"),
-    "model.plan": ("read_plan",),
-    "model.scaling": ("Conditions", "Scaling"),
-    "model.study": ("Plan", "PlannedTable", "Study"),
-    "studies.validate": ("validation",),
-    "workbench": ("read_body", "read_tables", "rendered", "run"),
+    "bodies.body": ("Body",),
+    "tables.campaign": ("read_campaign",),
+    "core.table": ("Check",),
+    "law.coefficient": ("Coefficient", "CoefficientSet", "Status"),
+    "fits.results.fit_result": ("FitResult",),
+    "fits.results.fitted_model": ("FittedModel",),
+    "tables.force_table": ("ForceTable",),
+    "vehicle.parameter_file": ("ParameterFile", "read_parameter_file"),
+    "study.plan": ("read_plan",),
+    "law.scaling": ("Conditions", "Scaling"),
+    "study.study": ("Plan", "Study"),
+    "tables.importers": ("PlannedTable", "read_tables"),
+    "bodies.readers": ("read_body",),
+    "published": ("validation",),
+    "workbench": ("rendered", "run"),
 }
 _HOME = {name: home for home, names in _HOMES.items() for name in names}
 

@@ -21,6 +21,7 @@ from coeflab.core.types import brief
 from coeflab.core.units import quantity
 from coeflab.law.rigid_body import about_another, inertia_doubt
 from coeflab.law.scaling import Scaling, read_scaling
+from coeflab.law.symbols import symbol_at
 
 
 def _inertia_matrix(section: Section) -> NDArray[np.float64] | None:
@@ -159,7 +160,7 @@ def _measured(section: Section) -> list[Measured]:
     section.finish()
     out = []
     for symbol in values.content:
-        name, printed = values.symbol(symbol, symbol), values.text(symbol)
+        name, printed = symbol_at(values, symbol, symbol), values.text(symbol)
         if not name.endswith("dot"):
             raise values.fail(symbol, f'"{symbol}"', "an acceleration derivative such as Yvdot")
         try:

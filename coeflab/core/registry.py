@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from coeflab.core.errors import CoeflabError, PluginError, shown
@@ -30,20 +31,27 @@ class Registry(Generic[Port]):
     Parameters
     ----------
     package : str
-        Dotted name of the room.
+        Name of the room, ``coeflab.`` and a word: what people type, and the group of entry points.
     kind : str
         What a plugin of this room is called in messages.
     port : type
         The runtime-checkable protocol that a plugin keeps.
+    folder : str, optional
+        Dotted name of the package that holds the shipped plugins; by default that of the room.
+    file : str, optional
+        Every plugin is a package with this module in it, such as ``write``; otherwise every plugin is a module.
     """
 
-    def __init__(self, package: str, kind: str, port: type[Port]) -> None:
-        self.package, self.kind, self._port = package, kind, port
+    def __init__(self, package: str, kind: str, port: type[Port], folder: str = "", file: str = "") -> None:
+        self.package, self.kind, self._port, self._folder, self._file = package, kind, port, folder or package, file
 
     @cached_property
     def _shipped(self) -> frozenset[str]:
-        room = importlib.import_module(self.package)
-        return frozenset(m.name for m in pkgutil.iter_modules(room.__path__) if not m.name.startswith("_"))
+        here = importlib.import_module(self._folder).__path__
+        if self._file:
+            folders = (p.parent for root in here for p in Path(root).glob(f"*/{self._file}.py"))
+            return frozenset(f.name for f in folders if not f.name.startswith("_"))
+        return frozenset(m.name for m in pkgutil.iter_modules(here) if not m.ispkg and not m.name.startswith("_"))
 
     @cached_property
     def _claims(self) -> tuple[dict[str, EntryPoint], tuple[tuple[str, str], ...]]:
@@ -111,7 +119,7 @@ class Registry(Generic[Port]):
             raise PluginError(f"no {self.kind} is called {shown(name)}: {hint}Known: {known}.{refused}")
         point = self._claims[0].get(name)
         if point is None:
-            plugin: Any = importlib.import_module(f"{self.package}.{name}")
+            plugin: Any = importlib.import_module(".".join(filter(None, (self._folder, name, self._file))))
             owner = ""
         else:
             with self.guarded(name, "cannot be imported"):

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 from html import escape
+from importlib import import_module
 from math import isnan
 
 from coeflab.core.types import brief
@@ -118,3 +119,12 @@ class Check:
     statistic: str
     rule: str
     comment: str
+
+
+def html_by(renderer: str, noun: object) -> str:
+    """HTML of a noun for notebooks, by the function of that name in ``coeflab.report.tables.nouns``.
+
+    The report is imported on first use and by name: nouns stand below it.
+    """
+    tables = getattr(import_module("coeflab.report.tables.nouns"), renderer)(noun)
+    return "".join(t._repr_html_() for t in ((tables,) if isinstance(tables, Table) else tables))

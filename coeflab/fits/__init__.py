@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any, Protocol, runtime_checkable
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from coeflab.core.registry import Plugin, Registry
-from coeflab.fits.results.fit_result import FitResult
-from coeflab.law.scaling import Scaling
-from coeflab.tables.force_table import ForceTable
 
-FITS = Registry(__name__, "fit", Fit)  # type: ignore[type-abstract]
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from coeflab.fits.results.fit_result import FitResult
+    from coeflab.law.scaling import Scaling
+    from coeflab.tables.force_table import ForceTable
 
 
 @runtime_checkable
@@ -31,3 +30,6 @@ class Fit(Plugin, Protocol):
             Of the plugin's `Options`.
         """
         ...
+
+
+FITS = Registry("coeflab.fits", "fit", Fit, __name__)  # type: ignore[type-abstract]

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Protocol, runtime_checkable
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from coeflab.core.registry import Plugin, Registry
-from coeflab.vehicle.parameter_file import ParameterFile
 
-EXPORTERS = Registry(__name__, "exporter", Exporter)  # type: ignore[type-abstract]
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
 
+    import numpy as np
+    from numpy.typing import NDArray
 
-PARAMETER_IMPORTERS = Registry(__name__, "parameter importer", ParameterImporter)  # type: ignore[type-abstract]
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 
 @runtime_checkable
@@ -110,3 +108,13 @@ class ParameterImporter(Plugin, Protocol):
         path : Path
         """
         ...
+
+
+EXPORTERS = Registry("coeflab.exporters", "exporter", Exporter, __name__, "write")  # type: ignore[type-abstract]
+PARAMETER_IMPORTERS = Registry(
+    "coeflab.parameter_importers",
+    "parameter importer",
+    ParameterImporter,  # type: ignore[type-abstract]
+    __name__,
+    "read",
+)

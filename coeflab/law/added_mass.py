@@ -18,12 +18,12 @@ from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
+from coeflab.core.table import html_by
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
 from coeflab.law.transforms import velocity_transfer
-from coeflab.report.tables import nouns as noun_tables
 
 ROUNDING = 1e-9
 
@@ -147,7 +147,7 @@ class AddedMass:
 
     def _repr_html_(self) -> str:
         """The matrix, for notebooks."""
-        return noun_tables.matrix(self)._repr_html_()
+        return html_by("matrix", self)
 
     @property
     def definiteness(self) -> Definiteness:

@@ -12,13 +12,12 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.table import number
+from coeflab.core.table import html_by, number
 from coeflab.core.types import Array, brief, locked, locked_columns
 from coeflab.law.motion_law import SLOWEST
 from coeflab.law.symbols import ANGULAR, CONTROLS, LINEAR, MOTIONS
 from coeflab.motion.dynamics import euler_angles, rotations
 from coeflab.motion.vehicle import Vehicle, control_rows
-from coeflab.report.tables import nouns as noun_tables
 
 STEEPEST = 1e-6
 
@@ -112,7 +111,7 @@ class Trajectory:
 
     def _repr_html_(self) -> str:
         """Beginning, end and range, for notebooks."""
-        return noun_tables.motion(self)._repr_html_()
+        return html_by("motion", self)
 
     def until(self, time: float) -> Trajectory:
         """The rows up to a time."""

@@ -38,6 +38,6 @@ def validation(name: str) -> Plan | Acceptance:
             advice=f"Did you mean {near[0]}?" if near else "",
         )
     if name in PUBLISHED:
-        found: Acceptance = importlib.import_module(f"coeflab.studies.validations.{name}").acceptance()
+        found: Acceptance = importlib.import_module(f"coeflab.published.{name}.acceptance").acceptance()
         return found
     return read_plan(Path(shipped("cfd_data")) / name / PLAN)

@@ -145,7 +145,7 @@ def users_texts(*nouns: object) -> tuple[str, ...]:
             waiting += [*noun, *noun.values()]
         elif isinstance(noun, (tuple, list)):
             waiting += [v for v in noun if not isinstance(v, (int, float))]
-        elif is_dataclass(noun) and not type(noun).__module__.startswith("coeflab.kernels."):
+        elif is_dataclass(noun) and not type(noun).__module__.startswith("coeflab.fits.statistics."):
             waiting += [getattr(noun, f.name) for f in fields(noun)]
         else:
             waiting += [getattr(noun, name) for name in getattr(type(noun), "model_fields", ())]

@@ -14,6 +14,7 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import Section, read_toml
 from coeflab.formats.export import PlannedExport
 from coeflab.law.scaling import read_conditions, read_scaling
+from coeflab.law.symbols import symbol_at
 from coeflab.motion.manoeuvre import PlannedManoeuvre
 from coeflab.study.study import Plan, PlannedJoint
 from coeflab.tables.importers import PlannedTable
@@ -116,7 +117,7 @@ def read_plan(path: Path) -> Plan:
     added_mass = root.section("added_mass", required=False)
     wanted = study.texts("wanted") or ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
     for symbol in wanted:
-        study.symbol("wanted", symbol)
+        symbol_at(study, "wanted", symbol)
     files = []
     for s in root.sections("parameter_file"):
         name, group = safe_name(s, "name"), s.texts("campaigns")

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, locked
+from coeflab.core.types import Array, brief, locked
 from coeflab.law.added_mass import ROUNDING, AddedMass, definiteness
 from coeflab.law.rigid_body import rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
@@ -24,6 +24,7 @@ ACCELERATIONS = (MEASURED, COMPUTED)
 Entry = tuple[int, int]
 
 
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class WaterInertia:
     """The added mass that a motion has, and where its entries come from.

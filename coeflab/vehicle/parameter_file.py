@@ -22,12 +22,12 @@ from pydantic.fields import FieldInfo
 from coeflab.core.axes import Datum
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.limits import JSON_BYTES
+from coeflab.core.table import html_by
 from coeflab.core.text.json import parse_json
 from coeflab.core.text.toml import read_text
 from coeflab.core.wording import repeated
 from coeflab.law.added_mass import potential_part
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.report.tables import nouns as noun_tables
 from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.parameter_parts import (
     Finite,
@@ -278,7 +278,7 @@ class ParameterFile(Strict):
 
     def _repr_html_(self) -> str:
         """The coefficients, for notebooks."""
-        return noun_tables.parameters(self)._repr_html_()
+        return html_by("parameters", self)
 
     def to_json(self) -> bytes:
         """The file's bytes: sorted as declared, two blanks of indent, a closing newline, never NaN.

@@ -18,6 +18,7 @@ from coeflab.core.types import brief, locked
 from coeflab.core.units import quantity
 from coeflab.law.coefficient import Coefficient, CoefficientSet
 from coeflab.law.scaling import Scaling, read_scaling
+from coeflab.law.symbols import symbol_at
 
 STABILITY = ("G_h", "G_v")
 
@@ -198,7 +199,7 @@ def _values(section: Section, named: tuple[str, ...] = ()) -> tuple[PublishedVal
     for symbol in section.content:
         printed = section.text(symbol)
         if not named:
-            section.symbol(symbol, symbol)
+            symbol_at(section, symbol, symbol)
         elif symbol not in named:
             raise section.fail(symbol, shown(symbol), f"one of {', '.join(named)}")
         try:

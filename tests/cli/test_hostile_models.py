@@ -16,7 +16,7 @@ from coeflab.core.errors import CoeflabError
 from coeflab.formats.model_files import read_model_file
 from tests.cli.conftest import COEFLAB
 
-DATA = Path(__file__).parents[1] / "parameter_importers" / "data"
+DATA = Path(__file__).parents[1] / "formats" / "data"
 LAUV = (DATA / "lauv.urdf.xacro").read_bytes()
 GLIDER = (DATA / "tethys_like.sdf").read_bytes()
 BLUEROV = (DATA / "bluerov2_heavy.yml").read_bytes()

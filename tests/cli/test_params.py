@@ -11,7 +11,7 @@ import pytest
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION
 from tests.cli.conftest import Run
 
-DATA = Path(__file__).parents[1] / "parameter_importers" / "data"
+DATA = Path(__file__).parents[1] / "formats" / "data"
 OWN = Path(__file__).parents[1] / "data" / "parameters_1_0.json"
 
 

@@ -23,7 +23,7 @@ Started = Callable[..., subprocess.Popen[str]]
 DRAWING = """
 import os, time
 from functools import partial
-from coeflab.presentation import in_parallel
+from coeflab.report import content as in_parallel
 in_parallel.cores = lambda: 2
 def job(i):
     print(os.getpid(), flush=True)

@@ -8,6 +8,7 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.core.text.toml import Section, read_toml
+from coeflab.law.symbols import symbol_at
 
 TEXT = """
 name = "n"
@@ -68,7 +69,7 @@ FAULTS: list[tuple[Callable[[Section], object], str]] = [
     (lambda s: s.section("name"), "expected a table [name]"),
     (lambda s: s.sections("inner"), "expected tables [[inner]]"),
     (lambda s: s.section("inner").text("x"), '"inner.x"'),
-    (lambda s: s.symbol("words", "Qv"), '"words": found "Qv"; expected a SNAME derivative'),
+    (lambda s: symbol_at(s, "words", "Qv"), '"words": found "Qv"; expected a SNAME derivative'),
 ]
 
 

@@ -12,7 +12,7 @@ from coeflab.formats.model_files import read_model_file
 from coeflab.formats.mss import write as mss_exporter
 from tests.formats import of_second_order as second
 
-DATA = Path(__file__).parents[1] / "parameter_importers" / "data"
+DATA = Path(__file__).parents[1] / "formats" / "data"
 LAUV = (DATA / "lauv.urdf.xacro").read_text(encoding="utf-8")
 GLIDER = (DATA / "tethys_like.sdf").read_text(encoding="utf-8")
 BLUEROV = (DATA / "bluerov2_heavy.yml").read_text(encoding="utf-8")

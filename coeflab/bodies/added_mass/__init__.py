@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
-import numpy as np
-
-from coeflab.bodies.body import Body
 from coeflab.core.registry import Plugin, Registry
-from coeflab.law.added_mass import AddedMass
 
-ADDED_MASS = Registry(__name__, "added-mass method", AddedMassMethod)  # type: ignore[type-abstract]
+if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
+    from coeflab.law.added_mass import AddedMass
 
 
 @runtime_checkable
@@ -27,3 +25,6 @@ class AddedMassMethod(Plugin, Protocol):
             kg/m^3.
         """
         ...
+
+
+ADDED_MASS = Registry("coeflab.added_mass", "added-mass method", AddedMassMethod, __name__)  # type: ignore[type-abstract]

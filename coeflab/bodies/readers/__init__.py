@@ -5,13 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
-import numpy as np
-
 from coeflab.bodies.body import Body
 from coeflab.core.registry import Plugin, Registry
 from coeflab.core.text.toml import read_toml
-
-BODIES = Registry(__name__, "body reader", BodyReader)  # type: ignore[type-abstract]
 
 
 def read_body(path: Path) -> Body:
@@ -35,3 +31,6 @@ class BodyReader(Plugin, Protocol):
             Of its body.toml.
         """
         ...
+
+
+BODIES = Registry("coeflab.bodies", "body reader", BodyReader, __name__)  # type: ignore[type-abstract]

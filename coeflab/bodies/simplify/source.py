@@ -12,12 +12,12 @@ from coeflab.bodies.mesh.file import FORMATS, load
 from coeflab.bodies.mesh.gates import examined, repaired
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed, require_plausible
+from coeflab.bodies.readers import read_body
 from coeflab.core.axes import Datum, parse_axes
 from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.files import located, shipped
 from coeflab.core.provenance import InputFile, Source, sha256_of
 from coeflab.core.units import factor
-from coeflab.workbench import read_body
 
 BODY, CAMPAIGN = "body.toml", "campaign.toml"
 

@@ -21,7 +21,6 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import INTEGER_DIGITS, TOML_BYTES, TOML_NAMES_IN_A_KEY, TOML_TABLES, positive_number
 from coeflab.core.units import quantity
 from coeflab.core.wording import Verbatim
-from coeflab.law.symbols import derivative
 
 _NAME = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
 _LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_NAME}(?:[ \t]*+\.[ \t]*+{_NAME}){{{TOML_NAMES_IN_A_KEY},}}")
@@ -153,13 +152,6 @@ class Section:
             raise self.fail(key, shown(value), expected)
         x, y, z = (quantity(v, dimension, file=self.file, key=self.key(key)) for v in value)
         return x, y, z
-
-    def symbol(self, key: str, symbol: str) -> str:
-        """A SNAME derivative that stands under a key."""
-        try:
-            return derivative(symbol).text
-        except InputError as why:
-            raise self.fail(key, why.found, why.expected, why.advice) from None
 
     def texts(self, key: str) -> tuple[str, ...]:
         """A list of texts, empty by default."""

@@ -10,7 +10,7 @@ from math import isinf, isnan
 
 import numpy as np
 
-from coeflab.core.table import coefficient
+from coeflab.core.table import coefficient, html_by
 from coeflab.core.types import Array, brief, locked
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.misfit import UNLIKELY, OutOfSample, chance
@@ -18,7 +18,6 @@ from coeflab.fits.statistics.groups import Poolability
 from coeflab.fits.statistics.slopes import Estimate, Recommendation
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import primed
-from coeflab.report.tables import nouns as noun_tables
 
 DOUBTFUL = 0.1  # not rejected, but one in ten: worth a sentence
 
@@ -288,7 +287,7 @@ class FitResult:
 
     def _repr_html_(self) -> str:
         """Coefficients and terms, for notebooks."""
-        return "".join(t._repr_html_() for t in noun_tables.fit_tables(self))
+        return html_by("fit_tables", self)
 
     def sweep(self, symbol: str) -> Sweep:
         """The sweep of a coefficient."""

@@ -13,11 +13,11 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.table import html_by
 from coeflab.core.types import Array, brief, locked, locked_columns
 from coeflab.fits.statistics.linear_model import LinearFit
 from coeflab.law.domain import half_spaces, inside
 from coeflab.law.terms import Term, design
-from coeflab.report.tables import nouns as noun_tables
 from coeflab.tables.force_table import ForceTable
 
 
@@ -220,7 +220,7 @@ class FittedModel:
 
     def _repr_html_(self) -> str:
         """Its terms, for notebooks."""
-        return noun_tables.terms(self)._repr_html_()
+        return html_by("terms", self)
 
     def named(self, symbol: str) -> tuple[float, float]:
         """Value and 95 % half-width of one coefficient."""

@@ -209,7 +209,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     """One FMU: a zip file, stored, its entries in order and dated alike, so that the same file gives the same bytes."""
     name, model = identifier(parameters.name), _model(parameters)
     content = (json.dumps(model, indent=1, ensure_ascii=True, allow_nan=False) + "\n").encode()
-    unit = (resources("coeflab.formats") / "_fmi" / "unit.py").read_bytes()
+    unit = (resources("coeflab.formats.fmi") / "unit.py").read_bytes()
     guid = hashlib.sha256(content + unit).hexdigest()[:32]
     entries = {
         "modelDescription.xml": _description(parameters, model["variables"], guid),

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Protocol, runtime_checkable
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from coeflab.core.registry import Plugin, Registry
-from coeflab.motion.manoeuvre import Figure, Manoeuvre
-from coeflab.motion.trajectory import Trajectory
-from coeflab.motion.vehicle import Vehicle
 
-MANOEUVRES = Registry(__name__, "manoeuvre", ManoeuvrePlugin)  # type: ignore[type-abstract]
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from coeflab.motion.manoeuvre import Figure, Manoeuvre
+    from coeflab.motion.trajectory import Trajectory
+    from coeflab.motion.vehicle import Vehicle
 
 
 @runtime_checkable
@@ -43,3 +42,6 @@ class ManoeuvrePlugin(Plugin, Protocol):
             Those that planned it.
         """
         ...
+
+
+MANOEUVRES = Registry("coeflab.manoeuvres", "manoeuvre", ManoeuvrePlugin, __name__)  # type: ignore[type-abstract]

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Protocol, runtime_checkable
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from coeflab.core.registry import Plugin, Registry
-from coeflab.motion.glider.glider import Glider
-from coeflab.motion.manoeuvre import Manoeuvre
-from coeflab.motion.trajectory import Trajectory
-from coeflab.motion.vehicle import Vehicle
 
-SIMULATORS = Registry(__name__, "simulator", Simulator)  # type: ignore[type-abstract]
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from coeflab.motion.glider.glider import Glider
+    from coeflab.motion.manoeuvre import Manoeuvre
+    from coeflab.motion.trajectory import Trajectory
+    from coeflab.motion.vehicle import Vehicle
 
 
 @runtime_checkable
@@ -31,3 +30,6 @@ class Simulator(Plugin, Protocol):
             Of the plugin's `Options`.
         """
         ...
+
+
+SIMULATORS = Registry("coeflab.simulators", "simulator", Simulator, __name__)  # type: ignore[type-abstract]

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Protocol, runtime_checkable
-
-import numpy as np
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from coeflab.core.registry import Plugin, Registry
-from coeflab.report.document import Document
 
-REPORTERS = Registry(__name__, "report format", Renderer)  # type: ignore[type-abstract]
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from coeflab.report.document import Document
 
 
 @runtime_checkable
@@ -25,3 +24,6 @@ class Renderer(Plugin, Protocol):
         document : Document
         """
         ...
+
+
+REPORTERS = Registry("coeflab.reporting", "report format", Renderer, __name__)  # type: ignore[type-abstract]

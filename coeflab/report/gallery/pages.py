@@ -117,7 +117,7 @@ def _safe(text: str) -> Any:
 def _style() -> str:
     """The report's style and what the gallery adds."""
     report = files("coeflab.report.formats") / "_html"
-    sheets = (report / "style.css", report / "symbols.css", files("coeflab.studies") / "gallery" / "gallery.css")
+    sheets = (report / "style.css", report / "symbols.css", files("coeflab.report") / "gallery" / "gallery.css")
     return "\n" + "".join(sheet.read_text(encoding="utf-8") for sheet in sheets)
 
 
@@ -125,7 +125,7 @@ def _style() -> str:
 def _templates() -> Any:
     from jinja2 import DictLoader, Environment, StrictUndefined
 
-    folder = files("coeflab.studies") / "gallery"
+    folder = files("coeflab.report") / "gallery"
     texts: Mapping[str, str] = {
         name: (folder / f"{name}.html.j2").read_text(encoding="utf-8")
         for name in ("frame", "index", "comparison", "refusal")

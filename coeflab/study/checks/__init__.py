@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Protocol, runtime_checkable
-
-import numpy as np
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from coeflab.core.registry import Plugin, Registry
-from coeflab.core.table import Check
-from coeflab.study.study import Study
 
-CHECKS = Registry(__name__, "check", Checker)  # type: ignore[type-abstract]
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from coeflab.core.table import Check
+    from coeflab.study.study import Study
 
 
 @runtime_checkable
@@ -26,3 +25,6 @@ class Checker(Plugin, Protocol):
         study : Study
         """
         ...
+
+
+CHECKS = Registry("coeflab.checks", "check", Checker, __name__)  # type: ignore[type-abstract]

@@ -16,8 +16,6 @@ from coeflab.core.types import brief
 from coeflab.tables.campaign import FILE, Campaign, InputUncertainty, read_campaign
 from coeflab.tables.force_table import ForceTable
 
-IMPORTERS = Registry(__name__, "importer", Importer)  # type: ignore[type-abstract]
-
 
 def with_declarations(
     table: ForceTable, file: Path, cells: str = "", uncertainty: InputUncertainty | None = None
@@ -80,6 +78,9 @@ class Importer(Plugin, Protocol):
             File name of the one table that is wanted.
         """
         ...
+
+
+IMPORTERS = Registry("coeflab.importers", "importer", Importer, __name__)  # type: ignore[type-abstract]
 
 
 def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:

@@ -1,0 +1,157 @@
+"""Size and shape of the package: files, lines of code, imports, circles, modules with a single importer.
+
+python benchmarks/house.py [--list]     --list names the circles, the long files and the modules with a single importer
+
+Lines of code leave out blank lines, comments and docstrings. Imports count wherever they stand, in functions and under
+TYPE_CHECKING too. A circle is a set of modules that import each other, at any time. Plugins are the modules that a registry of
+plugins loads; numerics are modules that import nothing of the package but other numerics and ``core.types``.
+"""
+
+from __future__ import annotations
+
+import ast
+import io
+import sys
+import tokenize
+from collections import defaultdict
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / "coeflab"
+PLUGINS = (
+    "coeflab.tables.importers.", "coeflab.bodies.readers.", "coeflab.bodies.added_mass.", "coeflab.motion.manoeuvres.",
+    "coeflab.motion.simulators.", "coeflab.study.checks.", "coeflab.report.formats.",
+)  # fmt: skip
+PURE = {"coeflab.core.types"}
+
+
+def modules() -> dict[str, Path]:
+    """Every module of the package by its dotted name."""
+    out = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        parts = path.relative_to(ROOT).with_suffix("").parts
+        out[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return out
+
+
+def code_lines(text: str) -> set[int]:
+    """Lines that hold code: no blank lines, no comments, no docstrings."""
+    skipped: set[int] = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            first = node.body[0] if node.body else None
+            if (
+                isinstance(first, ast.Expr)
+                and isinstance(first.value, ast.Constant)
+                and isinstance(first.value.value, str)
+            ):
+                skipped |= set(range(first.lineno, (first.end_lineno or first.lineno) + 1))
+    found: set[int] = set()
+    quiet = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type not in quiet:
+            found |= set(range(token.start[0], token.end[0] + 1))
+    return found - skipped
+
+
+def imports(name: str, text: str, known: dict[str, Path]) -> tuple[set[str], set[int]]:
+    """Modules of the package that a module imports, and the lines of all its imports."""
+    targets: set[str] = set()
+    lines: set[int] = set()
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            lines |= set(range(node.lineno, (node.end_lineno or node.lineno) + 1))
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for alias in node.names:
+                inner = f"{node.module}.{alias.name}"
+                targets.add(inner if inner in known else node.module)
+        elif isinstance(node, ast.Import):
+            targets |= {alias.name for alias in node.names}
+    return {t for t in targets if t in known and t != name}, lines
+
+
+def circles(graph: dict[str, set[str]]) -> list[list[str]]:
+    """Strongly connected sets of more than one module (Tarjan 1972)."""
+    index: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    out: list[list[str]] = []
+
+    def visit(v: str) -> None:
+        index[v] = low[v] = len(index)
+        stack.append(v)
+        for w in sorted(graph[v]):
+            if w not in index:
+                visit(w)
+                low[v] = min(low[v], low[w])
+            elif w in stack:
+                low[v] = min(low[v], index[w])
+        if low[v] == index[v]:
+            cut = stack.index(v)
+            members = stack[cut:]
+            del stack[cut:]
+            if len(members) > 1:
+                out.append(sorted(members))
+
+    for v in sorted(graph):
+        if v not in index:
+            visit(v)
+    return out
+
+
+def is_plugin(name: str) -> bool:
+    """Whether a registry loads the module."""
+    parts = name.split(".")
+    return (
+        name.startswith(PLUGINS)
+        or (len(parts) == 3 and parts[1] == "fits")
+        or (len(parts) == 4 and parts[1] == "formats" and parts[3] in ("write", "read"))
+        or (len(parts) == 3 and parts[1] in ("cli", "published"))
+    )
+
+
+def main() -> None:
+    """Print the figures."""
+    known = modules()
+    texts = {name: path.read_text(encoding="utf-8") for name, path in known.items()}
+    found = {name: imports(name, text, known) for name, text in texts.items()}
+    graph = {name: targets for name, (targets, _) in found.items()}
+    code = {name: code_lines(text) for name, text in texts.items()}
+    total = sum(map(len, code.values()))
+    importing = sum(len(code[name] & lines) for name, (_, lines) in found.items())
+    importers = defaultdict(set)
+    for name, targets in graph.items():
+        for target in targets:
+            importers[target].add(name)
+    pure = set(PURE)
+    for _ in known:
+        more = {n for n, t in graph.items() if (t and t <= pure) or (not t and "numpy" in texts[n])} | pure
+        if more == pure:
+            break
+        pure = more
+    single = [
+        n for n in known
+        if len(importers[n]) == 1 and known[n].name != "__init__.py" and not is_plugin(n) and n not in pure
+    ]  # fmt: skip
+    longest = sorted(((text.count("\n"), name) for name, text in texts.items()), reverse=True)
+    round_trips = circles(graph)
+    sys.stdout.write(
+        f"files                                   {len(known)}\n"
+        f"lines                                   {sum(n for n, _ in longest)}\n"
+        f"lines of code                           {total}\n"
+        f"imports, share of these                 {importing / total:.1%}\n"
+        f"longest file                            {longest[0][0]} {longest[0][1]}\n"
+        f"circles, modules in them                {len(round_trips)}, {sum(map(len, round_trips))}\n"
+        f"modules with a single importer          {len(single)} (neither plugin nor numerics)\n"
+    )
+    if "--list" in sys.argv:
+        for circle in round_trips:
+            sys.stdout.write(f"circle  {' '.join(circle)}\n")
+        for n, name in longest[:12]:
+            sys.stdout.write(f"long    {n} {name}\n")
+        for name in single:
+            sys.stdout.write(f"single  {name} <- {next(iter(importers[name]))}\n")
+
+
+if __name__ == "__main__":
+    main()
