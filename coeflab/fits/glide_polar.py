@@ -55,7 +55,16 @@ def read_printed(items: Sequence[str], place: str) -> dict[str, float]:
 
 
 def at_no_angle(symbol: str, printed: float, result: FitResult) -> str:
-    """A printed coefficient that no unit of the angle touches, against the fitted 95 % interval."""
+    """A printed coefficient that no unit of the angle touches, against the fitted 95 % interval.
+
+    Parameters
+    ----------
+    symbol : str
+        K_L0, K_D0 or K_M0.
+    printed : float
+        SI.
+    result : FitResult
+    """
     model = next((m for m in result.models if symbol in m.symbols), None)
     if model is None:
         return f"{symbol}: not fitted, so the printed {printed:g} is not compared."

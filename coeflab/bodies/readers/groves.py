@@ -100,7 +100,17 @@ def sail(hull: Hull) -> Appendage:
 
 
 def sail_sections(stations: int, levels: int, cap: int) -> Array:
-    """(stations + 1, 2 levels + cap + 1, 3) closed loops x, y, height across the sail, from within the hull to its top."""
+    """(stations + 1, 2 levels + cap + 1, 3) closed loops x, y, height across the sail, from within the hull to its top.
+
+    Parameters
+    ----------
+    stations : int
+        Intervals along the chord.
+    levels : int
+        Intervals from foot to the top of the side.
+    cap : int
+        Intervals over the rounded top.
+    """
     x = SAIL_JOINTS[0] + (SAIL_JOINTS[4] - SAIL_JOINTS[0]) * _eased(stations)
     b, _ = sail_half_thickness(x)
     up, turn = np.linspace(SAIL_FOOT, SIDE_TOP, levels + 1), np.pi * np.arange(1, cap) / cap

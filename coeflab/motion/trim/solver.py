@@ -69,7 +69,15 @@ class Scaled:
 
 
 def differences(function: Callable[[Array], Array], low: Array, high: Array) -> Callable[[Array], Array]:
-    """Derivatives (m, n) by central differences that do not leave the bounds."""
+    """Derivatives (m, n) by central differences that do not leave the bounds.
+
+    Parameters
+    ----------
+    function : callable
+        (m,) residuals of (n,) unknowns.
+    low, high : (n,) array
+        Bounds of the unknowns.
+    """
 
     def slopes(y: Array) -> Array:
         columns = []
@@ -85,7 +93,15 @@ def differences(function: Callable[[Array], Array], low: Array, high: Array) -> 
 
 
 def bounded_step(matrix: Array, right: Array, low: Array, high: Array) -> Array:
-    """The step p in [low, high] with the least |matrix p - right|."""
+    """The step p in [low, high] with the least |matrix p - right|.
+
+    Parameters
+    ----------
+    matrix : (m, n) array
+    right : (m,) array
+    low, high : (n,) array
+        Equal where the unknown is held.
+    """
     from scipy.optimize import lsq_linear
 
     free = high > low
@@ -99,7 +115,14 @@ def bounded_step(matrix: Array, right: Array, low: Array, high: Array) -> Array:
 
 
 def pressing(gradient: Array, y: Array, low: Array, high: Array) -> Mask:
-    """Which bounds hold back a point that would go down a gradient, (n,) bool."""
+    """Which bounds hold back a point that would go down a gradient, (n,) bool.
+
+    Parameters
+    ----------
+    gradient, y : (n,) array
+        Slope of the effort, and the point.
+    low, high : (n,) array
+    """
     return np.asarray(((y <= low) & (gradient > 0.0)) | ((y >= high) & (gradient < 0.0)))
 
 
