@@ -52,7 +52,7 @@ class MassProperties:
 
     def primed(self, scaling: Scaling, density: float) -> tuple[float, float]:
         """(m', xG' m') with m' = m / (1/2 rho L^3)."""
-        unit = 0.5 * density * scaling.length**3
+        unit = scaling.unit("m", density)
         return self.mass / unit, self.mass_moment / (unit * scaling.length)
 
 
@@ -258,7 +258,7 @@ def likeness(hull: Body, vehicle: str, stated: Configuration | None, own_file: b
 
 def mass_from_primes(mass: float, moment: float, inertia: float | None, by: Scaling, density: float) -> MassProperties:
     """Dimensional mass properties from m', xG' m', I' (m' = m / (1/2 rho L^3))."""
-    unit = 0.5 * density * by.length**3
+    unit = by.unit("m", density)
     return MassProperties(
-        mass * unit, moment * unit * by.length, None if inertia is None else inertia * unit * by.length**2
+        mass * unit, moment * unit * by.length, None if inertia is None else inertia * by.unit("I", density)
     )

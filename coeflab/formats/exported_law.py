@@ -304,7 +304,7 @@ def sname(name: str) -> str:
 
 def written_terms(parameters: ParameterFile) -> tuple[WrittenTerm, ...]:
     """Every coefficient with a value but accelerations, then the ideal fluid's products that these leave open."""
-    density, length = parameters.conditions.density, parameters.scaling.length
+    density, primes = parameters.conditions.density, parameters.primes
     out = []
     for c in parameters.coefficients:
         d = derivative(c.symbol)
@@ -334,7 +334,7 @@ def written_terms(parameters: ParameterFile) -> tuple[WrittenTerm, ...]:
                 name = component + first + second
                 scale = derivative(name).powers[1]
                 if value:
-                    prime = float(value / (0.5 * density * length**scale))
+                    prime = float(value / primes.unit(name, density))
                     term = parse_suffix(first + second)
                     out.append(WrittenTerm("potential", name, prime, component, scale, 0, term, ""))
     return tuple(out)
@@ -344,13 +344,13 @@ def written_accelerations(parameters: ParameterFile) -> tuple[dict[str, float], 
     """Primed acceleration derivatives that are not zero, and where they come from."""
     water = water_inertia(parameters)
     matrix, source = water.matrix, water.source
-    density, length = parameters.conditions.density, parameters.scaling.length
+    density, primes = parameters.conditions.density, parameters.primes
     out = {}
     for i, component in enumerate(COMPONENTS):
         for j, motion in enumerate(MOTIONS):
             if matrix[i, j]:
                 name = f"{component}{motion}dot"
-                out[name] = float(-matrix[i, j] / (0.5 * density * length ** derivative(name).powers[1]))
+                out[name] = float(-matrix[i, j] / primes.unit(name, density))
     return out, source
 
 

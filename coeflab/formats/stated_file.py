@@ -118,7 +118,7 @@ def _built(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, .
     hull = None
     if s.matrix is not None:
         hull = AddedMass(s.matrix, np.array(s.point), s.datum, s.matrix_body or s.body, s.matrix_method)
-    factor = 0.5 * at.density * s.scaling.length**3
+    unit = s.scaling.unit("m", at.density)
     return ParameterFile(
         name=s.name,
         body=s.body,
@@ -132,8 +132,8 @@ def _built(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, .
                 "mass": s.mass.mass,
                 "mass_moment": s.mass.moment,
                 "inertia": s.mass.inertia,
-                "mass_prime": s.mass.mass / factor,
-                "mass_moment_prime": s.mass.moment / (factor * s.scaling.length),
+                "mass_prime": s.mass.mass / unit,
+                "mass_moment_prime": s.mass.moment / (unit * s.scaling.length),
                 "centre": None if s.mass.centre is None else s.mass.centre.tolist(),
                 "inertia_matrix": None if s.mass.inertia_matrix is None else s.mass.inertia_matrix.tolist(),
             }
@@ -165,7 +165,7 @@ def _coefficient(symbol: str, value: float, law: Law, s: Stated, hull: AddedMass
         value=value,
         u95=None,
         unit="1",
-        value_si=value * s.scaling.factor(symbol, s.conditions),
+        value_si=value * s.scaling.unit(symbol, s.conditions.density, s.conditions.speed),
         unit_si=derivative(symbol).unit,
         status="stated",
         origin="literature",
@@ -289,16 +289,15 @@ def stated_coefficients(
     kept = kept_matrix(matrix)
     ideal = np.zeros((6, 6, 6)) if kept is None else products_once(ideal_quadratics(kept))
     own = products_once(added)
-    half = 0.5 * conditions.density
     out: Coefficients = {}
     signed, absolute = form.signed.copy(), form.absolute.copy()
 
     def motion(symbol: str, value: float) -> None:
-        out[symbol] = (float(value / (half * scaling.length ** derivative(symbol).powers[1])), "motion")
+        out[symbol] = (float(value / scaling.unit(symbol, conditions.density)), "motion")
 
     for i, j in np.argwhere(form.linear):
         symbol = COMPONENTS[i] + MOTIONS[j]
-        out[symbol] = (float(form.linear[i, j] / scaling.factor(symbol, conditions)), "rest")
+        out[symbol] = (float(form.linear[i, j] / scaling.unit(symbol, conditions.density, conditions.speed)), "rest")
     if form.resistance:
         motion("X0", form.resistance)
         _take(absolute[SURGE, SURGE, SURGE:], form.resistance)

@@ -186,7 +186,7 @@ class AddedMass:
 
     def primed(self, symbol: str, scaling: Scaling, density: float) -> float:
         """One acceleration derivative, primed: Yvdot' by 1/2 rho L^3, Nrdot' by 1/2 rho L^5 (SNAME 1950)."""
-        return self.derivatives()[symbol] * Scaling(1.0, "1 m").ratio(symbol, scaling) / (0.5 * density)
+        return self.derivatives()[symbol] / scaling.unit(symbol, density)
 
 
 def potential_part(symbol: str, added_mass: AddedMass, scaling: Scaling, density: float) -> float | None:
@@ -227,4 +227,4 @@ def potential_part(symbol: str, added_mass: AddedMass, scaling: Scaling, density
         value = 2.0 * quadratics[0, at[0]]
     else:
         value = quadratics[at[0], at[1]] * (1.0 if at[0] == at[1] else 2.0)
-    return float(value / (0.5 * density * scaling.length ** d.powers[1]))
+    return float(value / scaling.unit(symbol, density))

@@ -204,7 +204,7 @@ class CoefficientSet:
         """Dimensional at a density and speed."""
         if self.conditions is not None:
             raise ScalingMismatchError("the set is dimensional already; call to_prime first.")
-        factors = np.array([self.scaling.factor(s, conditions) for s in self.symbols])
+        factors = np.array([self.scaling.unit(s, conditions.density, conditions.speed) for s in self.symbols])
         return self._scaled(factors, [derivative(s).unit for s in self.symbols], self.scaling, conditions)
 
     def to_prime(self, scaling: Scaling | None = None) -> CoefficientSet:
@@ -212,7 +212,7 @@ class CoefficientSet:
         if self.conditions is None:
             raise ScalingMismatchError("the set is primed already; call to_length to change its length.")
         by = scaling or self.scaling
-        factors = np.array([1.0 / by.factor(s, self.conditions) for s in self.symbols])
+        factors = np.array([1.0 / by.unit(s, self.conditions.density, self.conditions.speed) for s in self.symbols])
         return self._scaled(factors, ["1"] * len(factors), by, None)
 
     def about(self, point: Array) -> CoefficientSet:

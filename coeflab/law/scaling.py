@@ -3,11 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import overload
+
+import numpy as np
 
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.limits import positive_number
 from coeflab.core.text.toml import Section
-from coeflab.law.symbols import derivative
+from coeflab.core.types import Array
+from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, derivative
+
+# Powers of U, of L and of 1/2 rho in one unit of what is no derivative.
+QUANTITIES: dict[str, tuple[int, int, int]] = {
+    **{component: derivative(f"{component}0").powers for component in COMPONENTS},
+    **dict.fromkeys(LINEAR, (1, 0, 0)),
+    **dict.fromkeys(ANGULAR, (1, -1, 0)),
+    **dict.fromkeys([f"{v}dot" for v in LINEAR], (2, -1, 0)),
+    **dict.fromkeys([f"{v}dot" for v in ANGULAR], (2, -2, 0)),
+    **dict.fromkeys(CONTROLS, (0, 0, 0)),
+    "m": (0, 3, 1),
+    **dict.fromkeys(["I", "Ix", "Iy", "Iz", "Ixy", "Iyz", "Izx"], (0, 5, 1)),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,10 +82,37 @@ class Scaling:
     def __str__(self) -> str:
         return f"{self.length_name} {self.length:.6g} m"
 
-    def factor(self, symbol: str, conditions: Conditions) -> float:
-        """SI value of one primed unit of a derivative: 1/2 rho U^a L^b (SNAME 1950)."""
-        speed, length, _ = derivative(symbol).powers
-        return float(0.5 * conditions.density * conditions.speed**speed * self.length**length)
+    @overload
+    def unit(self, symbol: str, density: float, speed: float = 1.0) -> float: ...
+
+    @overload
+    def unit(self, symbol: str, density: float, speed: Array) -> Array: ...
+
+    def unit(self, symbol: str, density: float, speed: float | Array = 1.0) -> float | Array:
+        """SI value of one unit of the prime system (SNAME 1950): 1/2 rho U^a L^b.
+
+        Parameters
+        ----------
+        symbol : str
+            With or without prime: a derivative (``Yv``, ``Nrdot``), a force or moment (``Y``, ``N``), a velocity, rate or
+            acceleration (``v``, ``r``, ``vdot``), a control angle (``dr``), the mass ``m``, a moment of inertia (``I``,
+            ``Iz``). A product m x_G has the unit of the mass times the length.
+        density : float
+            kg/m^3. Motions and angles do not depend on it.
+        speed : float or (n,) array
+            m/s. At the default of 1 m/s the unit of a derivative is 1/2 rho L^b, which stands before the velocities and the
+            power of U of a term.
+
+        Raises
+        ------
+        InputError
+            No such symbol.
+        """
+        known = QUANTITIES.get(symbol.removesuffix("'"))
+        of_speed, of_length, of_pressure = known or derivative(symbol).powers
+        out = (0.5 * density if of_pressure else 1.0) * speed**of_speed
+        out = out * self.length**of_length if of_length >= 0 else out / self.length**-of_length
+        return out if isinstance(out, np.ndarray) else float(out)
 
     def ratio(self, symbol: str, other: Scaling) -> float:
         """Multiply a value primed by this length with this to prime it by ``other``."""

@@ -37,7 +37,7 @@ def flyingfish_file(fish: FlyingFish) -> ParameterFile:
     for c, m, linear, quadratic in zip(COMPONENTS, MOTIONS, fish.rotors.linear, fish.rotors.quadratic, strict=True):
         laws: tuple[tuple[str, float, Law], ...] = ((f"{c}{m}", linear, "rest"), (f"{c}{m}|{m}|", quadratic, "motion"))
         for symbol, value, law in laws:
-            damping[symbol] = -float(value) / UNIT.factor(symbol, WATER), law
+            damping[symbol] = -float(value) / UNIT.unit(symbol, WATER.density, WATER.speed), law
     mass, buoyancy = fish.constants["mass"], fish.constants["mass"] * STANDARD_GRAVITY - fish.constants["net_weight"]
     stated = Stated(
         "flyingfish_water", "TJ-FlyingFish in water", UNIT, WATER, damping, datum=Datum("cg"),
@@ -68,8 +68,7 @@ def thauv_file(glider: Glider) -> ParameterFile:
         One wing of THAUV.
     """
     m, polar = glider.mass, glider.polar.per_radian
-    pressure = 0.5 * SEA.density * UNIT.length**2
-    arm = pressure * UNIT.length
+    force, moment = (UNIT.unit(component, SEA.density) for component in "XM")
     alpha = {"alpha": ("rad", -THAUV_ANGLE, THAUV_ANGLE)}
     turning = {**alpha, "q": ("1", -THAUV_RATE, THAUV_RATE)}
     once, twice, rate = (("alpha", 1, False),), (("alpha", 2, False),), (("q", 1, False),)
@@ -79,10 +78,10 @@ def thauv_file(glider: Glider) -> ParameterFile:
     )  # fmt: skip
     damping = -glider.polar.pitch_damping / UNIT.length
     models = (
-        printed("C_L", alpha, {"1": ((), polar.lift[0]), "alpha": (once, polar.lift[1])}, pressure),
-        printed("C_D", alpha, {"1": ((), polar.drag[0]), "alpha^2": (twice, polar.drag[1])}, pressure),
+        printed("C_L", alpha, {"1": ((), polar.lift[0]), "alpha": (once, polar.lift[1])}, force),
+        printed("C_D", alpha, {"1": ((), polar.drag[0]), "alpha^2": (twice, polar.drag[1])}, force),
         printed(
-            "C_m", turning, {"1": ((), polar.moment[0]), "alpha": (once, polar.moment[1]), "q": (rate, damping)}, arm
+            "C_m", turning, {"1": ((), polar.moment[0]), "alpha": (once, polar.moment[1]), "q": (rate, damping)}, moment
         ),
     )
     weight = THAUV_MASS * glider.gravity

@@ -143,9 +143,8 @@ class ForceTable:
 
     def primed_force(self, component: str, length: float, values: Array | None = None) -> Array:
         """Y' = Y / (1/2 rho U^2 L^2), moments with L^3, shape (n,)."""
-        power = 3 if component in "KMN" else 2
-        q = 0.5 * self.conditions.density * self.speed**2 * length**power
-        return np.asarray((self.forces[component] if values is None else values) / q)
+        unit = replace(self.scaling, length=length).unit(component, self.conditions.density, self.speed)
+        return np.asarray((self.forces[component] if values is None else values) / unit)
 
     def frame(self) -> pd.DataFrame:
         """The table as a pandas DataFrame for notebooks: SI, FRD, cells that no fit may use are NaN."""

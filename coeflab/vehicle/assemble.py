@@ -246,7 +246,7 @@ def recorded(fits: Sequence[FitResult]) -> tuple[tuple[ParameterModel, ...], lis
 def _written(
     c: Coefficient, scaling: Scaling, conditions: Conditions, hull: AddedMass | None, density: float
 ) -> ParameterCoefficient:
-    factor = scaling.factor(c.symbol, conditions)
+    factor = scaling.unit(c.symbol, conditions.density, conditions.speed)
     return ParameterCoefficient(
         symbol=primed(c.symbol),
         value=c.value,

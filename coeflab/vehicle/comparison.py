@@ -18,7 +18,6 @@ from coeflab.core.machine import one_thread
 from coeflab.core.types import Array, brief
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status, transfer_matrix
 from coeflab.law.domain import clamped, inside
-from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, primed
 from coeflab.vehicle.parameter_file import ParameterFile, Provenance
 from coeflab.vehicle.parameter_model import ParameterModel
@@ -342,7 +341,7 @@ def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
             for c in parameters.coefficients
         ),
         covariance,
-        Scaling(parameters.scaling.length, parameters.scaling.length_name),
+        parameters.primes,
         np.array(parameters.reference_point.point),
         parameters.reference_point.origin,
         parameters.body,

@@ -20,7 +20,6 @@ from coeflab.core.types import Array, brief, locked
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
 from coeflab.law.motion_law import BASE, REVERSAL, WIND, MotionLaw
 from coeflab.law.rigid_body import ideal_quadratics
-from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.law.terms import Term, parse_suffix
 from coeflab.vehicle.inertia import water_inertia
@@ -104,7 +103,7 @@ def force_law(parameters: ParameterFile) -> ForceLaw:
 
     Literature values stand in where nothing was fitted, as in the file. Coefficients without a value give nothing.
     """
-    density, length = parameters.conditions.density, parameters.scaling.length
+    density, primes = parameters.conditions.density, parameters.primes
     terms, left_out = [], []
     for c in parameters.coefficients:
         d = derivative(c.symbol)
@@ -114,7 +113,7 @@ def force_law(parameters: ParameterFile) -> ForceLaw:
             left_out.append(d.text)
             continue
         term = parse_suffix(d.text[1:])
-        scale = 0.5 * density * length ** d.powers[1]
+        scale = primes.unit(d.text, density)
         if c.law == "rest" and c.value_si is not None:
             value, power = c.value_si, 0
             scale = value / c.value if c.value else 0.0
@@ -275,7 +274,7 @@ def _derivatives(parameters: ParameterFile) -> tuple[MotionTerm, ...]:
             continue
         term = parse_suffix(d.text[1:])
         motions = sum(n for v, n, _ in term.factors if v not in CONTROLS)
-        scale = 0.5 * parameters.conditions.density * parameters.scaling.length ** d.powers[1]
+        scale = parameters.primes.unit(d.text, parameters.conditions.density)
         factors = tuple((_free(v), n, a) for v, n, a in term.factors)
         out.append(MotionTerm(c.symbol, d.component, scale * c.value, scale, 2 - motions, factors))
     return tuple(out)
@@ -284,10 +283,7 @@ def _derivatives(parameters: ParameterFile) -> tuple[MotionTerm, ...]:
 def _scale(c: ParameterCoefficient, parameters: ParameterFile) -> float:
     """SI coefficient of one unit of a coefficient that is zero."""
     at = parameters.conditions
-    if c.law == "rest":
-        primes = Scaling(parameters.scaling.length, parameters.scaling.length_name)
-        return primes.factor(c.symbol, Conditions(at.density, at.speed))
-    return 0.5 * at.density * parameters.scaling.length ** derivative(c.symbol).powers[1]
+    return parameters.primes.unit(c.symbol, at.density, at.speed if c.law == "rest" else 1.0)
 
 
 def _free(name: str) -> Variable:

@@ -137,13 +137,13 @@ def with_accelerations(parameters: ParameterFile, accelerations: str) -> Paramet
 
 def stated_accelerations(parameters: ParameterFile) -> dict[Entry, tuple[str, float]]:
     """Symbol and entry of the added mass of every acceleration derivative with a value, by row and column."""
-    density, length = parameters.conditions.density, parameters.scaling.length
+    density, primes = parameters.conditions.density, parameters.primes
     out = {}
     for c in parameters.coefficients:
         at = entry_of(c.symbol)
         if c.value is not None and at is not None:
             d = derivative(c.symbol)
-            out[at] = d.text, -c.value * 0.5 * density * length ** d.powers[1]
+            out[at] = d.text, -c.value * primes.unit(d.text, density)
     return out
 
 

@@ -27,7 +27,7 @@ from coeflab.core.text.json import parse_json
 from coeflab.core.text.toml import read_text
 from coeflab.core.wording import repeated
 from coeflab.law.added_mass import potential_part
-from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.scaling import Scaling
 from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.parameter_parts import (
     Finite,
@@ -228,18 +228,22 @@ class ParameterFile(Strict):
     surfaces: Annotated[tuple[ParameterSurface, ...], told("limits of control surfaces, none twice", since="1.3")] = ()
     provenance: Annotated[Provenance, told("where it all comes from")]
 
+    @property
+    def primes(self) -> Scaling:
+        """The prime system of the file."""
+        return Scaling(self.scaling.length, self.scaling.length_name)
+
     @model_validator(mode="after")
     def _consistent(self) -> ParameterFile:
         symbols = [c.symbol for c in self.coefficients]
         twice = repeated(symbols)
         if twice:
             raise ValueError(f"{', '.join(twice)} stands more than once")
-        primes = Scaling(self.scaling.length, self.scaling.length_name)
-        at = Conditions(self.conditions.density, self.conditions.speed)
+        primes, at = self.primes, self.conditions
         for c in self.coefficients:
             if c.value is None or c.value_si is None:
                 continue
-            si = c.value * primes.factor(c.symbol, at)
+            si = c.value * primes.unit(c.symbol, at.density, at.speed)
             if not math.isclose(c.value_si, si, rel_tol=1e-6, abs_tol=1e-12 * abs(si)):
                 raise ValueError(f"{c.symbol}: value_si {c.value_si:g} is not its value at these conditions, {si:g}")
         unknown = sorted(set(self.covariance.symbols) - set(symbols))

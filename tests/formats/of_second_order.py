@@ -54,7 +54,8 @@ def bluerov2_heavy() -> ParameterFile:
     linear = {"Xu": -13.7, "Zw": -33.0, "Mq": -0.8}
     square = {"Xu|u|": -141.0, "Yv|v|": -217.0, "Zw|w|": -190.0, "Kp|p|": -1.19, "Mq|q|": -0.47, "Nr|r|": -1.5}
     values = {
-        s: (v / scaling.factor(s, at), "rest" if s in linear else "motion") for s, v in {**linear, **square}.items()
+        s: (v / scaling.unit(s, at.density, at.speed), "rest" if s in linear else "motion")
+        for s, v in {**linear, **square}.items()
     }
     matrix = np.diag([6.36, 7.12, 18.68, 0.189, 0.135, 0.222])
     mass = StatedMass(13.5, 0.0, None, np.zeros(3), np.diag([0.26, 0.23, 0.37]))

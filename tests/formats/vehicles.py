@@ -32,7 +32,7 @@ def vehicle(name: str) -> ParameterFile:
         for s, v in facts.get(law, {}).items():
             d = derivative(s)
             power = 1 + (d.component in MOMENTS) - sum(f.removesuffix("dot") in LINEAR for f in d.factors)
-            values[s] = (v * mass_unit * length_unit**power / scaling.factor(s, at), law)
+            values[s] = (v * mass_unit * length_unit**power / scaling.unit(s, at.density, at.speed), law)
     kilograms, centre = facts["mass"] * mass_unit, np.array(facts.get("centre", (0.0, 0.0, 0.0))) * length_unit
     inertia = (np.diag(facts["inertia"]) + facts.get("products", 0.0) * (1.0 - np.eye(3))) * mass_unit * length_unit**2
     return stated_file(

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import coeflab
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
@@ -88,15 +93,148 @@ def test_round_trips(density: float, speed: float, one: float, other: float) -> 
             assert c.unit == "1"
 
 
-def test_factors_by_hand() -> None:
-    scaling, conditions = Scaling(3.0, "L"), Conditions(900.0, 5.0)
-    half_rho = 450.0
+# rho = 900 kg/m^3, U = 5 m/s, L = 3 m: 1/2 rho = 450 kg/m^3, in N, m, s, kg and rad.
+UNITS_BY_HAND = {
+    "X": 101250.0, "Y": 101250.0, "Z": 101250.0, "K": 303750.0, "M": 303750.0, "N": 303750.0,
+    "X0": 101250.0, "Xuu": 4050.0, "Yv": 20250.0, "Zw": 20250.0, "Yr": 60750.0, "Nv": 60750.0, "Nr": 182250.0,
+    "Kp": 182250.0, "Xvv": 4050.0, "Y|v|v": 4050.0, "Xvr": 12150.0, "Xrr": 36450.0, "Nr|r|": 109350.0,
+    "Nvvr": 7290.0, "Yvvv": 810.0, "Nvvv": 2430.0, "Nrrr": 65610.0, "Ydr": 101250.0, "Nds": 303750.0, "Xdrdr": 101250.0,
+    "Yvdr": 20250.0, "Yvdot": 12150.0, "Yrdot": 36450.0, "Nvdot": 36450.0, "Nrdot": 109350.0, "Kpdot": 109350.0,
+    "u": 5.0, "v": 5.0, "w": 5.0, "p": 5.0 / 3.0, "q": 5.0 / 3.0, "r": 5.0 / 3.0, "vdot": 25.0 / 3.0, "rdot": 25.0 / 9.0,
+    "dr": 1.0, "ds": 1.0, "db": 1.0, "m": 12150.0, "I": 109350.0, "Iy": 109350.0, "Ixy": 109350.0,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("symbol", UNITS_BY_HAND)
+def test_units_by_hand(symbol: str) -> None:
+    scaling = Scaling(3.0, "L")
+    for spelled in (symbol, f"{symbol}'"):
+        assert scaling.unit(spelled, 900.0, 5.0) == pytest.approx(UNITS_BY_HAND[symbol], rel=1e-15)
+    assert type(scaling.unit(symbol, 900.0, 5.0)) is float
+
+
+def test_unit_without_a_speed_is_that_of_the_product_of_velocities() -> None:
+    """1/2 rho L^b, whatever the power of U: Y = 1/2 rho L^2 Yv' v U, N = 1/2 rho L^4 Nr' r U."""
+    scaling = Scaling(3.0, "L")
     by_hand = {
-        "X0": half_rho * 25 * 9, "Yv": half_rho * 5 * 9, "Yr": half_rho * 5 * 27, "Nv": half_rho * 5 * 27,
-        "Nr": half_rho * 5 * 81, "Yvdot": half_rho * 27, "Nrdot": half_rho * 243, "Ydr": half_rho * 25 * 9,
-    }  # fmt: skip
-    for symbol, expected in by_hand.items():
-        assert scaling.factor(symbol, conditions) == pytest.approx(expected, rel=1e-15), symbol
+        "X0": 4050.0,
+        "Yv": 4050.0,
+        "Yvvv": 4050.0,
+        "Nr": 36450.0,
+        "Nrrr": 328050.0,
+        "Yvdot": 12150.0,
+        "m": 12150.0,
+    }
+    assert {s: scaling.unit(s, 900.0) for s in by_hand} == by_hand
+
+
+def test_unit_at_many_speeds() -> None:
+    scaling, speed = Scaling(3.0, "L"), np.array([0.5, 1.0, 5.0])
+    for symbol in UNITS_BY_HAND:
+        each = [scaling.unit(symbol, 900.0, float(u)) for u in speed]
+        np.testing.assert_array_equal(scaling.unit(symbol, 900.0, speed) * np.ones(3), each, symbol)
+
+
+def test_unit_balances_the_equation_of_motion() -> None:
+    """m vdot is a force and I rdot a moment; so are Yvdot vdot, Yv v and Nr r."""
+    scaling = Scaling(3.7, "L")
+    unit = {s: scaling.unit(s, 1025.0, 2.3) for s in UNITS_BY_HAND}
+    for force in (
+        unit["m"] * unit["vdot"],
+        unit["Yvdot"] * unit["vdot"],
+        unit["Yv"] * unit["v"],
+        unit["Yr"] * unit["r"],
+    ):
+        assert force == pytest.approx(unit["Y"], rel=1e-14)
+    for moment in (
+        unit["I"] * unit["rdot"],
+        unit["Nrdot"] * unit["rdot"],
+        unit["Nr"] * unit["r"],
+        unit["m"] * 3.7 * unit["vdot"],
+    ):
+        assert moment == pytest.approx(unit["N"], rel=1e-14)
+
+
+@pytest.mark.parametrize("symbol", ["", "0", "mass", "Q", "Yx", "y", "C_D"])
+def test_no_unit_of_what_is_no_symbol(symbol: str) -> None:
+    with pytest.raises(InputError, match="SNAME derivative"):
+        Scaling(3.0, "L").unit(symbol, 900.0)
+
+
+# Products of density, one half and a power of a length that are no unit of the prime system: lines, reason.
+NO_PRIMES = {
+    "law/scaling.py": (1, "the unit itself"),
+    "fits/rows/regression.py": (
+        1,
+        "dynamic pressure on the reference area of a coefficient: frontal, wetted or a wing's",
+    ),
+    "vehicle/force_law.py": (1, "dynamic pressure on the reference area of a fitted table"),
+    "fits/uncertainty/budget.py": (1, "relative errors of density, speed and length: factors near one"),
+    "formats/fmi/unit.py": (1, "runs inside the FMU, without coeflab"),
+    "formats/fmi/write.py": (2, "repeats what the unit in the FMU computes, from its model.json"),
+    "formats/mss/m_file.py": (
+        1,
+        "recognises r2 = rho L^2 / 2 of a foreign file in the units of that file, slug and foot too",
+    ),
+    "formats/stonefish/law.py": (2, "form drag of Stonefish, on the panels of its mesh"),
+    "formats/holoocean/law.py": (2, "dynamic pressure of HoloOcean's drag law, on its own area"),
+    "formats/holoocean/write.py": (1, "dynamic pressure of HoloOcean's drag law, on its own area"),
+}
+
+
+def _parts(node: ast.expr) -> Iterator[ast.expr]:
+    """What a product or quotient is made of."""
+    if isinstance(node, ast.UnaryOp):
+        yield from _parts(node.operand)
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
+        yield from _parts(node.left)
+        yield from _parts(node.right)
+    else:
+        yield node
+
+
+def _word(node: ast.expr) -> str:
+    if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant):
+        return str(node.slice.value)
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+
+
+def hand_written(source: str) -> list[int]:
+    """Lines of products that hold two of: a density, one half, a power of a length."""
+    found = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
+            parts = list(_parts(node))
+            density = any(_word(p).lower() in {"density", "rho", "water"} for p in parts)
+            half = any(isinstance(p, ast.Constant) and p.value in {0.5, 2} for p in parts)
+            powers = [p for p in parts if isinstance(p, ast.BinOp) and isinstance(p.op, ast.Pow)]
+            length = any(_word(p.left).lower() in {"length", "l"} for p in powers)
+            if density + half + length > 1:
+                found.add(node.lineno)
+    return sorted(found)
+
+
+def test_no_prime_factor_is_written_by_hand() -> None:
+    """`Scaling.unit` is the only place that says 1/2 rho U^a L^b."""
+    home = Path(coeflab.__file__).parent
+    found = {p.relative_to(home).as_posix(): hand_written(p.read_text(encoding="utf-8")) for p in home.rglob("*.py")}
+    known = {name: lines for name, lines in found.items() if name in NO_PRIMES}
+    new = {name: lines for name, lines in found.items() if lines and name not in NO_PRIMES}
+    assert not new, "use Scaling.unit, or say in NO_PRIMES why it is no unit of the prime system"
+    assert {name: len(lines) for name, lines in known.items()} == {name: n for name, (n, _) in NO_PRIMES.items()}
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "0.5 * at.density * s.scaling.length**3", "half = 0.5 * conditions.density", "q = rho * U**2 / 2.0 * L**2",
+        "-value / (0.5 * density * length ** d.powers[1])", "volume / (0.5 * file.scaling.length**3)",
+        'pressure = 0.5 * chosen["density"] * chosen["length"] ** 2', "c.value * 0.5 * density * length ** d.powers[1]",
+    ],
+)  # fmt: skip
+def test_hand_written_factors_are_found(line: str) -> None:
+    assert hand_written(line) == [1]
+    assert hand_written("unit = scaling.unit(symbol, density) * length / 2.0") == []
 
 
 def test_intervals_stay_positive_and_rate_windows_follow_the_length() -> None:

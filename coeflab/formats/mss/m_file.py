@@ -241,9 +241,7 @@ class MValues:
 
     def product(self, symbol: str) -> float:
         """SI value of a derivative as the factor of velocities, rates and, where they are missing to two, u."""
-        return float(
-            self.values[symbol] * 0.5 * self.conditions.density * self.scaling.length ** derivative(symbol).powers[1]
-        )
+        return self.values[symbol] * self.scaling.unit(symbol, self.conditions.density)
 
     def stays(self, symbol: str) -> bool:
         """Whether the force does not grow with the speed: damping about a state of rest."""
@@ -293,7 +291,7 @@ def foreign_values(found: MFile, path: Path, density: float | None = None) -> MV
     )
     speed = found.first("U0", "U")
     scaling, at = Scaling(length * length_unit, name), Conditions(si, abs(speed or 0.0) * length_unit or 1.0)
-    values = {s: v if primed else _si(s, v, mass_unit, length_unit) / scaling.factor(s, at)
+    values = {s: v if primed else _si(s, v, mass_unit, length_unit) / scaling.unit(s, at.density, at.speed)
               for s, (_, v) in found.derivatives.items()}  # fmt: skip
     return MValues(scaling, at, primed, imperial, values)
 

@@ -106,7 +106,7 @@ def _munk(found: MFile, values: MValues) -> tuple[Check, ...]:
             continue
         stays = values.stays(symbol) or found.derivatives[symbol][0] == "rest"
         value = (
-            values.values[symbol] * values.scaling.factor(symbol, values.conditions)
+            values.values[symbol] * values.scaling.unit(symbol, values.conditions.density, values.conditions.speed)
             if stays
             else values.product(symbol)
         )
@@ -141,13 +141,13 @@ def _own(found: MFile, path: Path) -> Stated:
     matrix, method = None, found.texts.get("MA_method")
     doubts: tuple[str, ...] = ()
     if method is not None:
-        stated = {s: v * scaling.factor(s, at) for s, (_, v) in found.derivatives.items() if is_acceleration(s)}
+        stated = {s: v * scaling.unit(s, at.density) for s, (_, v) in found.derivatives.items() if is_acceleration(s)}
         matrix = added_mass(stated)
         doubts = matrix_doubts(matrix)
         matrix = None if doubts else matrix
     for symbol, (group, value) in found.derivatives.items():
         if group == "rest":
-            coefficients[symbol] = (value / scaling.factor(symbol, at), "rest")
+            coefficients[symbol] = (value / scaling.unit(symbol, at.density, at.speed), "rest")
         elif matrix is None or not is_acceleration(symbol):
             coefficients[symbol] = (value, "motion")
     return Stated(
@@ -238,7 +238,7 @@ def _mass(found: MFile, v: MValues) -> StatedMass | None:
         return None
     mass_unit, length_unit = v.units
     prime = v.primed and mass < 1.0
-    kilograms = mass * 0.5 * v.conditions.density * v.scaling.length**3 if prime else mass * mass_unit
+    kilograms = mass * v.scaling.unit("m", v.conditions.density) if prime else mass * mass_unit
     pitch, yaw = found.first("Iy", "Iyy"), found.first("Iz", "Izz")
     transverse = pitch * mass_unit * length_unit**2 if pitch is not None and pitch == yaw and pitch > 1.0 else None
     return StatedMass(kilograms, kilograms * forward * length_unit, transverse)

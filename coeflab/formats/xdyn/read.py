@@ -98,12 +98,12 @@ def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
             symbol, rest = _symbol(component, product, spelling)
             if symbol in coefficients:
                 raise ArithmeticProblem(f"{symbol} both with and without the speed")
-            unit = scaling.factor(symbol, at) if rest else scaling.factor(symbol, Conditions(at.density, 1.0))
+            unit = scaling.unit(symbol, at.density, at.speed if rest else 1.0)
             coefficients[symbol] = (value / unit, "rest" if rest else "motion")
     if not kept:
         for i, j in np.argwhere((matrix != 0.0) | (matrix.T != 0.0)):
             symbol = f"{COMPONENTS[i]}{MOTIONS[j]}dot"
-            coefficients[symbol] = ((0.0 - float(matrix[i, j])) / scaling.factor(symbol, at), "motion")
+            coefficients[symbol] = ((0.0 - float(matrix[i, j])) / scaling.unit(symbol, at.density), "motion")
     x, y, z = map(float, law.point if body.mesh is None else body.mesh + law.point)
     mass, doubt = _mass(body, law.point)
     name = one_line(body.name)[:200] or path.stem[:200]

@@ -34,7 +34,6 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_inertia
-from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.law.terms import Term, parse_suffix
 from coeflab.law.transforms import rigid_body_force
@@ -394,8 +393,8 @@ def _named(symbol: str, parameters: ParameterFile) -> Candidate:
     """A candidate by its SNAME symbol."""
     d = derivative(symbol)
     entry = parameters.coefficient(d.text)
-    density, length = parameters.conditions.density, parameters.scaling.length
-    per_prime = 0.5 * density * length ** d.powers[1]
+    at, primes = parameters.conditions, parameters.primes
+    per_prime = primes.unit(d.text, at.density)
     dots = [f for f in d.factors if f.endswith("dot")]
     if dots:
         if len(d.factors) > 1 or "|" in d.text:
@@ -403,6 +402,5 @@ def _named(symbol: str, parameters: ParameterFile) -> Candidate:
         return Candidate(d.text, d.component, Term(), per_prime, rate=dots[0].removesuffix("dot"))
     rest = entry is not None and entry.law == "rest"
     if rest:
-        scaling = Scaling(length, parameters.scaling.length_name)
-        per_prime = scaling.factor(d.text, Conditions(density, parameters.conditions.speed))
+        per_prime = primes.unit(d.text, at.density, at.speed)
     return Candidate(d.text, d.component, parse_suffix(d.text[1:]), per_prime, rest)

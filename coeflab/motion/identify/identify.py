@@ -14,7 +14,6 @@ from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.fits.sparse import scaled_optimizer
 from coeflab.law.added_mass import potential_part
-from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, primed
 from coeflab.motion.identify.force_balance import (
     NOISE,
@@ -226,8 +225,9 @@ def _in_file(candidate: Candidate, parameters: ParameterFile, water: WaterInerti
     if c is not None and c.value is not None:
         return c.value, c.u95, c.origin
     if parameters.added_mass is not None and not candidate.rate:
-        scaling = Scaling(parameters.scaling.length, parameters.scaling.length_name)
-        ideal = potential_part(candidate.symbol, water.as_noun(parameters), scaling, parameters.conditions.density)
+        ideal = potential_part(
+            candidate.symbol, water.as_noun(parameters), parameters.primes, parameters.conditions.density
+        )
         if ideal:
             return ideal, None, "ideal fluid"
     return None, None, ""

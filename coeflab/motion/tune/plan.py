@@ -177,10 +177,7 @@ def _si(old: float | None, old_si: float | None, value: float, p: ParameterFile,
         return None
     if old:
         return old_si / old * value
-    from coeflab.law.scaling import Conditions, Scaling
-
-    primes = Scaling(p.scaling.length, p.scaling.length_name)
-    return value * primes.factor(symbol, Conditions(p.conditions.density, p.conditions.speed))
+    return value * p.primes.unit(symbol, p.conditions.density, p.conditions.speed)
 
 
 def _with(values: tuple[Any, ...], at: int, value: Any) -> tuple[Any, ...]:

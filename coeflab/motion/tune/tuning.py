@@ -17,7 +17,6 @@ from coeflab.core.types import Array, brief, locked
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite, listed
 from coeflab.law.added_mass import potential_part
-from coeflab.law.scaling import Scaling
 from coeflab.motion.tune.output_error import Estimate, Problem
 from coeflab.motion.tune.plan import Place, TuningPlan, moved
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, InputRecord, ParameterFile
@@ -325,8 +324,7 @@ def _coefficients(p: ParameterFile, numbered: list[Numbered], tuning: Tuning) ->
                       "parts": UncertaintyParts(random=half)}  # fmt: skip
         if c.potential is not None and p.added_mass is not None:
             hull = p.added_mass.as_noun(p.reference_point.point, p.reference_point.origin)
-            primes = Scaling(p.scaling.length, p.scaling.length_name)
-            update["potential"] = potential_part(c.symbol, hull, primes, p.added_mass.density) or 0.0
+            update["potential"] = potential_part(c.symbol, hull, p.primes, p.added_mass.density) or 0.0
         changed.append(c.model_copy(update=update))
     symbols = (*p.covariance.symbols, *(s for s in mine if s not in p.covariance.symbols))
     n = len(p.covariance.symbols)

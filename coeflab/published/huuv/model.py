@@ -20,6 +20,7 @@ from coeflab.core.text.toml import Section, read_toml
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.version import VERSION
 from coeflab.formats.stated_file import stated_table
+from coeflab.law.scaling import Scaling
 from coeflab.motion.steady_state import COEFFICIENTS
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 
@@ -192,31 +193,32 @@ def parameter_file(huuv: Huuv) -> ParameterFile:
     starboard.
     """
     c, chosen = huuv.constants, huuv.chosen
-    pressure = 0.5 * chosen["density"] * chosen["length"] ** 2
+    primes = Scaling(chosen["length"], "characteristic length of Table 1")
+    force, moment = (primes.unit(component, chosen["density"]) for component in "XN")
     drift, rate = chosen["largest_drift"], chosen["largest_rate"]
     body: dict[str, Any] = {
         "schema_version": SCHEMA_VERSION,
         "name": "huuv",
         "body": "HUUV, horizontal plane",
-        "scaling": {"length": chosen["length"], "length_name": "characteristic length of Table 1"},
+        "scaling": {"length": primes.length, "length_name": primes.length_name},
         "reference_point": {"point": (0.0, 0.0, 0.0), "datum": "cb"},
         "conditions": {"density": chosen["density"], "speed": chosen["speed"]},
-        "mass": _mass(huuv),
+        "mass": _mass(huuv, primes),
         "coefficients": (),
         "covariance": {"symbols": (), "matrix": ()},
         "covered": (
             {"variable": "v'", "low": -drift, "high": drift, "unit": "rad", "campaign": "HUUV Fig. 17"},
         ),
         "models": (
-            stated_table("C_D", {"beta": ("rad", -drift, drift)}, {"1": ((), c["d0"]), "beta^2": ((("beta", 2, False),), c["d2"])}, pressure, **MADE),
+            stated_table("C_D", {"beta": ("rad", -drift, drift)}, {"1": ((), c["d0"]), "beta^2": ((("beta", 2, False),), c["d2"])}, force, **MADE),
             stated_table(
                 "C_S", {"beta": ("rad", -drift, drift)},
-                {"beta": ((("beta", 1, False),), -c["s1"]), "beta^3": ((("beta", 3, False),), -c["s3"])}, pressure, **MADE,
+                {"beta": ((("beta", 1, False),), -c["s1"]), "beta^3": ((("beta", 3, False),), -c["s3"])}, force, **MADE,
             ),
             stated_table(
                 "C_n", {"beta": ("rad", -drift, drift)},
                 {"beta": ((("beta", 1, False),), c["n1"]), "beta^3": ((("beta", 3, False),), c["n3"])},
-                pressure * chosen["length"], **MADE,
+                moment, **MADE,
             ),
             stated_table(
                 "N", {"r": ("rad/s", -rate, rate)}, {"r|r|": ((("r", 1, False), ("r", 1, True)), -c["nrr"])}, 1.0,
@@ -230,11 +232,11 @@ def parameter_file(huuv: Huuv) -> ParameterFile:
     return ParameterFile.model_validate(body)
 
 
-def _mass(huuv: Huuv) -> dict[str, Any]:
-    mass, half, length = huuv.constants["m"], 0.5 * huuv.chosen["density"], huuv.chosen["length"]
+def _mass(huuv: Huuv, primes: Scaling) -> dict[str, Any]:
+    mass = huuv.constants["m"]
     return {
         "mass": mass, "mass_moment": 0.0, "inertia": huuv.chosen["rigid_inertia"],
-        "mass_prime": mass / (half * length**3), "mass_moment_prime": 0.0,
+        "mass_prime": mass / primes.unit("m", huuv.chosen["density"]), "mass_moment_prime": 0.0,
     }  # fmt: skip
 
 

@@ -76,13 +76,14 @@ def _twins(name: str, file: ParameterFile) -> Iterator[Check]:
 def _size(file: ParameterFile, symbols: tuple[str, str]) -> float:
     """Root of the two diagonal entries that a pair lies between, primed; zero where one is not known."""
     out = 1.0
-    for symbol, power in zip(symbols[::-1], (3, 5), strict=True):
+    for symbol in symbols[::-1]:
         at = COMPONENTS.index(symbol[0])
-        own = file.coefficient(f"{COMPONENTS[at]}{MOTIONS[at]}dot")
+        name = f"{COMPONENTS[at]}{MOTIONS[at]}dot"
+        own = file.coefficient(name)
         if own is not None and own.value is not None:
             out *= abs(own.value)
         elif file.added_mass is not None:
-            out *= file.added_mass.matrix[at][at] / (0.5 * file.added_mass.density * file.scaling.length**power)
+            out *= file.added_mass.matrix[at][at] / file.primes.unit(name, file.added_mass.density)
         else:
             return 0.0
     return float(np.sqrt(out))

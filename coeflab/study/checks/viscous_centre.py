@@ -102,7 +102,7 @@ def _displaced(study: Study, name: str, file: ParameterFile) -> float | None:
     volume = stated.volume if stated else None
     if volume is None and name in study.hulls:
         volume = study.hulls[name].body.require_shape().volume
-    return volume / (0.5 * file.scaling.length**3) if volume else None
+    return volume / file.primes.unit("m", 1.0) if volume else None
 
 
 def _inertia_taken_out(study: Study, c: ParameterCoefficient | None) -> bool | None:

@@ -132,13 +132,8 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         else:
             given[kind.role][kind.name] = values
     speed = _speed(given, primes, campaign, len(cells))
-    length, density = campaign.scaling.length, campaign.conditions.density
     for kind, values in primes:
-        if kind.role == "velocity":
-            unit = speed / (length if kind.name in ANGULAR else 1.0)
-        else:
-            unit = 0.5 * density * speed**2 * length ** (3 if kind.name in MOMENTS else 2)
-        given[kind.role][kind.name] = values * unit
+        given[kind.role][kind.name] = values * campaign.scaling.unit(kind.name, campaign.conditions.density, speed)
     return Columns(
         file=cells.file,
         header_line=cells.first_line - 1,
