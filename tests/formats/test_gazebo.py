@@ -53,7 +53,7 @@ def tag(text: str, name: str) -> float | None:
 @BOTH
 def test_golden(target: ModuleType) -> None:
     """Regenerate by hand: write render(golden()) to golden/<target>.sdf and read the difference."""
-    name = target.__name__.rpartition(".")[2]
+    name = target.__name__.split(".")[-2]
     assert target.render(second.golden())["file.sdf"] == (GOLDEN / f"{name}.sdf").read_bytes()
 
 
@@ -206,7 +206,7 @@ def test_the_resistance_is_exact_on_every_course_ahead(target: ModuleType) -> No
 @BOTH
 @pytest.mark.parametrize("name", ["suboff_fully_appended", "suboff_bare_hull"])
 def test_suboff_loses_nothing_in_surge(suboff: Study, target: ModuleType, name: str) -> None:
-    loss = export(suboff.parameter_files[name], target.__name__.rpartition(".")[2]).loss
+    loss = export(suboff.parameter_files[name], target.__name__.split(".")[-2]).loss
     assert loss.relative[0] < 1e-12
     assert "X0" not in " ".join(c for c in loss.changes if c.startswith("u stands for U"))
 
@@ -286,5 +286,5 @@ def test_the_world_holds_the_model_beside_it(target: ModuleType) -> None:
         systems = {p.get("filename") for p in world.iterfind("world/plugin")}
         assert {"gz-sim-physics-system", "gz-sim-buoyancy-system"} <= systems
     assert list(target.render(made.named("world"))) == ["world.sdf", "world_of_water.sdf"]
-    given = export(second.golden(), target.__name__.rpartition(".")[2])
+    given = export(second.golden(), target.__name__.split(".")[-2])
     assert not any(c.startswith("files are called") for c in given.loss.changes)
