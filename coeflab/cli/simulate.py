@@ -74,7 +74,7 @@ def command(
         show.text(made.undetermined)
     else:
         _print(made, written)
-    if made.trajectory.why or made.undetermined:
+    if made.trajectory.why or made.undetermined or all(f.value is None for f in made.figures):
         raise typer.Exit(1)
 
 

@@ -11,7 +11,7 @@ Feldman (1979); Roddy (1990) Table 4: G = 1 - N_v (Y_r - m) / [Y_v (N_r - x_G m)
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -67,6 +67,8 @@ class Derived:
         None where no interval can be given.
     statement : str
         Why not, or how far the two half-widths agree.
+    driven : str
+        Of a stability index: the denominator that is not below zero. The sign of the index is no criterion then.
     """
 
     name: str
@@ -74,13 +76,18 @@ class Derived:
     value: float
     result: Propagated | None
     statement: str
+    driven: str = ""
 
 
 def sense(index: Derived) -> str:
     """What a stability index says: not determined where its interval holds zero, by its value alone where there is none.
 
+    Positive is stable only where side force and turning moment damp; where one of them drives, nothing is determined.
+
     G_v leaves out the restoring moment, so that it speaks of high speed only.
     """
+    if index.driven:
+        return "not determined"
     by_value = "stable" if index.value > 0.0 else "unstable"
     by_value += f" {FAST}" if index.name == "G_v" else ""
     if index.result is None:
@@ -160,7 +167,8 @@ def stability(parameters: ParameterFile, draws: int = DRAWS, seed: int = SEED) -
             (f"{chosen[3].symbol} - xG'm'", float(values[3]) - moment, float(halves[3])),
         ]
         value = float(index(np.zeros((1, 4)))[0])
-        out.append(_derived(name, parameters.name, value, index, gradient, whole, denominators, draws, seed))
+        found = _derived(name, parameters.name, value, index, gradient, whole, denominators, draws, seed)
+        out.append(replace(found, driven=next((label for label, size, _ in denominators if size >= 0.0), "")))
     return tuple(out)
 
 

@@ -16,6 +16,7 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.simplify.simplify import simplify
 from coeflab.bodies.triangulation import Triangulation
+from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import Source
 from coeflab.workbench import hulls, read_body
@@ -126,7 +127,7 @@ def body(name: str) -> Body:
     mesh = MESHES[name]()
     mesh.merge_vertices()
     shape = TriangleMesh(np.asarray(mesh.vertices) @ DOWN, np.asarray(mesh.faces))
-    return Body(name, name, "middle", np.zeros(3), {}, (), Source("synthetic", kind="synthetic"), (), shape)
+    return Body(name, name, Datum("middle"), np.zeros(3), {}, (), Source("synthetic", kind="synthetic"), (), shape)
 
 
 def missed(found: Triangulation, mesh: Body) -> list[str]:

@@ -202,7 +202,7 @@ def test_data_on_an_oblique_line_that_meets_no_grid_are_compared_along_it() -> N
 def test_the_command_shows_the_tables(coeflab: Run, tmp_path: Path) -> None:
     (tmp_path / "b.json").write_bytes(changed(add_to_drag(0.01)).to_json())
     done = coeflab("compare", PARAMS, "b.json")
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.returncode, done.stderr) == (1, "")
     assert "Fitted tables" in done.stdout
     assert "C_D over alpha, beta" in done.stdout
     assert "Tables: 2 within, 1 apart, 0 not comparable." in done.stdout

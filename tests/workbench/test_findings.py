@@ -17,6 +17,7 @@ from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
 from coeflab.tables.campaign import read_input_uncertainty
 from coeflab.tables.importers import PlannedTable
+from coeflab.vehicle.inertia import water_inertia
 from coeflab.workbench import run
 
 
@@ -122,7 +123,7 @@ def of_hull(folder: Path, hull: Path, campaign: str = "suboff_roddy_2", body: st
 def alarms(study: Study) -> tuple[list[str], list[str]]:
     """Findings, and what the parameter file itself says."""
     (file,) = study.parameter_files.values()
-    lost = [str(each) for each in lost_by_all(file, frozenset()) if "another shape" in str(each)]
+    lost = [str(each) for each in lost_by_all(file, frozenset(), water_inertia(file)) if "another shape" in str(each)]
     notes = [n for n in file.provenance.notes if "another shape" in n]
     return [c.comment for c in study.checks if "another shape" in c.comment], lost + notes
 

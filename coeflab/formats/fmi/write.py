@@ -228,7 +228,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
 
 
 def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What the unit's ``hydrodynamics`` (`coeflab/exporters/_fmi/unit.py`) computes from the model.json in the FMU, all
+    """What the unit's ``hydrodynamics`` (`coeflab/formats/fmi/unit.py`) computes from the model.json in the FMU, all
     velocities at once, with zero control angles.
     """
     model, values = _read(files)

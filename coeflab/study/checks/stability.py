@@ -32,7 +32,10 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             literature = [c.symbol for c in found if c is not None and c.origin == "literature"]
             whether = "Directional stability with controls fixed is" if verdict == "not determined" else "Directionally"
             comment = f"{whether} {verdict}{'.' if whether[-2:] == 'is' else ' with controls fixed.'}"
-            comment += " The interval holds zero." if verdict == "not determined" else ""
+            if d.driven:
+                comment += f" {d.driven} is not below zero: it drives what it should damp, and the index is no criterion."
+            else:
+                comment += " The interval holds zero." if verdict == "not determined" else ""
             comment += f" {without_restoring(parameters)}" if name == "G_v" else ""
             comment += f" {', '.join(literature)} from literature (PMM)." if literature else ""
             comment += f" {d.statement}." if half is None else " Mass is not assessed in U95."
