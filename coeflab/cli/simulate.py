@@ -130,6 +130,6 @@ def _write(made: Simulation, folder: Path, to: str) -> list[Path]:
             "--to parquet without pyarrow", "the extra", column="--to", advice='pip install "coeflab[parquet]"'
         ) from None
     rows = [(f,) for f in motion_figures(made.trajectory.until(made.determined), name, made.vehicle.length)]
-    content = {f"{name}.{to}": table, **({f"{name}.svg": sheet(rows)} if rows else {})}
+    content = {f"{name}.{to}": table, **({f"{name}.svg": sheet(rows, made.vehicle.water.source)} if rows else {})}
     write_all(folder, content)
     return [folder / file for file in content]

@@ -106,7 +106,7 @@ def _write(made: Carried, folder: Path) -> list[Path]:
     content = {f"{name}_members.csv": members_csv(made)}
     figures = uncertainty_figures(made)
     if figures:
-        content[f"{name}_uncertainty.svg"] = sheet(figures)
+        content[f"{name}_uncertainty.svg"] = sheet(figures, made.water.source)
     write_all(folder, content)
     return [folder / file for file in content]
 

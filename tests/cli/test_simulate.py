@@ -67,7 +67,8 @@ def test_what_a_file_determines_nothing_of_is_said_once(coeflab: Run, tmp_path: 
     assert not (tmp_path / "zigzag").exists()
     within = coeflab("simulate", path, "--manoeuvre", "zigzag", "--rudder", "10 deg", *FREE, "--out", "zigzag")
     assert (within.returncode, within.stderr) == (0, "")
-    assert (tmp_path / "zigzag" / "zigzag.svg").exists()
+    drawing = (tmp_path / "zigzag" / "zigzag.svg").read_text(encoding="utf-8")
+    assert "<desc>no added mass is known</desc>" in drawing
 
 
 def test_without_control_surfaces_the_way_out_exists(coeflab: Run, tmp_path: Path) -> None:

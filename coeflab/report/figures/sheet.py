@@ -25,13 +25,15 @@ def size_of(svg: str) -> tuple[float, float]:
     return float(found[1]), float(found[2])
 
 
-def sheet(rows: Sequence[Sequence[Figure]]) -> bytes:
+def sheet(rows: Sequence[Sequence[Figure]], statement: str = "") -> bytes:
     """Rows of figures, one below the other; equal figures give equal bytes.
 
     Parameters
     ----------
     rows : sequence of sequence of Figure
         One figure at least. Rows of one figure each are put in two columns.
+    statement : str
+        What holds for all figures; the file's description.
     """
     if all(len(row) == 1 for row in rows):
         single = [row[0] for row in rows]
@@ -48,6 +50,8 @@ def sheet(rows: Sequence[Sequence[Figure]]) -> bytes:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {across:g} {top:g}" width="{across:g}pt" '
         f'height="{top:g}pt" style="background:#fff">\n'
     )
+    if statement:
+        head += f"<desc>{escape(statement)}</desc>\n"
     return (head + "".join(parts) + "</svg>\n").encode()
 
 

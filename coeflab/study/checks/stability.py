@@ -33,7 +33,9 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             whether = "Directional stability with controls fixed is" if verdict == "not determined" else "Directionally"
             comment = f"{whether} {verdict}{'.' if whether[-2:] == 'is' else ' with controls fixed.'}"
             if d.driven:
-                comment += f" {d.driven} is not below zero: it drives what it should damp, and the index is no criterion."
+                comment += (
+                    f" {d.driven} is not below zero: it drives what it should damp, and the index is no criterion."
+                )
             else:
                 comment += " The interval holds zero." if verdict == "not determined" else ""
             comment += f" {without_restoring(parameters)}" if name == "G_v" else ""
