@@ -1,4 +1,4 @@
-"""``coeflab formats``: the rooms, their plugins, and the options of these."""
+"""``coeflab formats``: the kinds of plugins, the plugins, and the options of these."""
 
 from __future__ import annotations
 
@@ -17,105 +17,81 @@ EXAMPLE = "coeflab formats surface"
 
 
 def command(
-    name: str = typer.Argument("", help="A room such as fits, or one plugin: its options are explained."),
+    name: str = typer.Argument("", help="A kind of plugin such as fits, or one plugin: its options are explained."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """List everything that can be plugged in: importers, fits, exporters, checks, reports, validations."""
     from coeflab.core.table import Table
 
     found, broken = _chosen(name)
-    rows = [(room.kind, plugin, room.load(plugin).summary) for room, plugin in found]
+    rows = [(registry.kind, plugin, registry.load(plugin).summary) for registry, plugin in found]
     if not name:
         from coeflab.published import validations
 
         rows += [("validation", v, f"coeflab validate {v}") for v in validations()]
     ours = len(rows)
-    rows += [(room.kind, plugin, f"broken: {reason}") for room, plugin, reason in broken]
+    rows += [(registry.kind, plugin, f"broken: {reason}") for registry, plugin, reason in broken]
     if json:
-        show.json_object({"plugins": [_as_object(room, plugin) for room, plugin in found] + [
+        show.json_object({"plugins": [_as_object(registry, plugin) for registry, plugin in found] + [
             dict(zip(("kind", "name", "summary"), row, strict=True)) for row in rows[len(found):ours]
-        ] + [{"kind": room.kind, "name": plugin, "broken": reason} for room, plugin, reason in broken]})  # fmt: skip
+        ] + [{"kind": registry.kind, "name": plugin, "broken": reason} for registry, plugin, reason in broken]})  # fmt: skip
         return
-    notes = () if name else ("`coeflab formats NAME` explains the options of a plugin, or of a room such as fits.",)
+    notes = () if name else ("`coeflab formats NAME` explains the options of a plugin, or of a kind such as fits.",)
     show.table(Table("Formats", ("kind", "name", "what"), tuple(rows), notes, frozenset({0, 1, 2})))
     if name:
-        for room, plugin in found:
-            show.table(options_of(room, plugin))
+        for registry, plugin in found:
+            show.table(options_of(registry, plugin))
 
 
-def explain(room: Registry[Any], plugin: str) -> None:
+def explain(registry: Registry[Any], plugin: str) -> None:
     """Print the options of a plugin."""
-    show.table(options_of(room, plugin))
+    show.table(options_of(registry, plugin))
 
 
-def options_of(room: Registry[Any], plugin: str) -> Table:
+def options_of(registry: Registry[Any], plugin: str) -> Table:
     """Every option of a plugin: what it takes, its default, what it means. No rows where it has none."""
     from coeflab.core.options import described
     from coeflab.core.table import Table
 
-    kind = getattr(room.load(plugin), "Options", None)
-    with room.guarded(plugin, "has options that cannot be read"):
-        rows = tuple((o.name, o.takes, o.default, o.meaning) for o in described(kind)) if kind else ()
+    kind = registry.load(plugin).Options
+    with registry.guarded(plugin, "has options that cannot be read"):
+        rows = tuple((o.name, o.takes, o.default, o.meaning) for o in described(kind))
     notes = (
         f"On the command line: coeflab fit TABLE --fit {plugin} --{rows[0][0].replace('_', '-')} VALUE; in a plan: [table.options.{plugin}].",
-    ) if rows and room.package == "coeflab.fits" else ()  # fmt: skip
+    ) if rows and registry.package == "coeflab.fits" else ()  # fmt: skip
     return Table(
         f"Options of {plugin}", ("option", "takes", "default", "meaning"), rows, notes, frozenset({0, 1, 2, 3})
     )
 
 
-def _as_object(room: Registry[Any], plugin: str) -> dict[str, Any]:
-    rows = options_of(room, plugin).rows
+def _as_object(registry: Registry[Any], plugin: str) -> dict[str, Any]:
+    rows = options_of(registry, plugin).rows
     options = [dict(zip(("name", "takes", "default", "meaning"), row, strict=True)) for row in rows]
-    return {"kind": room.kind, "name": plugin, "summary": room.load(plugin).summary, "options": options}
+    return {"kind": registry.kind, "name": plugin, "summary": registry.load(plugin).summary, "options": options}
 
 
 def _chosen(name: str) -> tuple[list[tuple[Registry[Any], str]], list[tuple[Registry[Any], str, str]]]:
-    """Every plugin, those of one room, or those of one name; and beside them those that cannot be used, with the reason.
+    """Every plugin, those of one kind, or those of one name; and beside them those that cannot be used, with the reason.
 
     Raises
     ------
     InputError
-        Neither a room nor a plugin has that name.
+        Neither a kind nor a plugin has that name.
     """
     import difflib
 
     from coeflab.core.errors import InputError, shown
+    from coeflab.core.registry import registries
 
-    every = [(room, plugin) for room in _rooms() for plugin in room.usable()]
-    useless = [(room, plugin, why) for room in _rooms() for plugin, why in room.unusable()]
-    rooms = [room.package.rpartition(".")[2] for room in _rooms()]
+    every = [(registry, plugin) for registry in registries() for plugin in registry.usable()]
+    useless = [(registry, plugin, why) for registry in registries() for plugin, why in registry.unusable()]
+    kinds = [registry.package.rpartition(".")[2] for registry in registries()]
     out = [(r, p) for r, p in every if not name or name in (p, r.package.rpartition(".")[2])]
     broken = [(r, p, why) for r, p, why in useless if not name or name in (p, r.package.rpartition(".")[2])]
-    if not out and not broken and name not in rooms:
-        near = difflib.get_close_matches(name, [*rooms, *(p for _, p in every)], n=1)
+    if not out and not broken and name not in kinds:
+        near = difflib.get_close_matches(name, [*kinds, *(p for _, p in every)], n=1)
         hint = f"Did you mean {near[0]}? " if near else ""
         raise InputError(
-            shown(name), f"a plugin, or one of {', '.join(rooms)}", advice=f"{hint}`coeflab formats` lists all."
+            shown(name), f"a plugin, or one of {', '.join(kinds)}", advice=f"{hint}`coeflab formats` lists all."
         )
     return out, broken
-
-
-def _rooms() -> tuple[Registry[Any], ...]:
-    from coeflab.bodies.added_mass import ADDED_MASS
-    from coeflab.bodies.readers import BODIES
-    from coeflab.fits import FITS
-    from coeflab.formats import EXPORTERS, PARAMETER_IMPORTERS
-    from coeflab.motion.manoeuvres import MANOEUVRES
-    from coeflab.motion.simulators import SIMULATORS
-    from coeflab.report.formats import REPORTERS
-    from coeflab.study.checks import CHECKS
-    from coeflab.tables.importers import IMPORTERS
-
-    return (
-        IMPORTERS,
-        BODIES,
-        FITS,
-        ADDED_MASS,
-        SIMULATORS,
-        MANOEUVRES,
-        EXPORTERS,
-        PARAMETER_IMPORTERS,
-        CHECKS,
-        REPORTERS,
-    )

@@ -27,6 +27,7 @@ def command(
     ),
     hold: str = typer.Option("", metavar="u", help="Motions that are held after all, such as u for a constant speed."),
     current: str = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down."),
+    simulator: str = typer.Option("rigid_body", help="Name of the simulator (see coeflab formats simulators)."),
     integrator: str = typer.Option("adaptive", help="adaptive (scipy), or rk4 (fixed steps)."),
     step: float = typer.Option(0.0, help="Step of rk4 in s; 0: chosen."),
     record: float = typer.Option(0.0, help="Time between rows of the motion in s; 0: chosen."),
@@ -56,10 +57,11 @@ def command(
     if to not in TABLES:
         raise InputError(shown(to), f"one of {', '.join(TABLES)}", column="--to")
     parameters = read_parameter_file(file)
-    how: dict[str, Any] = {"integrator": integrator, "step": step, "record": record, **current_of(current)}
+    given = {"integrator": integrator, "step": step, "record": record}
+    how: dict[str, Any] = {k: v for k, v in given.items() if v not in ("adaptive", 0.0)} | current_of(current)
     made = simulate(
         parameters, manoeuvre, further(ctx.args), how, listed(free), listed(hold),
-        tables=tables, accelerations=accelerations,
+        simulator=simulator, tables=tables, accelerations=accelerations,
     )  # fmt: skip
     written = [] if out is None or made.undetermined else _write(made, out, to)
     if json:

@@ -89,6 +89,11 @@ class Described:
     meaning: str
 
 
+@dataclasses.dataclass(frozen=True, slots=True)
+class NoOptions:
+    """What a plugin without options takes."""
+
+
 def described(kind: type) -> tuple[Described, ...]:
     """Every option of an options dataclass, its meaning from the Attributes of the docstring."""
     meanings = _meanings(inspect.getdoc(kind) or "")
@@ -152,7 +157,7 @@ def parse_options(kind: type[Options], given: Mapping[str, Any], where: str) -> 
             near = difflib.get_close_matches(name, fields, n=1)
             raise InputError(
                 f"the unknown option {shown(name)}",
-                f"one of {', '.join(fields)}",
+                f"one of {', '.join(fields)}" if fields else "none: it has no options",
                 column=where,
                 advice=(f"Did you mean {near[0]}? " if near else "") + _explained(where),
             )

@@ -1,4 +1,4 @@
-"""Rooms of plugins: one file each, listed without importing, imported on use; what others installed never breaks ours."""
+"""Registries of plugins: one file each, listed without importing, imported on use; what others installed never breaks ours."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from coeflab.core.errors import CoeflabError, PluginError, shown
+from coeflab.core.options import NoOptions
 from coeflab.core.version import VERSION
 
 Port = TypeVar("Port")
@@ -22,22 +23,22 @@ OURS = f"coeflab {VERSION}"
 
 
 class Registry(Generic[Port]):
-    """The plugins of one room.
+    """The plugins of one kind.
 
     A plugin is a module; its file's name is its name. Packages outside coeflab add theirs through an entry point in
-    the group that is named like the room (``coeflab.fits``). A name that coeflab ships, or that two packages claim, is
+    the group of this name (``coeflab.fits``). A name that coeflab ships, or that two packages claim, is
     refused: the shipped plugin stays, and the log says whose was left out.
 
     Parameters
     ----------
     package : str
-        Name of the room, ``coeflab.`` and a word: what people type, and the group of entry points.
+        Name of the kind, ``coeflab.`` and a word: what people type, and the group of entry points.
     kind : str
-        What a plugin of this room is called in messages.
+        What a plugin of this kind is called in messages.
     port : type
         The runtime-checkable protocol that a plugin keeps.
     folder : str, optional
-        Dotted name of the package that holds the shipped plugins; by default that of the room.
+        Dotted name of the package that holds the shipped plugins; by default that of the name.
     file : str, optional
         Every plugin is a package with this module in it, such as ``write``; otherwise every plugin is a module.
     """
@@ -77,7 +78,7 @@ class Registry(Generic[Port]):
         return kept, tuple(refused)
 
     def names(self) -> tuple[str, ...]:
-        """Names of all plugins of the room, sorted; nothing is imported."""
+        """Names of all plugins, sorted; nothing is imported."""
         return tuple(sorted(self._shipped | set(self._claims[0])))
 
     def is_shipped(self, name: str) -> bool:
@@ -125,6 +126,9 @@ class Registry(Generic[Port]):
             with self.guarded(name, "cannot be imported"):
                 plugin = point.load()
             owner = f" of {_distribution(point)}"
+        for member, value in _optional(self._port).items():
+            if not hasattr(plugin, member):
+                setattr(plugin, member, value)
         missing = [a for a in _members(self._port) if not hasattr(plugin, a)]
         if missing or not isinstance(plugin, self._port):
             raise PluginError(f"the {self.kind} {shown(name)}{owner} lacks {', '.join(missing)}.")
@@ -163,15 +167,42 @@ def _distribution(point: EntryPoint) -> str:
     return f"{point.dist.metadata['Name']} {point.dist.version}"
 
 
+def _protocols(port: type) -> list[type]:
+    return [c for c in port.__mro__ if getattr(c, "_is_protocol", False) and c.__module__ != "typing"]
+
+
 def _members(port: type) -> list[str]:
-    protocols = [c for c in port.__mro__ if getattr(c, "_is_protocol", False) and c.__module__ != "typing"]
-    names = {n for c in protocols for n in (*inspect.get_annotations(c), *vars(c))}
+    names = {n for c in _protocols(port) for n in (*inspect.get_annotations(c), *vars(c))}
     return sorted(n for n in names if not n.startswith("_"))
+
+
+def _optional(port: type) -> dict[str, Any]:
+    """Members that a plugin may leave out, with what they are then: those to which the port gives a value."""
+    return {n: vars(c)[n] for c in reversed(_protocols(port)) for n in inspect.get_annotations(c) if n in vars(c)}
+
+
+def registries() -> tuple[Registry[Any], ...]:
+    """Every registry of coeflab, sorted by name: a package that makes one is found by itself."""
+    home = [str(Path(__file__).parents[1])]
+    folders = (m.name for m in pkgutil.walk_packages(home, "coeflab.") if m.ispkg)
+    found = {id(r): r for f in folders for r in vars(importlib.import_module(f)).values() if isinstance(r, Registry)}
+    return tuple(sorted(found.values(), key=lambda r: r.package))
 
 
 @runtime_checkable
 class Plugin(Protocol):
-    """What every plugin has: one line about itself and the works that it rests on."""
+    """What every plugin has; a member with a value may be left out.
+
+    Attributes
+    ----------
+    summary : str
+        One line about itself, 10 to 120 letters.
+    citations : tuple of str
+        The works that it rests on: keys of `coeflab.core.provenance`, or full references.
+    Options : type
+        Dataclass of its options, see `coeflab.core.options`.
+    """
 
     summary: str
     citations: tuple[str, ...]
+    Options: type = NoOptions

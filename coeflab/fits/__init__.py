@@ -16,7 +16,15 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Fit(Plugin, Protocol):
-    """Turns the tables of one campaign into coefficients."""
+    """Turns the tables of one campaign into coefficients.
+
+    Attributes
+    ----------
+    joins_campaigns : bool
+        Whether the tables may be of several campaigns.
+    """
+
+    joins_campaigns: bool = False
 
     def fit(self, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
         """Coefficients with their uncertainty.

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
+from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     import numpy as np
     from numpy.typing import NDArray
 
+    from coeflab.core.table import Check
     from coeflab.vehicle.parameter_file import ParameterFile
 
 
@@ -96,16 +98,55 @@ class InertialExporter(SimulatorExporter, Protocol):
         ...
 
 
+class NoDensityError(InputError):
+    """A model file that states no density of the water, where none is given."""
+
+
+def _nothing_found(_: Path) -> tuple[Check, ...]:
+    return ()
+
+
 @runtime_checkable
 class ParameterImporter(Plugin, Protocol):
-    """Reads somebody's model file."""
+    """Reads somebody's model file.
 
-    def read(self, path: Path) -> ParameterFile:
+    Attributes
+    ----------
+    reads : str
+        What it reads, as a list of formats names it.
+    signs : str
+        The signs that the format takes, a sentence for findings about a wrong one.
+    examine : callable
+        From a path to findings: what the format lets go wrong and a parameter file cannot show.
+    """
+
+    reads: str
+    signs: str = ""
+    examine: Callable[[Path], Sequence[Check]] = _nothing_found
+
+    def recognises(self, path: Path) -> bool:
+        """Whether the file is of this format, by its content; at most one importer knows a file.
+
+        Parameters
+        ----------
+        path : Path
+            Of UTF-8 text.
+        """
+        ...
+
+    def read(self, path: Path, density: float | None = None) -> ParameterFile:
         """The model as a parameter file.
 
         Parameters
         ----------
         path : Path
+        density : float, optional
+            kg/m^3, where the file states none.
+
+        Raises
+        ------
+        NoDensityError
+            The format states a density, this file does not, and none is given.
         """
         ...
 

@@ -92,9 +92,10 @@ def simulate(
     parameters: ParameterFile,
     manoeuvre: str,
     options: Mapping[str, Any],
-    simulator: Mapping[str, Any] | None = None,
+    integration: Mapping[str, Any] | None = None,
     free: Sequence[str] = (),
     hold: Sequence[str] = (),
+    simulator: str = "rigid_body",
     **how: Any,
 ) -> Simulation:
     """Plan the manoeuvre, move the vehicle, read the figures off.
@@ -106,17 +107,20 @@ def simulate(
         A plugin of `coeflab.motion.manoeuvres`.
     options : mapping
         Of the manoeuvre.
-    simulator : mapping, optional
-        Options of the simulator ``rigid_body``.
+    integration : mapping, optional
+        Options of the simulator.
     free, hold : sequence of str
+    simulator : str
+        A plugin of `coeflab.motion.simulators`.
     **how
         See `moved`.
     """
     plugin = MANOEUVRES.load(manoeuvre)
     body = moved(parameters, manoeuvre, free, hold, **how)
     plan = plugin.plan(body, options)
-    mover = SIMULATORS.load("rigid_body")
-    trajectory = mover.simulate(body, plan, simulator or {})
+    mover = SIMULATORS.load(simulator)
+    with SIMULATORS.guarded(simulator):
+        trajectory = mover.simulate(body, plan, integration or {})
     statements = tuple(
         dict.fromkeys((*body.statements, *plan.statements, *at_once(body, plan.phases), *trajectory.statements))
     )

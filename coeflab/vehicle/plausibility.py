@@ -130,15 +130,15 @@ def stated_matrix(parameters: ParameterFile) -> Array:
     return out
 
 
-def added_mass_findings(p: ParameterFile) -> list[Check]:
-    """Zeros, signs, symmetry, definiteness and size; at least one finding."""
+def added_mass_findings(p: ParameterFile, signs: str = "") -> list[Check]:
+    """Zeros, signs, symmetry, definiteness and size; at least one finding. ``signs`` as in `plausibility`."""
     stated = stated_matrix(p)
     if not np.any(np.nan_to_num(stated)):
         return [
             _added_mass_check("added mass", Severity.WARN, "none", "a matrix", "The body accelerates as if in air.")
         ]
     matrix = np.nan_to_num(np.where(np.isnan(stated), stated.T, stated))
-    out = _diagonal(np.diag(stated))
+    out = _diagonal(np.diag(stated), signs)
     unknown = np.isnan(np.diag(stated)) & np.any(matrix, axis=1)
     if np.any(unknown):
         out.append(_added_mass_check("M_A", Severity.WARN, f"no {_names(unknown)}", "a diagonal beside its products",
@@ -164,13 +164,13 @@ def _names(which: NDArray[np.bool_]) -> str:
     return ", ".join(f"{COMPONENTS[i]}{MOTIONS[i]}" for i in np.flatnonzero(which))
 
 
-def _diagonal(stated: Array) -> list[Check]:
+def _diagonal(stated: Array, signs: str) -> list[Check]:
     out = []
     negative = np.nan_to_num(stated) < 0.0
     if np.any(negative):
         values = ", ".join(f"{x:.4g}" for x in stated[negative])
         out.append(_added_mass_check(f"M_A {_names(negative)}", Severity.FAIL, values, "not below zero",
-                          "Acceleration derivatives are the negatives of added masses: a sign is wrong."))  # fmt: skip
+                          f"Acceleration derivatives are the negatives of added masses: a sign is wrong. {signs}".rstrip()))  # fmt: skip
     across = (stated == 0.0) & (np.arange(6) < 3)
     if np.any(across):
         out.append(_added_mass_check(f"M_A {_names(across)}", Severity.WARN, "0", "above zero",
@@ -208,7 +208,6 @@ PLANES = (("Y", "N", 1, 5), ("Z", "M", 2, 4))
 SMALLEST = {1: 0.15, 2: 0.05}
 MIRRORED = (("Nv", "Mw"), ("Nuv", "Muw"), ("Yr", "Zq"), ("Yur", "Zuq"))
 ALIKE = 0.01
-WRONG = "a sign is wrong."
 
 
 @brief
@@ -221,10 +220,10 @@ class _Own:
     odd: bool
 
 
-def damping_findings(p: ParameterFile) -> list[Check]:
-    """Signs, rates and axes; at least one finding about the signs."""
+def damping_findings(p: ParameterFile, signs: str = "") -> list[Check]:
+    """Signs, rates and axes; at least one finding about the signs, with what the file's format says of them."""
     own = _own_terms(p)
-    out = _signs(own)
+    out = _signs(own, signs)
     if not own:
         out.append(
             _damping_check(
@@ -251,14 +250,14 @@ def _own_terms(p: ParameterFile) -> list[_Own]:
     return out
 
 
-def _signs(own: list[_Own]) -> list[Check]:
+def _signs(own: list[_Own], signs: str) -> list[Check]:
     out = []
     drives = [o for o in own if o.odd and o.term.coefficient > 0.0]
     if drives:
         it = "It drives the motion that it" if len(drives) == 1 else "They drive the motions that they"
         out.append(_damping_check(", ".join(primed(o.term.symbol) for o in drives), Severity.FAIL,
                           ", ".join(f"{o.term.coefficient:.4g}" for o in drives) + " (SI)", "below zero",
-                          f"{it} should damp: {WRONG}"))  # fmt: skip
+                          f"{it} should damp: a sign is wrong. {signs}".rstrip()))  # fmt: skip
     for o in own:
         if not o.odd and o.term.component in "YKN":
             name = primed(o.term.symbol)
@@ -320,14 +319,21 @@ def _alike(a: float, b: float) -> bool:
 SMALL = 1e-4  # of the speed: a slope at zero, by central difference
 
 
-def plausibility(parameters: ParameterFile) -> tuple[Check, ...]:
-    """Findings in the order units, buoyancy, added mass, Munk moment, damping; every question that could be asked has at least one."""
+def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...]:
+    """Findings in the order units, buoyancy, added mass, Munk moment, damping; every question that could be asked has at least one.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    signs : str, optional
+        The signs that the format takes which the file was read from, a sentence; findings about a wrong one end with it.
+    """
     return (
         *_units(parameters),
         *_buoyancy(parameters),
-        *added_mass_findings(parameters),
+        *added_mass_findings(parameters, signs),
         *_munk(parameters),
-        *damping_findings(parameters),
+        *damping_findings(parameters, signs),
     )
 
 

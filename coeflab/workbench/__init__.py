@@ -190,8 +190,8 @@ def _fitted(
 def _refuse_several(name: str, tables: Sequence[ForceTable]) -> None:
     """Refuse several campaigns in a fit that knows nothing of their intercepts and scatter."""
     campaigns = joint_name(t.campaign for t in tables)
-    if len({t.campaign for t in tables}) > 1 and not getattr(FITS.load(name), "joins_campaigns", False):
-        able = [n for n in FITS.usable() if getattr(FITS.load(n), "joins_campaigns", False)]
+    if len({t.campaign for t in tables}) > 1 and not FITS.load(name).joins_campaigns:
+        able = [n for n in FITS.usable() if FITS.load(n).joins_campaigns]
         raise InputError(f"{name} over the campaigns {campaigns}", f"a fit that joins campaigns: {', '.join(able)}",
                          column="fit", advice="Or fit each campaign by itself.")  # fmt: skip
 

@@ -26,7 +26,7 @@ def methods() -> tuple[str, ...]:
     """Every method with its presets: ``strip`` and ``strip:lamb``."""
     out = []
     for name in ADDED_MASS.usable():
-        out += [name, *(f"{name}:{preset}" for preset in getattr(ADDED_MASS.load(name), "presets", {}))]
+        out += [name, *(f"{name}:{preset}" for preset in ADDED_MASS.load(name).presets)]
     return tuple(out)
 
 
@@ -104,18 +104,18 @@ def added_masses(
     on_mesh: list[str] = []
     for name in methods() if method == "all" else (method,):
         plugin_name, _, preset = name.partition(":")
-        plugin: Any = ADDED_MASS.load(plugin_name)
-        known = getattr(plugin, "presets", {})
+        plugin = ADDED_MASS.load(plugin_name)
+        known = plugin.presets
         if preset and preset not in known:
             raise InputError(f'the unknown preset "{preset}" of {plugin_name}', f"one of {', '.join(known) or 'none'}")
-        options = dict(getattr(plugin, "reproducible", {}) if reproducible else {})
+        options = dict(plugin.reproducible if reproducible else {})
         options |= {**(known[preset] if preset else {}), **(given or {})}
         subjects = [body]
-        if original is not None and getattr(plugin, "takes_surface", False):
+        if original is not None and plugin.takes_surface:
             subjects = [original, body] if method == "all" else [original]
         for subject in subjects:
             try:
-                found = plugin.added_mass(subject, density, options) if options else plugin.added_mass(subject, density)
+                found = plugin.added_mass(subject, density, options)
             except InputError as why:
                 if method != "all":
                     raise

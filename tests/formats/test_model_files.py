@@ -168,5 +168,5 @@ def test_gravity_in_feet(tmp_path: Path) -> None:
 
 
 def test_a_file_of_another_kind_is_not_taken_for_a_model(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="found a TOML file"):
+    with pytest.raises(InputError, match="found a file that no importer knows"):
         found(tmp_path, "[vehicle]\nYv = -20.0\n[other]\nYv = -30.0\n")

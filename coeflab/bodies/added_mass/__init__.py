@@ -2,20 +2,37 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 from coeflab.core.registry import Plugin, Registry
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from coeflab.bodies.body import Body
     from coeflab.law.added_mass import AddedMass
 
 
 @runtime_checkable
 class AddedMassMethod(Plugin, Protocol):
-    """Computes the added-mass matrix of a body."""
+    """Computes the added-mass matrix of a body.
 
-    def added_mass(self, body: Body, density: float) -> AddedMass:
+    Attributes
+    ----------
+    presets : mapping of str to mapping
+        Options by a name that people type after a colon: ``strip:lamb``.
+    reproducible : mapping
+        Options with which the numbers do not depend on optional packages.
+    takes_surface : bool
+        Whether it takes the mesh itself where parts stand for one.
+    """
+
+    presets: Mapping[str, Mapping[str, Any]] = MappingProxyType({})
+    reproducible: Mapping[str, Any] = MappingProxyType({})
+    takes_surface: bool = False
+
+    def added_mass(self, body: Body, density: float, options: Mapping[str, Any] | None = None) -> AddedMass:
         """The matrix about the body's reference point, FRD.
 
         Parameters
@@ -23,6 +40,8 @@ class AddedMassMethod(Plugin, Protocol):
         body : Body
         density : float
             kg/m^3.
+        options : mapping, optional
+            Of the plugin's `Options`.
         """
         ...
 

@@ -5,7 +5,9 @@ How far an ellipsoid is from the body that it stands for, by what both project a
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,7 @@ from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.shape import Ellipsoid, Parts, Revolution, Shape, shadow
 from coeflab.core.errors import InputError
+from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.added_mass import AddedMass, composed
 
@@ -121,7 +124,7 @@ def _axes(shape: Shape) -> NDArray[np.float64]:
     return np.array([shape.length / 2.0, np.sqrt(bc * ratio), np.sqrt(bc / ratio)])
 
 
-def added_mass(body: Body, density: float) -> AddedMass:
+def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = None) -> AddedMass:
     """Added mass of the equivalent ellipsoid, about the body's reference point.
 
     Parameters
@@ -130,11 +133,13 @@ def added_mass(body: Body, density: float) -> AddedMass:
         With a shape.
     density : float
         kg/m^3.
+    options : mapping, optional
+        None are known.
 
     Raises
     ------
     InputError
-        No shape, or one that displaces nothing.
+        No shape, one that displaces nothing, or any option.
 
     Notes
     -----
@@ -143,6 +148,7 @@ def added_mass(body: Body, density: float) -> AddedMass:
     Of any other the misfit is told (`coeflab.bodies.added_mass.ellipsoid`); where it is over a tenth the result is rough.
     Lamb, Hydrodynamics (1932), sections 114-115 and 121 a.
     """
+    parse_options(NoOptions, options or {}, "ellipsoid")
     shape = body.require_shape()
     if not shape.volume > 0.0:
         raise InputError(

@@ -6,15 +6,18 @@ Volume of the plain shapes of a link's collisions, from which gz-sim computes bu
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from coeflab.core.errors import InputError
+from coeflab.core.limits import XML_BYTES
 from coeflab.core.table import Check, Severity
+from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.core.types import Array
+from coeflab.formats import NoDensityError
 from coeflab.formats.gazebo.law import DENSITIES, FORCES, VELOCITIES, GzLink, read_gz_link
 from coeflab.formats.stated_file import LinkModel, link_file
 from coeflab.law.rigid_body import ideal_quadratics
@@ -58,10 +61,19 @@ def _volume(shape: Element, file: Path | str | None) -> float:
 
 summary = "gz-sim SDF: Hydrodynamics plugin and <fluid_added_mass>, link frame FLU to FRD"
 citations = ("fossen2011", "gz_sim")
+reads = "SDF with the Hydrodynamics plugin"
 signs = "gz-sim takes damping and <xDotU> ... negative, <fluid_added_mass> positive."
 
 SQUARES = tuple(FORCES[i] + VELOCITIES[i] * 2 for i in range(6))
 FRESH = 1000.0
+
+
+def recognises(path: Path) -> bool:
+    """Whether the file is SDF, or XML with the Hydrodynamics plugin of gz-sim."""
+    text = read_text(path, XML_BYTES)
+    if not text.lstrip().startswith("<") or "hydrodynamic_model" in text:
+        return False
+    return "<sdf" in text or re.search(r"<plugin[^<>]*hydrodynamics", text, re.IGNORECASE) is not None
 
 
 def read(
@@ -80,7 +92,8 @@ def read(
     Raises
     ------
     InputError
-        No SDF with one Hydrodynamics plugin, or no density.
+        No SDF with one Hydrodynamics plugin.
+    NoDensityError
     """
     root = read_xml(path)
     link = read_gz_link(root, path)
@@ -89,7 +102,7 @@ def read(
     stated = [numbers(e.text, (1,), tag, path)[0] for tag in DENSITIES for e in root.iter(tag)]
     rho = stated[0] if stated else density
     if rho is None:
-        raise InputError(
+        raise NoDensityError(
             "no density", "the density of the water", file=path,
             advice="The plugin needs none, primes do: give it (--density 1025), or write <uniform_fluid_density>.",
         )  # fmt: skip

@@ -23,6 +23,7 @@ from coeflab.core.limits import M_FILE_BYTES, bounded_number, positive_number
 from coeflab.core.text.toml import read_text
 from coeflab.core.types import brief
 from coeflab.core.wording import one_line
+from coeflab.formats import NoDensityError
 from coeflab.formats.exported_law import sname
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
@@ -268,13 +269,14 @@ def foreign_values(found: MFile, path: Path, density: float | None = None) -> MV
     Raises
     ------
     InputError
-        No density, or a length or density that is not above zero.
+        A length or density that is not above zero.
+    NoDensityError
     """
     rho = found.first(*DENSITIES)
     imperial = is_imperial(found)
     mass_unit, length_unit = (SLUG, FOOT) if imperial else (1.0, 1.0)
     if rho is None and density is None:
-        raise InputError(
+        raise NoDensityError(
             "no density", "rho = 1025 or the like", file=path,
             advice="Add it, in the units of the file, or give it in kg/m^3 (--density 1025).",
         )  # fmt: skip

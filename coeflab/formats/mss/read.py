@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -9,8 +10,10 @@ import numpy as np
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
+from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check, Severity
+from coeflab.core.text.toml import read_text
 from coeflab.formats.mss.m_file import (
     DENSITIES,
     GRAVITIES,
@@ -32,10 +35,21 @@ from coeflab.vehicle.plausibility import Written, munk_twice
 
 summary = "MSS .m files with plain assignments: primed or SI derivatives, slug and foot units told by rho or g"
 citations = ("sname1950", "fossen2011", "mss")
+reads = "MSS .m"
 signs = "MSS takes Xudot ... and damping such as Yv negative."
 
 OWN_AXES = ("Xuu", "Yvv", "Zww", "Kpp", "Mqq", "Nrr")
 TURNING = ("Nv", "Nuv", "Mw", "Muw")
+
+
+def recognises(path: Path) -> bool:
+    """Whether the file assigns a number to a derivative, as an m-file does."""
+    text = read_text(path, JSON_BYTES)
+    other = re.search(
+        r"^(\[+[A-Za-z_][\w.\"'-]*\]+[ \t]*(#.*)?|[ \t-]*[a-z][\w ]*:[ \t]*)$", text, re.MULTILINE
+    )  # TOML, YAML
+    assigned = re.search(r"^[^%#\n]*\b[XYZKMN]\w*[ \t]*=[ \t]*[-+.\d(\w]", text, re.MULTILINE)
+    return text.lstrip()[:1] not in ("<", "{") and other is None and assigned is not None
 
 
 def read(path: Path, density: float | None = None) -> ParameterFile:

@@ -7,7 +7,9 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
+from coeflab.core.limits import XML_BYTES
 from coeflab.core.table import Check, Severity
+from coeflab.core.text.toml import read_text
 from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.formats.stated_file import LinkModel, link_file
 from coeflab.formats.uuv_simulator.law import PLUGIN_DENSITY, SPACE, FossenLink, Xacro, read_fossen_link
@@ -19,9 +21,16 @@ from coeflab.vehicle.second_order import SURGE, SecondOrder
 
 summary = "uuv_simulator and DAVE: URDF or xacro with hydrodynamic_model fossen"
 citations = ("fossen2011", "uuv_simulator")
+reads = "uuv_simulator URDF or xacro"
 signs = "uuv_simulator takes <added_mass> positive, every damping matrix negative."
 
 GRAVITIES = ("g", "gravity")
+
+
+def recognises(path: Path) -> bool:
+    """Whether the file is XML with a <hydrodynamic_model>."""
+    text = read_text(path, XML_BYTES)
+    return text.lstrip().startswith("<") and "hydrodynamic_model" in text
 
 
 def read(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -10,9 +11,10 @@ import numpy as np
 from coeflab.core.arithmetic import ArithmeticProblem
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
-from coeflab.core.limits import positive_number
+from coeflab.core.limits import JSON_BYTES, positive_number
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check
+from coeflab.core.text.toml import read_text
 from coeflab.core.text.yaml import number, read_yaml
 from coeflab.core.types import Array
 from coeflab.core.wording import one_line
@@ -30,14 +32,22 @@ from coeflab.vehicle.parameter_file import ParameterFile
 
 summary = "xdyn YAML: one body with added mass, damping matrices and manoeuvring expressions"
 citations = ("sname1950", "fossen2011", "xdyn")
+reads = "xdyn YAML"
 signs = "xdyn takes the added mass and both damping matrices positive."
 
 LENGTHS = ("L", "Lpp", "LBP", "LOA", "Lwl")
 SPEED, CLOSE = 1.0, 1e-9
 
 
-def read(path: Path) -> ParameterFile:
-    """Read a model file.
+def recognises(path: Path) -> bool:
+    """Whether the file is YAML with a key of xdyn's bodies."""
+    text = read_text(path, JSON_BYTES)
+    keys = r"^[ \t-]*(dynamics|external forces|rotations convention)[ \t]*:"
+    return text.lstrip()[:1] not in ("<", "{") and re.search(keys, text, re.MULTILINE) is not None
+
+
+def read(path: Path, density: float | None = None) -> ParameterFile:  # noqa: ARG001 - the file states it
+    """Read a model file, which states its density.
 
     Moments are about the manoeuvring model's point where its expressions use the velocities there, else about the centre
     of gravity. xdyn adds no C_A(nu) nu: its added mass is taken as such where the file's own expressions hold these

@@ -65,6 +65,8 @@ def simulate(vehicle: Glider, manoeuvre: Manoeuvre, options: Mapping[str, Any]) 
         Unknown options or orders, a phase that ends by something else, a start out of the plane, more than a million rows.
     """
     chosen = parse_options(Options, options, "glider")
+    if not isinstance(vehicle, Glider):
+        raise InputError("the vehicle of a parameter file", "a glider", column="glider", advice="See `coeflab glide`.")
     _check(manoeuvre, chosen.step)
     flight = _Flight(vehicle, manoeuvre, chosen)
     reached = []

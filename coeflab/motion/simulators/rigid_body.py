@@ -18,7 +18,6 @@ from coeflab.motion.vehicle import Vehicle
 
 summary = "six degrees of freedom (Fossen), quaternion attitude; adaptive LSODA or fixed-step RK4, plain or compiled"
 citations = ("fossen2011", "hairer1996", "hindmarsh1983")
-reproducible: Mapping[str, str] = {"kernel": "numpy"}
 
 
 @dataclass(frozen=True, slots=True)

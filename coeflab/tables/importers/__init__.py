@@ -68,7 +68,18 @@ def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTab
 class Importer(Plugin, Protocol):
     """Reads the tables of a campaign into SI and FRD."""
 
-    def read(self, campaign: Campaign, only: str | None = None) -> tuple[ForceTable, ...]:
+    def recognises(self, path: Path) -> bool:
+        """Whether the file or folder is one that it reads, by its content; at most one importer knows a path.
+
+        Parameters
+        ----------
+        path : Path
+        """
+        ...
+
+    def read(
+        self, campaign: Campaign, only: str | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[ForceTable, ...]:
         """Tables in SI and FRD.
 
         Parameters
@@ -76,6 +87,8 @@ class Importer(Plugin, Protocol):
         campaign : Campaign
         only : str, optional
             File name of the one table that is wanted.
+        options : mapping, optional
+            Of the plugin's `Options`.
         """
         ...
 

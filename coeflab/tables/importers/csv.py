@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.limits import LARGEST_NUMBER
+from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.types import Array
 from coeflab.core.units import Header, factor
@@ -182,7 +185,17 @@ def _doubtful(cells: Cells, texts: list[str], headers: dict[str, str]) -> tuple[
     return tuple(out)
 
 
-def read(campaign: Campaign, only: str | None = None) -> tuple[ForceTable, ...]:
+def recognises(path: Path) -> bool:
+    """Whether the file is text, as far as its first 4 KiB say."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as stream:
+        return b"\0" not in stream.read(4096)
+
+
+def read(
+    campaign: Campaign, only: str | None = None, options: Mapping[str, Any] | None = None
+) -> tuple[ForceTable, ...]:
     """Read the tables of a campaign.
 
     Parameters
@@ -190,6 +203,8 @@ def read(campaign: Campaign, only: str | None = None) -> tuple[ForceTable, ...]:
     campaign : Campaign
     only : str, optional
         File name of the one table that is wanted.
+    options : mapping, optional
+        None are known.
 
     Returns
     -------
@@ -200,6 +215,7 @@ def read(campaign: Campaign, only: str | None = None) -> tuple[ForceTable, ...]:
     InputError
         Names file, line and column, what was found and what was expected.
     """
+    parse_options(NoOptions, options or {}, "csv")
     wanted = [t for t in campaign.tables if only is None or Path(t.file).name == only]
     if not wanted:
         known = ", ".join(t.file for t in campaign.tables)
