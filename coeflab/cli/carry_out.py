@@ -50,6 +50,7 @@ def summarise(study: Study) -> None:
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import results as tables
+    from coeflab.vehicle.derived import stability
 
     show.text(study.plan.title)
     show.text()
@@ -66,8 +67,9 @@ def summarise(study: Study) -> None:
     show.table(model_tables.quality(models))
     show.table(joint_tables.campaigns(study.fits))
     findings(study)
+    decided = {f"{p.name} {d.name}" for p in study.parameter_files.values() for d in stability(p) if d.decided}
     for c in study.checks:
-        if c.name == "stability" and "not determined" not in c.statistic:
+        if c.name == "stability" and c.subject in decided:
             show.text(f"{c.subject.split()[0]}: {c.statistic}. {c.comment}")
     judged = [c.passed for c in study.comparisons if c.passed is not None]
     if judged:

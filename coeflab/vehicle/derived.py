@@ -78,6 +78,11 @@ class Derived:
     statement: str
     driven: str = ""
 
+    @property
+    def decided(self) -> bool:
+        """Whether the sign of a stability index is: damping damps, and the interval, where there is one, leaves zero out."""
+        return not self.driven and (self.result is None or abs(self.value) > self.result.linear)
+
 
 def sense(index: Derived) -> str:
     """What a stability index says: not determined where its interval holds zero, by its value alone where there is none.
@@ -86,13 +91,11 @@ def sense(index: Derived) -> str:
 
     G_v leaves out the restoring moment, so that it speaks of high speed only.
     """
-    if index.driven:
+    if not index.decided:
         return "not determined"
     by_value = "stable" if index.value > 0.0 else "unstable"
     by_value += f" {FAST}" if index.name == "G_v" else ""
-    if index.result is None:
-        return f"{by_value} by its value alone"
-    return by_value if abs(index.value) > index.result.linear else "not determined"
+    return f"{by_value} by its value alone" if index.result is None else by_value
 
 
 def without_restoring(parameters: ParameterFile) -> str:

@@ -30,14 +30,14 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             verdict = sense(d)
             statistic = f"{name} = {d.value:.3f}{'' if half is None else f' +- {half:.2g}'}: {verdict}"
             literature = [c.symbol for c in found if c is not None and c.origin == "literature"]
-            whether = "Directional stability with controls fixed is" if verdict == "not determined" else "Directionally"
+            whether = "Directionally" if d.decided else "Directional stability with controls fixed is"
             comment = f"{whether} {verdict}{'.' if whether[-2:] == 'is' else ' with controls fixed.'}"
             if d.driven:
                 comment += (
                     f" {d.driven} is not below zero: it drives what it should damp, and the index is no criterion."
                 )
             else:
-                comment += " The interval holds zero." if verdict == "not determined" else ""
+                comment += "" if d.decided else " The interval holds zero."
             comment += f" {without_restoring(parameters)}" if name == "G_v" else ""
             comment += f" {', '.join(literature)} from literature (PMM)." if literature else ""
             comment += f" {d.statement}." if half is None else " Mass is not assessed in U95."
