@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from html import escape
 
-from coeflab.report.document import Figure
+from coeflab.report.document import Figure as Drawing
 
 COLUMNS, GAP, TITLE = 2, 24.0, 18.0
 LONGEST = 62
@@ -25,7 +25,7 @@ def size_of(svg: str) -> tuple[float, float]:
     return float(found[1]), float(found[2])
 
 
-def sheet(rows: Sequence[Sequence[Figure]], statement: str = "") -> bytes:
+def sheet(rows: Sequence[Sequence[Drawing]], statement: str = "") -> bytes:
     """Rows of figures, one below the other; equal figures give equal bytes.
 
     Parameters
@@ -55,7 +55,7 @@ def sheet(rows: Sequence[Sequence[Figure]], statement: str = "") -> bytes:
     return (head + "".join(parts) + "</svg>\n").encode()
 
 
-def _title(figure: Figure, x: float, y: float, wide: float) -> str:
+def _title(figure: Drawing, x: float, y: float, wide: float) -> str:
     fit = f' textLength="{wide:g}" lengthAdjust="spacingAndGlyphs"' if len(figure.title) > LONGEST else ""
     return (
         f'<text x="{x:g}" y="{y:g}" font-family="Helvetica, Arial, sans-serif" font-size="9.5" font-weight="bold"{fit}>'
@@ -63,7 +63,7 @@ def _title(figure: Figure, x: float, y: float, wide: float) -> str:
     )
 
 
-def _placed(figure: Figure, x: float, y: float) -> str:
+def _placed(figure: Drawing, x: float, y: float) -> str:
     wide, tall = size_of(figure.svg)
     place = f'<svg x="{x:g}" y="{y:g}" width="{wide:g}" height="{tall:g}" '
     return plain(figure.svg).replace("<svg ", place, 1)
