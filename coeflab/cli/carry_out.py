@@ -52,6 +52,7 @@ def summarise(study: Study) -> None:
     from coeflab.report.tables import results as tables
 
     show.text(study.plan.title)
+    show.sentence(tables.headline(study))
     show.text()
     show.table(tables.side_by_side(study))
     verdicts = tables.verdicts(study)
