@@ -94,10 +94,10 @@ def with_u95(value: float | None, u95: float | None) -> tuple[str, str]:
     return first, second
 
 
-def plus_minus(value: float | None, u95: float | None) -> str:
+def plus_minus(value: float | None, u95: float | None, sign: str = "+-") -> str:
     """``value +- U95`` with the digits of `with_u95`; the value alone without a usable U95."""
     first, second = with_u95(value, u95)
-    return f"{first} +- {second}" if u95 is not None and isfinite(u95) else first
+    return f"{first} {sign} {second}" if u95 is not None and isfinite(u95) else first
 
 
 def percent(part: float | None, of: float | None) -> str:

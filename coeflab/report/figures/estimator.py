@@ -33,6 +33,7 @@ from coeflab.report.notation import as_users_wrote
 from coeflab.vehicle.reference import Comparison
 
 SIDESTEP = 0.011
+PLUS_MINUS = "±"
 ENDED = Style(COLOURS["ink"], "-", "o")
 
 
@@ -99,7 +100,7 @@ def _drawn(sweep: Sweep) -> list[_Drawn]:
     ended = [(s.cap, s.value, s.u95) for s in sweep.sensitivity if s.value is not None and s.u95 is not None]
     if ended:
         cap, value, half = np.array(ended).T
-        notes = tuple(f"{plus_minus(v, h)} (U95)" for _, v, h in ended)
+        notes = tuple(f"{plus_minus(v, h, PLUS_MINUS)} (U95)" for _, v, h in ended)
         out.append(_Drawn("recommended", "recommended, by largest setting", ENDED, True, cap, value, half, notes))
     return out
 
@@ -178,7 +179,7 @@ def _caption(sweep: Sweep, published: tuple[Comparison, ...], frame: tuple[float
     name = primed(sweep.symbol)
     text = f"What single forms give for {name} by largest setting, with 95 % intervals (HC2) that trust the form. "
     if sweep.value is not None:
-        text += f"Band: the recommended {plus_minus(sweep.value, sweep.u95)}, which trusts none. "
+        text += f"Band: the recommended {plus_minus(sweep.value, sweep.u95, PLUS_MINUS)}, which trusts none. "
     if sweep.sensitivity:
         text += "Filled: the recommended value had the sweep ended there. "
     for c in published:
@@ -190,7 +191,7 @@ def _caption(sweep: Sweep, published: tuple[Comparison, ...], frame: tuple[float
 
 
 def _description(sweep: Sweep, published: tuple[Comparison, ...]) -> str:
-    value = "none" if sweep.value is None else plus_minus(sweep.value, sweep.u95)
+    value = "none" if sweep.value is None else plus_minus(sweep.value, sweep.u95, PLUS_MINUS)
     spread = [e.value for e in sweep.forms]
     forms = f"; single forms from {coefficient(min(spread))} to {coefficient(max(spread))}" if spread else ""
     there = "".join(f"; published {coefficient(c.published)}" for c in published)

@@ -108,7 +108,7 @@ def _said(symbol: str, value: float | None, low: float | None, high: float | Non
 
 
 def _of_file(t: IdentifiedTerm) -> str:
-    return f"{t.symbol} = {plus_minus(t.file_value, t.file_u95)}"
+    return f"{t.symbol} = {plus_minus(t.file_value, t.file_u95, '±')}"
 
 
 def _mark(axes: Axes, x: float, y: float, style: dict[str, Any]) -> None:

@@ -163,7 +163,7 @@ def _caption(sweep: Sweep) -> str:
         text += f"The points do not determine {name}. "
     else:
         kind = {"x": "tangent at rest", "x2": "parabola at rest"}.get(sweep.target, "value at rest")
-        text += f"The thin line is the {kind} for {name} = {plus_minus(sweep.value, sweep.u95)} (U95, shaded). "
+        text += f"The thin line is the {kind} for {name} = {plus_minus(sweep.value, sweep.u95, '±')} (U95, shaded). "
         text += "The recommended curve has its 95 % band; below, what it leaves unexplained. "
     if len(sweep.wrong):
         text += f"Without point {', '.join(sweep.labels[i] for i in sweep.wrong)}, which does not fit the others. "

@@ -44,8 +44,10 @@ def headline(study: Study, symbols: Sequence[str] = ()) -> str:
     chosen = [c for c in found if c.symbol in (symbols or study.plan.wanted)] or ([] if symbols else found)
     if not chosen:
         return ""
-    several = len({c.campaign for c in chosen}) > 1
-    each = ", ".join(f"{primed(c.symbol)} = {plus_minus(c.value, c.u95)}{f' ({c.campaign})' * several}" for c in chosen)
+    by: dict[str, list[str]] = {}
+    for c in chosen:
+        by.setdefault(c.campaign or "", []).append(f"{primed(c.symbol)} = {plus_minus(c.value, c.u95)}")
+    each = "; ".join(f"{campaign}: " * (len(by) > 1) + ", ".join(values) for campaign, values in by.items())
     outside = ", declared inputs and grid" if any(c.parts.input for c in chosen) else ""
     return f"{each} (U95; covers {COVERS}{outside})."
 

@@ -128,7 +128,7 @@ def _robust(s: Sweep) -> list[Check]:
                 subject,
                 Severity.WARN,
                 f"{_named(s, s.wrong)} left out: {primed(s.symbol)} = {plus_minus(s.value, s.u95)}, "
-                f"with it {with_u95(s.with_all, s.u95)[0]}",
+                f"with {'it' if len(s.wrong) == 1 else 'them'} {with_u95(s.with_all, s.u95)[0]}",
                 "every point within the scatter of the others about any smooth curve",
                 "Look at this run: a sign, a decimal, a wrong angle. If it is right, run its neighbours.",
             )
