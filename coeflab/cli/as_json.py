@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core.wording import finite
-from coeflab.fits.results.fit_result import Pooling
+from coeflab.fits.results.fit_result import FitResult, Pooling, Sweep
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.formats.export import Export
 from coeflab.formats.loss import Loss
-from coeflab.law.coefficient import Coefficient
-from coeflab.law.symbols import primed
+from coeflab.law.coefficient import COVERS, Coefficient
+from coeflab.law.symbols import ANGULAR, primed
 from coeflab.motion.manoeuvre import Figure, Simulation
 from coeflab.report.acceptance import Acceptance
 from coeflab.study.study import Study
@@ -44,6 +44,23 @@ def coefficient(c: Coefficient, scaling: str) -> dict[str, Any]:
         "status": c.status.value,
         "parts": {"random": p.random, "model_form": p.model_form, "window": p.window, "input": p.input},
     }
+
+
+def next_runs(fit: FitResult, sweep: Sweep, count: int) -> dict[str, Any]:
+    """The runs that would narrow a slope most; angles in radians, rates as r' = r L/U; U95 is that of the fit alone."""
+    degrees = sweep.variable not in ANGULAR
+    runs = [
+        {
+            "setting": float(np.arcsin(np.clip(x, -1.0, 1.0))) if sweep.is_angle else x,
+            "unit": "rad" if degrees else "1",
+            "u95_after": after,
+        }
+        for x, after in sweep.next_runs(count)
+    ]
+    return {
+        "symbol": primed(sweep.symbol), "campaign": fit.campaign, "variable": sweep.variable, "u95_now": sweep.u95,
+        "runs": runs,
+    }  # fmt: skip
 
 
 def model(m: FittedModel) -> dict[str, Any]:
@@ -148,6 +165,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
     return {
         "study": s.plan.name,
         "passed": not s.failed,
+        "u95_of_slopes_covers": COVERS,
         "coefficients": [coefficient(c, scalings.get(c.campaign or "", common)) for c in s.coefficients],
         "models": [model(m) for f in s.fits for m in f.models],
         "poolings": [pooling(f.campaign, p) for f in s.fits for p in f.poolings],

@@ -53,6 +53,7 @@ def summarise(study: Study) -> None:
     from coeflab.vehicle.derived import stability
 
     show.text(study.plan.title)
+    show.sentence(tables.headline(study))
     show.text()
     show.table(tables.side_by_side(study))
     verdicts = tables.verdicts(study)

@@ -30,9 +30,14 @@ def command(
     constraint: list[str] = typer.Option(
         [], metavar="EQUATION", help='Equation between coefficients, "Mw = -Nv"; repeatable.'
     ),
-    symbol: list[str] = typer.Option([], help="Show estimators and windows of this coefficient; repeatable."),
+    symbol: list[str] = typer.Option(
+        [], help="Show this coefficient by largest setting and by other forms; repeatable."
+    ),
     length: str = typer.Option("", help='Length of the primes, such as "4.356 m"; default the campaign\'s own.'),
     length_name: str = typer.Option("", help="Name of that length, such as LOA."),
+    next_runs: int = typer.Option(
+        0, "--next", metavar="COUNT", min=0, max=20, help="Name the runs that would narrow each slope most."
+    ),
     diagnostics: bool = typer.Option(False, help="Show influential points, PRESS, conditioning and correlations."),
     figure: Path = typer.Option(None, metavar="FILE.svg", help="Draw the fits into this file."),
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the fit, and stop."),
@@ -62,6 +67,8 @@ def command(
     names, options = given([*table, *ctx.args], constraint)
     if not names:
         raise InputError("no table", "a campaign folder, one CSV of it, or a shipped campaign's name", column="TABLE")
+    if next_runs and fit != "slope_at_origin":
+        raise InputError(f"--next with --fit {shown(fit)}", "--fit slope_at_origin", column="--next")
     if figure is not None and figure.suffix != ".svg":
         raise InputError(shown(figure.name), "a file name that ends in .svg", column="--figure")
     paths = [located(name, "cfd_data") for name in names]
@@ -84,11 +91,15 @@ def command(
     if figure is not None:
         _draw(study, wanted, figure)
     if json:
+        from coeflab.cli import as_json
         from coeflab.cli.as_json import study as study_json
 
-        show.json_object(study_json(study, []))
+        out = study_json(study, [])
+        if next_runs:
+            out["next"] = [as_json.next_runs(f, s, next_runs) for f in study.fits for s in f.sweeps if s.next_runs(1)]
+        show.json_object(out)
     else:
-        _print(study, wanted)
+        _print(study, wanted, next_runs)
         if diagnostics:
             _diagnose(study)
         if figure is not None:
@@ -176,7 +187,7 @@ def _diagnose(study: Study) -> None:
         show.table(model_tables.correlations(model))
 
 
-def _print(study: Study, symbols: list[str]) -> None:
+def _print(study: Study, symbols: list[str], count: int) -> None:
     from coeflab.cli.carry_out import findings
     from coeflab.report.tables import budget as budget_tables
     from coeflab.report.tables import models as joint_tables
@@ -184,6 +195,8 @@ def _print(study: Study, symbols: list[str]) -> None:
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import results as tables
 
+    show.sentence(tables.headline(study, symbols))
+    show.text()
     show.table(tables.coefficients(study))
     models = tuple(m for f in study.fits for m in f.models)
     for model in models:
@@ -194,11 +207,8 @@ def _print(study: Study, symbols: list[str]) -> None:
     known = {s.symbol: s for f in study.fits for s in f.sweeps}
     for symbol in symbols:
         sweep = known[symbol]
-        for content in (
-            tables.members(sweep),
-            tables.estimators(sweep),
-            tables.sensitivity(sweep),
-            tables.left_out(sweep),
-        ):
+        for content in (tables.sensitivity(sweep), tables.left_out(sweep), tables.estimators(sweep)):
             show.table(content)
+    for f in study.fits if count else ():
+        show.table(tables.next_points(f, count))
     findings(study)

@@ -40,6 +40,14 @@ def lines(many: str) -> None:
         text(line)
 
 
+def sentence(line: str) -> None:
+    """A long line on standard output, folded to 80 columns; nothing where it is empty."""
+    import textwrap
+
+    if line:
+        lines(textwrap.fill(line, 79, break_long_words=False, break_on_hyphens=False))
+
+
 def error(line: str) -> None:
     """A line on standard error."""
     typer.echo(visible(line), err=True)

@@ -111,7 +111,11 @@ WORKS: dict[str, str] = {
     "samples, Survey Methodology 28(2), 2002.",
     "imbens2016": "G. W. Imbens, M. Kolesar, Robust standard errors in small samples: some practical advice, "
     "Rev. Economics and Statistics 98(4), 2016.",
-    "davidson2008": "R. Davidson, E. Flachaire, The wild bootstrap, tamed at last, J. Econometrics 146, 2008.",
+    "wahba1990": "G. Wahba, Spline Models for Observational Data, SIAM, 1990.",
+    "kimeldorf1970": "G. S. Kimeldorf, G. Wahba, A correspondence between Bayesian estimation on stochastic processes and "
+    "smoothing by splines, Ann. Math. Statist. 41, 1970.",
+    "grunwald2017": "P. Gruenwald, T. van Ommen, Inconsistency of Bayesian inference for misspecified linear models, and a "
+    "proposal for repairing it, Bayesian Analysis 12, 2017.",
     "hurvich1989": "C. M. Hurvich, C.-L. Tsai, Regression and time series model selection in small samples, "
     "Biometrika 76, 1989.",
     "ittc_uncertainty": "ITTC, Uncertainty Analysis in CFD, Verification and Validation, recommended procedure 7.5-03-01-01, 2008, "

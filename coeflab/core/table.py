@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from html import escape
 from importlib import import_module
-from math import isnan
+from math import isfinite, isnan
 
 from coeflab.core.types import brief
 
@@ -49,6 +49,7 @@ class Table:
 
 
 ABSENT = "-"
+TINY, HUGE, LONGEST = 5e-5, 1e6, 12  # of numbers with a fixed point, and their decimals
 
 
 def number(value: float | None, digits: int = 4) -> str:
@@ -70,6 +71,33 @@ def coefficient(value: float | None) -> str:
     if value is None or isnan(value):
         return ABSENT
     return f"{value:.2e}" if 0 < abs(value) < 5e-5 else f"{value:.6f}"
+
+
+def with_u95(value: float | None, u95: float | None) -> tuple[str, str]:
+    """A value and its 95 % half-width for people: U95 with two significant digits, the value to the same last place.
+
+    JCGM 100:2008, 7.2.6. Both have one power of ten where both are tiny or one is huge. Without a usable U95 the value
+    stands as `coefficient` has it.
+    """
+    if value is None or u95 is None or not isfinite(value) or not isfinite(u95) or u95 <= 0.0:
+        return coefficient(value), coefficient(u95)
+    last = int(f"{u95:.1e}".partition("e")[2]) - 1
+    size = max(abs(value), u95)
+    if TINY <= size < HUGE:
+        if last < -LONGEST:
+            return coefficient(value), f"{u95:.1e}"
+        first, second = (f"{round(v, -last) + 0.0:.{max(-last, 0)}f}" for v in (value, u95))
+        return first, second
+    power = int(f"{round(size, -last):e}".partition("e")[2])
+    places = max(power - last, 0)
+    first, second = (f"{round(v / 10.0**power, places) + 0.0:.{places}f}e{power:+03d}" for v in (value, u95))
+    return first, second
+
+
+def plus_minus(value: float | None, u95: float | None, sign: str = "+-") -> str:
+    """``value +- U95`` with the digits of `with_u95`; the value alone without a usable U95."""
+    first, second = with_u95(value, u95)
+    return f"{first} {sign} {second}" if u95 is not None and isfinite(u95) else first
 
 
 def percent(part: float | None, of: float | None) -> str:

@@ -16,11 +16,14 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative
 from coeflab.law.transforms import derivative_transfer
 
+COVERS = "noise, curvature of any smooth form and where it sets in"  # of the U95 of a slope at the origin
+
 
 class Status(StrEnum):
     """What a coefficient's number is worth, with advice."""
 
     OK = "ok"
+    SIGN_OPEN = "sign_open"
     NO_TABLE = "no_table"
     TOO_FEW_POINTS = "too_few_points"
     SINGLE_ESTIMATOR = "single_estimator"
@@ -33,8 +36,10 @@ class Status(StrEnum):
         """What to do about it."""
         return {
             Status.OK: "",
+            Status.SIGN_OPEN: "The 95 % interval contains zero: the sign is open. `coeflab fit TABLE --next 3` names the "
+            "runs that narrow it most.",
             Status.NO_TABLE: "No table varies this motion. Add a campaign that does.",
-            Status.TOO_FEW_POINTS: "The rows do not determine any estimator. Run more angles or rates.",
+            Status.TOO_FEW_POINTS: "Too few different settings to determine it. Run more angles or rates.",
             Status.SINGLE_ESTIMATOR: "Only one form could be fitted, so its model-form error is unknown and no U95 "
             "is given. Run more angles, some on the other side.",
             Status.NOT_DETERMINED: "The data, or the derivatives that a change of reference point needs, leave it open.",
@@ -50,11 +55,10 @@ class Parts:
     Attributes
     ----------
     random : float or None
-        Scatter of the points: median member interval, HC2 with Bell-McCaffrey degrees of freedom.
+        Scatter of the points: of a slope at the origin what the noise of single readings does through the fixed
+        mixture; of other fits HC2 with Bell-McCaffrey degrees of freedom.
     model_form : float or None
-        2 a / sqrt(3), a the distance of the farthest member estimator from the value; a lone member is compared with
-        the families dropped for their width.
-        Each family has its own window, so the choice of window is in here.
+        What the unknown form of the curve adds: the rest of U95, in quadrature.
     window : float or None
         Reserved for a separately assessed window part.
     input : float or None

@@ -22,7 +22,7 @@ from coeflab.core.machine import cores, end_with_parent
 from coeflab.core.table import Severity
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.law.coefficient import Status
+from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import primed
 from coeflab.report.document import Document, Section
 from coeflab.report.figures.svg import settings
@@ -190,8 +190,9 @@ def _re_analysis(study: Study) -> list[str]:
 
 
 def verdict(study: Study) -> Section:
-    """What comes out, in sentences; the first is the verdict itself."""
-    text = [*_re_analysis(study), _harvest(study)]
+    """What comes out, in sentences: the slopes with U95 and what it covers, then the verdict itself."""
+    first = tables.headline(study)
+    text = [*([first] if first else []), *_re_analysis(study), _harvest(study)]
     others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
     if others:
         names = listed(list(dict.fromkeys(c.reference for c in others)))
@@ -247,21 +248,17 @@ def _without_value(study: Study) -> list[str]:
 
 def _coefficients(study: Study) -> Section:
     text: tuple[str, ...] = (
-        "A value is the median of the members: for each form of the curve, the fit in the widest window in which its "
-        "next term is not yet significant. U95 joins the random part (the members' median 95 % interval) and the "
-        "model-form part (2 / sqrt 3 times the distance of the farthest member, as for a rectangular distribution about the "
-        "value) as a root sum of squares. No published value enters.",
-        "The model-form part presumes that the true curve is close to one of the forms. In simulations with line, cubic or "
-        "v|v| as the truth U95 covers it in 97, 97 and 85 to 90 of 100 campaigns; for a mixture of v|v| and v^3, which the "
-        "points cannot tell from a polynomial, only in 25 to 50.",
-        "A lone member is compared with the fits that were dropped only because their intervals are too wide; where there "
-        "are none, no U95 is given.",
+        f"A slope at the origin comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder of unknown "
+        f"size and onset, in proportion to how well each explains the points. U95 covers {COVERS}; no form or window is "
+        "chosen, and no published value enters. How it was calibrated, and what remains: docs/slope_at_origin.md.",
+        "Its random part is what the scatter of single readings does, its form part the rest, joined as a root sum of squares. "
+        "What single forms would have said stands under each coefficient, for comparison only.",
         "A part that was not assessed is shown by a dash and is not in U95; the budget of every coefficient names what is "
         "missing. The turbulence model of a computation is never in it.",
     )
     single = any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients)
     if single:
-        text += ("Where one form only could be fitted, the value is printed without U95 and should not be relied on.",)
+        text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
     return Section("coefficients", "Coefficients", text, filled(tables.coefficients(study)))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from coeflab.core.table import ABSENT, Table, number
+from coeflab.core.table import ABSENT, Table, number, plus_minus
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.report import content
 from coeflab.report.acceptance import Acceptance
@@ -88,7 +88,7 @@ def _with_centres(table: Table, study: Study) -> Table:
 
 
 def _with_half(d: Derived) -> str:
-    return number(d.value) + (f" +- {number(d.result.linear, 2)}" if d.result else "")
+    return plus_minus(d.value, d.result.linear) if d.result else number(d.value)
 
 
 def _cut(table: Table) -> Table:
@@ -101,7 +101,7 @@ def _cut(table: Table) -> Table:
 
 def _main(study: Study) -> tuple[Section, ...]:
     """The curve of the first wanted coefficient that has a value, with all its estimators; else the first model."""
-    sweeps = [s for f in study.fits for s in f.sweeps if len(s.x) and s.recommendation.value is not None]
+    sweeps = [s for f in study.fits for s in f.sweeps if len(s.x) and s.value is not None]
     order = {symbol: i for i, symbol in enumerate(study.plan.wanted)}
     if sweeps:
         main: Sweep = min(sweeps, key=lambda s: order.get(s.symbol, len(order)))

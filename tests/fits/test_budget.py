@@ -64,7 +64,7 @@ def arm_table(shift: float = 0.0) -> ForceTable:
 def both(uncertainty: InputUncertainty | None, shift: float = 0.0) -> tuple[FitResult, dict[str, ForceTable]]:
     tables = [replace(t, uncertainty=uncertainty, source=EXPERIMENT) for t in (small_table(FULL), arm_table())]
     tables = [t.about(np.array([shift, 0.0, 0.0])) for t in tables]
-    return fit(tables, LENGTH, {"replicates": 100}), {t.name: t for t in tables}
+    return fit(tables, LENGTH, {}), {t.name: t for t in tables}
 
 
 def found_by(uncertainty: InputUncertainty | None, shift: float = 0.0) -> dict[str, Budget]:
@@ -129,7 +129,7 @@ def test_a_constant_angle_offset_only_moves_the_intercept_of_a_straight_line() -
             small_table(FULL), forces=forces, usable={"Y": np.ones(len(v), dtype=bool)}, exclusions=(),
             uncertainty=InputUncertainty(angle=float(np.radians(0.2))), source=EXPERIMENT,
         )  # fmt: skip
-        b = next(b for b in budgets_of(fit([table], LENGTH, {"replicates": 100}), {table.name: table}))
+        b = next(b for b in budgets_of(fit([table], LENGTH, {}), {table.name: table}))
         assert b.symbol == "Yv"
         assert b.inputs[0].sensitivity == pytest.approx(expected, rel=0.03, abs=2e-4)
         assert "angle" not in b.unassessed
@@ -165,16 +165,6 @@ def test_what_was_not_declared_is_named_and_not_zero() -> None:
     assert not {"grid", "force"} & set(none["Nv"].unassessed)
 
 
-def test_a_coefficient_without_interval_has_parts_but_no_u95() -> None:
-    study = small_study([-4.0, -2.0, 0.0, 2.0])
-    open_ones = [b for b in budgets(study) if b.u95 is None]
-    assert open_ones, "four points leave one form only"
-    for b in open_ones:
-        assert b.part("random") is not None
-        assert "model form" in b.unassessed
-        assert all(p.share is None for p in b.parts)
-
-
 def test_the_window_part_is_the_largest_move_under_a_cap() -> None:
     for b, s in zip(budgets(small_study(FULL)), small_study(FULL).fits[0].sweeps, strict=True):
         largest = max(abs(float(k.value or 0.0) - b.value) for k in s.sensitivity)
@@ -203,7 +193,7 @@ def test_a_planted_grid_error_becomes_the_grid_part() -> None:
     assert found[0].cells == (8_000_000, 1_000_000, 125_000)
     assert found[0].convergence.order == pytest.approx(2.0)
     expected = 1.25 * 0.05 / 1.05
-    b = budgets_of(fit([table], LENGTH, {"replicates": 100}), {table.name: table})[0]
+    b = budgets_of(fit([table], LENGTH, {}), {table.name: table})[0]
     assert b.part("grid") == pytest.approx(expected * abs(b.value), rel=1e-6)
     assert "turbulence model" in b.unassessed
     assert "grid" not in b.unassessed
@@ -216,7 +206,7 @@ def test_grid_studies_need_cells_and_one_grid_in_use() -> None:
     usable = {c: np.ones(15, dtype=bool) for c in "YN"}
     assert grid_studies(replace(gridded(), usable=usable), "Y") == ()
     bare = replace(gridded(), cells=None)
-    b = budgets_of(fit([bare], LENGTH, {"replicates": 100}), {bare.name: bare})[0]
+    b = budgets_of(fit([bare], LENGTH, {}), {bare.name: bare})[0]
     assert b.part("grid") is None
     assert "grid" in b.unassessed
 

@@ -10,7 +10,6 @@ from statsmodels.stats.outliers_influence import OLSInfluence
 
 from coeflab.core.types import Array
 from coeflab.fits.statistics.diagnostics import (
-    high_leverage,
     lack_of_fit,
     levels,
     outliers,
@@ -111,15 +110,6 @@ def test_outliers_are_found_and_clean_sweeps_have_none() -> None:
     spoilt[4] += 0.1
     f, residuals = line(x, spoilt)
     np.testing.assert_array_equal(np.flatnonzero(outliers(f, residuals)), [4])
-
-
-def test_high_leverage_is_three_times_the_mean() -> None:
-    x = np.array([*np.linspace(-1.0, 1.0, 15), 8.0])
-    f, _ = line(x, x)
-    np.testing.assert_array_equal(np.flatnonzero(high_leverage(f)), [15])
-    assert f.leverage.mean() == pytest.approx(2 / 16)
-    even, _ = line(np.linspace(-1.0, 1.0, 15), np.zeros(15))
-    assert not high_leverage(even).any()
 
 
 @pytest.mark.parametrize("weighted", [False, True])

@@ -9,13 +9,18 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.fits import FITS
+from coeflab.core.table import Check, Severity, plus_minus, with_u95
+from coeflab.fits import FITS, slope_at_origin
 from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.statistics.origin_slope import estimate, estimate_many
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.coefficient import Status
+from coeflab.study.checks import coverage
+from coeflab.study.study import Study
 from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
+from tests.report.studies import LENGTH, small_study, small_table
 
 LINE, CUBIC, SQUARE = "line", "{x} + {x}^3", "{x} + {x}|{x}|"
 ESTIMATORS = ((4.0, LINE), (10.0, CUBIC), (18.0, SQUARE))
@@ -34,14 +39,7 @@ WITHOUT_DOUBTFUL = {
     (2, "Nv", 10.0): ("-.0138", "96"),  # N at -4.03 degrees
     (2, "Nv", 18.0): ("-.0147", "96"),
 }
-RECOMMENDED = {
-    (1, "Zw"): -0.01384,
-    (1, "Mw"): 0.01051,
-    (2, "Yv"): -0.02725,
-    (2, "Nv"): -0.01408,
-    (3, "Yv"): -0.00637,
-    (3, "Nv"): -0.01310,
-}
+RECOMMENDED = [(1, "Zw"), (1, "Mw"), (2, "Yv"), (2, "Nv"), (3, "Yv"), (3, "Nv")]
 
 
 @cache
@@ -53,13 +51,13 @@ def tables(campaign: str) -> tuple[ForceTable, ...]:
 def fitted(campaign: str, doubtful: bool = False, shift: float = 0.0) -> FitResult:
     used = [t.with_uncertain_cells() if doubtful else t for t in tables(campaign)]
     used = [t.about(t.reference_point + np.array([shift, 0.0, 0.0])) for t in used]
-    return FITS.load("slope_at_origin").fit(used, used[0].scaling, {"replicates": 100})
+    return FITS.load("slope_at_origin").fit(used, used[0].scaling, {})
 
 
 def plain(sweep: Sweep, nominal: float, family: str) -> Estimate:
     """The family in the largest window of the nominal angle; runs are within 0.15 degrees of it."""
     found = [
-        e for e in sweep.plain if e.family.name == family and abs(np.degrees(np.arcsin(e.window)) - nominal) <= 0.15
+        e for e in sweep.forms if e.family.name == family and abs(np.degrees(np.arcsin(e.window)) - nominal) <= 0.15
     ]
     return max(found, key=lambda e: e.window)
 
@@ -93,11 +91,14 @@ def test_the_cells_named_for_the_difference_are_the_ones_left_out(key: tuple[int
 
 
 @pytest.mark.parametrize(("configuration", "symbol"), RECOMMENDED)
-def test_recommended_values(configuration: int, symbol: str) -> None:
-    c = fitted(f"suboff_roddy_{configuration}").coefficients[symbol]
-    assert c.value is not None
-    assert round(c.value, 5) == RECOMMENDED[configuration, symbol]
-    assert c.status is Status.OK
+def test_recommended_is_the_calibrated_slope_of_all_points(configuration: int, symbol: str) -> None:
+    """No frozen number: SUBOFF is not what the method is tuned to."""
+    result = fitted(f"suboff_roddy_{configuration}")
+    c, sweep = result.coefficients[symbol], result.sweep(symbol)
+    model = estimate(sweep.x, sweep.y, sweep.se)
+    assert (c.value, c.u95, c.status) == (model.value, model.u95, Status.OK)
+    assert c.window is not None
+    assert c.window == pytest.approx((np.arcsin(sweep.x.min()), np.arcsin(sweep.x.max())))
     assert c.parts.random is not None
     assert c.parts.model_form is not None
     assert c.u95 == pytest.approx(np.hypot(c.parts.random, c.parts.model_form))
@@ -125,16 +126,23 @@ def test_coefficients_of_one_table_are_correlated_although_each_leaves_out_a_cel
     assert result.coefficients.covariance[i, j] != 0.0
 
 
+def test_the_shares_of_rows_are_those_of_the_mixture() -> None:
+    """A constant and a line are followed exactly, and the shares of the readings add up to the mixture's mean."""
+    x = np.sin(np.radians(np.linspace(-16.0, 14.0, 16)))
+    y = -1e-3 + 2e-3 * x + 0.02 * x**2 + 1e-4 * np.random.default_rng(2).standard_normal(16)
+    here = estimate(x, y)
+    rest, slope = (slope_at_origin._by_row(here, term) for term in (0, 1))
+    assert here.design is not None
+    assert [rest.sum(), rest @ x, slope.sum(), slope @ x] == pytest.approx([1.0, 0.0, 0.0, 1.0], abs=1e-8)
+    assert slope @ y == pytest.approx(estimate_many(here.design, y, deletions=False).mean[0], rel=1e-9)
+
+
 def test_same_input_same_result() -> None:
     used = tables("suboff_roddy_2")
     fit = FITS.load("slope_at_origin").fit
-    one, two = (fit(used, used[0].scaling, {"replicates": 200}) for _ in range(2))
+    one, two = (fit(used, used[0].scaling, {}) for _ in range(2))
     assert one.coefficients.coefficients == two.coefficients.coefficients
     np.testing.assert_array_equal(one.coefficients.covariance, two.coefficients.covariance)
-    assert [s.bootstrap for s in one.sweeps] == [s.bootstrap for s in two.sweeps]
-    other = fit(used, used[0].scaling, {"replicates": 200, "seed": 2})
-    assert one.coefficients.coefficients == other.coefficients.coefficients
-    assert [s.bootstrap for s in one.sweeps] != [s.bootstrap for s in other.sweeps]
 
 
 @pytest.mark.parametrize(("configuration", "force", "moment", "side"), [(1, "Zw", "Mw", 1.0), (3, "Yv", "Nv", -1.0)])
@@ -154,7 +162,7 @@ def test_estimators_about_another_point_are_the_transferred_ones(
 
 @pytest.mark.parametrize("configuration", [1, 2, 3])
 def test_recommended_values_about_another_point_agree_within_their_u95(configuration: int) -> None:
-    """The rule may keep other windows for another moment, so the two ways differ by less than they claim to know."""
+    """The mixture weighs forms anew for another moment, so the two ways differ by less than they claim to know."""
     campaign, dx = f"suboff_roddy_{configuration}", 0.2
     here, there = fitted(campaign, shift=0.0), fitted(campaign, shift=dx)
     moved = here.coefficients.about(here.coefficients.reference_point + np.array([dx, 0.0, 0.0]))
@@ -168,19 +176,9 @@ def test_recommended_values_about_another_point_agree_within_their_u95(configura
     assert a.value != here.coefficients[moment].value
 
 
-def test_bootstrap_intervals_hold_their_estimate() -> None:
-    sweep = fitted("suboff_roddy_3").sweep("Yv")
-    for e in sweep.recommendation.members:
-        interval = sweep.bootstrap[e.family.name]
-        for low, high in (interval.pairs, interval.wild):
-            assert low < e.value < high
-            assert 0.2 < (high - low) / (2.0 * e.half_hc2) < 2.0
-        assert interval.usable > 0.9
-
-
 def test_a_capped_sweep_is_a_fit_with_that_largest_angle() -> None:
     used = tables("suboff_roddy_1")
-    ten = FITS.load("slope_at_origin").fit(used, used[0].scaling, {"replicates": 100, "largest_angle": 10.0})
+    ten = FITS.load("slope_at_origin").fit(used, used[0].scaling, {"largest_angle": 10.0})
     capped = {round(float(np.degrees(np.arcsin(s.cap)))): s for s in fitted("suboff_roddy_1").sweep("Zw").sensitivity}
     assert set(capped) == {10, 12, 18}
     assert ten.coefficients["Zw"].value == capped[10].value
@@ -218,14 +216,14 @@ def test_planted_static_and_control_derivatives_come_back_at_the_real_settings()
         N={"1": 9e-5, "v": -0.0137, "v v v": 0.05, "dr": -0.0022},
         K={"1": 9e-6, "v": -6e-4},
     )
-    found = FITS.load("slope_at_origin").fit([made], made.scaling, {"replicates": 100})
+    found = FITS.load("slope_at_origin").fit([made], made.scaling, {})
     wanted = {
         "Yv": -0.028, "Nv": -0.0137, "Kv": -6e-4, "X0": -1.3e-3, "Xvv": 6e-3, "Ydr": 0.0059, "Ndr": -0.0022, "Kdr": 0.0,
     }  # fmt: skip
     assert set(found.coefficients.symbols) == set(wanted)
     for symbol, value in wanted.items():
         assert found.coefficients[symbol].value == pytest.approx(
-            value, rel=1e-9, abs=2e-8 if symbol.endswith("dr") else 0.0
+            value, rel=1e-6, abs=2e-8 if symbol.endswith("dr") else 0.0
         ), symbol
     assert "Yv' v'" in found.sweep("Ydr").offset
 
@@ -238,17 +236,128 @@ def arm() -> tuple[ForceTable, ForceTable]:
 
 def test_planted_rotary_derivatives_come_back_from_a_rotating_arm() -> None:
     both = arm()
-    found = FITS.load("slope_at_origin").fit(both, both[0].scaling, {"replicates": 100}).coefficients
+    found = FITS.load("slope_at_origin").fit(both, both[0].scaling, {}).coefficients
     for symbol, value in {"Yv": -0.0065, "Nv": -0.0138, "Yr": 0.0007, "Nr": -0.0009}.items():
-        assert found[symbol].value == pytest.approx(value, rel=1e-9)
+        assert found[symbol].value == pytest.approx(value, rel=1e-6)
 
 
 def test_planted_rotary_derivatives_come_back_about_another_point() -> None:
     both, dx = arm(), 0.3
     length = both[0].scaling.length
     moved = [t.about(t.reference_point + np.array([dx, 0.0, 0.0])) for t in both]
-    found = FITS.load("slope_at_origin").fit(moved, both[0].scaling, {"replicates": 100}).coefficients
+    found = FITS.load("slope_at_origin").fit(moved, both[0].scaling, {}).coefficients
     k = dx / length
-    assert found["Nv"].value == pytest.approx(-0.0138 + k * 0.0065, rel=1e-9)
-    assert found["Yr"].value == pytest.approx(0.0007 + k * 0.0065, rel=1e-9)
-    assert found["Nr"].value == pytest.approx(-0.0009 - k * (-0.0138 + 0.0007) + k**2 * -0.0065, rel=1e-9)
+    assert found["Nv"].value == pytest.approx(-0.0138 + k * 0.0065, rel=1e-6)
+    assert found["Yr"].value == pytest.approx(0.0007 + k * 0.0065, rel=1e-6)
+    assert found["Nr"].value == pytest.approx(-0.0009 - k * (-0.0138 + 0.0007) + k**2 * -0.0065, rel=1e-6)
+
+
+ANGLES = [-18.0, -15.0, -12.0, -9.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 9.0, 12.0, 15.0, 18.0]
+
+
+def swept(angles: list[float], change: dict[int, float] | None = None, se: bool = False, noise: float = 1e-4) -> Study:
+    """Yv' = -0.03 with v|v|; some rows times a factor."""
+    table = small_table(angles, errors=se)
+    v = np.sin(np.radians(angles))
+    y = 1e-4 - 0.03 * v - 0.06 * v * np.abs(v) + noise * np.random.default_rng(4).standard_normal(len(v))
+    for row, factor in (change or {}).items():
+        y[row] *= factor
+    force = 0.5 * 1000.0 * 1.5**2 * 4.0 * y
+    used = {"Y": np.ones(len(v), dtype=bool)}
+    table = replace(table, forces={"Y": force}, usable=used, exclusions=())
+    return replace(small_study(ANGLES), fits=(slope_at_origin.fit([table], LENGTH, {}),), tables=(table,))
+
+
+def warnings(study: Study) -> list[Check]:
+    return [c for c in coverage.check(study) if c.severity is Severity.WARN]
+
+
+def test_a_wrong_point_is_a_warning_with_the_value_with_it_and_without_it() -> None:
+    clean, wrong = swept(ANGLES), swept(ANGLES, {9: 3.0})
+    assert not warnings(clean)
+    before, after = (s.fits[0].sweep("Yv") for s in (clean, wrong))
+    assert list(after.wrong) == [9]
+    assert after.value == pytest.approx(before.value, abs=before.u95)
+    (found,) = warnings(wrong)
+    assert after.u95 is not None
+    assert abs(after.with_all - after.value) > 3.0 * after.u95
+    for text in ("point tow 9 left out", plus_minus(after.value, after.u95), with_u95(after.with_all, after.u95)[0]):
+        assert text in found.statistic
+    assert "without point tow 9" in wrong.fits[0].coefficients["Yv"].estimator
+
+
+def test_pasted_rows_are_a_warning_and_no_gain() -> None:
+    once, pasted = swept(ANGLES), swept(ANGLES)
+    (table,) = once.tables
+    again = np.tile(np.arange(len(ANGLES)), 3)
+    motion = {m: a[again] for m, a in table.motion.items()}
+    table = replace(
+        table, motion=motion, speed=table.speed[again], forces={"Y": table.forces["Y"][again]},
+        usable={"Y": np.ones(len(again), dtype=bool)}, labels=tuple(f"tow {i}" for i in range(len(again))),
+    )  # fmt: skip
+    pasted = replace(pasted, fits=(slope_at_origin.fit([table], LENGTH, {}),), tables=(table,))
+    a, b = (s.fits[0].coefficients["Yv"] for s in (once, pasted))
+    assert (b.u95, b.n_points) == (pytest.approx(a.u95), len(ANGLES))
+    assert ["repeat an earlier row" in c.statistic for c in warnings(pasted)].count(True) == 1
+
+
+@pytest.mark.parametrize("one_sided", [False, True])
+def test_a_sweep_of_two_degrees_gives_a_value_with_its_u95(one_sided: bool) -> None:
+    angles = list(np.linspace(0.0 if one_sided else -2.0, 2.0, 9))
+    c = swept(angles, noise=1e-5).fits[0].coefficients["Yv"]
+    assert c.value is not None
+    assert c.u95 is not None
+    assert abs(c.value + 0.03) < 2.0 * c.u95 < 0.03
+
+
+def test_too_few_settings_and_an_open_sign_are_statuses_with_a_text() -> None:
+    few = swept([0.0, 5.0, 5.0])
+    c = few.fits[0].coefficients["Yv"]
+    assert (c.value, c.u95, c.status) == (None, None, Status.TOO_FEW_POINTS)
+    assert "2 different settings, at least 3 are needed" in warnings(few)[0].statistic
+    noisy = swept(ANGLES, noise=0.02)
+    c = noisy.fits[0].coefficients["Yv"]
+    assert c.status is Status.SIGN_OPEN
+    assert c.value is not None
+    assert c.u95 is not None
+    assert abs(c.value) <= c.u95
+    assert "sign is open" in warnings(noisy)[0].comment
+
+
+def test_stated_standard_errors_weigh() -> None:
+    """A row that states a hundred times the error of the others may lie anywhere."""
+    study = swept(ANGLES, se=True)
+    (table,) = study.tables
+    error = table.errors["Y"].copy()
+    error[9] *= 100.0
+    force = table.forces["Y"].copy()
+    force[9] *= 3.0
+    loose = slope_at_origin.fit([replace(table, forces={"Y": force}, errors={"Y": error})], LENGTH, {})
+    clean = study.fits[0].coefficients["Yv"]
+    assert clean.u95 is not None
+    assert loose.coefficients["Yv"].value == pytest.approx(clean.value, abs=clean.u95)
+    assert not len(loose.sweep("Yv").wrong)
+
+
+def test_measuring_the_next_run_narrows_the_slope_as_predicted() -> None:
+    """Of the run added in truth: U95 falls, by no less than half of what was promised, in the mean of four campaigns."""
+    fewer = [-18.0, -12.0, -6.0, 0.0, 6.0, 12.0, 18.0]
+    sweep = swept(fewer).fits[0].sweep("Yv")
+    (at, promised), *_ = sweep.next_runs(2)
+    degrees = float(np.degrees(np.arcsin(at)))
+    assert degrees == pytest.approx(0.5 * round(2.0 * degrees))
+    assert sweep.u95 is not None
+    assert promised < sweep.u95
+    v = np.sin(np.radians([*fewer, degrees]))
+    gained = []
+    for seed in range(4):
+        y = -0.03 * v - 0.06 * v * np.abs(v) + 1e-4 * np.random.default_rng(seed).standard_normal(len(v))
+        gained.append(estimate(v[:-1], y[:-1]).u95 - estimate(v, y).u95)
+    assert np.mean(gained) > 0.5 * (sweep.u95 - promised)
+
+
+def test_an_angle_filter_names_what_it_leaves_out() -> None:
+    (table,) = swept(ANGLES).tables
+    sweep = slope_at_origin.fit([table], LENGTH, {"largest_angle": 9.0}).sweep("Yv")
+    assert len(sweep.x) == 9
+    assert {p.reason for p in sweep.left_out} == {"beyond largest_angle"}

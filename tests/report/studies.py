@@ -61,7 +61,7 @@ def small_table(angles: list[float], *, named: str = "tow", errors: bool = False
 def small_study(angles: list[float], *, named: str = "tow", errors: bool = False, published: bool = False) -> Study:
     """One table, no body, no references; with ``published`` one re-analysis per coefficient."""
     table = small_table(angles, named=named, errors=errors)
-    result = fit([table], LENGTH, {"replicates": 100})
+    result = fit([table], LENGTH, {})
     missing = (Coefficient("Nr", None, None, Status.NO_TABLE, table.body, campaign=named),)
     comparisons = []
     for c in result.coefficients.coefficients if published else ():

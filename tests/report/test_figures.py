@@ -11,7 +11,7 @@ from coeflab.report.figures.estimator import estimator_figure
 from coeflab.report.figures.panel import tick_texts, ticks
 from coeflab.report.figures.series import on_axis
 from coeflab.report.figures.svg import COLOURS, power_of_ten
-from coeflab.report.figures.sweep import recommended_curve, sweep_figure
+from coeflab.report.figures.sweep import at_rest, sweep_figure
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -81,9 +81,9 @@ def test_published_values_are_a_marked_line():
 def test_the_tangent_has_the_recommended_slope_and_half_width():
     sweep = small_study(FULL).fits[0].sweep("Yv")
     x = np.array([0.0, 0.1])
-    y, half = recommended_curve(sweep, x)
-    assert (y[1] - y[0]) / 0.1 == pytest.approx(sweep.recommendation.value)
-    assert half == pytest.approx([0.0, 0.1 * sweep.recommendation.u95])
+    y, half = at_rest(sweep, x)
+    assert (y[1] - y[0]) / 0.1 == pytest.approx(sweep.value)
+    assert half == pytest.approx([0.0, 0.1 * sweep.u95])
 
 
 def test_sideslip_is_shown_in_degrees():

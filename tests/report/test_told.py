@@ -80,7 +80,7 @@ def test_an_identification_tells_values_as_they_are() -> None:
     values, kept = identified_figure(found, "i").panels
     own, file = values.series
     assert (own.x, own.notes) == ((-1.5,), ("Yv' = -0.030000, -0.040000 to -0.020000",))
-    assert (file.x, file.notes) == ((-1.0, 1.0), ("Yv' = -0.020000 ± 0.001000", "Nv' = 0.010000"))
+    assert (file.x, file.notes) == ((-1.0, 1.0), ("Yv' = -0.0200 ± 0.0010", "Nv' = 0.010000"))
     assert (kept.series[0].x, kept.series[0].notes, kept.unit_across) == ((100.0,), ("Yv'",), "%")
 
 

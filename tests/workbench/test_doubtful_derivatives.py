@@ -188,7 +188,8 @@ def bare(file: ParameterFile) -> ParameterFile:
 def about_the_nose(suboff: Study) -> Callable[[float], ParameterFile]:
     """The fully appended hull about its nose, ``share`` of its inertia left in the rotary forces."""
     file = bare(suboff.parameter_files["suboff_fully_appended"])
-    dx, yv, nv, yr, nr, m = 2.013 / LBP, -0.027252, -0.014078, 0.005251, -0.004444, 0.018296
+    dx, yr, nr, m = 2.013 / LBP, 0.005251, -0.004444, 0.018296
+    yv, nv = (float(c.value) for c in file.coefficients if c.symbol in ("Yv'", "Nv'") and c.value is not None)
 
     def made(share: float) -> ParameterFile:
         assert file.mass is not None

@@ -10,12 +10,14 @@ from math import isinf, isnan
 
 import numpy as np
 
-from coeflab.core.table import coefficient, html_by
+from coeflab.core.table import html_by, plus_minus
 from coeflab.core.types import Array, brief, locked
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.misfit import UNLIKELY, OutOfSample, chance
 from coeflab.fits.statistics.groups import Poolability
-from coeflab.fits.statistics.slopes import Estimate, Recommendation
+from coeflab.fits.statistics.least_squares import Index
+from coeflab.fits.statistics.origin_slope import OriginSlope, next_points
+from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import primed
 
@@ -99,7 +101,7 @@ class Pooling:
     def values_alone(self) -> str:
         """What each campaign gives by itself, in words."""
         each = [
-            f"{primed(symbol)} " + ", ".join(f"{coefficient(v)} ± {coefficient(h)} ({c})" for c, v, h in values)
+            f"{primed(symbol)} " + ", ".join(f"{plus_minus(v, h)} ({c})" for c, v, h in values)
             for symbol, values in self.alone
         ]
         return f"Alone they give {'; '.join(each)}." if each else ""
@@ -110,7 +112,7 @@ class Pooling:
         out = []
         own = [s for s in self.shares if s.intercept is not None and s.half_width is not None]
         if own:
-            listed = ", ".join(f"{coefficient(s.intercept)} ± {coefficient(s.half_width)} ({s.campaign})" for s in own)
+            listed = ", ".join(f"{plus_minus(s.intercept, s.half_width)} ({s.campaign})" for s in own)
             out.append(f"Every campaign has its own {self.response}0', which is taken off its rows: {listed}.")
         told = [str(s.left_out) for s in self.shares if s.left_out.predicted or len(self.shares) > 1]
         if len(self.shares) == 1:
@@ -136,19 +138,9 @@ class Pooling:
         return tuple(out)
 
 
-@brief
-@dataclass(frozen=True, slots=True)
-class BootstrapInterval:
-    """Percentile intervals of one member: pairs and wild, with the share of usable resamples."""
-
-    pairs: tuple[float, float]
-    wild: tuple[float, float]
-    usable: float
-
-
 @dataclass(frozen=True, slots=True)
 class Sensitivity:
-    """The recommendation when no window may exceed ``cap`` (in the motion variable)."""
+    """The recommended slope had the sweep ended at ``cap`` (in the motion variable)."""
 
     cap: float
     value: float | None
@@ -184,10 +176,20 @@ class Sweep:
     se : (n,) array or None
     labels : tuple of str
     left_out : tuple of LeftOut
-    recommendation : Recommendation
-    plain : tuple of Estimate
-        Each family without nuisance terms in every window: the single estimators of the literature.
-    bootstrap : dict of family name to BootstrapInterval
+    origin : OriginSlope
+        The calibrated model of y over x, which gives the value.
+    value, u95 : float or None
+        Recommended; None where there are too few settings.
+    with_all : float or None
+        The value with every row, wrong or not.
+    fitted : (n,) array
+        The recommended curve at the rows; NaN without one.
+    at_rest : (float, float)
+        The recommended curve at zero and its 95 % half-width.
+    by_row : (n,) array
+        How much a reading moves the value; zero for rows that do not carry it.
+    forms : tuple of Estimate
+        Each family in every window: the single estimators of the literature, for comparison.
     sensitivity : tuple of Sensitivity
     one_sided : bool
     table, campaign, body : str
@@ -207,9 +209,14 @@ class Sweep:
     se: Array | None
     labels: tuple[str, ...]
     left_out: tuple[LeftOut, ...]
-    recommendation: Recommendation
-    plain: tuple[Estimate, ...]
-    bootstrap: dict[str, BootstrapInterval]
+    origin: OriginSlope
+    value: float | None
+    u95: float | None
+    with_all: float | None
+    fitted: Array
+    at_rest: tuple[float, float]
+    by_row: Array
+    forms: tuple[Estimate, ...]
     sensitivity: tuple[Sensitivity, ...]
     one_sided: bool
     table: str
@@ -221,6 +228,8 @@ class Sweep:
     def __post_init__(self) -> None:
         object.__setattr__(self, "x", locked(self.x))
         object.__setattr__(self, "y", locked(self.y))
+        object.__setattr__(self, "fitted", locked(self.fitted))
+        object.__setattr__(self, "by_row", locked(self.by_row))
         if self.se is not None:
             object.__setattr__(self, "se", locked(self.se))
 
@@ -236,13 +245,44 @@ class Sweep:
             self.variable, f"{self.variable}' = {self.variable} L/U"
         )
 
-    def window_of(self, estimate: Estimate) -> tuple[float, float]:
-        """Range of the rows that an estimate used: radians for v', w' and controls, r' for rates."""
-        rows = self.x[estimate.rows]
+    @property
+    def window(self) -> tuple[float, float] | None:
+        """Range of the rows that carry the value: radians for v', w' and controls, r' for rates; None without any."""
+        rows = self.x[self.origin.used]
+        if not len(rows):
+            return None
         low, high = float(rows.min()), float(rows.max())
         if self.is_angle:
             return float(np.arcsin(max(low, -1.0))), float(np.arcsin(min(high, 1.0)))
         return low, high
+
+    @property
+    def wrong(self) -> Index:
+        """Rows that were left out because they do not fit the others."""
+        return np.flatnonzero(np.logical_not(self.origin.used) & np.isfinite(self.origin.without))
+
+    @property
+    def repeated(self) -> Index:
+        """Rows that repeat an earlier one exactly and count once."""
+        return np.setdiff1d(np.flatnonzero(np.logical_not(self.origin.used)), self.wrong)
+
+    def next_runs(self, count: int) -> tuple[tuple[float, float], ...]:
+        """Settings within the sweep whose reading would narrow the slope most, one after the other, and U95 after each.
+
+        Angles are multiples of half a degree, or of a tenth in a sweep of less than 4 degrees. None for an even
+        coefficient or one without a value.
+        """
+        if self.parity != "odd" or self.value is None:
+            return ()
+        at = None
+        if self.is_angle or self.variable in ("dr", "ds", "db"):
+            low, high = (
+                (np.arcsin(v) if self.is_angle else v) for v in (min(self.x.min(), 0.0), max(self.x.max(), 0.0))
+            )
+            step = np.radians(0.5 if max(-low, high) >= np.radians(4.0) else 0.1)
+            at = step * np.arange(np.ceil(low / step - 1e-6), np.floor(high / step + 1e-6) + 1.0)
+            at = np.sin(at) if self.is_angle else at
+        return tuple((float(x), float(u)) for x, u in zip(*next_points(self.origin, count, at), strict=True))
 
 
 @brief
@@ -260,7 +300,7 @@ class FitResult:
     sweeps : tuple of Sweep
     citations : tuple of str
     settings : dict of str to str
-        Options as used, seed and replicates among them.
+        Options as used.
     models : tuple of FittedModel
         Force laws and tables over one or more variables.
     poolings : tuple of Pooling

@@ -14,7 +14,7 @@ from math import gamma, pi, sqrt
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.table import coefficient
+from coeflab.core.table import coefficient, plus_minus
 from coeflab.core.types import brief
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.law.terms import canonical
@@ -45,8 +45,8 @@ class Secant:
 
     def __str__(self) -> str:
         return (
-            f"{self.symbol}' is {coefficient(self.slope)} at the origin and {coefficient(self.secant)} +- "
-            f"{coefficient(self.half_width)} (scatter) as secant over {self.variable}' = 0 .. {self.reach:.3g}."
+            f"{self.symbol}' is {coefficient(self.slope)} at the origin and "
+            f"{plus_minus(self.secant, self.half_width)} (scatter) as secant over {self.variable}' = 0 .. {self.reach:.3g}."
         )
 
 

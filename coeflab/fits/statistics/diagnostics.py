@@ -1,24 +1,15 @@
-"""Does the form fit, and does one point carry it? Lack of fit, replicates, leverage, outliers.
-
-Pairs and wild bootstrap, all replicates at once.
-
-Both work in the orthonormal basis of the design, where the closed forms are well conditioned; tests hold them to the
-QR solution of each replicate within 1e-10.
-"""
+"""Does the form fit, and does one point carry it? Lack of fit, replicates, outliers; rows drawn for a bootstrap."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations_with_replacement
 
 import numpy as np
 from scipy.special import chdtrc, fdtrc
 
 from coeflab.core.types import Array
 from coeflab.fits.statistics.least_squares import Factorised, Index
-from coeflab.fits.statistics.linear_model import FULL_LEVERAGE, hangs_on_one_point, t_probability
-
-HIGH_LEVERAGE = 3.0
+from coeflab.fits.statistics.linear_model import t_probability
 
 
 def levels(x: Array, width: float = 0.02) -> Index:
@@ -104,12 +95,6 @@ def outliers(f: Factorised, residuals: Array, level: float = 0.05) -> Array:
     return np.asarray(np.where(np.isfinite(t), t_probability(np.nan_to_num(t), freedom) * len(t) < level, False))
 
 
-def high_leverage(f: Factorised) -> Array:
-    """Points with more than three times the mean leverage, boolean (n,)."""
-    return np.asarray(f.leverage > min(HIGH_LEVERAGE * f.rank / len(f.leverage), 0.99))
-
-
-LEAST_PIVOT = 1e-9
 BLOCK = 128
 TOGETHER = 8_000_000  # rows times replicates that are held at once, 64 MB an array
 
@@ -139,106 +124,3 @@ def _counts(rng: np.random.Generator, n: int, replicates: int) -> Array:
         some += n * np.arange(len(some))[:, None]
         counts[start : start + BLOCK] = np.bincount(some.ravel(), minlength=some.size).reshape(some.shape)
     return counts
-
-
-def pairs(f: Factorised, responses: Array, counts: Array) -> Array:
-    """Coefficients of every resample of rows.
-
-    Parameters
-    ----------
-    f : Factorised
-        Full-rank design.
-    responses : (n, m) array
-    counts : (B, n) array
-        From `draw_counts`.
-
-    Returns
-    -------
-    (B, p, m) array
-        NaN where the resample does not determine the coefficients.
-    """
-    q, p = f.basis, f.basis.shape[1]
-    weighted = responses * f.root_weights[:, None]
-    upper = np.triu_indices(p)
-    squares = q[:, upper[0]] * q[:, upper[1]]
-    products = (q[:, :, None] * weighted[:, None, :]).reshape(len(q), -1)
-    sums = np.hstack([squares, products]).T @ counts.T
-    gram, moments = sums[: squares.shape[1]], sums[squares.shape[1] :]
-    solved = _solved(gram, moments.reshape(p, weighted.shape[1], len(counts)), p)
-    return np.moveaxis(np.tensordot(f.back, solved, axes=1), 2, 0)
-
-
-def _solved(gram: Array, moments: Array, p: int) -> Array:
-    """Solutions (p, m, B) of B small systems by one Cholesky factorisation along the batch.
-
-    Parameters
-    ----------
-    gram : (p (p + 1) / 2, B) array
-        Upper triangles, row by row.
-    moments : (p, m, B) array
-    p : int
-
-    Notes
-    -----
-    In the orthonormal basis a pivot is the share of a direction that the resample still holds; where one falls below
-    1e-9 the resample does not determine the coefficients and the answer is NaN.
-    """
-    lower: list[list[Array]] = [[] for _ in range(p)]
-    at = {(row, column): k for k, (row, column) in enumerate(combinations_with_replacement(range(p), 2))}
-    poor = np.zeros(gram.shape[1], dtype=bool)
-    for j in range(p):
-        for i in range(j, p):
-            rest = gram[at[j, i]].copy()
-            for k in range(j):
-                rest -= lower[i][k] * lower[j][k]
-            if i == j:
-                weak = rest < LEAST_PIVOT
-                poor |= weak
-                rest = np.sqrt(np.where(weak, 1.0, rest))
-            else:
-                rest /= lower[j][j]
-            lower[i].append(rest)
-    out = moments.copy()
-    for i in range(p):
-        for k in range(i):
-            out[i] -= lower[i][k] * out[k]
-        out[i] /= lower[i][i]
-    for i in reversed(range(p)):
-        for k in range(i + 1, p):
-            out[i] -= lower[k][i] * out[k]
-        out[i] /= lower[i][i]
-    out[:, :, poor] = np.nan
-    return out
-
-
-def wild(f: Factorised, coefficients: Array, residuals: Array, replicates: int, seed: int) -> Array:
-    """Coefficients of every wild replicate: residuals over sqrt(1 - h) with random signs (Davidson & Flachaire 2008).
-
-    Parameters
-    ----------
-    f : Factorised
-    coefficients : (p,) array
-    residuals : (n,) array
-        Weighted residuals from `solve`.
-    replicates, seed : int
-
-    Returns
-    -------
-    (B, p) array
-        NaN for a coefficient that a point of leverage 1 moves.
-    """
-    rng, n = np.random.default_rng(seed), len(residuals)
-    room = np.sqrt(np.where(f.leverage < FULL_LEVERAGE, 1.0 - f.leverage, np.inf))
-    signs = (rng.integers(0, 2, size=(size, n)) * 2.0 - 1.0 for size in pieces(n, replicates))
-    moved = np.vstack([coefficients + (s * (residuals / room)) @ f.estimator.T for s in signs])
-    moved[:, hangs_on_one_point(f)] = np.nan
-    return moved
-
-
-def percentile_interval(replicates: Array, level: float = 0.95) -> tuple[float, float, float]:
-    """Percentile interval and the share of replicates that could be used."""
-    usable = replicates[np.isfinite(replicates)]
-    if len(usable) < 0.5 * len(replicates):
-        return float("nan"), float("nan"), len(usable) / len(replicates)
-    low, high = np.quantile(usable, [0.5 - level / 2, 0.5 + level / 2])
-    return float(low), float(high), len(usable) / len(replicates)

@@ -5,8 +5,8 @@ one that all points of a campaign share.
 
 How the uncertain inputs of a campaign move the coefficients that its sweeps give.
 
-Every coefficient of a fit is one function of the declared inputs: the sweeps refitted with their members held fixed, then
-moved by the error of the reference point. Linear sensitivities and Monte Carlo are of that same function.
+Every coefficient of a fit is one function of the declared inputs: the sweeps moved along and scaled with their curves
+held fixed, then moved by the error of the reference point. Linear sensitivities and Monte Carlo are of that same function.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 
 from coeflab.core.types import Array, brief
 from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.statistics.origin_slope import curve
 from coeflab.fits.uncertainty.grid_convergence import GridStudy, gravest, grid_studies
-from coeflab.fits.uncertainty.propagation import STEP, Propagated, displaced, normal_draws, refit, summary_of
+from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
 from coeflab.law.coefficient import Coefficient, CoefficientSet, transfer_matrix
 from coeflab.law.symbols import ANGULAR, MOMENTS, primed
 from coeflab.tables.campaign import NAMES, InputUncertainty
@@ -28,6 +29,7 @@ from coeflab.tables.force_table import ForceTable
 
 ROUNDING = 1e-9
 NEWTON = 4
+FARTHEST, NODES = 0.5, 81  # of the largest setting: how far an offset of the angle is followed along the curve
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,13 +76,22 @@ def acting(component: str, rate: bool, angle: bool | None = None) -> tuple[str, 
 
 
 def perturbed(sweep: Sweep, names: Sequence[str]) -> Callable[[Array], Array]:
-    """The sweep's value as a function of input errors, members held fixed: (s, k) deviations -> (s,) values.
+    """The sweep's value as a function of input errors, the curve held fixed: (s, k) deviations -> (s,) values.
 
     A deviation d says that the true angle is the set one plus d, that true speed, rate, length, density and forces are
-    1 + d times those in the table. The reference point is left to `CoefficientSet.about`.
+    1 + d times those in the table. An offset of the angle moves the origin along the recommended curve: a slope becomes
+    that of the curve there, a value at rest the curve's own, a curvature stays, as it feels it in second order only. The
+    reference point is left to `CoefficientSet.about`.
     """
     force_power = 3 if sweep.component in MOMENTS else 2
     rate = sweep.variable in ANGULAR
+    value = sweep.value or 0.0
+    at = np.linspace(-FARTHEST, FARTHEST, NODES) * float(np.abs(sweep.x).max())
+    moved = np.zeros(NODES)
+    if not rate and sweep.target != "x2":
+        force = curve(sweep.origin, at)[0]
+        moved = np.gradient(force, at) if sweep.target == "x" else force
+        moved = moved - moved[NODES // 2]
 
     def values(deviations: Array) -> Array:
         error = dict(zip(names, deviations.T, strict=True))
@@ -89,9 +100,11 @@ def perturbed(sweep: Sweep, names: Sequence[str]) -> Callable[[Array], Array]:
         x_factor = one["rate"] * one["length"] / one["speed"] if rate else none + 1.0
         calibration = one["moment" if sweep.component in MOMENTS else "force"]
         y_factor = calibration / (one["density"] * one["speed"] ** 2 * one["length"] ** force_power)
-        offset = none if rate else error.get("angle", none)
-        x, y = displaced(sweep.x, offset, x_factor, sweep.y, y_factor, sweep.is_angle)
-        return refit(sweep.recommendation.members, x, y)
+        offset = none if rate else -error.get("angle", none)
+        if sweep.is_angle:
+            offset = np.sin(offset)
+        power = {"1": 0, "x": 1, "x2": 2}[sweep.target]
+        return np.asarray(y_factor / x_factor**power * (value + np.interp(offset, at, moved)))
 
     return values
 
@@ -138,7 +151,7 @@ def _of_inputs(
     known = at[0][1] & at[1][1]
     first = np.where(known[:, None], 0.5 * (at[0][0] - at[1][0]), 0.0)
     second = np.where(known[:, None], 0.5 * (at[0][0] + at[1][0]) - np.eye(len(symbols)), 0.0)
-    raw = np.array([s.recommendation.value for s in sweeps], dtype=float)
+    raw = np.array([s.value for s in sweeps], dtype=float)
     final = np.array([fit.coefficients[s].value or 0.0 for s in symbols])
     slopes, curves = first @ raw, second @ raw
     k = int(np.argmax(np.abs(slopes)))
@@ -212,8 +225,8 @@ class Budget:
         All inputs together, linear beside Monte Carlo; None where none was declared.
     grid : GridStudy or None
     window : float or None
-        How far the value moves when no window may exceed a cap, 2 / sqrt 3 times the largest move; for information, as
-        each form has its own window and the model-form part holds that choice already.
+        How far the value moves had the sweep ended sooner, 2 / sqrt 3 times the largest move; for information, as the
+        model-form part holds that already.
     unassessed : tuple of str
     """
 
@@ -258,7 +271,7 @@ def budgets_of(
     draws, seed : int
         Of the Monte Carlo over the inputs.
     """
-    sweeps = [s for s in fit.sweeps if s.recommendation.value is not None and s.table in tables]
+    sweeps = [s for s in fit.sweeps if s.value is not None and s.table in tables]
     if not sweeps:
         return ()
     declared = tables[sweeps[0].table].uncertainty
@@ -276,7 +289,7 @@ def budgets_of(
 def _budget(
     c: Coefficient, sweep: Sweep, table: ForceTable, inputs: tuple[InputPart, ...], total: Propagated | None
 ) -> Budget:
-    raw = sweep.recommendation.value or 0.0
+    raw = sweep.value or 0.0
     apart = [abs(s.value - raw) for s in sweep.sensitivity if s.value is not None]
     fitted = {"random": c.parts.random, "model form": c.parts.model_form}
     if c.u95 is not None and c.parts.random is None:

@@ -1,8 +1,7 @@
 """Uncertain inputs carried to results: linear sensitivities and seeded Monte Carlo of the same function.
 
 JCGM 100:2008 (linear), JCGM 101:2008 (Monte Carlo). Half-widths are two standard uncertainties and inputs are normal, so
-percentiles are those of two standard deviations, 2.275 and 97.725. A refit holds the members of a recommendation fixed, their forms and their rows, and so measures how the data
-move the answer, not how they move the choice.
+percentiles are those of two standard deviations, 2.275 and 97.725.
 """
 
 from __future__ import annotations
@@ -14,57 +13,9 @@ import numpy as np
 from scipy.special import ndtri
 
 from coeflab.core.types import Array
-from coeflab.fits.statistics.slopes import Estimate, design
 
 STEP = 0.01
 LOW, HIGH = 2.275013194817921, 97.72498680518208
-
-
-def refit(members: tuple[Estimate, ...], x: Array, y: Array) -> Array:
-    """Median of the members over ``s`` perturbed data sets, shape (s,).
-
-    Parameters
-    ----------
-    members : tuple of Estimate
-        Forms, rows and weights are theirs.
-    x, y : (s, n) array
-        Motion variable and force of all rows of the sweep.
-
-    Notes
-    -----
-    The design is multiplied by the unperturbed factor first, which leaves it nearly orthonormal: the normal equations
-    of a small perturbation are then as accurate as a QR.
-    """
-    return np.asarray(np.median([_member(e, x[:, e.rows], y[:, e.rows]) for e in members], axis=0))
-
-
-def _member(e: Estimate, x: Array, y: Array) -> Array:
-    s, n = x.shape
-    f = e.factorised
-    columns = design(e.terms, x.ravel()).reshape(s, n, len(e.terms)) * f.root_weights[:, None]
-    near = columns @ f.back
-    right = np.einsum("snp,sn->sp", near, y * f.root_weights)
-    solved = np.linalg.solve(np.swapaxes(near, 1, 2) @ near, right[..., None])[..., 0]
-    return np.asarray(solved @ f.back[e.target])
-
-
-def displaced(
-    x: Array, offset: Array, x_factor: Array, y: Array, y_factor: Array, angular: bool
-) -> tuple[Array, Array]:
-    """Perturbed data sets, two (s, n) arrays.
-
-    Parameters
-    ----------
-    x, y : (n,) array
-    offset : (s,) array
-        Added to every setting: rad.
-    x_factor, y_factor : (s,) array
-    angular : bool
-        x is the sine of the angle that the offset is added to.
-    """
-    settings = np.arcsin(np.clip(x, -1.0, 1.0)) if angular else x
-    moved = settings + offset[:, None]
-    return x_factor[:, None] * (np.sin(moved) if angular else moved), y_factor[:, None] * y
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.provenance import sha256_of
-from coeflab.core.table import number
+from coeflab.core.table import number, plus_minus
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite, listed
@@ -221,9 +221,9 @@ def largest_correlations(tuning: Tuning, above: float = 0.7) -> tuple[tuple[str,
 
 def moved_in_words(p: TunedParameter) -> str:
     """From where to where a parameter went."""
-    interval = f" +- {number(p.u95, 2)}" if p.u95 is not None else ""
+    after = number(p.after, 6) if p.u95 is None else plus_minus(p.after, p.u95)
     prior = f", prior share {100.0 * p.prior_share:.0f} %" if p.prior_share else ""
-    return f"{p.name}: from {number(p.before, 6)} to {number(p.after, 6)}{interval} {p.unit} ({p.status}{prior})"
+    return f"{p.name}: from {number(p.before, 6)} to {after} {p.unit} ({p.status}{prior})"
 
 
 # A place with the number of its parameter.

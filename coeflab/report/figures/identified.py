@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 
-from coeflab.core.table import coefficient
+from coeflab.core.table import coefficient, plus_minus
 from coeflab.motion.identify.identified import Identified, IdentifiedTerm, Outcome
 from coeflab.report.document import Figure, Panel
 from coeflab.report.figures.panel import tick_texts, ticks
@@ -108,8 +108,7 @@ def _said(symbol: str, value: float | None, low: float | None, high: float | Non
 
 
 def _of_file(t: IdentifiedTerm) -> str:
-    half = "" if t.file_u95 is None else f" ± {coefficient(t.file_u95)}"
-    return f"{t.symbol} = {coefficient(t.file_value)}{half}"
+    return f"{t.symbol} = {plus_minus(t.file_value, t.file_u95, '±')}"
 
 
 def _mark(axes: Axes, x: float, y: float, style: dict[str, Any]) -> None:

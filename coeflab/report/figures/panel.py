@@ -194,11 +194,6 @@ def _frame(figure: Figure, axes: Axes, box: tuple[float, float, float, float], x
     strokes(axes, (first_x, last_x), (first_y, last_y), transform=points, **look)
 
 
-def heading(figure: Figure, above: float, text: str) -> None:
-    """A small title over a panel whose upper edge is ``above`` points from the lower edge of the figure."""
-    label(figure, LEFT / WIDTH, (above + 4.0) / height_of(figure), text, "left", color=COLOURS["muted"])
-
-
 def legend(figure: Figure, handles: list[Any], above: float = TOP) -> None:
     """One legend in two columns above the panels, whose upper edge is ``above`` points from the lower edge."""
     framed_legend(figure, handles, LEFT - 16.0, above + 8.0)

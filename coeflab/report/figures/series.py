@@ -52,7 +52,7 @@ STYLES = (
 
 def styles(sweep: Sweep) -> dict[str, Style]:
     """A style for every family of a sweep, by its name."""
-    families = dict.fromkeys(e.family.name for e in (*sweep.recommendation.panel, *sweep.plain))
+    families = dict.fromkeys(e.family.name for e in sweep.forms)
     return {name: STYLES[i % len(STYLES)] for i, name in enumerate(families)}
 
 

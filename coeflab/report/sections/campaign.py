@@ -10,11 +10,12 @@ import re
 import numpy as np
 
 from coeflab.core.provenance import work
-from coeflab.core.table import ABSENT, Table, coefficient, number, percent
+from coeflab.core.table import ABSENT, Table, coefficient, number, percent, plus_minus, with_u95
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.misfit import residuals_in_words
 from coeflab.fits.statistics.diagnostics import replicate_groups
+from coeflab.law.coefficient import COVERS
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Section
 from coeflab.report.figures.estimator import estimator_figure
@@ -108,18 +109,14 @@ def _sweep_section(study: Study, fit: FitResult, sweep: Sweep, place: str) -> Se
     c = fit.coefficients[sweep.symbol]
     name = primed(sweep.symbol)
     if c.value is None:
-        text = [f"{name} has no value. {c.status.advice}"]
-    elif c.u95 is None:
-        text = [f"{name} = {coefficient(c.value)}, no U95. {c.status.advice}"]
+        text = [f"{name} has no value. {c.estimator} {c.status.advice}"]
     else:
         text = [
-            f"{name} = {coefficient(c.value)} ± {coefficient(c.u95)} (U95, {percent(c.u95, c.value)}): random part "
-            f"{percent(c.parts.random, c.value)}, model-form part {percent(c.parts.model_form, c.value)}."
+            f"{name} = {plus_minus(c.value, c.u95)} (U95, {percent(c.u95, c.value)}; covers {COVERS}): random part "
+            f"{percent(c.parts.random, c.value)}, form {percent(c.parts.model_form, c.value)}. {c.status.advice}".strip()
         ]
     if sweep.one_sided:
-        text.append(
-            "All points lie on one side of zero, so terms of the other parity cannot be told apart and are left out."
-        )
+        text.append("All points lie on one side of zero: even and odd parts cannot be told apart.")
     text += _caveats(sweep)
     published = tuple(
         k
@@ -131,19 +128,24 @@ def _sweep_section(study: Study, fit: FitResult, sweep: Sweep, place: str) -> Se
     figures: list[Figure] = []
     if len(sweep.x):
         figures.append(sweep_figure(sweep, f"{place}-data"))
-    if sweep.plain or sweep.recommendation.panel:
+    if sweep.forms:
         figures.append(estimator_figure(sweep, published, f"{place}-estimators"))
-    shown = filled(tables.members(sweep), tables.sensitivity(sweep), tables.left_out(sweep), tables.estimators(sweep))
+    shown = filled(tables.sensitivity(sweep), tables.left_out(sweep), tables.estimators(sweep))
     return Section(place, name, tuple(text), shown, tuple(figures))
 
 
 def _caveats(sweep: Sweep) -> list[str]:
     out = []
-    capped = [s.value for s in sweep.sensitivity if s.value is not None]
-    if capped and sweep.recommendation.value is not None:
-        low, high = coefficient(min(capped)), coefficient(max(capped))
+    if len(sweep.wrong):
+        out.append(
+            f"Point {', '.join(sweep.labels[i] for i in sweep.wrong)} does not fit the others and does not carry the value; "
+            f"with it {primed(sweep.symbol)} would be {with_u95(sweep.with_all, sweep.u95)[0]}."
+        )
+    shorter = [s for s in sweep.sensitivity if s.value is not None]
+    if shorter and sweep.value is not None:
+        low, high = (with_u95(f(s.value for s in shorter if s.value is not None), sweep.u95)[0] for f in (min, max))
         moved = f"stays at {low}" if low == high else f"lies between {low} and {high}"
-        out.append(f"When no window may exceed the limits in the table of largest windows, the value {moved}.")
+        out.append(f"Had the sweep ended sooner, as in the table by largest setting, the value {moved}.")
     if sweep.left_out:
         reasons: dict[str, list[str]] = {}
         for p in sweep.left_out:
@@ -160,8 +162,7 @@ TEXT = (
     "better than it.",
 )
 AT_REST = (
-    "median of the curves: over all members at no angle; of largest: its size over the largest force of the sweep. The check of "
-    "symmetry takes one member instead, that with the most points, whose value at rest has an interval: the two may differ.",
+    "of the curve: the recommended curve at no angle; of largest: its size over the largest force of the sweep.",
 )
 SAME_SETTING = 1e-6
 
@@ -178,41 +179,18 @@ def quality_sections(study: Study) -> tuple[Section, ...]:
 
 
 def _at_rest(study: Study) -> Table:
-    """Forces at no angle of the odd sweeps, from the recommended members, as force and as angle."""
+    """Forces at no angle of the odd sweeps, from the recommended curves, as force and as angle."""
     rows = []
-    for fit in study.fits:
-        for s in fit.sweeps:
-            if s.parity != "odd" or s.target != "x" or not s.recommendation.members:
-                continue
-            value = _rest(s)
-            slope = s.recommendation.value
-            half = s.recommendation.u95
-            angle = ABSENT if not slope or not s.is_angle else f"{np.degrees(value / slope):+.2f}"
-            largest = float(np.max(np.abs(s.y)))
-            measured = [y for x, y in zip(s.x, s.y, strict=True) if abs(x) <= SAME_SETTING]
-            at_zero = ABSENT if not measured else coefficient(float(np.mean(measured)))
-            rows.append(
-                (
-                    s.campaign, f"{s.component}'", s.variable + "'", coefficient(value), at_zero,
-                    f"{100.0 * abs(value) / largest:.1f} %" if largest > 0.0 else ABSENT, angle, ABSENT if half is None else coefficient(half),
-                )
-            )  # fmt: skip
-    headers = (
-        "campaign",
-        "force",
-        "over",
-        "median of the curves",
-        "measured",
-        "of largest",
-        "as angle deg",
-        "U95 of the slope",
-    )
+    for s in (s for fit in study.fits for s in fit.sweeps if s.target == "x" and s.value is not None):
+        value, half = s.at_rest
+        angle = ABSENT if not s.value or not s.is_angle else f"{np.degrees(value / s.value):+.2f}"
+        largest = float(np.max(np.abs(s.y)))
+        measured = [y for x, y in zip(s.x, s.y, strict=True) if abs(x) <= SAME_SETTING]
+        at_zero = ABSENT if not measured else coefficient(float(np.mean(measured)))
+        share = f"{100.0 * abs(value) / largest:.1f} %" if largest > 0.0 else ABSENT
+        rows.append((s.campaign, f"{s.component}'", s.variable + "'", *with_u95(value, half), at_zero, share, angle))
+    headers = ("campaign", "force", "over", "of the curve", "U95", "measured", "of largest", "as angle deg")
     return Table("Forces at rest", headers, tuple(rows), AT_REST, frozenset({0, 1, 2}))
-
-
-def _rest(sweep: Sweep) -> float:
-    """Median of the members' values at rest."""
-    return float(np.median([float(e.curve(np.zeros(1))[0]) for e in sweep.recommendation.members]))
 
 
 def _repeats(tables: tuple[ForceTable, ...]) -> Table:

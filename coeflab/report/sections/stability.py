@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from coeflab.core.errors import CoeflabError
-from coeflab.core.table import ABSENT, Table, number
+from coeflab.core.table import ABSENT, Table, number, plus_minus
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.motion.root_locus import RootLocus, root_locus
@@ -116,7 +116,7 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
 
 
 def _value(d: Derived) -> str:
-    return f"{d.name} = {d.value:.3g}" + ("" if d.result is None else f" +- {d.result.linear:.2g}")
+    return f"{d.name} = {d.value:.3g}" if d.result is None else f"{d.name} = {plus_minus(d.value, d.result.linear)}"
 
 
 def stability_sections(study: Study) -> tuple[Section, ...]:

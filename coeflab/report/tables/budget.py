@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coeflab.core.table import ABSENT, Table, coefficient, number, percent
+from coeflab.core.table import ABSENT, Table, coefficient, number, percent, with_u95
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.symbols import primed
@@ -23,7 +23,7 @@ def overview(budgets: Sequence[Budget]) -> Table:
         shares = {p.name: ABSENT if p.share is None else f"{100.0 * p.share:.1f} %" for p in b.parts}
         rows.append(
             (
-                primed(b.symbol), b.campaign, coefficient(b.value), coefficient(b.u95), percent(b.u95, b.value),
+                primed(b.symbol), b.campaign, *with_u95(b.value, b.u95), percent(b.u95, b.value),
                 *(shares.get(n, ABSENT) for n in names), "; ".join(b.unassessed) or ABSENT,
             )
         )  # fmt: skip
@@ -47,20 +47,27 @@ def budget(b: Budget) -> Table:
                 part.name,
                 number(given.half_width, 3) + f" {unit}" if given else ABSENT,
                 number(given.sensitivity, 4) if given else ABSENT,
-                coefficient(part.half_width),
+                with_u95(b.value, part.half_width)[1],
                 percent(part.half_width, b.value),
                 ABSENT if part.share is None else f"{100.0 * part.share:.1f} %",
             )
         )
     rows.append(
-        ("U95", ABSENT, ABSENT, coefficient(b.u95), percent(b.u95, b.value), ABSENT if b.u95 is None else "100 %")
+        (
+            "U95",
+            ABSENT,
+            ABSENT,
+            with_u95(b.value, b.u95)[1],
+            percent(b.u95, b.value),
+            ABSENT if b.u95 is None else "100 %",
+        )
     )
     notes = []
     if b.monte_carlo is not None:
         m = b.monte_carlo
         notes.append(
             f"All inputs: linear {coefficient(m.linear)}, Monte Carlo {coefficient(m.monte_carlo)} ({m.draws} draws, seed "
-            f"{m.seed}); forms and windows held fixed."
+            f"{m.seed}); curve held fixed."
         )
     if b.grid is not None:
         c = b.grid.convergence
@@ -141,7 +148,7 @@ def validation(found: Sequence[Validation]) -> Table:
         "", "computed", "measured", "S", "D", "E = S - D", "U_D", "U_SN", "U_red", "U_input", "U_V", "verdict",
     )  # fmt: skip
     notes = (
-        "U_SN: grid and iteration noise; U_red: model form of the slope drawn through computed points; a dash: "
+        "U_SN: grid and iteration noise; U_red: form of the curve drawn through computed points; a dash: "
         "not assessed. E also holds the difference of Reynolds number and rig between both.",
         *(f"{primed(v.symbol)}: {v.statement}." for v in found),
     )
@@ -154,9 +161,8 @@ def derived(found: Sequence[Derived]) -> Table:
         (
             d.name,
             d.subject,
-            number(d.value),
-            number(d.result.linear if d.result else None, 3),
-            number(d.result.monte_carlo if d.result else None, 3),
+            *(with_u95(d.value, d.result.linear) if d.result else (number(d.value), ABSENT)),
+            number(d.result.monte_carlo if d.result else None, 2),
             f"{number(d.result.low)} .. {number(d.result.high)}" if d.result else ABSENT,
             d.statement,
         )

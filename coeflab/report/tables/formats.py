@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from coeflab.core.table import ABSENT, Check, Table, coefficient, number
+from coeflab.core.table import ABSENT, Check, Table, coefficient, number, with_u95
 from coeflab.formats.loss import LOSSLESS, Apart, Loss
 from coeflab.formats.lost import Kind
 from coeflab.law.added_mass import potential_part
@@ -155,7 +155,7 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
     """Every coefficient, primed and in SI."""
     p = parameters
     rows = tuple(
-        (c.symbol, coefficient(c.value), number(c.value_si), c.unit_si, coefficient(c.u95), c.status.replace("_", " "),
+        (c.symbol, with_u95(c.value, c.u95)[0], number(c.value_si), c.unit_si, with_u95(c.value, c.u95)[1], c.status.replace("_", " "),
          c.origin, c.estimator or ABSENT)
         for c in p.coefficients
     )  # fmt: skip

@@ -13,7 +13,7 @@ from math import degrees
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Table, coefficient, number, percent, probability
+from coeflab.core.table import ABSENT, Table, coefficient, number, percent, probability, with_u95
 from coeflab.fits.results.fit_result import FitResult, Pooling
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.misfit import OutOfSample
@@ -225,7 +225,7 @@ def side_by_side(first: ParameterFile, others: Sequence[Comparison], names: Sequ
     rows = []
     for symbol in dict.fromkeys((*own, *(s for rows in found for s in rows))):
         here = own.get(symbol)
-        row = [symbol, *((coefficient(here.value), coefficient(here.u95)) if here else (ABSENT, ABSENT))]
+        row = [symbol, *(with_u95(here.value, here.u95) if here else (ABSENT, ABSENT))]
         for other in found:
             r = other.get(symbol)
             row += _cells(r) if r else [ABSENT, ABSENT, ABSENT, Verdict.NOT_COMPARABLE.value]
@@ -248,7 +248,7 @@ def reasons(found: Comparison) -> tuple[str, ...]:
 
 
 def _cells(r: Compared) -> list[str]:
-    return [coefficient(r.b), coefficient(r.u95_b), number(r.ratio, 3), r.verdict.value]
+    return [*with_u95(r.b, r.u95_b), number(r.ratio, 3), r.verdict.value]
 
 
 def _place(m: ComparedModel) -> str:

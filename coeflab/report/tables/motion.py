@@ -15,7 +15,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Table, coefficient, number
+from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
 from coeflab.core.types import Array
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.glider.glide import GlideRun, SteadyGlide
@@ -187,8 +187,7 @@ def parameters(tuning: Tuning) -> Table:
             p.name,
             p.unit,
             number(p.before, 5),
-            number(p.after, 5),
-            ABSENT if p.u95 is None else number(p.u95, 2),
+            *((number(p.after, 5), ABSENT) if p.u95 is None else with_u95(p.after, p.u95)),
             ABSENT if p.u95 is None else f"{100.0 * p.prior_share:.0f} %",
             p.status,
         )
@@ -233,8 +232,7 @@ def terms(found: Identified) -> Table:
             coefficient(t.value),
             _interval(t),
             ABSENT if t.frequency is None else f"{PER_CENT * t.frequency:.0f} %",
-            coefficient(t.file_value),
-            coefficient(t.file_u95),
+            *with_u95(t.file_value, t.file_u95),
             t.file_source,
             t.verdict.value,
             t.outcome.value,

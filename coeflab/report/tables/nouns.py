@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Table, coefficient, number, percent
+from coeflab.core.table import ABSENT, Table, number, percent, with_u95
+from coeflab.law.coefficient import COVERS
 from coeflab.law.symbols import ANGULAR, COMPONENTS, derivative, primed
 
 if TYPE_CHECKING:
@@ -22,14 +23,14 @@ if TYPE_CHECKING:
 
 SCATTER_ONLY = ("Without a form part: U95 is the scatter of the points about that one form alone.",)
 DEFINED = (
-    "U95: 95 % half-width, from the scatter of the points (random), the spread between the member estimators (form) and "
-    "what enters from outside, declared inputs and grid (input).",
+    f"U95 of a slope at the origin: 95 % half-width; covers {COVERS}. random: scatter of the points; form: the rest; "
+    "input: what enters from outside, declared inputs and grid.",
 )
 ROUNDING = 1e-12
 
 
 def window_text(c: Coefficient) -> str:
-    """Range of the motion variable that the widest member uses."""
+    """Range of the motion variable that is used."""
     if c.window is None:
         return ABSENT
     low, high = c.window
@@ -45,8 +46,7 @@ def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, pri
     rows = [
         (
             primed(c.symbol),
-            coefficient(c.value) if c.value is not None else c.status.replace("_", " "),
-            coefficient(c.u95),
+            *(with_u95(c.value, c.u95) if c.value is not None else (c.status.replace("_", " "), ABSENT)),
             percent(c.u95, c.value),
             percent(c.parts.random, c.value),
             percent(c.parts.model_form, c.value),
@@ -65,6 +65,11 @@ def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, pri
     return Table(title, headers, tuple(rows), notes, frozenset({0, 7, 9, 10}))
 
 
+def _with_half(value: float, half: float) -> tuple[str, str]:
+    """In any unit: five digits where no half-width says how many."""
+    return with_u95(value, half) if math.isfinite(half) and half > 0.0 else (number(value, 5), number(half, 3))
+
+
 def terms(model: FittedModel) -> Table:
     """Every coefficient with its interval; what the data leave open is said below, not printed as a number."""
     rows = []
@@ -76,8 +81,7 @@ def terms(model: FittedModel) -> Table:
             (
                 symbol,
                 str(term),
-                number(float(value), 5) if known else "not determined",
-                number(float(half), 3) if known else ABSENT,
+                *(_with_half(float(value), float(half)) if known else ("not determined", ABSENT)),
                 percent(float(half), float(value)) if known else ABSENT,
             )
         )
@@ -105,7 +109,7 @@ def parameters(file: ParameterFile) -> Table:
     """The coefficients of a parameter file, primed and in SI at its conditions."""
     rows = tuple(
         (
-            c.symbol, coefficient(c.value) if c.value is not None else c.status.replace("_", " "), coefficient(c.u95),
+            c.symbol, *(with_u95(c.value, c.u95) if c.value is not None else (c.status.replace("_", " "), ABSENT)),
             number(c.value_si), c.unit_si, c.origin, c.campaign or c.citation or ABSENT,
         )
         for c in file.coefficients

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from coeflab.core.provenance import work
-from coeflab.core.table import ABSENT, Table, coefficient, number, percent, probability
-from coeflab.fits.results.fit_result import Sweep
-from coeflab.fits.statistics.slopes import MEMBER, Estimate
+from coeflab.core.table import ABSENT, Table, coefficient, number, percent, plus_minus, probability, with_u95
+from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.law.coefficient import COVERS
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.study.study import Study
@@ -29,14 +30,35 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
     return noun_tables.coefficients([c for c in study.coefficients if campaign is None or c.campaign == campaign])
 
 
+def headline(study: Study, symbols: Sequence[str] = ()) -> str:
+    """The slopes at the origin with U95 and what it covers, in one sentence; empty where there is none.
+
+    Parameters
+    ----------
+    study : Study
+    symbols : sequence of str
+        Without prime; by default those that the plan wants, or all where it wants none that has a value.
+    """
+    found = [f.coefficients[s.symbol] for f in study.fits for s in f.sweeps if s.target == "x" and s.value is not None]
+    found = [c for c in found if c.value is not None]
+    chosen = [c for c in found if c.symbol in (symbols or study.plan.wanted)] or ([] if symbols else found)
+    if not chosen:
+        return ""
+    by: dict[str, list[str]] = {}
+    for c in chosen:
+        by.setdefault(c.campaign or "", []).append(f"{primed(c.symbol)} = {plus_minus(c.value, c.u95)}")
+    each = "; ".join(f"{campaign}: " * (len(by) > 1) + ", ".join(values) for campaign, values in by.items())
+    outside = ", declared inputs and grid" if any(c.parts.input for c in chosen) else ""
+    return f"{each} (U95; covers {COVERS}{outside})."
+
+
 def verdicts(study: Study) -> Table:
     """Ours against the authors' own evaluation of the same data: the only comparison with a verdict."""
     rows = [
         (
             primed(c.coefficient.symbol),
             c.coefficient.campaign or ABSENT,
-            coefficient(c.coefficient.value),
-            coefficient(c.coefficient.u95),
+            *with_u95(c.coefficient.value, c.coefficient.u95),
             coefficient(c.published),
             coefficient(None if c.difference is None else abs(c.difference)),
             coefficient(c.combined),
@@ -75,8 +97,7 @@ def side_by_side(study: Study) -> Table:
                 (
                     primed(symbol),
                     c.campaign or ABSENT,
-                    coefficient(c.value) if c.value is not None else c.status.replace("_", " "),
-                    coefficient(c.u95),
+                    *(with_u95(c.value, c.u95) if c.value is not None else (c.status.replace("_", " "), ABSENT)),
                     percent(c.parts.random, c.value),
                     percent(c.parts.model_form, c.value),
                     *(coefficient(published.get(k)) if k in published else ABSENT for k in columns),
@@ -104,7 +125,7 @@ def by_campaign(study: Study) -> Table:
             if c is None or c.value is None:
                 cells.append("no table" if c is None else c.status.replace("_", " "))
             else:
-                cells.append(coefficient(c.value) + (f" +- {coefficient(c.u95)}" if c.u95 is not None else ""))
+                cells.append(plus_minus(c.value, c.u95))
         rows.append((primed(symbol), *cells))
     bodies = {f.campaign: f.body for f in study.fits}
     notes = tuple(f"{c}: {bodies[c]}" for c in campaigns)
@@ -139,60 +160,45 @@ def _window(sweep: Sweep, value: float) -> str:
     return number(value, 3)
 
 
-def _estimate(sweep: Sweep, e: Estimate, role: str) -> tuple[str, ...]:
-    return (
-        e.family.name.format(x=f"{sweep.variable}'"),
-        _window(sweep, e.window),
-        str(len(e.rows)),
-        coefficient(e.value),
-        coefficient(e.half_hc2),
-        coefficient(e.half_hc3),
-        number(e.freedom, 3),
-        probability(e.lack_of_fit),
-        number(e.aicc, 5),
-        probability(e.next_term),
-        role,
-    )
-
-
-ESTIMATES = (
-    "form", "window", "n", "value", "95 % HC2", "95 % HC3", "dof", "lack of fit", "AICc", "next term", "role",
-)  # fmt: skip
-
-
-def members(sweep: Sweep) -> Table:
-    """Each family's last window of the rule, what became of it, and its bootstrap intervals."""
-    rows = []
-    for e in sweep.recommendation.panel:
-        if e.role in ("smaller window", "beyond the window"):
-            continue
-        b = sweep.bootstrap.get(e.family.name) if e.role == MEMBER else None
-        pairs = f"{coefficient(b.pairs[0])} .. {coefficient(b.pairs[1])}" if b else ABSENT
-        wild = f"{coefficient(b.wild[0])} .. {coefficient(b.wild[1])}" if b else ABSENT
-        rows.append((*_estimate(sweep, e, e.role), pairs, wild))
-    notes = (
-        "HC2 with Bell-McCaffrey degrees of freedom (dof), HC3 with n - p; lack of fit, next term: probabilities by "
-        "chance; pairs, wild: 95 % percentile intervals of the bootstrap.",
-    )
-    return Table(
-        f"Members for {primed(sweep.symbol)}", (*ESTIMATES, "pairs", "wild"), tuple(rows), notes, frozenset({0, 10})
-    )
-
-
 def estimators(sweep: Sweep) -> Table:
-    """Single estimators without nuisance terms in every window: what a plain evaluation would have said."""
-    rows = tuple(_estimate(sweep, e, "")[:9] for e in sweep.plain)
-    return Table(f"Single estimators for {primed(sweep.symbol)}", ESTIMATES[:9], rows, (), frozenset({0}))
+    """Single forms in every window: what plain evaluations would have said."""
+    rows = tuple(
+        (
+            e.family.name.format(x=f"{sweep.variable}'"), _window(sweep, e.window), str(len(e.rows)),
+            *with_u95(e.value, e.half_hc2), with_u95(e.value, e.half_hc3)[1], number(e.freedom, 3),
+            probability(e.lack_of_fit), number(e.aicc, 5),
+        )
+        for e in sweep.forms
+    )  # fmt: skip
+    notes = (
+        "Each trusts its form; none is the recommended value. HC2 with Bell-McCaffrey degrees of freedom (dof), HC3 with "
+        "n - p; lack of fit: probability by chance.",
+    )
+    headers = ("form", "window", "n", "value", "95 % HC2", "95 % HC3", "dof", "lack of fit", "AICc")
+    return Table(f"Other forms for {primed(sweep.symbol)}", headers, rows, notes, frozenset({0}))
 
 
 def sensitivity(sweep: Sweep) -> Table:
-    """How the recommendation moves with the largest window allowed."""
-    rows = tuple(
-        (_window(sweep, s.cap), coefficient(s.value), coefficient(s.u95), percent(s.u95, s.value))
-        for s in sweep.sensitivity
+    """The recommended value had the sweep ended sooner."""
+    rows = tuple((_window(sweep, s.cap), *with_u95(s.value, s.u95), percent(s.u95, s.value)) for s in sweep.sensitivity)
+    headers = ("largest setting", "value", "U95", "U95")
+    return Table(f"{primed(sweep.symbol)} by largest setting", headers, rows, (), frozenset({0}))
+
+
+def next_points(fit: FitResult, count: int) -> Table:
+    """The settings whose measurement would narrow every determined slope most, and its U95 after each."""
+    rows = []
+    for s in fit.sweeps:
+        now = s.u95
+        for i, (x, after) in enumerate(s.next_runs(count), 1):
+            said = (primed(s.symbol), fit.campaign, *with_u95(s.value, now)) if i == 1 else ("", "", "", "")
+            rows.append((*said, str(i), f"{s.variable}'", _signed(s, x), with_u95(s.value, after)[1]))
+    headers = ("", "campaign", "value", "U95 now", "run", "over", "at", "U95 then")
+    notes = (
+        "One more reading at each, one after the other, at the present noise; predicted from the present fit, before "
+        "declared inputs and grid.",
     )
-    headers = ("largest window", "value", "U95", "U95")
-    return Table(f"{primed(sweep.symbol)} against the largest window", headers, rows, (), frozenset({0}))
+    return Table("Next runs", headers, tuple(rows), notes, frozenset({0, 1, 5}))
 
 
 def left_out(sweep: Sweep) -> Table:

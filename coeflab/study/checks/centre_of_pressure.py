@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check, Severity, plus_minus
 from coeflab.study.study import Study
 from coeflab.vehicle.derived import centre_of_pressure
 
@@ -17,14 +17,14 @@ def check(study: Study) -> Sequence[Check]:
     out = []
     for fit in study.fits:
         for d in centre_of_pressure(fit.coefficients, fit.campaign):
-            within = "" if d.result is None else f" +- {d.result.linear:.2g}"
+            found = f"{d.value:.3f}" if d.result is None else plus_minus(d.value, d.result.linear)
             metres = d.value * fit.coefficients.scaling.length
             out.append(
                 Check(
                     "centre_of_pressure",
                     f"{fit.campaign} {d.name}",
                     Severity.NOTE,
-                    f"x/L = {d.value:.3f}{within}, {metres:.3f} m forward of the reference point",
+                    f"x/L = {found}, {metres:.3f} m forward of the reference point",
                     "none",
                     "Beyond the hull's ends: the Munk moment outweighs the lever of the force."
                     if abs(d.value) > 0.5

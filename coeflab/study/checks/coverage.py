@@ -6,41 +6,41 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check, Severity, plus_minus, with_u95
 from coeflab.fits.results.fit_result import Sweep
-from coeflab.fits.statistics.diagnostics import high_leverage, outliers, replicate_groups
-from coeflab.fits.statistics.least_squares import factorise, solve
+from coeflab.fits.statistics.diagnostics import replicate_groups
+from coeflab.fits.statistics.least_squares import Index, factorise, solve
 from coeflab.fits.statistics.slopes import design
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
 
-summary = "points, symmetry of the window, distance of the first angle, replicates, outliers, leverage"
+summary = "points, sides, distance of the first angle, sign, wrong points, replicates, copied rows"
 citations = ("roddy1990",)
 
 FEW = 7
 REPLICATE_LIMIT = 3.0
 
 
-def _points(s: Sweep, status: Status) -> Check:
+def _points(s: Sweep, status: Status, wanted: Sequence[str]) -> Check:
     n = len(s.x)
     subject = f"{s.campaign} {primed(s.symbol)}"
-    if status in (Status.TOO_FEW_POINTS, Status.SINGLE_ESTIMATOR):
-        return Check(
-            "coverage",
-            subject,
-            Severity.WARN,
-            f"{n} points, {status.replace('_', ' ')}",
-            "two forms to compare",
-            status.advice,
+    if status in (Status.TOO_FEW_POINTS, Status.SIGN_OPEN):
+        found = (
+            s.origin.reason if status is Status.TOO_FEW_POINTS else f"{primed(s.symbol)} = {plus_minus(s.value, s.u95)}"
         )
+        rule = "three settings" if status is Status.TOO_FEW_POINTS else "an interval on one side of zero"
+        severity = Severity.WARN if s.symbol in wanted or status is Status.TOO_FEW_POINTS else Severity.NOTE
+        return Check("coverage", subject, severity, f"{n} points, {found}", rule, status.advice)
     severity = Severity.PASS if n >= FEW else Severity.NOTE
-    comment = "Enough to compare forms." if n >= FEW else "Few points: intervals rest on very few degrees of freedom."
+    comment = (
+        "Enough to tell forms apart." if n >= FEW else "Few points: intervals rest on very few degrees of freedom."
+    )
     return Check("coverage", subject, severity, f"{n} points", f"at least {FEW}", comment)
 
 
 def _sides(s: Sweep) -> Check | None:
-    if not s.recommendation.members:
+    if s.value is None:
         return None
     subject = f"{s.table} {s.variable}'"
     if s.one_sided:
@@ -50,7 +50,7 @@ def _sides(s: Sweep) -> Check | None:
             Severity.WARN,
             "all points on one side",
             "points on both sides of zero",
-            "Even and odd terms cannot be told apart; the body is taken as symmetric.",
+            "Even and odd parts cannot be told apart; the body is taken as symmetric.",
         )
     low, high = float(s.x.min()), float(s.x.max())
     if min(-low, high) < 0.5 * max(-low, high):
@@ -58,9 +58,9 @@ def _sides(s: Sweep) -> Check | None:
             "coverage",
             subject,
             Severity.NOTE,
-            f"window from {low:.3g} to {high:.3g}",
+            f"settings from {low:.3g} to {high:.3g}",
             "both sides within a factor of two",
-            "The window is not symmetric about zero.",
+            "The sweep is not symmetric about zero.",
         )
     return None
 
@@ -114,34 +114,47 @@ def _replicates(s: Sweep) -> list[Check]:
     return out
 
 
-def _influential(s: Sweep) -> list[Check]:
-    out = []
-    for e in s.recommendation.members[:1]:
-        subject = f"{s.campaign} {primed(s.symbol)}"
-        odd = [s.labels[int(e.rows[i])] for i in np.flatnonzero(outliers(e.factorised, e.residuals))]
-        if odd:
-            out.append(
-                Check(
-                    "outliers",
-                    subject,
-                    Severity.NOTE,
-                    f"points {', '.join(odd)}",
-                    "studentised residual, Bonferroni 5 %",
-                    "Look at these runs; they stay in the fit.",
-                )
+def _named(s: Sweep, rows: Index) -> str:
+    return f"point{'s' * (len(rows) > 1)} {', '.join(s.labels[i] for i in rows)}"
+
+
+def _robust(s: Sweep) -> list[Check]:
+    """Points that do not fit the others, with the value with and without them, and rows that were pasted."""
+    subject, out = f"{s.campaign} {primed(s.symbol)}", []
+    if len(s.wrong) and s.value is not None:
+        out.append(
+            Check(
+                "outliers",
+                subject,
+                Severity.WARN,
+                f"{_named(s, s.wrong)} left out: {primed(s.symbol)} = {plus_minus(s.value, s.u95)}, "
+                f"with {'it' if len(s.wrong) == 1 else 'them'} {with_u95(s.with_all, s.u95)[0]}",
+                "every point within the scatter of the others about any smooth curve",
+                "Look at this run: a sign, a decimal, a wrong angle. If it is right, run its neighbours.",
             )
-        heavy = [s.labels[int(e.rows[i])] for i in np.flatnonzero(high_leverage(e.factorised))]
-        if heavy:
-            out.append(
-                Check(
-                    "leverage",
-                    subject,
-                    Severity.NOTE,
-                    f"points {', '.join(heavy)}",
-                    "leverage below three times the mean",
-                    "Single points carry this form.",
-                )
+        )
+    if len(s.repeated):
+        out.append(
+            Check(
+                "replicates",
+                f"{s.table} {s.component} over {s.variable}'",
+                Severity.WARN,
+                f"{_named(s, s.repeated)} repeat{'s' * (len(s.repeated) == 1)} an earlier row exactly",
+                "no two rows alike to the last digit",
+                "A copied row is no new reading; each counts once.",
             )
+        )
+    if any("mirror" in note for note in s.origin.notes):
+        out.append(
+            Check(
+                "replicates",
+                f"{s.table} {s.component} over {s.variable}'",
+                Severity.WARN,
+                "every row has its exact mirror image",
+                "readings of their own on either side",
+                "A mirrored half is no new reading; U95 is wider by the square root of two.",
+            )
+        )
     return out
 
 
@@ -150,7 +163,7 @@ def check(study: Study) -> Sequence[Check]:
     out: list[Check] = []
     for f in study.fits:
         for s in f.sweeps:
-            out.append(_points(s, f.coefficients[s.symbol].status))
-            out += [c for c in (_sides(s), _extrapolation(s)) if c is not None and c not in out]
-            out += _replicates(s) + _influential(s)
+            out.append(_points(s, f.coefficients[s.symbol].status, study.plan.wanted))
+            found = [c for c in (_sides(s), _extrapolation(s)) if c is not None] + _replicates(s) + _robust(s)
+            out += [c for c in found if c not in out]
     return out

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check, Severity, plus_minus
 from coeflab.study.study import Study
 from coeflab.vehicle.derived import INDICES, sense, stability, without_restoring
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -28,7 +28,8 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             d = given[name]
             half = None if d.result is None else d.result.linear
             verdict = sense(d)
-            statistic = f"{name} = {d.value:.3f}{'' if half is None else f' +- {half:.2g}'}: {verdict}"
+            statistic = f"{name} = {d.value:.3f}" if half is None else f"{name} = {plus_minus(d.value, half)}"
+            statistic += f": {verdict}"
             literature = [c.symbol for c in found if c is not None and c.origin == "literature"]
             whether = "Directionally" if d.decided else "Directional stability with controls fixed is"
             comment = f"{whether} {verdict}{'.' if whether[-2:] == 'is' else ' with controls fixed.'}"

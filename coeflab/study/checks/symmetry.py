@@ -3,33 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite
 
-from coeflab.core.table import Check, Severity
+from coeflab.core.table import Check, Severity, plus_minus
 from coeflab.fits.results.fit_result import Sweep
-from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
 
 summary = "intercepts of Y, K, N at zero drift and yaw rate against their own error"
-citations = ("bell2002",)
+citations = ("wahba1990",)
 NOTHING, LARGE = 1e-3, 0.05
 RULE = (
     f"passes where its 95 % interval holds zero or it is below {100 * NOTHING:g} % of the largest; noted below {100 * LARGE:g} %, "
     "else a warning"
 )
-WHICH = "Of the member with the most points; Data quality shows the median of all members."
 
 
 def _intercept(sweep: Sweep) -> Check | None:
-    if sweep.component not in "YKN" or sweep.variable not in ("v", "r") or not sweep.recommendation.members:
+    if sweep.component not in "YKN" or sweep.variable not in ("v", "r") or sweep.value is None:
         return None
-    e = max(sweep.recommendation.members, key=lambda m: len(m.rows))
-    value = float(e.coefficients[e.terms.index("1")])
-    at = e.terms.index("1")
-    error = float(hc_variance(e.factorised, e.residuals, 2)[at] ** 0.5 * t_factor(bell_mccaffrey(e.factorised)[at]))
-    if not isfinite(error):
-        return None
+    value, error = sweep.at_rest
     reach = float(abs(sweep.y).max())
     share = abs(value) / reach if reach else 0.0
     if abs(value) <= error:
@@ -44,9 +36,9 @@ def _intercept(sweep: Sweep) -> Check | None:
         "symmetry",
         f"{sweep.campaign} {primed(sweep.symbol)}",
         severity,
-        f"{sweep.component}'(0) = {value:.3g} +- {error:.2g}, {100 * share:.1f} % of the largest {sweep.component}'",
+        f"{sweep.component}'(0) = {plus_minus(value, error)}, {100 * share:.1f} % of the largest {sweep.component}'",
         RULE,
-        f"{comment} {WHICH}",
+        comment,
     )
 
 
