@@ -131,7 +131,7 @@ def main() -> None:
         _discard_output()
         sys.exit(0)
     except CoeflabError as why:
-        typer.echo(visible(f"error: {why}"), err=True)
+        typer.echo("error: " + "\n".join(map(visible, why.lines)), err=True)
         sys.exit(2)
     except BrokenPipeError:
         _discard_output()
