@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar, Union, cast
 
 import numpy as np
 
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import InputError, shown, together
 from coeflab.core.files import located
 from coeflab.core.limits import positive_number
 from coeflab.core.text.toml import TomlFile, dotted
@@ -362,15 +362,12 @@ def validated(
     from pydantic import ValidationError
 
     try:
-        out: Kind = _adapter(kind).validate_python(content, context={"file": file or Path()})
+        out: Kind = _adapter(cast(Any, kind)).validate_python(content, context={"file": file or Path()})
     except ValidationError as why:
         found = [_complaint(kind, error, file, line, at) for error in why.errors(include_url=False)]
     else:
         return out
-    found.sort(key=lambda complaint: complaint.line or 0)
-    first, *others = found
-    first.others = tuple(others)
-    raise first
+    raise together(sorted(found, key=lambda complaint: complaint.line or 0))
 
 
 def declared_key(file: TomlFile, key: str, kind: Any) -> Any:
@@ -441,7 +438,7 @@ def _field(kind: Any, place: Loc) -> Any:
     for part in place:
         kind = _bare(kind)
         inner = [a for a in typing.get_args(kind) if a is not Ellipsis]
-        kind = _hints(kind)[str(part)] if dataclasses.is_dataclass(kind) else inner[-1]
+        kind = _hints(cast(Any, kind))[str(part)] if dataclasses.is_dataclass(kind) else inner[-1]
     return kind if _takes(kind) is not TABLE else _bare(kind)
 
 

@@ -13,6 +13,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 SHOWN, LONGEST, MOST_LISTED = 60, 400, 50
@@ -103,6 +104,12 @@ class InputError(CoeflabError):
         head = ", ".join(place)
         text = f"found {self.found}; expected {self.expected}."
         return (f"{head}: " if head else "") + text + (f" {self.advice}" if self.advice else "")
+
+
+def together(complaints: Sequence[InputError]) -> InputError:
+    """Several complaints as one error: the first, which lists the others."""
+    complaints[0].others = tuple(complaints[1:])
+    return complaints[0]
 
 
 class UnitsError(InputError):
