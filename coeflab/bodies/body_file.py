@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -35,6 +35,10 @@ from coeflab.core.types import Array
 from coeflab.law.rigid_body import about_another, inertia_doubt
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import derivative
+
+if TYPE_CHECKING:
+    from pydantic import GetJsonSchemaHandler
+    from pydantic_core import CoreSchema
 
 ROW = numbers(3, "inertia", "three rows of three moments of inertia")
 SIMPLE, FULL = ("mass", "centre_of_gravity_forward", "inertia"), ("mass", "centre_of_gravity", "inertia_matrix")
@@ -250,6 +254,15 @@ class BodyFile(Declaration):
     particulars: Mapping[str, Annotated[Length, ABOVE_ZERO]] = field(default_factory=dict)
     prime: Annotated[PrimeKeys | None, OrEmpty()] = None
     configuration: tuple[ConfigurationKeys, ...] = ()
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, core: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        reference = super(BodyFile, cls).__get_pydantic_json_schema__(core, handler)
+        keys = handler.resolve_ref_schema(reference)["properties"]
+        named = {"const": cls.reader or "particulars"}
+        own = {"properties": {"reader": named}} | ({"required": ["reader"]} if cls.reader else {})
+        keys["body"] = {"allOf": [keys["body"], own], "description": keys["body"].pop("description")}
+        return reference
 
     def check(self) -> None:
         """The reader, and the keys of the mass."""

@@ -161,7 +161,7 @@ class Declaration:
         reference = handler(core)
         content = handler.resolve_ref_schema(reference)
         said = meanings(cls)
-        content["description"] = " ".join((inspect.getdoc(cls) or "").partition("\n\n")[0].split())
+        content["description"] = " ".join((inspect.getdoc(cls) or "").partition("\n\n")[0].replace("``", "").split())
         content["properties"] = {_key(name): field for name, field in content["properties"].items()}
         content["required"] = [_key(name) for name in content.get("required", ())]
         for name, field in content["properties"].items():
@@ -171,7 +171,7 @@ class Declaration:
             if len(given) == 1:
                 field.pop("anyOf")
                 field.update(given[0])
-            field["description"] = said.get(_attribute(name), "")
+            field["description"] = said.get(name, "")
         return reference
 
 

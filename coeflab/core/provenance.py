@@ -23,13 +23,13 @@ class Source(Declaration):
     Attributes
     ----------
     citation : str
-        Key in `coeflab.core.provenance` or free text.
+        Key of a work of `coeflab.core.provenance`, such as roddy1990, or free text.
     place : str
         Pages or table in the source.
     how_obtained : str
         Printed, computed, read from a figure, synthetic ...
     kind : str
-        One of `TABLE_KINDS` or `BODY_KINDS`; empty where a body says nothing.
+        What the source is; a body may leave it out.
     stated_uncertainty : str
         What the source itself says of its uncertainty; empty if nothing.
     """

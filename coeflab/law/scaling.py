@@ -33,7 +33,7 @@ class Conditions(Declaration):
     Attributes
     ----------
     density : float
-        kg/m^3.
+        Of the water, kg/m^3.
     speed : float
         m/s, at the reference point.
     viscosity : float, optional
@@ -65,7 +65,7 @@ class Scaling(Declaration):
     Attributes
     ----------
     length : float
-        m.
+        L, m.
     length_name : str
         What that length is, for example ``LBP``.
     """

@@ -61,7 +61,7 @@ Share = Annotated[Pure, HALF_WIDTH, NO_PER_CENT]
 
 @dataclass(frozen=True, slots=True)
 class InputUncertainty(Declaration):
-    """95 % half-widths of errors that all points of a campaign share; None where nothing was declared.
+    """95 % half-widths of errors that all points of a campaign share; what is left out was not assessed, which is not zero.
 
     Attributes
     ----------

@@ -184,6 +184,7 @@ class GliderPhase(Declaration):
     Attributes
     ----------
     name : str
+        Of the phase.
     net_mass, position : float
         Ordered net mass, kg, and position of the sliding mass, m.
     lasts : float
