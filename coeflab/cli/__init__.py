@@ -49,12 +49,12 @@ class Commands(TyperGroup):
         super().__init__(**settings)
         self.commands = {name: TyperCommand(name) for name in ORDER}
 
-    def get_command(self, ctx: typer.Context, cmd_name: str) -> Any:
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """The command of a name, with its options; None where there is none."""
-        found = self.commands.get(cmd_name)
+        found = super().get_command(ctx, cmd_name)
         return found if found is None or found.help else _built(cmd_name)
 
-    def format_commands(self, ctx: typer.Context, formatter: Any) -> None:
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the list of commands without importing them."""
         self.commands = {name: TyperCommand(name, help=_summary(name)) for name in ORDER}
         super().format_commands(ctx, formatter)
