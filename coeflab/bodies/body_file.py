@@ -11,24 +11,8 @@ import numpy as np
 
 from coeflab.bodies.body import Body, Configuration, MassProperties, Measured, mass_from_primes
 from coeflab.bodies.shape import Shape
+from coeflab.core import declarations as takes
 from coeflab.core.axes import DatumKeys
-from coeflab.core.declarations import (
-    ABOVE_ZERO,
-    Area,
-    Declaration,
-    Density,
-    Inertia,
-    Length,
-    Mass,
-    OrEmpty,
-    Point,
-    Pure,
-    Takes,
-    Text,
-    Volume,
-    Words,
-    numbers,
-)
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source, sha256_of
 from coeflab.core.types import Array
@@ -40,7 +24,7 @@ if TYPE_CHECKING:
     from pydantic import GetJsonSchemaHandler
     from pydantic_core import CoreSchema
 
-ROW = numbers(3, "inertia", "three rows of three moments of inertia")
+ROW = takes.numbers(3, "inertia", "three rows of three moments of inertia")
 SIMPLE, FULL = ("mass", "centre_of_gravity_forward", "inertia"), ("mass", "centre_of_gravity", "inertia_matrix")
 PRIMES = ("mass_moment_prime", "inertia_prime")
 
@@ -53,7 +37,7 @@ def _rows(value: Any, file: Path) -> Array:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ConfigurationKeys(Declaration):
+class ConfigurationKeys(takes.Declaration):
     """One state of appendages: volume, surface, centre of buoyancy and mass, each as far as it is given.
 
     Attributes
@@ -80,22 +64,24 @@ class ConfigurationKeys(Declaration):
         m', x_G' m' and I' by the length and density of ``[prime]``, in place of mass.
     """
 
-    name: Text
-    title: Words = ""
-    volume: Annotated[Volume, ABOVE_ZERO] | None = None
-    wetted_surface: Annotated[Area, ABOVE_ZERO] | None = None
-    centre_of_buoyancy: Point | None = None
-    mass: Annotated[Mass, ABOVE_ZERO] | None = None
-    centre_of_gravity_forward: Length | None = None
-    inertia: Annotated[Inertia, ABOVE_ZERO] | None = None
-    centre_of_gravity: Point | None = None
+    name: takes.Text
+    title: takes.Words = ""
+    volume: Annotated[takes.Volume, takes.ABOVE_ZERO] | None = None
+    wetted_surface: Annotated[takes.Area, takes.ABOVE_ZERO] | None = None
+    centre_of_buoyancy: takes.Point | None = None
+    mass: Annotated[takes.Mass, takes.ABOVE_ZERO] | None = None
+    centre_of_gravity_forward: takes.Length | None = None
+    inertia: Annotated[takes.Inertia, takes.ABOVE_ZERO] | None = None
+    centre_of_gravity: takes.Point | None = None
     inertia_matrix: (
-        Annotated[Array, Takes(ROW.words, _rows, {"type": "array", "items": ROW.schema, "minItems": 3, "maxItems": 3})]
+        Annotated[
+            Array, takes.Takes(ROW.words, _rows, {"type": "array", "items": ROW.schema, "minItems": 3, "maxItems": 3})
+        ]
         | None
     ) = None
-    mass_prime: Annotated[Pure, ABOVE_ZERO] | None = None
-    mass_moment_prime: Pure | None = None
-    inertia_prime: Annotated[Pure, ABOVE_ZERO] | None = None
+    mass_prime: Annotated[takes.Pure, takes.ABOVE_ZERO] | None = None
+    mass_moment_prime: takes.Pure | None = None
+    inertia_prime: Annotated[takes.Pure, takes.ABOVE_ZERO] | None = None
 
     def require_mass(self) -> None:
         """Refuse keys of the mass that do not go together."""
@@ -164,10 +150,10 @@ class BodyHead(DatumKeys):
         Of mass moment and inertia, [x, y, z], m, FRD, from the datum.
     """
 
-    name: Text
-    title: Words = ""
-    reader: Words = "particulars"
-    reference_point: Point
+    name: takes.Text
+    title: takes.Words = ""
+    reader: takes.Words = "particulars"
+    reference_point: takes.Point
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +170,7 @@ class PrimeKeys(Scaling):
         Where a configuration has ``mass_prime``, and only there.
     """
 
-    density: Annotated[Density, ABOVE_ZERO] | None = None
+    density: Annotated[takes.Density, takes.ABOVE_ZERO] | None = None
 
     @property
     def scaling(self) -> Scaling:
@@ -193,7 +179,7 @@ class PrimeKeys(Scaling):
 
 
 @dataclass(frozen=True, slots=True)
-class MeasuredKeys(Declaration):
+class MeasuredKeys(takes.Declaration):
     """Acceleration derivatives that somebody measured.
 
     Attributes
@@ -206,9 +192,9 @@ class MeasuredKeys(Declaration):
         Such as Yvdot = "-0.01326", primed by the length of ``[prime]``, as printed; a closing ? is an illegible digit.
     """
 
-    citation: Text
-    values: dict[str, Text]
-    place: Words = ""
+    citation: takes.Text
+    values: dict[str, takes.Text]
+    place: takes.Words = ""
 
     def check(self) -> None:
         """Derivatives by an acceleration, and numbers."""
@@ -231,7 +217,7 @@ class MeasuredKeys(Declaration):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BodyFile(Declaration):
+class BodyFile(takes.Declaration):
     """A body.toml: a body and its configurations.
 
     Attributes
@@ -251,8 +237,8 @@ class BodyFile(Declaration):
     reader: ClassVar[str] = ""
     body: BodyHead
     source: Source
-    particulars: Mapping[str, Annotated[Length, ABOVE_ZERO]] = field(default_factory=dict)
-    prime: Annotated[PrimeKeys | None, OrEmpty()] = None
+    particulars: Mapping[str, Annotated[takes.Length, takes.ABOVE_ZERO]] = field(default_factory=dict)
+    prime: Annotated[PrimeKeys | None, takes.OrEmpty()] = None
     configuration: tuple[ConfigurationKeys, ...] = ()
 
     @classmethod

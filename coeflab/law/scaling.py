@@ -7,7 +7,7 @@ from typing import Annotated, overload
 
 import numpy as np
 
-from coeflab.core.declarations import ABOVE_ZERO, Declaration, Density, Length, Pure, Speed, Text, Viscosity
+from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.limits import positive_number
 from coeflab.core.types import Array
@@ -27,7 +27,7 @@ QUANTITIES: dict[str, tuple[int, int, int]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Conditions(Declaration):
+class Conditions(takes.Declaration):
     """Fluid and speed; nothing is assumed.
 
     Attributes
@@ -42,10 +42,10 @@ class Conditions(Declaration):
         As the source states it.
     """
 
-    density: Annotated[Density, ABOVE_ZERO]
-    speed: Annotated[Speed, ABOVE_ZERO]
-    viscosity: Annotated[Viscosity, ABOVE_ZERO] | None = None
-    reynolds: Annotated[Pure, ABOVE_ZERO] | None = None
+    density: Annotated[takes.Density, takes.ABOVE_ZERO]
+    speed: Annotated[takes.Speed, takes.ABOVE_ZERO]
+    viscosity: Annotated[takes.Viscosity, takes.ABOVE_ZERO] | None = None
+    reynolds: Annotated[takes.Pure, takes.ABOVE_ZERO] | None = None
 
     def __post_init__(self) -> None:
         for name in ("density", "speed", "viscosity", "reynolds"):
@@ -59,7 +59,7 @@ class Conditions(Declaration):
 
 
 @dataclass(frozen=True, slots=True)
-class Scaling(Declaration):
+class Scaling(takes.Declaration):
     """The prime system on one length: Y' = Y / (1/2 rho U^2 L^2), N' with L^3, v' = v/U, r' = r L/U.
 
     Attributes
@@ -70,8 +70,8 @@ class Scaling(Declaration):
         What that length is, for example ``LBP``.
     """
 
-    length: Annotated[Length, ABOVE_ZERO]
-    length_name: Text
+    length: Annotated[takes.Length, takes.ABOVE_ZERO]
+    length_name: takes.Text
 
     def __post_init__(self) -> None:
         if expected := positive_number(self.length):

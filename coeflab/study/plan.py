@@ -8,23 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
+from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum
-from coeflab.core.declarations import (
-    TABLE,
-    TEXTS,
-    Declaration,
-    Flag,
-    OrEmpty,
-    Point,
-    Takes,
-    Text,
-    Texts,
-    Within,
-    Words,
-    declared,
-    located_in,
-    one_of,
-)
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
 from coeflab.core.provenance import InputFile, sha256_of
@@ -47,31 +32,31 @@ def _no_file_name(name: str) -> str:
     return "" if fits else "letters, digits, blank, . + - _ (it names files), at most 80"
 
 
-FileName = Annotated[Text, Within(_no_file_name, schema={"pattern": _NAME.pattern})]
-CampaignPath = Annotated[Path, located_in("cfd_data")]
-BodyPath = Annotated[Path, located_in("geometry")]
-Accelerations = Annotated[str, one_of(*ACCELERATIONS)]
+FileName = Annotated[takes.Text, takes.Within(_no_file_name, schema={"pattern": _NAME.pattern})]
+CampaignPath = Annotated[Path, takes.located_in("cfd_data")]
+BodyPath = Annotated[Path, takes.located_in("geometry")]
+Accelerations = Annotated[str, takes.one_of(*ACCELERATIONS)]
 
 
 def _several(value: Any, file: Path) -> tuple[Path, ...]:
-    names = TEXTS.read(value, file)
+    names = takes.TEXTS.read(value, file)
     if len(names) < 2:
         raise InputError(shown(list(names)), "the paths of two or more campaigns")
     return tuple(located(name, "cfd_data", file.parent) for name in names)
 
 
 def _derivatives(value: Any, file: Path) -> tuple[str, ...]:
-    names: tuple[str, ...] = TEXTS.read(value, file)
+    names: tuple[str, ...] = takes.TEXTS.read(value, file)
     for name in names:
         derivative(name)
     return names
 
 
-Options = Annotated[Mapping[str, Any], TABLE]
+Options = Annotated[Mapping[str, Any], takes.TABLE]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StudyKeys(Declaration):
+class StudyKeys(takes.Declaration):
     """The study as a whole.
 
     Attributes
@@ -93,12 +78,12 @@ class StudyKeys(Declaration):
     """
 
     name: FileName
-    title: Words | None = None
-    reference_point: Point | None = None
-    datum: Text | None = None
-    datum_note: Words | None = None
-    wanted: Annotated[tuple[str, ...], Takes("a list of texts", _derivatives, TEXTS.schema)] = ()
-    include_uncertain: Flag = False
+    title: takes.Words | None = None
+    reference_point: takes.Point | None = None
+    datum: takes.Text | None = None
+    datum_note: takes.Words | None = None
+    wanted: Annotated[tuple[str, ...], takes.Takes("a list of texts", _derivatives, takes.TEXTS.schema)] = ()
+    include_uncertain: takes.Flag = False
 
     def check(self) -> None:
         """A note goes with a datum."""
@@ -107,7 +92,7 @@ class StudyKeys(Declaration):
 
 
 @dataclass(frozen=True, slots=True)
-class BodyKeys(Declaration):
+class BodyKeys(takes.Declaration):
     """The vehicle.
 
     Attributes
@@ -120,7 +105,7 @@ class BodyKeys(Declaration):
 
 
 @dataclass(frozen=True, slots=True)
-class AddedMassKeys(Declaration):
+class AddedMassKeys(takes.Declaration):
     """The shape whose added mass is computed.
 
     Attributes
@@ -132,11 +117,11 @@ class AddedMassKeys(Declaration):
     """
 
     body: BodyPath
-    method: Words = "all"
+    method: takes.Words = "all"
 
 
 @dataclass(frozen=True, slots=True)
-class TableKeys(Declaration):
+class TableKeys(takes.Declaration):
     """A campaign and its fits.
 
     Attributes
@@ -150,7 +135,7 @@ class TableKeys(Declaration):
     """
 
     campaign: CampaignPath
-    fits: Texts = ()
+    fits: takes.Texts = ()
     options: Options = field(default_factory=dict)
 
     def check(self) -> None:
@@ -173,7 +158,7 @@ class TableKeys(Declaration):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class JointKeys(Declaration):
+class JointKeys(takes.Declaration):
     """One fit over several campaigns.
 
     Attributes
@@ -186,13 +171,15 @@ class JointKeys(Declaration):
         Of the fit.
     """
 
-    campaigns: Annotated[tuple[Path, ...], Takes("a list of texts", _several, TEXTS.schema | {"minItems": 2})]
-    fit: Words = JOINT
+    campaigns: Annotated[
+        tuple[Path, ...], takes.Takes("a list of texts", _several, takes.TEXTS.schema | {"minItems": 2})
+    ]
+    fit: takes.Words = JOINT
     options: Options = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ParameterFileKeys(Declaration):
+class ParameterFileKeys(takes.Declaration):
     """A parameter file to be written.
 
     Attributes
@@ -210,15 +197,15 @@ class ParameterFileKeys(Declaration):
     """
 
     name: FileName
-    body: Text
-    campaigns: Texts = ()
-    literature: Texts = ()
+    body: takes.Text
+    campaigns: takes.Texts = ()
+    literature: takes.Texts = ()
     added_mass: BodyPath | None = None
-    added_mass_method: Words = "all"
+    added_mass_method: takes.Words = "all"
 
 
 @dataclass(frozen=True, slots=True)
-class ReferencesKeys(Declaration):
+class ReferencesKeys(takes.Declaration):
     """Published values to compare with.
 
     Attributes
@@ -231,7 +218,7 @@ class ReferencesKeys(Declaration):
 
 
 @dataclass(frozen=True, slots=True)
-class ExportKeys(Declaration):
+class ExportKeys(takes.Declaration):
     """Files for a simulator.
 
     Attributes
@@ -246,14 +233,14 @@ class ExportKeys(Declaration):
         Measured acceleration derivatives where they leave an inertia, or the computed added mass alone.
     """
 
-    to: Text
-    accept_loss: Flag = False
-    strict: Flag = False
+    to: takes.Text
+    accept_loss: takes.Flag = False
+    strict: takes.Flag = False
     accelerations: Accelerations = MEASURED
 
 
 @dataclass(frozen=True, slots=True)
-class ManoeuvreKeys(Declaration):
+class ManoeuvreKeys(takes.Declaration):
     """A manoeuvre to be simulated.
 
     Attributes
@@ -268,14 +255,14 @@ class ManoeuvreKeys(Declaration):
         Measured acceleration derivatives where they leave an inertia, or the computed added mass alone.
     """
 
-    parameter_file: Text
-    name: Text
+    parameter_file: takes.Text
+    name: takes.Text
     options: Options = field(default_factory=dict)
     accelerations: Accelerations = MEASURED
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlanFile(Declaration):
+class PlanFile(takes.Declaration):
     """A plan.toml: a study of tables, and what is made of it.
 
     Attributes
@@ -305,10 +292,10 @@ class PlanFile(Declaration):
     """
 
     study: StudyKeys
-    scaling: Annotated[Scaling | None, OrEmpty()] = None
-    conditions: Annotated[Conditions | None, OrEmpty()] = None
-    body: Annotated[BodyKeys | None, OrEmpty()] = None
-    added_mass: Annotated[AddedMassKeys | None, OrEmpty()] = None
+    scaling: Annotated[Scaling | None, takes.OrEmpty()] = None
+    conditions: Annotated[Conditions | None, takes.OrEmpty()] = None
+    body: Annotated[BodyKeys | None, takes.OrEmpty()] = None
+    added_mass: Annotated[AddedMassKeys | None, takes.OrEmpty()] = None
     table: tuple[TableKeys, ...] = ()
     joint: tuple[JointKeys, ...] | None = None
     parameter_file: tuple[ParameterFileKeys, ...] = ()
@@ -357,7 +344,7 @@ def read_plan(path: Path) -> Plan:
     InputError
         Everything that is wrong, by file, line and key.
     """
-    file = declared(PlanFile, read_toml(path))
+    file = takes.declared(PlanFile, read_toml(path))
     study = file.study
     return Plan(
         name=study.name,

@@ -14,26 +14,8 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core import declarations as takes
 from coeflab.core.axes import Axes, Datum, DatumKeys, Frame
-from coeflab.core.declarations import (
-    ABOVE_ZERO,
-    Angle,
-    Anything,
-    Declaration,
-    Flag,
-    Length,
-    Mass,
-    OrEmpty,
-    Point,
-    Pure,
-    Text,
-    Texts,
-    Within,
-    Words,
-    declared,
-    numbers,
-    one_of,
-)
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import TABLE_KINDS, Source
 from coeflab.core.text.toml import read_toml
@@ -44,23 +26,23 @@ from coeflab.law.scaling import Conditions, Scaling
 # Beyond these an input is a mistyped unit (per cent for a share, degrees for radians) or no measurement.
 LARGEST_RELATIVE = 0.5
 LARGEST_ANGLE = 0.0873  # 5 deg
-HALF_WIDTH = Within(
+HALF_WIDTH = takes.Within(
     lambda v: "" if v > 0.0 else "a 95 % half-width above zero",
     "Leave the key out where it was not assessed.",
     {"exclusiveMinimum": 0},
 )
-NO_DEGREES = Within(
+NO_DEGREES = takes.Within(
     lambda v: "a half-width up to 5 deg" if v > LARGEST_ANGLE else "", 'A bare number is in rad; write "0.1 deg".'
 )
-NO_PER_CENT = Within(
+NO_PER_CENT = takes.Within(
     lambda v: "a relative half-width up to 0.5" if v > LARGEST_RELATIVE else "", "One per cent is 0.01."
 )
-HalfAngle = Annotated[Angle, HALF_WIDTH, NO_DEGREES]
-Share = Annotated[Pure, HALF_WIDTH, NO_PER_CENT]
+HalfAngle = Annotated[takes.Angle, HALF_WIDTH, NO_DEGREES]
+Share = Annotated[takes.Pure, HALF_WIDTH, NO_PER_CENT]
 
 
 @dataclass(frozen=True, slots=True)
-class InputUncertainty(Declaration):
+class InputUncertainty(takes.Declaration):
     """95 % half-widths of errors that all points of a campaign share; what is left out was not assessed, which is not zero.
 
     Attributes
@@ -86,7 +68,7 @@ class InputUncertainty(Declaration):
     speed: Share | None = None
     force: Share | None = None
     moment: Share | None = None
-    reference_point: Annotated[Length, HALF_WIDTH] | None = None
+    reference_point: Annotated[takes.Length, HALF_WIDTH] | None = None
     length: Share | None = None
     density: Share | None = None
 
@@ -102,7 +84,7 @@ FILE = "campaign.toml"
 
 @brief
 @dataclass(frozen=True, slots=True)
-class TowedInertia(Declaration):
+class TowedInertia(takes.Declaration):
     """Mass properties of the towed model, for forces that contain its inertia.
 
     Attributes
@@ -115,14 +97,14 @@ class TowedInertia(Declaration):
         Ix Iy Iz about the centre of gravity, kg m^2.
     """
 
-    mass: Annotated[Mass, ABOVE_ZERO]
-    centre_of_gravity: Point
-    inertia: Annotated[tuple[float, ...], numbers(3, "inertia", "three numbers [x, y, z] of inertia")]
+    mass: Annotated[takes.Mass, takes.ABOVE_ZERO]
+    centre_of_gravity: takes.Point
+    inertia: Annotated[tuple[float, ...], takes.numbers(3, "inertia", "three numbers [x, y, z] of inertia")]
 
 
 @brief
 @dataclass(frozen=True, slots=True)
-class TableDeclaration(Declaration):
+class TableDeclaration(takes.Declaration):
     """One ``[[table]]`` of a campaign.
 
     Attributes
@@ -143,14 +125,14 @@ class TableDeclaration(Declaration):
         Of the file that the table was made from; for people.
     """
 
-    file: Text
-    sha256: Words = ""
-    contains_inertia: Flag | None = None
-    labels: Texts = ()
-    ignore: Texts = ()
+    file: takes.Text
+    sha256: takes.Words = ""
+    contains_inertia: takes.Flag | None = None
+    labels: takes.Texts = ()
+    ignore: takes.Texts = ()
     select: Mapping[str, Any] = field(default_factory=dict)
-    cells: Words = ""
-    source_sha256: Anything = None
+    cells: takes.Words = ""
+    source_sha256: takes.Anything = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "select", MappingProxyType(dict(self.select)))
@@ -172,7 +154,7 @@ class TableDeclaration(Declaration):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CampaignHead(Declaration):
+class CampaignHead(takes.Declaration):
     """What the campaign is.
 
     Attributes
@@ -191,16 +173,16 @@ class CampaignHead(Declaration):
         For people.
     """
 
-    name: Words | None = None
-    title: Text
-    body: Text
-    importer: Words = "csv"
-    half_model: Flag = False
-    appendages: Anything = None
-    reynolds: Anything = None
-    notes: Anything = None
-    configuration: Anything = None
-    date: Anything = None
+    name: takes.Words | None = None
+    title: takes.Text
+    body: takes.Text
+    importer: takes.Words = "csv"
+    half_model: takes.Flag = False
+    appendages: takes.Anything = None
+    reynolds: takes.Anything = None
+    notes: takes.Anything = None
+    configuration: takes.Anything = None
+    date: takes.Anything = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -218,9 +200,9 @@ class CampaignAxes(DatumKeys):
     """
 
     frame: Frame
-    alpha: Text | None = None
-    beta: Text | None = None
-    reference_point: Point
+    alpha: takes.Text | None = None
+    beta: takes.Text | None = None
+    reference_point: takes.Point
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -233,10 +215,10 @@ class CampaignConditions(Conditions):
         For people.
     """
 
-    appendages: Anything = None
-    notes: Anything = None
-    configuration: Anything = None
-    date: Anything = None
+    appendages: takes.Anything = None
+    notes: takes.Anything = None
+    configuration: takes.Anything = None
+    date: takes.Anything = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -249,13 +231,13 @@ class TableSource(Source):
         Of what was read; for people.
     """
 
-    kind: Annotated[str, one_of(*TABLE_KINDS)]
-    sha256: Anything = None
-    url: Anything = None
+    kind: Annotated[str, takes.one_of(*TABLE_KINDS)]
+    sha256: takes.Anything = None
+    url: takes.Anything = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CampaignFile(Declaration):
+class CampaignFile(takes.Declaration):
     """A campaign.toml: what a folder of tables from one test or one set of computations declares about them.
 
     Attributes
@@ -283,8 +265,8 @@ class CampaignFile(Declaration):
     scaling: Scaling
     conditions: CampaignConditions
     source: TableSource
-    inertia: Annotated[TowedInertia | None, OrEmpty()] = None
-    uncertainty: Annotated[InputUncertainty | None, OrEmpty()] = None
+    inertia: Annotated[TowedInertia | None, takes.OrEmpty()] = None
+    uncertainty: Annotated[InputUncertainty | None, takes.OrEmpty()] = None
     table: tuple[TableDeclaration, ...] = ()
 
     def check(self) -> None:
@@ -335,7 +317,7 @@ def read_campaign(path: Path) -> Campaign:
     InputError
         Everything missing, unknown or inconsistent, by file, line and key.
     """
-    file = declared(CampaignFile, read_toml(path))
+    file = takes.declared(CampaignFile, read_toml(path))
     head, axes, at, source = file.campaign, file.axes, file.conditions, file.source
     signs = {"alpha": axes.alpha, "beta": axes.beta}
     return Campaign(

@@ -12,8 +12,8 @@ from typing import Annotated
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum
-from coeflab.core.declarations import ABOVE_ZERO, Declaration, Length, Point, Pure, Text, Texts, Words, declared, one_of
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief, locked
@@ -195,7 +195,7 @@ def _beside(c: Coefficient, r: Reference, references: tuple[Reference, ...]) -> 
     return c.body in quoted
 
 
-Printed = dict[str, Text]
+Printed = dict[str, takes.Text]
 
 
 def _values(printed: Mapping[str, str], table: str, known: tuple[str, ...] = ()) -> tuple[PublishedValue, ...]:
@@ -227,7 +227,7 @@ def _number(printed: str) -> float | None:
 
 
 @dataclass(frozen=True, slots=True)
-class LiteratureKeys(Declaration):
+class LiteratureKeys(takes.Declaration):
     """Published values that may enter a parameter file.
 
     Attributes
@@ -240,8 +240,8 @@ class LiteratureKeys(Declaration):
         By symbol, as printed; a closing ? is an illegible digit.
     """
 
-    method: Text
-    uncertainty: Annotated[Pure, ABOVE_ZERO]
+    method: takes.Text
+    uncertainty: Annotated[takes.Pure, takes.ABOVE_ZERO]
     values: Printed
 
     def check(self) -> None:
@@ -250,7 +250,7 @@ class LiteratureKeys(Declaration):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ReferenceKeys(Declaration):
+class ReferenceKeys(takes.Declaration):
     """One column of published derivatives.
 
     Attributes
@@ -277,24 +277,24 @@ class ReferenceKeys(Declaration):
         Id of the point that the reference point counts from, and where it is.
     """
 
-    name: Text
-    citation: Text
-    place: Words = ""
-    body: Text
-    relation: Annotated[str, one_of(*(r.value for r in Relation))]
-    campaigns: Texts = ()
-    length: Annotated[Length, ABOVE_ZERO]
-    length_name: Text
-    other_length: Annotated[Length, ABOVE_ZERO] | None = None
-    other_length_name: Text | None = None
-    note: Words = ""
+    name: takes.Text
+    citation: takes.Text
+    place: takes.Words = ""
+    body: takes.Text
+    relation: Annotated[str, takes.one_of(*(r.value for r in Relation))]
+    campaigns: takes.Texts = ()
+    length: Annotated[takes.Length, takes.ABOVE_ZERO]
+    length_name: takes.Text
+    other_length: Annotated[takes.Length, takes.ABOVE_ZERO] | None = None
+    other_length_name: takes.Text | None = None
+    note: takes.Words = ""
     values: Printed
     literature: dict[str, LiteratureKeys] = field(default_factory=dict)
-    uncertainties: dict[str, Annotated[Pure, ABOVE_ZERO]] = field(default_factory=dict)
-    reference_point: Point | None = None
+    uncertainties: dict[str, Annotated[takes.Pure, takes.ABOVE_ZERO]] = field(default_factory=dict)
+    reference_point: takes.Point | None = None
     indices: Printed = field(default_factory=dict)
-    datum: Text | None = None
-    datum_note: Words | None = None
+    datum: takes.Text | None = None
+    datum_note: takes.Words | None = None
 
     def check(self) -> None:
         """Keys that go together, derivatives and numbers."""
@@ -332,7 +332,7 @@ class ReferenceKeys(Declaration):
 
 
 @dataclass(frozen=True, slots=True)
-class ReferenceFile(Declaration):
+class ReferenceFile(takes.Declaration):
     """A published.toml.
 
     Attributes
@@ -352,4 +352,4 @@ def read_references(path: Path) -> tuple[Reference, ...]:
     InputError
         Everything that is wrong, by file, line and key.
     """
-    return tuple(r.made for r in declared(ReferenceFile, read_toml(path)).reference)
+    return tuple(r.made for r in takes.declared(ReferenceFile, read_toml(path)).reference)

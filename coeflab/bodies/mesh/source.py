@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from coeflab.bodies.mesh.file import load
 from coeflab.bodies.mesh.gates import examined, repaired
 from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.core import declarations as takes
 from coeflab.core.axes import Frame
-from coeflab.core.declarations import Declaration, Flag, Point, Takes, Text, text_of
 from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, locked
@@ -67,13 +67,13 @@ class MeshSource:
 
 def _unit(value: Any, file: Path) -> float:
     try:
-        return factor(text_of(value, file), "length")
+        return factor(takes.text_of(value, file), "length")
     except UnitsError as why:
         raise InputError(why.found, why.expected, advice='Name the unit of the file: "m", "mm", "ft" ...') from None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MeshKeys(Declaration):
+class MeshKeys(takes.Declaration):
     """A surface of triangles.
 
     Attributes
@@ -90,11 +90,11 @@ class MeshKeys(Declaration):
         Mend a mesh that is not sound.
     """
 
-    path: Text
-    unit: Annotated[float, Takes("a text", _unit, {"type": "string"})]
+    path: takes.Text
+    unit: Annotated[float, takes.Takes("a text", _unit, {"type": "string"})]
     axes: Frame
-    origin: Point | None = None
-    repair: Flag = False
+    origin: takes.Point | None = None
+    repair: takes.Flag = False
 
     def source(self, folder: Path) -> MeshSource:
         """The file itself is not opened."""

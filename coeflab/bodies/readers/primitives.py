@@ -13,18 +13,7 @@ from coeflab.bodies.body import Body, Configuration
 from coeflab.bodies.body_file import ShapedBodyFile
 from coeflab.bodies.mesh.source import MeshKeys
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, StandIn
-from coeflab.core.declarations import (
-    ABOVE_ZERO,
-    Declaration,
-    Length,
-    Point,
-    Pure,
-    Text,
-    Within,
-    declared,
-    numbers,
-    one_of,
-)
+from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.toml import read_toml
 from coeflab.law.transforms import rotation
@@ -40,17 +29,17 @@ SIZES = {
     "sphere": ("radius",),
     "box": ("length", "width", "height"),
 }
-TURN = Within(
+TURN = takes.Within(
     lambda turn: (
         "[roll, pitch, yaw] of at most 360 deg each, a whole turn" if max(map(abs, turn)) > 2.0 * np.pi else ""
     ),
     'A bare number is in rad: write degrees as "90 deg".',
 )
-Size = Annotated[Length, ABOVE_ZERO]
+Size = Annotated[takes.Length, takes.ABOVE_ZERO]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FitKeys(Declaration):
+class FitKeys(takes.Declaration):
     """How well a form stands for its piece of a mesh; errors are form over piece, less one.
 
     Attributes
@@ -69,13 +58,13 @@ class FitKeys(Declaration):
         Of a plate: mean thickness of the piece over the shorter side.
     """
 
-    class_: Text
-    shared: Pure
-    volume: Pure
-    length: Pure
-    areas: Annotated[tuple[float, float, float], numbers(3, "none", "three errors [x, y, z] of projected areas")]
-    misfit: Pure | None = None
-    thickness: Pure | None = None
+    class_: takes.Text
+    shared: takes.Pure
+    volume: takes.Pure
+    length: takes.Pure
+    areas: Annotated[tuple[float, float, float], takes.numbers(3, "none", "three errors [x, y, z] of projected areas")]
+    misfit: takes.Pure | None = None
+    thickness: takes.Pure | None = None
 
     def check(self) -> None:
         """Bounds of the errors."""
@@ -90,7 +79,7 @@ class FitKeys(Declaration):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PartKeys(Declaration):
+class PartKeys(takes.Declaration):
     """A simple form with its pose; every form has its own sizes, all of them required.
 
     Attributes
@@ -111,10 +100,10 @@ class PartKeys(Declaration):
         Size of the form.
     """
 
-    name: Text
-    form: Annotated[str, one_of(*SIZES)]
-    centre: Point
-    rotation: Annotated[tuple[float, float, float], numbers(3, "angle", "three numbers [x, y, z] of angle"), TURN] = (
+    name: takes.Text
+    form: Annotated[str, takes.one_of(*SIZES)]
+    centre: takes.Point
+    rotation: Annotated[tuple[float, float, float], takes.numbers(3, "angle", "three numbers [x, y, z] of angle"), TURN] = (
         0.0, 0.0, 0.0,
     )  # fmt: skip
     fit: FitKeys | None = None
@@ -207,7 +196,7 @@ def read(path: Path) -> Body:
         Anything missing, unknown, of the wrong unit or not above zero, by file and key.
     """
     toml = read_toml(path)
-    file = declared(File, toml)
+    file = takes.declared(File, toml)
     shape = file.shape
     computed = Configuration(
         name="by_parts",

@@ -12,26 +12,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from coeflab.core.declarations import (
-    ABOVE_ZERO,
-    ZERO_OR_MORE,
-    Acceleration,
-    Declaration,
-    Flag,
-    Inertia,
-    Length,
-    Mass,
-    MassRate,
-    Moment,
-    Pure,
-    Speed,
-    Text,
-    Time,
-    Within,
-    declared,
-    numbers,
-    one_of,
-)
+from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.toml import read_toml, toml_text
 from coeflab.core.types import brief
@@ -43,16 +24,16 @@ AngleUnit = Literal["deg", "rad"]
 LONGEST = 1e7
 TWO_ANGLES = 'two angles of attack, such as ["-8 deg", "8 deg"], within 90 deg'
 UNIT_OF_ANGLE = replace(
-    one_of("deg", "rad"),
+    takes.one_of("deg", "rad"),
     words='"deg" or "rad"',
     absent="K_L and K_M per degree are 57.3 times smaller than per radian, K_D 3283 times. Coefficients without their "
     "unit cannot be used; `coeflab fit` with glide_polar finds it from the forces.",
 )
-UPWARD_OR_AFT = Within(
+UPWARD_OR_AFT = takes.Within(
     lambda v: "" if v > 0.0 else "a value above zero: lift is upward, drag aft", schema={"exclusiveMinimum": 0}
 )
-WITHIN_RIGHT_ANGLES = Within(lambda v: "" if -math.pi / 2 < v[0] < v[1] < math.pi / 2 else TWO_ANGLES)
-NOT_FOR_EVER = Within(lambda v: f"at most {LONGEST:g} s" if v > LONGEST else "")
+WITHIN_RIGHT_ANGLES = takes.Within(lambda v: "" if -math.pi / 2 < v[0] < v[1] < math.pi / 2 else TWO_ANGLES)
+NOT_FOR_EVER = takes.Within(lambda v: f"at most {LONGEST:g} s" if v > LONGEST else "")
 WIDE = (-np.pi / 6, np.pi / 6)
 
 
@@ -62,7 +43,7 @@ def _require_order(low: float, high: float, unit: str) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class GliderMass(Declaration):
+class GliderMass(takes.Declaration):
     """Mass of the vehicle without the sliding mass, about the reference point.
 
     Attributes
@@ -75,15 +56,15 @@ class GliderMass(Declaration):
         Sums of m g x and m g z at neutral buoyancy, N m.
     """
 
-    surge: Annotated[Mass, ABOVE_ZERO]
-    heave: Annotated[Mass, ABOVE_ZERO]
-    pitch_inertia: Annotated[Inertia, ABOVE_ZERO]
-    moment_ahead: Moment
-    moment_below: Moment
+    surge: Annotated[takes.Mass, takes.ABOVE_ZERO]
+    heave: Annotated[takes.Mass, takes.ABOVE_ZERO]
+    pitch_inertia: Annotated[takes.Inertia, takes.ABOVE_ZERO]
+    moment_ahead: takes.Moment
+    moment_below: takes.Moment
 
 
 @dataclass(frozen=True, slots=True)
-class SlidingMass(Declaration):
+class SlidingMass(takes.Declaration):
     """A mass that slides along x.
 
     Attributes
@@ -98,11 +79,11 @@ class SlidingMass(Declaration):
         m/s.
     """
 
-    mass: Annotated[Mass, ZERO_OR_MORE]
-    below: Length
-    low: Length
-    high: Length
-    rate: Annotated[Speed, ABOVE_ZERO]
+    mass: Annotated[takes.Mass, takes.ZERO_OR_MORE]
+    below: takes.Length
+    low: takes.Length
+    high: takes.Length
+    rate: Annotated[takes.Speed, takes.ABOVE_ZERO]
 
     def check(self) -> None:
         """A travel from low to high."""
@@ -110,7 +91,7 @@ class SlidingMass(Declaration):
 
 
 @dataclass(frozen=True, slots=True)
-class BuoyancyEngine(Declaration):
+class BuoyancyEngine(takes.Declaration):
     """What makes the vehicle heavy or light.
 
     Attributes
@@ -123,10 +104,10 @@ class BuoyancyEngine(Declaration):
         kg/s.
     """
 
-    ahead: Length = 0.0
-    low: Mass = field(kw_only=True)
-    high: Mass = field(kw_only=True)
-    rate: Annotated[MassRate, ABOVE_ZERO] = field(kw_only=True)
+    ahead: takes.Length = 0.0
+    low: takes.Mass = field(kw_only=True)
+    high: takes.Mass = field(kw_only=True)
+    rate: Annotated[takes.MassRate, takes.ABOVE_ZERO] = field(kw_only=True)
 
     def check(self) -> None:
         """A net mass from low to high."""
@@ -135,7 +116,7 @@ class BuoyancyEngine(Declaration):
 
 @brief
 @dataclass(frozen=True, slots=True)
-class StatedPolar(Declaration):
+class StatedPolar(takes.Declaration):
     """L = (K_L0 + K_L a) V^2, D = (K_D0 + K_D a^2) V^2, M = (K_M0 + K_M a) V^2 - damping V q.
 
     Attributes
@@ -153,15 +134,15 @@ class StatedPolar(Declaration):
     """
 
     angle_unit: Annotated[AngleUnit, UNIT_OF_ANGLE]
-    K_L0: Pure
-    K_L: Annotated[Pure, UPWARD_OR_AFT]
-    K_D0: Annotated[Pure, UPWARD_OR_AFT]
-    K_D: Annotated[Pure, ZERO_OR_MORE]
-    K_M0: Pure
-    K_M: Pure
-    pitch_damping: Annotated[Pure, ZERO_OR_MORE]
-    contains_munk: Flag
-    covered: Annotated[tuple[float, float], numbers(2, "angle", TWO_ANGLES), WITHIN_RIGHT_ANGLES] | None = None
+    K_L0: takes.Pure
+    K_L: Annotated[takes.Pure, UPWARD_OR_AFT]
+    K_D0: Annotated[takes.Pure, UPWARD_OR_AFT]
+    K_D: Annotated[takes.Pure, takes.ZERO_OR_MORE]
+    K_M0: takes.Pure
+    K_M: takes.Pure
+    pitch_damping: Annotated[takes.Pure, takes.ZERO_OR_MORE]
+    contains_munk: takes.Flag
+    covered: Annotated[tuple[float, float], takes.numbers(2, "angle", TWO_ANGLES), WITHIN_RIGHT_ANGLES] | None = None
 
     @property
     def per_radian(self) -> Polar:
@@ -178,7 +159,7 @@ class StatedPolar(Declaration):
 
 
 @dataclass(frozen=True, slots=True)
-class GliderPhase(Declaration):
+class GliderPhase(takes.Declaration):
     """Orders that stand for a time, or until a depth is met.
 
     Attributes
@@ -193,11 +174,11 @@ class GliderPhase(Declaration):
         m; met on the way down where the glider is heavy, on the way up where it is light.
     """
 
-    name: Text
-    net_mass: Mass
-    position: Length = 0.0
-    lasts: Annotated[Time, ABOVE_ZERO, NOT_FOR_EVER] = field(kw_only=True)
-    until_depth: Length | None = field(default=None, kw_only=True)
+    name: takes.Text
+    net_mass: takes.Mass
+    position: takes.Length = 0.0
+    lasts: Annotated[takes.Time, takes.ABOVE_ZERO, NOT_FOR_EVER] = field(kw_only=True)
+    until_depth: takes.Length | None = field(default=None, kw_only=True)
 
     @property
     def setting(self) -> Setting:
@@ -288,7 +269,7 @@ def _no_name(text: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class GliderHead(Declaration):
+class GliderHead(takes.Declaration):
     """What the glider is.
 
     Attributes
@@ -303,14 +284,14 @@ class GliderHead(Declaration):
         Acceleration; the standard one unless given.
     """
 
-    name: Annotated[Text, Within(_no_name, schema={"pattern": "^[A-Za-z0-9_-]+$"})]
-    title: Text
-    citation: Text
-    gravity: Annotated[Acceleration, ABOVE_ZERO] = STANDARD_GRAVITY
+    name: Annotated[takes.Text, takes.Within(_no_name, schema={"pattern": "^[A-Za-z0-9_-]+$"})]
+    title: takes.Text
+    citation: takes.Text
+    gravity: Annotated[takes.Acceleration, takes.ABOVE_ZERO] = STANDARD_GRAVITY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GliderFile(Declaration):
+class GliderFile(takes.Declaration):
     """A glider file: a vehicle with a sliding mass and a buoyancy engine, and one cycle of it.
 
     Attributes
@@ -337,7 +318,7 @@ class GliderFile(Declaration):
     engine: BuoyancyEngine
     polar: StatedPolar
     phase: tuple[GliderPhase, ...] = ()
-    basis: dict[str, Text] = field(default_factory=dict)
+    basis: dict[str, takes.Text] = field(default_factory=dict)
 
     def check(self) -> None:
         """Orders that the glider can follow."""
@@ -359,7 +340,7 @@ def read_glider(path: Path) -> Glider:
         Not readable, a key that lacks, is unknown or has no sense; one error that names file, line and key.
     """
     toml = read_toml(path)
-    file = declared(GliderFile, toml)
+    file = takes.declared(GliderFile, toml)
     head = file.glider
     for key, said in file.basis.items():
         table, _, inner = key.partition(".")

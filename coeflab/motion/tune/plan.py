@@ -16,20 +16,7 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.declarations import (
-    ABOVE_ZERO,
-    Declaration,
-    Pure,
-    Takes,
-    Text,
-    Texts,
-    Within,
-    Words,
-    declared,
-    declared_key,
-    located_in,
-    number_in,
-)
+from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.text.toml import TomlFile, read_toml
@@ -230,7 +217,7 @@ def _zero(coefficients: tuple[float, ...], near: float) -> float | None:
 QUANTITIES = {"u": "speed", "v": "speed", "V": "speed", "r": "rate", "beta": "angle", "radius": "length"}
 SIGNED = ("v", "r", "beta")
 FROM_RESIDUALS = "from residuals"
-FilePath = Annotated[Path, located_in("cfd_data")]
+FilePath = Annotated[Path, takes.located_in("cfd_data")]
 ERRORS = f'a standard error for each measured column, or "{FROM_RESIDUALS}"'
 FIRST_GUESS = 0.1  # of the spread of what was measured: the rounds replace it
 
@@ -336,7 +323,7 @@ def _errors_given(value: Any, _file: Path) -> Any:
 
 
 @dataclass(frozen=True, slots=True)
-class TuneKeys(Declaration):
+class TuneKeys(takes.Declaration):
     """What is tuned.
 
     Attributes
@@ -347,12 +334,12 @@ class TuneKeys(Declaration):
         A parameter file, or a shipped name.
     """
 
-    name: Annotated[Text, Within(_no_name)]
+    name: Annotated[takes.Text, takes.Within(_no_name)]
     parameters: FilePath
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MeasuredKeys(Declaration):
+class MeasuredKeys(takes.Declaration):
     """Steady turns that were measured.
 
     Attributes
@@ -370,14 +357,16 @@ class MeasuredKeys(Declaration):
     """
 
     table: FilePath
-    where: Mapping[str, Text] = field(default_factory=dict)
-    ignore: Texts = ()
-    magnitudes: Texts = ()
-    errors: Annotated[Any, Takes(ERRORS, _errors_given, {"anyOf": [{"const": FROM_RESIDUALS}, {"type": "object"}]})]
+    where: Mapping[str, takes.Text] = field(default_factory=dict)
+    ignore: takes.Texts = ()
+    magnitudes: takes.Texts = ()
+    errors: Annotated[
+        Any, takes.Takes(ERRORS, _errors_given, {"anyOf": [{"const": FROM_RESIDUALS}, {"type": "object"}]})
+    ]
 
 
 @dataclass(frozen=True, slots=True)
-class PriorKeys(Declaration):
+class PriorKeys(takes.Declaration):
     """What is known of a parameter beforehand.
 
     Attributes
@@ -388,12 +377,14 @@ class PriorKeys(Declaration):
         Standard uncertainty; infinite unless given.
     """
 
-    mean: Pure | None = None
-    error: Annotated[Pure, Within(lambda v: "" if v > 0.0 else "a standard uncertainty above zero")] = np.inf
+    mean: takes.Pure | None = None
+    error: Annotated[takes.Pure, takes.Within(lambda v: "" if v > 0.0 else "a standard uncertainty above zero")] = (
+        np.inf
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FreeKeys(Declaration):
+class FreeKeys(takes.Declaration):
     """A number that is free.
 
     Attributes
@@ -411,16 +402,16 @@ class FreeKeys(Declaration):
         Bounds.
     """
 
-    name: Words | None = None
-    places: Annotated[Texts, Within(lambda v: "" if v else "a list of places in the parameter file")]
-    size: Pure | None = None
+    name: takes.Words | None = None
+    places: Annotated[takes.Texts, takes.Within(lambda v: "" if v else "a list of places in the parameter file")]
+    size: takes.Pure | None = None
     prior: PriorKeys = PriorKeys()
-    low: Pure = -np.inf
-    high: Pure = np.inf
+    low: takes.Pure = -np.inf
+    high: takes.Pure = np.inf
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TuningFile(Declaration):
+class TuningFile(takes.Declaration):
     """A tuning plan: which numbers of a parameter file are free, and what was measured.
 
     Attributes
@@ -454,7 +445,7 @@ def read_tuning_plan(path: Path) -> TuningPlan:
         With file, line and key.
     """
     toml = read_toml(path)
-    file = declared(TuningFile, toml)
+    file = takes.declared(TuningFile, toml)
     parameters = read_parameter_file(file.tune.parameters)
     free = tuple(_free(keys, parameters, toml, f"free[{i}]") for i, keys in enumerate(file.free))
     twice = [w.text.strip().removeprefix("-").strip() for f in free for w in f.places]
@@ -563,6 +554,8 @@ def _errors(given: Any, toml: TomlFile, names: list[str], measured: Array) -> tu
         if name not in names:
             expected = "one of " + ", ".join(sorted(names))
             raise toml.fail(f"measured.errors.{name}", "an unknown key", expected)
-    kinds: list[Any] = [Annotated[float, number_in(QUANTITIES[n]), ABOVE_ZERO] for n in names]
-    out = np.array([declared_key(toml, f"measured.errors.{n}", kind) for n, kind in zip(names, kinds, strict=True)])
+    kinds: list[Any] = [Annotated[float, takes.number_in(QUANTITIES[n]), takes.ABOVE_ZERO] for n in names]
+    out = np.array(
+        [takes.declared_key(toml, f"measured.errors.{n}", kind) for n, kind in zip(names, kinds, strict=True)]
+    )
     return np.broadcast_to(out, measured.shape), False

@@ -17,7 +17,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from coeflab.core.declarations import ABOVE_ZERO, Pure, Speed, Texts, declared_key, numbers
+from coeflab.core import declarations as takes
 from coeflab.core.files import shipped
 from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import TomlFile, read_toml
@@ -179,18 +179,20 @@ def read_flyingfish(folder: Path | None = None) -> FlyingFish:
     cells = read_cells(folder / "operating_points.csv")
     motion = np.column_stack([cells.numbers(n) for n in ("u", "w", "r", "phi", "theta")])
     motion[:, 2:] = np.radians(motion[:, 2:])
-    motion[cells.texts("motion").index("3"), :2] = [declared_key(file, f"row3.{name}", Speed) for name in "uw"]
+    motion[cells.texts("motion").index("3"), :2] = [
+        takes.declared_key(file, f"row3.{name}", takes.Speed) for name in "uw"
+    ]
     return FlyingFish(
         Rotors(*(_numbers(file, f"damping.{k}", 6) for k in ("linear", "quadratic")),
                *(_numbers(file, f"rotor.{k}", 2) for k in ("thrust", "torque"))),
-        {name: declared_key(file, f"calibrated.{name}", Pure) for name in CONSTANTS},
-        declared_key(file, "rotor.largest_speed", Annotated[Pure, ABOVE_ZERO]),
+        {name: takes.declared_key(file, f"calibrated.{name}", takes.Pure) for name in CONSTANTS},
+        takes.declared_key(file, "rotor.largest_speed", Annotated[takes.Pure, takes.ABOVE_ZERO]),
         np.array([_numbers(file, f"thruster[{i}].arm", 3) for i in at]),
-        tuple(1 if declared_key(file, f"thruster[{i}].handedness", Pure) > 0 else -1 for i in at),
+        tuple(1 if takes.declared_key(file, f"thruster[{i}].handedness", takes.Pure) > 0 else -1 for i in at),
         motion,
         np.radians(np.column_stack([cells.numbers(f"beta{i}") for i in ROTORS])),
         np.column_stack([cells.numbers(f"omega{i}") for i in ROTORS]),
-        declared_key(file, "errata.texts", Texts),
+        takes.declared_key(file, "errata.texts", takes.Texts),
     )  # fmt: skip
 
 
@@ -215,7 +217,9 @@ def thrusters(fish: FlyingFish) -> tuple[ParameterThruster, ...]:
 
 
 def _numbers(file: TomlFile, key: str, count: int) -> Array:
-    return locked(declared_key(file, key, Annotated[tuple[float, ...], numbers(count, "none", f"{count} numbers")]))
+    return locked(
+        takes.declared_key(file, key, Annotated[tuple[float, ...], takes.numbers(count, "none", f"{count} numbers")])
+    )
 
 
 DEGREE, RPM = 1.0, 20.0

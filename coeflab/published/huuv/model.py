@@ -13,19 +13,7 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.declarations import (
-    ABOVE_ZERO,
-    Angle,
-    Density,
-    Inertia,
-    Length,
-    Mass,
-    Pure,
-    Rate,
-    Speed,
-    Texts,
-    declared_key,
-)
+from coeflab.core import declarations as takes
 from coeflab.core.files import shipped
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.delimited import read_cells
@@ -37,14 +25,14 @@ from coeflab.law.scaling import Scaling
 from coeflab.motion.steady_state import COEFFICIENTS
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 
-KINDS: Mapping[str, Any] = {"m": Mass, "mx": Mass, "my": Mass, "inertia": Inertia}
+KINDS: Mapping[str, Any] = {"m": takes.Mass, "mx": takes.Mass, "my": takes.Mass, "inertia": takes.Inertia}
 CHOSEN: Mapping[str, Any] = {
-    "length": Length,
-    "density": Density,
-    "speed": Speed,
-    "rigid_inertia": Inertia,
-    "largest_drift": Angle,
-    "largest_rate": Rate,
+    "length": takes.Length,
+    "density": takes.Density,
+    "speed": takes.Speed,
+    "rigid_inertia": takes.Inertia,
+    "largest_drift": takes.Angle,
+    "largest_rate": takes.Rate,
 }
 MATLAB, TRACKER = "matlab", "tracker"
 
@@ -127,23 +115,28 @@ def read_huuv(folder: Path | None = None) -> Huuv:
     """
     folder = shipped("cfd_data") / "huuv" if folder is None else folder
     file = read_toml(folder / "vehicle.toml")
-    constants = {name: declared_key(file, f"steady_turn.{name}", KINDS.get(name, Pure)) for name in COEFFICIENTS}
-    constants |= {name: declared_key(file, f"thruster.{name}", Pure) for name in ("slope", "intercept")}
-    constants["arm"] = declared_key(file, "thruster.arm", Annotated[Length, ABOVE_ZERO])
+    constants = {
+        name: takes.declared_key(file, f"steady_turn.{name}", KINDS.get(name, takes.Pure)) for name in COEFFICIENTS
+    }
+    constants |= {name: takes.declared_key(file, f"thruster.{name}", takes.Pure) for name in ("slope", "intercept")}
+    constants["arm"] = takes.declared_key(file, "thruster.arm", Annotated[takes.Length, takes.ABOVE_ZERO])
     accepted, rate = _operating_points(folder / "operating_points.csv")
     return Huuv(
         constants,
-        declared_key(file, "thruster.printed_intercept", Pure),
-        declared_key(file, "thruster.dead_zone", Pure),
-        (declared_key(file, "thruster.reverse_intercept", Pure), declared_key(file, "thruster.reverse_slope", Pure)),
+        takes.declared_key(file, "thruster.printed_intercept", takes.Pure),
+        takes.declared_key(file, "thruster.dead_zone", takes.Pure),
+        (
+            takes.declared_key(file, "thruster.reverse_intercept", takes.Pure),
+            takes.declared_key(file, "thruster.reverse_slope", takes.Pure),
+        ),
         _turns(folder / "turns.csv"),
         accepted,
         rate,
         {
-            name: declared_key(file, f"parameter_file.{name}", Annotated[kind, ABOVE_ZERO])
+            name: takes.declared_key(file, f"parameter_file.{name}", Annotated[kind, takes.ABOVE_ZERO])
             for name, kind in CHOSEN.items()
         },
-        declared_key(file, "errata.texts", Texts),
+        takes.declared_key(file, "errata.texts", takes.Texts),
     )
 
 
