@@ -3,36 +3,84 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
+from importlib import import_module
+from inspect import cleandoc
+from pathlib import Path
+from typing import Any
 
 import typer
-
-from coeflab.cli import (
-    added_mass,
-    compare,
-    export,
-    fit,
-    formats,
-    glide,
-    identify,
-    inspect,
-    new,
-    params,
-    report,
-    run,
-    serve,
-    simplify,
-    simulate,
-    table,
-    trim,
-    tune,
-    uncertainty,
-    validate,
-)
+from typer.core import TyperCommand, TyperGroup
 
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+ORDER = [
+    "validate",
+    "run",
+    "report",
+    "serve",
+    "fit",
+    "inspect",
+    "new",
+    "formats",
+    "schema",
+    "table",
+    "compare",
+    "added-mass",
+    "simplify",
+    "export",
+    "simulate",
+    "trim",
+    "tune",
+    "identify",
+    "uncertainty",
+    "glide",
+    "params",
+]
+_SUMMARY = re.compile(
+    r'^def command\(.*?-> None:\s*"""(.*?)"""|^app = typer\.Typer\(help="(.*?)"', re.MULTILINE | re.DOTALL
+)
+
+
+class Commands(TyperGroup):
+    """The commands, each imported when it is asked for; their list shows the first line of what each file says of itself."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(**settings)
+        self.commands = {name: TyperCommand(name) for name in ORDER}
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """The command of a name, with its options; None where there is none."""
+        found = super().get_command(ctx, cmd_name)
+        return found if found is None or found.help else _built(cmd_name)
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the list of commands without importing them."""
+        self.commands = {name: TyperCommand(name, help=_summary(name)) for name in ORDER}
+        super().format_commands(ctx, formatter)
+
+
+def _summary(name: str) -> str:
+    text = Path(__file__).with_name(f"{name.replace('-', '_')}.py").read_text(encoding="utf-8")
+    found = _SUMMARY.search(text)
+    return cleandoc(found[1] or found[2]) if found else ""
+
+
+def _built(name: str) -> Any:
+    module = import_module(f"{__name__}.{name.replace('-', '_')}")
+    one = getattr(module, "app", None)
+    if one is None:
+        one = typer.Typer(rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)
+        settings = getattr(module, "CONTEXT", None)
+        one.command(name=name, epilog=f"Example: {module.EXAMPLE}", context_settings=settings)(module.command)
+    out = typer.main.get_command(one)
+    out.name = name
+    return out
+
+
 app = typer.Typer(
     name="coeflab",
+    cls=Commands,
     help="Hydrodynamic coefficients from force tables: slopes at the origin with honest uncertainty, parameter files "
     "and reports.",
     epilog="Example: coeflab validate suboff",
@@ -41,33 +89,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-for module in (
-    validate,
-    run,
-    report,
-    serve,
-    fit,
-    inspect,
-    new,
-    formats,
-    table,
-    compare,
-    added_mass,
-    simplify,
-    export,
-    simulate,
-    trim,
-    tune,
-    identify,
-    uncertainty,
-    glide,
-):
-    app.command(
-        name=module.__name__.rpartition(".")[2].replace("_", "-"),
-        epilog=f"Example: {module.EXAMPLE}",
-        context_settings=getattr(module, "CONTEXT", None),
-    )(module.command)
-app.add_typer(params.app, name="params")
 
 
 def _version(value: bool) -> None:
@@ -120,7 +141,6 @@ def main() -> None:
     """
     os.environ.update(dict.fromkeys(THREADS, "1"))
     from coeflab.core.errors import CoeflabError
-    from coeflab.report.printable import visible
 
     _ready_to_print()
     try:
@@ -131,7 +151,9 @@ def main() -> None:
         _discard_output()
         sys.exit(0)
     except CoeflabError as why:
-        typer.echo(visible(f"error: {why}"), err=True)
+        from coeflab.report.printable import visible
+
+        typer.echo("error: " + "\n".join(map(visible, why.lines)), err=True)
         sys.exit(2)
     except BrokenPipeError:
         _discard_output()

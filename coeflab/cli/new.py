@@ -16,6 +16,7 @@ def command(folder: Path = typer.Argument(..., help="A folder that does not exis
     """Write a commented plan, campaign and table (synthetic numbers) to start from."""
     from importlib.resources import files
 
+    from coeflab.cli.schema import schema
     from coeflab.core.errors import OutputError
     from coeflab.core.files import typed, write_all
 
@@ -24,7 +25,9 @@ def command(folder: Path = typer.Argument(..., help="A folder that does not exis
         raise OutputError(f"{folder} exists and is not empty. Name a new folder.")
     template = files("coeflab.cli") / "template"
     names = ("plan.toml", "body.toml", "campaign/campaign.toml", "campaign/drift.csv", "campaign/rotating_arm.csv")
-    write_all(folder, {name: template.joinpath(*name.split("/")).read_bytes() for name in names})
-    for name in names:
+    contents = {name: template.joinpath(*name.split("/")).read_bytes() for name in names}
+    contents |= {f"schemas/{kind}.schema.json": schema(kind) for kind in ("plan", "campaign", "body")}
+    write_all(folder, contents)
+    for name in contents:
         show.text(f"  {folder / name}")
     show.text(f"Run it: coeflab run {shlex.quote(str(folder / 'plan.toml'))}")

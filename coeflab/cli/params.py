@@ -8,7 +8,7 @@ import typer
 
 from coeflab.cli import show
 
-app = typer.Typer(help="Parameter files.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False)
+app = typer.Typer(help="Parameter files.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
 
 
 @app.callback()

@@ -8,13 +8,13 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.declarations import Declaration, Takes, Text, Words
 from coeflab.core.errors import AxesError, shown
-from coeflab.core.text.toml import Section
 
 DIRECTIONS = {
     "forward": (1.0, 0.0, 0.0),
@@ -29,6 +29,7 @@ FRAMES = {
     "FLU": ("forward", "port", "up"),
     "CFD": ("aft", "starboard", "up"),
 }
+FRAME_WORDS = '"FRD", "FLU", "CFD" (x aft, y starboard, z up) or three directions like ["forward", "port", "up"]'
 ANGLE_SIGNS = {
     "beta": {"v = +U sin(beta)": 1.0, "v = -U sin(beta)": -1.0},
     "alpha": {"w = +U sin(alpha)": 1.0, "w = -U sin(alpha)": -1.0},
@@ -75,14 +76,13 @@ def parse_axes(declared: Any, file: str | Path | None = None, key: str = "axes.f
     AxesError
         Unknown frame, directions that do not span space, or a left-handed triad.
     """
-    expected = '"FRD", "FLU", "CFD" (x aft, y starboard, z up) or three directions like ["forward", "port", "up"]'
     if isinstance(declared, str) and declared in FRAMES:
         directions = FRAMES[declared]
     elif isinstance(declared, list) and len(declared) == 3 and all(d in DIRECTIONS for d in declared):
         directions = (declared[0], declared[1], declared[2])
     else:
         found = "nothing" if declared is None else shown(declared)
-        raise AxesError(found, expected, file=file, column=key)
+        raise AxesError(found, FRAME_WORDS, file=file, column=key)
     axes = Axes(directions)
     determinant = round(float(np.linalg.det(axes.rotation)))
     if determinant == 0:
@@ -97,6 +97,19 @@ def parse_axes(declared: Any, file: str | Path | None = None, key: str = "axes.f
             advice=f"Papers that print this usually mean FLU ({likely}): check one force of known sign, then declare it.",
         )
     return axes
+
+
+Frame = Annotated[
+    Axes,
+    Takes(
+        FRAME_WORDS,
+        lambda v, _: parse_axes(v),
+        {"anyOf": [
+            {"enum": list(FRAMES)},
+            {"type": "array", "items": {"enum": list(DIRECTIONS)}, "minItems": 3, "maxItems": 3},
+        ]},
+    ),
+]  # fmt: skip
 
 
 def angle_sign(name: str, declared: Any, file: str | Path | None = None) -> float:
@@ -178,12 +191,22 @@ class Datum:
         return f"{self.id}, {self.note}" if self.note else self.id
 
 
-def read_datum(section: Section) -> Datum:
-    """``datum`` and ``datum_note`` of a section.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DatumKeys(Declaration):
+    """Where points count from.
 
-    Raises
-    ------
-    InputError
-        No datum, or one that is not a text.
+    Attributes
+    ----------
+    datum : str
+        Id of the point of the body that points are measured from, such as nose, cg or midship.
+    datum_note : str
+        Where it is, in free words.
     """
-    return Datum.named(section.text("datum"), section.text("datum_note", ""))
+
+    datum: Text
+    datum_note: Words = ""
+
+    @property
+    def origin(self) -> Datum:
+        """The datum."""
+        return Datum.named(self.datum, self.datum_note)

@@ -13,9 +13,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
-SHOWN, LONGEST = 60, 400
+SHOWN, LONGEST, MOST_LISTED = 60, 400, 50
 
 
 def shown(text: object, longest: int = SHOWN) -> str:
@@ -37,6 +38,11 @@ def clipped(text: object) -> str:
 class CoeflabError(Exception):
     """Base of all errors raised on purpose; the command line turns it into exit code 2."""
 
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The text, a complaint a line."""
+        return (str(self),)
+
 
 class InputError(CoeflabError):
     """Input that cannot be used.
@@ -50,9 +56,16 @@ class InputError(CoeflabError):
     line : int, optional
         Line number in that file, from 1.
     column : str, optional
-        Column header or TOML key.
+        Column header, or TOML key without a line.
+    key : str, optional
+        TOML key, in place of the column.
     advice : str, optional
         What to do about it.
+
+    Attributes
+    ----------
+    others : tuple of InputError
+        What else is wrong with the same file; the text lists all.
     """
 
     def __init__(
@@ -63,21 +76,40 @@ class InputError(CoeflabError):
         file: str | Path | None = None,
         line: int | None = None,
         column: str | None = None,
+        key: str | None = None,
         advice: str = "",
     ) -> None:
         self.found, self.expected = found, expected
-        self.file, self.line, self.column, self.advice = file, line, column, advice
+        self.file, self.line, self.column, self.advice = file, line, column if key is None else key, advice
+        self.keyed = key is not None
+        self.others: tuple[InputError, ...] = ()
         super().__init__(str(self))
 
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The complaints of a file, each with its place."""
+        more = [f"{len(self.others) - MOST_LISTED} more"] if len(self.others) > MOST_LISTED else []
+        return (self._alone(), *(other._alone() for other in self.others[:MOST_LISTED]), *more)
+
     def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+    def _alone(self) -> str:
         place = [clipped(self.file)] if self.file is not None else []
         if self.line is not None:
             place.append(f"line {self.line}")
         if self.column is not None:
-            place.append(f"column {shown(self.column)}" if self.line else f"{shown(self.column)}")
+            is_header = self.line and not self.keyed
+            place.append(f"column {shown(self.column)}" if is_header else shown(self.column))
         head = ", ".join(place)
         text = f"found {self.found}; expected {self.expected}."
         return (f"{head}: " if head else "") + text + (f" {self.advice}" if self.advice else "")
+
+
+def together(complaints: Sequence[InputError]) -> InputError:
+    """Several complaints as one error: the first, which lists the others."""
+    complaints[0].others = tuple(complaints[1:])
+    return complaints[0]
 
 
 class UnitsError(InputError):

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-import inspect
 import math
-import re
-import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from coeflab.core.errors import InputError, shown
+from coeflab.core.declarations import Takes, meanings
+from coeflab.core.errors import InputError, shown, together
 from coeflab.core.units import SI, quantity
 
 Options = TypeVar("Options")
@@ -25,7 +24,16 @@ def bounded(default: float, low: float, high: float) -> Any:
     default, low, high : float
         The bounds are allowed values.
     """
-    return dataclasses.field(default=default, metadata={"low": low, "high": high})
+    whole = isinstance(default, int) and not isinstance(default, bool)
+    kind = "whole number" if whole else "number"
+
+    def read(value: Any, _file: Path) -> float:
+        right = not isinstance(value, bool) and isinstance(value, int if whole else (int, float))
+        if not right or not low <= value <= high:
+            raise InputError(shown(value), f"a {kind} from {low:g} to {high:g}")
+        return cast(float, value)
+
+    return _option(default, f"{kind}, {low:.10g} to {high:.10g}", read)
 
 
 def measured(default: float, low: float, high: float, dimension: str) -> Any:
@@ -38,45 +46,43 @@ def measured(default: float, low: float, high: float, dimension: str) -> Any:
     dimension : str
         Key of `coeflab.core.units.SI`.
     """
-    return dataclasses.field(default=default, metadata={"low": low, "high": high, "dimension": dimension})
+
+    def read(value: Any, _file: Path) -> float:
+        number = quantity(value, dimension)
+        if not low <= number <= high:
+            raise InputError(shown(value), f"{low:g} to {high:g} {SI[dimension]}".rstrip())
+        return number
+
+    return _option(default, f"{dimension}, bare in {SI[dimension]} or with its unit", read, SI[dimension])
 
 
 def one_of(default: str, *choices: str) -> Any:
     """A dataclass field that takes one of some words."""
-    return dataclasses.field(default=default, metadata={"choices": choices})
+
+    def read(value: Any, _file: Path) -> str:
+        if value not in choices:
+            near = difflib.get_close_matches(str(value), choices, n=1)
+            known = ", ".join(c or '""' for c in choices)
+            raise InputError(shown(value), f"one of {known}", advice=f"Did you mean {near[0]}?" if near else "")
+        return cast(str, value)
+
+    return _option(default, ", ".join(dict.fromkeys(c or '""' for c in choices)), read)
 
 
 def words(*default: str) -> Any:
     """A dataclass field that takes a list of words; a text is split at commas and blanks."""
-    return dataclasses.field(default=default, metadata={"words": True})
+
+    def read(value: Any, _file: Path) -> tuple[str, ...]:
+        items = value.replace(",", " ").split() if isinstance(value, str) else value
+        if not isinstance(items, (list, tuple)) or not all(isinstance(i, str) for i in items):
+            raise InputError(shown(value), "a list of words")
+        return tuple(items)
+
+    return _option(default, "words", read)
 
 
-def _text(value: Any, meta: Mapping[str, Any], place: str) -> Any:
-    """A word out of some, or a tuple of words."""
-    if "choices" in meta:
-        if value not in meta["choices"]:
-            near = difflib.get_close_matches(str(value), meta["choices"], n=1)
-            hint = (f"Did you mean {near[0]}? " if near else "") + _explained(place.partition(".")[0])
-            known = ", ".join(c or '""' for c in meta["choices"])
-            raise InputError(shown(value), f"one of {known}", column=place, advice=hint)
-        return value
-    items = value.replace(",", " ").split() if isinstance(value, str) else value
-    if not isinstance(items, (list, tuple)) or not all(isinstance(i, str) for i in items):
-        raise InputError(shown(value), "a list of words", column=place)
-    return tuple(items)
-
-
-def _measured(value: Any, meta: Mapping[str, Any], place: str) -> float:
-    """A number in SI within bounds."""
-    number = quantity(value, meta["dimension"], key=place)
-    if not meta["low"] <= number <= meta["high"]:
-        unit = SI[meta["dimension"]]
-        raise InputError(shown(value), f"{meta['low']:g} to {meta['high']:g} {unit}".rstrip(), column=place)
-    return number
-
-
-def _explained(plugin: str) -> str:
-    return f"`coeflab formats {plugin}` explains every option."
+def _option(default: Any, takes: str, read: Callable[[Any, Path], Any], unit: str = "") -> Any:
+    return dataclasses.field(default=default, metadata={"takes": Takes(takes, read, {}), "unit": unit})
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -96,42 +102,19 @@ class NoOptions:
 
 def described(kind: type) -> tuple[Described, ...]:
     """Every option of an options dataclass, its meaning from the Attributes of the docstring."""
-    meanings = _meanings(inspect.getdoc(kind) or "")
+    said = meanings(kind)
     return tuple(
-        Described(f.name, _takes(f), _default(f), meanings.get(f.name, "")) for f in dataclasses.fields(cast(Any, kind))
+        Described(f.name, f.metadata["takes"].words, _default(f), said.get(f.name, ""))
+        for f in dataclasses.fields(cast(Any, kind))
     )
-
-
-def _takes(field: dataclasses.Field[Any]) -> str:
-    meta = field.metadata
-    if "choices" in meta:
-        return ", ".join(dict.fromkeys(c or '""' for c in meta["choices"]))
-    if "words" in meta:
-        return "words"
-    if "dimension" in meta:
-        return f"{meta['dimension']}, bare in {SI[meta['dimension']]} or with its unit"
-    whole = isinstance(field.default, int) and not isinstance(field.default, bool)
-    return f"{'whole ' if whole else ''}number, {meta['low']:.10g} to {meta['high']:.10g}"
 
 
 def _default(field: dataclasses.Field[Any]) -> str:
     value = field.default
     if isinstance(value, tuple):
         return " ".join(value) or "none"
-    unit = SI[field.metadata["dimension"]] if "dimension" in field.metadata else ""
-    text = value if isinstance(value, str) else f"{value:.10g} {unit}".rstrip()
+    text = value if isinstance(value, str) else f"{value:.10g} {field.metadata['unit']}".rstrip()
     return text or '""'
-
-
-def _meanings(text: str) -> dict[str, str]:
-    """Meaning of every attribute of a numpydoc docstring; names that share an entry share its text."""
-    body = text.partition("Attributes\n----------\n")[2]
-    out: dict[str, str] = {}
-    for head, said in re.findall(r"^(\S[^\n]*)\n?((?:[ ]+[^\n]*\n?|\n)*)", body, re.MULTILINE):
-        names = head.partition(" : ")[0]
-        flat = " ".join(textwrap.dedent(said).split()).replace("``", "")
-        out |= dict.fromkeys((n.strip() for n in names.split(",")), flat)
-    return out
 
 
 def parse_options(kind: type[Options], given: Mapping[str, Any], where: str) -> Options:
@@ -148,33 +131,27 @@ def parse_options(kind: type[Options], given: Mapping[str, Any], where: str) -> 
     Raises
     ------
     InputError
-        Unknown option, wrong type or out of bounds.
+        One message with every unknown option, wrong type and value out of bounds.
     """
     filled: dict[str, Any] = {}
-    fields = {f.name: f for f in dataclasses.fields(cast(Any, kind))}
+    complaints = []
+    fields = {f.name: f.metadata["takes"] for f in dataclasses.fields(cast(Any, kind))}
+    explained = f"`coeflab formats {where}` explains every option."
     for name, value in given.items():
         if name not in fields:
             near = difflib.get_close_matches(name, fields, n=1)
-            raise InputError(
-                f"the unknown option {shown(name)}",
-                f"one of {', '.join(fields)}" if fields else "none: it has no options",
-                column=where,
-                advice=(f"Did you mean {near[0]}? " if near else "") + _explained(where),
-            )
-        meta = fields[name].metadata
-        if "choices" in meta or "words" in meta:
-            filled[name] = _text(value, meta, f"{where}.{name}")
+            advice = (f"Did you mean {near[0]}? " if near else "") + explained
+            unknown = f"the unknown option {shown(name)}"
+            known = f"one of {', '.join(fields)}" if fields else "none: it has no options"
+            complaints.append(InputError(unknown, known, column=where, advice=advice))
             continue
-        if "dimension" in meta:
-            filled[name] = _measured(value, meta, f"{where}.{name}")
-            continue
-        default = fields[name].default
-        whole = isinstance(default, int) and not isinstance(default, bool)
-        right = isinstance(value, int) if whole else isinstance(value, (int, float))
-        if isinstance(value, bool) or not right or not meta["low"] <= value <= meta["high"]:
-            expected = f"a {'whole ' if whole else ''}number from {meta['low']:g} to {meta['high']:g}"
-            raise InputError(shown(value), expected, column=f"{where}.{name}", advice=_explained(where))
-        filled[name] = value
+        try:
+            filled[name] = fields[name].read(value, Path())
+        except InputError as why:
+            advice = f"{why.advice} {explained}".lstrip()
+            complaints.append(type(why)(why.found, why.expected, column=f"{where}.{name}", advice=advice))
+    if complaints:
+        raise together(complaints)
     return kind(**filled)
 
 

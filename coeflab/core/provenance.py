@@ -8,61 +8,37 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
-from coeflab.core.text.toml import Section
+from coeflab.core.declarations import Declaration, Text, Words, one_of
 
 TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic")
 BODY_KINDS = (*TABLE_KINDS, "computed")
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class Source(Declaration):
     """Origin of a table or value.
 
     Attributes
     ----------
     citation : str
-        Key in `coeflab.core.provenance` or free text.
+        Key of a work of `coeflab.core.provenance`, such as roddy1990, or free text.
     place : str
         Pages or table in the source.
     how_obtained : str
         Printed, computed, read from a figure, synthetic ...
     kind : str
-        One of `TABLE_KINDS` or `BODY_KINDS`; empty where a body says nothing.
+        What the source is; a body may leave it out.
     stated_uncertainty : str
         What the source itself says of its uncertainty; empty if nothing.
     """
 
-    citation: str
-    place: str = ""
-    how_obtained: str = ""
-    kind: str = ""
-    stated_uncertainty: str = ""
-
-
-def read_source(section: Section, kinds: tuple[str, ...] = BODY_KINDS, required: bool = False) -> Source:
-    """A ``[source]`` table.
-
-    Parameters
-    ----------
-    section : Section
-    kinds : tuple of str, optional
-        The kinds of source that are allowed.
-    required : bool
-        Whether a kind must be named.
-
-    Raises
-    ------
-    InputError
-        No citation, no kind where one is required, or a kind of no such name.
-    """
-    return Source(
-        citation=section.text("citation"),
-        place=section.text("place", ""),
-        how_obtained=section.text("how_obtained", ""),
-        kind=section.text("kind", choices=kinds) if required or section.has("kind") else "",
-        stated_uncertainty=section.text("stated_uncertainty", ""),
-    )
+    citation: Text
+    place: Words = ""
+    how_obtained: Words = ""
+    kind: Annotated[str, one_of(*BODY_KINDS)] = ""
+    stated_uncertainty: Words = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import overload
+from typing import Annotated, overload
 
 import numpy as np
 
+from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.limits import positive_number
-from coeflab.core.text.toml import Section
 from coeflab.core.types import Array
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, derivative
 
@@ -27,13 +27,13 @@ QUANTITIES: dict[str, tuple[int, int, int]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Conditions:
+class Conditions(takes.Declaration):
     """Fluid and speed; nothing is assumed.
 
     Attributes
     ----------
     density : float
-        kg/m^3.
+        Of the water, kg/m^3.
     speed : float
         m/s, at the reference point.
     viscosity : float, optional
@@ -42,10 +42,10 @@ class Conditions:
         As the source states it.
     """
 
-    density: float
-    speed: float
-    viscosity: float | None = None
-    reynolds: float | None = None
+    density: Annotated[takes.Density, takes.ABOVE_ZERO]
+    speed: Annotated[takes.Speed, takes.ABOVE_ZERO]
+    viscosity: Annotated[takes.Viscosity, takes.ABOVE_ZERO] | None = None
+    reynolds: Annotated[takes.Pure, takes.ABOVE_ZERO] | None = None
 
     def __post_init__(self) -> None:
         for name in ("density", "speed", "viscosity", "reynolds"):
@@ -59,19 +59,19 @@ class Conditions:
 
 
 @dataclass(frozen=True, slots=True)
-class Scaling:
+class Scaling(takes.Declaration):
     """The prime system on one length: Y' = Y / (1/2 rho U^2 L^2), N' with L^3, v' = v/U, r' = r L/U.
 
     Attributes
     ----------
     length : float
-        m.
+        L, m.
     length_name : str
         What that length is, for example ``LBP``.
     """
 
-    length: float
-    length_name: str
+    length: Annotated[takes.Length, takes.ABOVE_ZERO]
+    length_name: takes.Text
 
     def __post_init__(self) -> None:
         if expected := positive_number(self.length):
@@ -130,18 +130,3 @@ class Scaling:
             raise ScalingMismatchError(
                 f"coefficients primed by {self} and by {other} do not mix; rescale one of them first (to_length)."
             )
-
-
-def read_scaling(section: Section, prefix: str = "") -> Scaling:
-    """The Scaling that a section states under ``length`` and ``length_name``."""
-    return Scaling(section.positive(f"{prefix}length", "length"), section.text(f"{prefix}length_name"))
-
-
-def read_conditions(section: Section) -> Conditions:
-    """The Conditions that a section states."""
-    return Conditions(
-        density=section.positive("density", "density"),
-        speed=section.positive("speed", "speed"),
-        viscosity=section.optional_positive("viscosity", "viscosity"),
-        reynolds=section.optional_positive("reynolds", "none"),
-    )

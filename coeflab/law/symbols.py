@@ -11,7 +11,6 @@ import re
 from dataclasses import dataclass
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.text.toml import Section
 
 FORCES = ("X", "Y", "Z")
 MOMENTS = ("K", "M", "N")
@@ -123,17 +122,3 @@ def derivative(symbol: str) -> Derivative:
 def primed(symbol: str) -> str:
     """Printed form of a nondimensional derivative: ``Yv`` -> ``Yv'``."""
     return symbol.removesuffix("'") + "'"
-
-
-def symbol_at(section: Section, key: str, symbol: str) -> str:
-    """A SNAME derivative that stands under a key of a TOML file, as we write it.
-
-    Raises
-    ------
-    InputError
-        It is none; the message names file and key.
-    """
-    try:
-        return derivative(symbol).text
-    except InputError as why:
-        raise section.fail(key, why.found, why.expected, why.advice) from None

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
-from coeflab.core.axes import read_datum
+from coeflab.core import declarations as takes
+from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import located
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.text.toml import Section, read_toml
+from coeflab.core.text.toml import read_toml
 from coeflab.formats.export import PlannedExport
-from coeflab.law.scaling import read_conditions, read_scaling
-from coeflab.law.symbols import symbol_at
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.law.symbols import derivative
 from coeflab.motion.manoeuvre import PlannedManoeuvre
 from coeflab.study.study import Plan, PlannedJoint
 from coeflab.tables.importers import PlannedTable
@@ -25,23 +27,300 @@ JOINT = "manoeuvring_model"
 _NAME = re.compile(r"^[\w][\w .+-]{0,79}$")
 
 
-def safe_name(section: Section, key: str, default: str | None = None) -> str:
-    """A name that is also a file name."""
-    name = section.text(key, default)
-    if not _NAME.fullmatch(name) or name.strip(". ") != name:
-        raise section.fail(key, shown(name), "letters, digits, blank, . + - _ (it names files), at most 80")
-    return name
+def _no_file_name(name: str) -> str:
+    fits = _NAME.fullmatch(name) and name.strip(". ") == name
+    return "" if fits else "letters, digits, blank, . + - _ (it names files), at most 80"
 
 
-def _path(section: Section, key: str, kind: str) -> Path:
-    return _located(section, key, section.text(key), kind)
+FileName = Annotated[takes.Text, takes.Within(_no_file_name, schema={"pattern": _NAME.pattern})]
+CampaignPath = Annotated[Path, takes.located_in("cfd_data")]
+BodyPath = Annotated[Path, takes.located_in("geometry")]
+Accelerations = Annotated[str, takes.one_of(*ACCELERATIONS)]
 
 
-def _located(section: Section, key: str, name: str, kind: str) -> Path:
-    try:
-        return located(name, kind, section.file.parent)
-    except InputError as why:
-        raise section.fail(key, why.found, why.expected) from None
+def _several(value: Any, file: Path) -> tuple[Path, ...]:
+    names = takes.TEXTS.read(value, file)
+    if len(names) < 2:
+        raise InputError(shown(list(names)), "the paths of two or more campaigns")
+    return tuple(located(name, "cfd_data", file.parent) for name in names)
+
+
+def _derivatives(value: Any, file: Path) -> tuple[str, ...]:
+    names: tuple[str, ...] = takes.TEXTS.read(value, file)
+    for name in names:
+        derivative(name)
+    return names
+
+
+Options = Annotated[Mapping[str, Any], takes.TABLE]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyKeys(takes.Declaration):
+    """The study as a whole.
+
+    Attributes
+    ----------
+    name : str
+        Of the folder of the results.
+    title : str
+        As the report prints it; the name unless given.
+    reference_point : (3,) array
+        [x, y, z] of all moments, m, FRD, from the datum; each campaign's own unless given.
+    datum : str
+        Id of the point of the body that the reference point counts from; each campaign's own unless given.
+    datum_note : str
+        Where it is, in free words.
+    wanted : tuple of str
+        Derivatives that must appear, with a status where no table gives them.
+    include_uncertain : bool
+        Use cells that their source marks as doubtful.
+    """
+
+    name: FileName
+    title: takes.Words | None = None
+    reference_point: takes.Point | None = None
+    datum: takes.Text | None = None
+    datum_note: takes.Words | None = None
+    wanted: Annotated[tuple[str, ...], takes.Takes("a list of texts", _derivatives, takes.TEXTS.schema)] = ()
+    include_uncertain: takes.Flag = False
+
+    def check(self) -> None:
+        """A note goes with a datum."""
+        if self.datum_note is not None and self.datum is None:
+            raise InputError("a note without a datum", "datum, the id that it explains", column="datum_note")
+
+
+@dataclass(frozen=True, slots=True)
+class BodyKeys(takes.Declaration):
+    """The vehicle.
+
+    Attributes
+    ----------
+    path : Path
+        Of its body.toml, or a shipped name.
+    """
+
+    path: BodyPath
+
+
+@dataclass(frozen=True, slots=True)
+class AddedMassKeys(takes.Declaration):
+    """The shape whose added mass is computed.
+
+    Attributes
+    ----------
+    body : Path
+        Of its body.toml, or a shipped name.
+    method : str
+        ``all`` recommends one by the stated rule, else a method's name.
+    """
+
+    body: BodyPath
+    method: takes.Words = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class TableKeys(takes.Declaration):
+    """A campaign and its fits.
+
+    Attributes
+    ----------
+    campaign : Path
+        Folder of the campaign, its campaign.toml, one CSV of it, or a shipped name.
+    fits : tuple of str
+        Names of fits, slope_at_origin unless given; ``coeflab formats`` lists them.
+    options : mapping
+        A table of options for each fit, by its name.
+    """
+
+    campaign: CampaignPath
+    fits: takes.Texts = ()
+    options: Options = field(default_factory=dict)
+
+    def check(self) -> None:
+        """Options are those of the fits."""
+        for name, options in self.options.items():
+            if not isinstance(options, dict):
+                raise InputError(shown(options), f"a table [table.options.{name}]", column=f"options.{name}")
+        idle = next((name for name in self.options if name not in self.used), None)
+        if idle is not None:
+            found, expected = (
+                f"options of {shown(idle)}, which is not among the fits",
+                f"options of {', '.join(self.used)}",
+            )
+            raise InputError(found, expected, column="options")
+
+    @property
+    def used(self) -> tuple[str, ...]:
+        """The fits."""
+        return self.fits or ("slope_at_origin",)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointKeys(takes.Declaration):
+    """One fit over several campaigns.
+
+    Attributes
+    ----------
+    campaigns : tuple of Path
+        Two or more, each as in ``[[table]]``.
+    fit : str
+        Name of the fit.
+    options : mapping
+        Of the fit.
+    """
+
+    campaigns: Annotated[
+        tuple[Path, ...], takes.Takes("a list of texts", _several, takes.TEXTS.schema | {"minItems": 2})
+    ]
+    fit: takes.Words = JOINT
+    options: Options = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParameterFileKeys(takes.Declaration):
+    """A parameter file to be written.
+
+    Attributes
+    ----------
+    name : str
+        Of the file.
+    body : str
+        Configuration that it is about.
+    campaigns, literature : tuple of str
+        Campaigns and kinds of published values that its coefficients come from.
+    added_mass : Path
+        The body.toml of its added mass, or a shipped name.
+    added_mass_method : str
+        ``all`` recommends one by the stated rule, else a method's name.
+    """
+
+    name: FileName
+    body: takes.Text
+    campaigns: takes.Texts = ()
+    literature: takes.Texts = ()
+    added_mass: BodyPath | None = None
+    added_mass_method: takes.Words = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class ReferencesKeys(takes.Declaration):
+    """Published values to compare with.
+
+    Attributes
+    ----------
+    path : Path
+        Of a published.toml.
+    """
+
+    path: CampaignPath
+
+
+@dataclass(frozen=True, slots=True)
+class ExportKeys(takes.Declaration):
+    """Files for a simulator.
+
+    Attributes
+    ----------
+    to : str
+        The target; ``coeflab formats`` lists them.
+    accept_loss : bool
+        Write the files where the target cannot hold everything.
+    strict : bool
+        Refuse any loss.
+    accelerations : {"measured", "computed"}
+        Measured acceleration derivatives where they leave an inertia, or the computed added mass alone.
+    """
+
+    to: takes.Text
+    accept_loss: takes.Flag = False
+    strict: takes.Flag = False
+    accelerations: Accelerations = MEASURED
+
+
+@dataclass(frozen=True, slots=True)
+class ManoeuvreKeys(takes.Declaration):
+    """A manoeuvre to be simulated.
+
+    Attributes
+    ----------
+    parameter_file : str
+        Name of a parameter file of the study.
+    name : str
+        Of the manoeuvre; ``coeflab formats`` lists them.
+    options : mapping
+        Of the manoeuvre.
+    accelerations : {"measured", "computed"}
+        Measured acceleration derivatives where they leave an inertia, or the computed added mass alone.
+    """
+
+    parameter_file: takes.Text
+    name: takes.Text
+    options: Options = field(default_factory=dict)
+    accelerations: Accelerations = MEASURED
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanFile(takes.Declaration):
+    """A plan.toml: a study of tables, and what is made of it.
+
+    Attributes
+    ----------
+    study : table
+        The study as a whole.
+    scaling : table
+        The length of all primes; each campaign's own unless given.
+    conditions : table
+        Fluid and speed of dimensional values; those of the first campaign unless given.
+    body : table
+        The vehicle.
+    added_mass : table
+        The shape whose added mass is computed.
+    table : array of tables
+        A campaign and its fits, one each.
+    joint : array of tables
+        A fit over several campaigns.
+    parameter_file : array of tables
+        A parameter file of some of the campaigns.
+    references : array of tables
+        Published values to compare with.
+    export : array of tables
+        Files for a simulator, every target once.
+    manoeuvre : array of tables
+        A manoeuvre to be simulated.
+    """
+
+    study: StudyKeys
+    scaling: Annotated[Scaling | None, takes.OrEmpty()] = None
+    conditions: Annotated[Conditions | None, takes.OrEmpty()] = None
+    body: Annotated[BodyKeys | None, takes.OrEmpty()] = None
+    added_mass: Annotated[AddedMassKeys | None, takes.OrEmpty()] = None
+    table: tuple[TableKeys, ...] = ()
+    joint: tuple[JointKeys, ...] | None = None
+    parameter_file: tuple[ParameterFileKeys, ...] = ()
+    references: tuple[ReferencesKeys, ...] = ()
+    export: tuple[ExportKeys, ...] = ()
+    manoeuvre: tuple[ManoeuvreKeys, ...] = ()
+
+    def check(self) -> None:
+        """A table at least; parameter files and targets once each."""
+        if not self.table and self.joint is None:
+            raise InputError(
+                "no [[table]]",
+                "at least one",
+                column="table",
+                advice='Add [[table]] with campaign = "path/to/campaign".',
+            )
+        names = [f.name.casefold() for f in self.parameter_file]
+        for i, f in enumerate(self.parameter_file):
+            if names[i] in names[:i]:
+                found = f"the parameter file {shown(f.name)} twice"
+                raise InputError(found, "a name of its own for each", column=f"parameter_file[{i}].name")
+        targets = [e.to for e in self.export]
+        for i, target in enumerate(targets):
+            if target in targets[:i]:
+                raise InputError(f"the target {shown(target)} twice", "every target once", column=f"export[{i}].to")
 
 
 def table_at(
@@ -50,52 +329,6 @@ def table_at(
     """A campaign folder, its campaign.toml, or one CSV of it."""
     only = path.name if path.is_file() and path.suffix != ".toml" else None
     return PlannedTable(path, fits, options or {}, only)
-
-
-def _tables(root: Section) -> tuple[PlannedTable, ...]:
-    out = []
-    for s in root.sections("table"):
-        path = _path(s, "campaign", "cfd_data")
-        fits = s.texts("fits") or ("slope_at_origin",)
-        options = s.section("options", required=False)
-        chosen = {name: dict(options.section(name).content) for name in options.content}
-        idle = next((name for name in chosen if name not in fits), None)
-        if idle is not None:
-            raise s.fail(
-                "options", f"options of {shown(idle)}, which is not among the fits", f"options of {', '.join(fits)}"
-            )
-        out.append(table_at(path, fits, chosen))
-        s.finish()
-    if not out and not root.has("joint"):
-        raise root.fail("table", "no [[table]]", "at least one", 'Add [[table]] with campaign = "path/to/campaign".')
-    return tuple(out)
-
-
-def _joint(root: Section) -> tuple[PlannedJoint, ...]:
-    out = []
-    for s in root.sections("joint"):
-        names = s.texts("campaigns")
-        if len(names) < 2:
-            raise s.fail("campaigns", shown(list(names)), "the paths of two or more campaigns")
-        tables = tuple(table_at(_located(s, "campaigns", name, "cfd_data")) for name in names)
-        options = s.section("options", required=False)
-        out.append(PlannedJoint(tables, s.text("fit", JOINT), dict(options.content)))
-        s.finish()
-    return tuple(out)
-
-
-def _manoeuvres(root: Section, path: Path) -> tuple[PlannedManoeuvre, ...]:
-    out = []
-    for s in root.sections("manoeuvre"):
-        options = s.section("options", required=False)
-        accelerations = s.text("accelerations", MEASURED, ACCELERATIONS)
-        out.append(
-            PlannedManoeuvre(
-                s.text("parameter_file"), s.text("name"), dict(options.content), accelerations, path, s.name
-            )
-        )
-        s.finish()
-    return tuple(out)
 
 
 def read_plan(path: Path) -> Plan:
@@ -109,58 +342,36 @@ def read_plan(path: Path) -> Plan:
     Raises
     ------
     InputError
-        By file and key.
+        Everything that is wrong, by file, line and key.
     """
-    root = read_toml(path)
-    study = root.section("study")
-    scaling, conditions, body = (root.section(k, required=False) for k in ("scaling", "conditions", "body"))
-    added_mass = root.section("added_mass", required=False)
-    wanted = study.texts("wanted") or ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
-    for symbol in wanted:
-        symbol_at(study, "wanted", symbol)
-    files = []
-    for s in root.sections("parameter_file"):
-        name, group = safe_name(s, "name"), s.texts("campaigns")
-        hull = _path(s, "added_mass", "geometry") if s.has("added_mass") else None
-        method = s.text("added_mass_method", "all")
-        files.append(PlannedParameterFile(name, s.text("body"), group, s.texts("literature"), hull, method))
-        if name.casefold() in {f.name.casefold() for f in files[:-1]}:
-            raise s.fail("name", f"the parameter file {shown(name)} twice", "a name of its own for each")
-        s.finish()
-    references = []
-    for s in root.sections("references"):
-        references.append(_path(s, "path", "cfd_data"))
-        s.finish()
-    exports: list[PlannedExport] = []
-    for s in root.sections("export"):
-        planned = PlannedExport(
-            s.text("to"), s.flag("accept_loss", False), s.flag("strict", False),
-            s.text("accelerations", MEASURED, ACCELERATIONS), path, s.name,
-        )  # fmt: skip
-        if planned.to in {e.to for e in exports}:
-            raise s.fail("to", f"the target {shown(planned.to)} twice", "every target once")
-        exports.append(planned)
-        s.finish()
-    plan = Plan(
-        name=safe_name(study, "name"),
-        title=study.text("title", study.text("name")),
-        tables=_tables(root),
-        joint=_joint(root),
-        reference_point=study.point("reference_point") if study.has("reference_point") else None,
-        datum=read_datum(study) if study.has("datum") else None,
-        scaling=read_scaling(scaling) if scaling.content else None,
-        conditions=read_conditions(conditions) if conditions.content else None,
-        body=_path(body, "path", "geometry") if body.content else None,
-        references=tuple(references),
-        parameter_files=tuple(files),
-        exports=tuple(exports),
-        manoeuvres=_manoeuvres(root, path),
-        wanted=tuple(w.removesuffix("'") for w in wanted),
-        include_uncertain=study.flag("include_uncertain", False),
+    file = takes.declared(PlanFile, read_toml(path))
+    study = file.study
+    return Plan(
+        name=study.name,
+        title=study.name if study.title is None else study.title,
+        tables=tuple(table_at(t.campaign, t.used, t.options) for t in file.table),
+        joint=tuple(PlannedJoint(tuple(map(table_at, j.campaigns)), j.fit, j.options) for j in file.joint or ()),
+        reference_point=study.reference_point,
+        datum=None if study.datum is None else Datum.named(study.datum, study.datum_note or ""),
+        scaling=file.scaling,
+        conditions=file.conditions,
+        body=None if file.body is None else file.body.path,
+        references=tuple(r.path for r in file.references),
+        parameter_files=tuple(
+            PlannedParameterFile(f.name, f.body, f.campaigns, f.literature, f.added_mass, f.added_mass_method)
+            for f in file.parameter_file
+        ),
+        exports=tuple(
+            PlannedExport(e.to, e.accept_loss, e.strict, e.accelerations, path, f"export[{i}]")
+            for i, e in enumerate(file.export)
+        ),
+        manoeuvres=tuple(
+            PlannedManoeuvre(m.parameter_file, m.name, m.options, m.accelerations, path, f"manoeuvre[{i}]")
+            for i, m in enumerate(file.manoeuvre)
+        ),
+        wanted=tuple(w.removesuffix("'") for w in study.wanted or ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")),
+        include_uncertain=study.include_uncertain,
         file=InputFile(path.name, sha256_of(path)),
-        hull=_path(added_mass, "body", "geometry") if added_mass.content else None,
-        method=added_mass.text("method", "all"),
+        hull=None if file.added_mass is None else file.added_mass.body,
+        method=file.added_mass.method if file.added_mass else "all",
     )
-    for section in (study, scaling, conditions, body, added_mass, root):
-        section.finish()
-    return plan

@@ -6,29 +6,44 @@ What a campaign declares about the uncertainty of its inputs.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from types import MappingProxyType
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import Axes, Datum, parse_axes, read_datum
-from coeflab.core.provenance import TABLE_KINDS, Source, read_source
-from coeflab.core.text.toml import Section, read_toml
+from coeflab.core import declarations as takes
+from coeflab.core.axes import Axes, Datum, DatumKeys, Frame
+from coeflab.core.errors import InputError, shown
+from coeflab.core.provenance import TABLE_KINDS, Source
+from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief, locked
 from coeflab.core.wording import Verbatim
-from coeflab.law.scaling import Conditions, Scaling, read_conditions, read_scaling
+from coeflab.law.scaling import Conditions, Scaling
 
-SECTION = "uncertainty"
 # Beyond these an input is a mistyped unit (per cent for a share, degrees for radians) or no measurement.
 LARGEST_RELATIVE = 0.5
 LARGEST_ANGLE = 0.0873  # 5 deg
+HALF_WIDTH = takes.Within(
+    lambda v: "" if v > 0.0 else "a 95 % half-width above zero",
+    "Leave the key out where it was not assessed.",
+    {"exclusiveMinimum": 0},
+)
+NO_DEGREES = takes.Within(
+    lambda v: "a half-width up to 5 deg" if v > LARGEST_ANGLE else "", 'A bare number is in rad; write "0.1 deg".'
+)
+NO_PER_CENT = takes.Within(
+    lambda v: "a relative half-width up to 0.5" if v > LARGEST_RELATIVE else "", "One per cent is 0.01."
+)
+HalfAngle = Annotated[takes.Angle, HALF_WIDTH, NO_DEGREES]
+Share = Annotated[takes.Pure, HALF_WIDTH, NO_PER_CENT]
 
 
 @dataclass(frozen=True, slots=True)
-class InputUncertainty:
-    """95 % half-widths of errors that all points of a campaign share; None where nothing was declared.
+class InputUncertainty(takes.Declaration):
+    """95 % half-widths of errors that all points of a campaign share; what is left out was not assessed, which is not zero.
 
     Attributes
     ----------
@@ -48,14 +63,14 @@ class InputUncertainty:
         Relative.
     """
 
-    angle: float | None = None
-    rate: float | None = None
-    speed: float | None = None
-    force: float | None = None
-    moment: float | None = None
-    reference_point: float | None = None
-    length: float | None = None
-    density: float | None = None
+    angle: HalfAngle | None = None
+    rate: Share | None = None
+    speed: Share | None = None
+    force: Share | None = None
+    moment: Share | None = None
+    reference_point: Annotated[takes.Length, HALF_WIDTH] | None = None
+    length: Share | None = None
+    density: Share | None = None
 
     @property
     def declared(self) -> tuple[str, ...]:
@@ -64,101 +79,202 @@ class InputUncertainty:
 
 
 NAMES = tuple(f.name for f in fields(InputUncertainty))
-DIMENSIONS = {"angle": "angle", "reference_point": "length"}
-
-
-def read_input_uncertainty(section: Section) -> InputUncertainty | None:
-    """Read ``[uncertainty]`` of a campaign.toml: 95 % half-widths in SI or as texts with a unit (``"0.1 deg"``).
-
-    Returns
-    -------
-    InputUncertainty or None
-        None where the section is absent or empty: not assessed, which is not zero.
-
-    Raises
-    ------
-    InputError
-        An unknown key, a half-width that is not above zero, or a relative one above one half.
-    """
-    if not section.content:
-        return None
-    found: dict[str, float] = {}
-    for name in NAMES:
-        section.raw(name)
-    for name in NAMES:
-        dimension = DIMENSIONS.get(name, "none")
-        value = section.optional_quantity(name, dimension)
-        if value is None:
-            continue
-        if not value > 0.0:
-            raise section.fail(
-                name, f"{value:g}", "a 95 % half-width above zero", "Leave the key out where it was not assessed."
-            )
-        if name == "angle" and value > LARGEST_ANGLE:
-            raise section.fail(
-                name, f"{value:g} rad", "a half-width up to 5 deg", 'A bare number is in rad; write "0.1 deg".'
-            )  # fmt: skip
-        if dimension == "none" and value > LARGEST_RELATIVE:
-            raise section.fail(
-                name, f"{value:g}", "a relative half-width up to 0.5", "One per cent is 0.01."
-            )  # fmt: skip
-        found[name] = value
-    section.finish()
-    return InputUncertainty(**found)
-
-
 FILE = "campaign.toml"
 
 
 @brief
 @dataclass(frozen=True, slots=True)
-class Inertia:
+class TowedInertia(takes.Declaration):
     """Mass properties of the towed model, for forces that contain its inertia.
 
     Attributes
     ----------
     mass : float
         kg.
-    centre : tuple of 3 floats
-        Centre of gravity, m, FRD, from the datum.
-    tensor : tuple of 3 floats
+    centre_of_gravity : (3,) array
+        m, FRD, from the datum.
+    inertia : tuple of 3 floats
         Ix Iy Iz about the centre of gravity, kg m^2.
     """
 
-    mass: float
-    centre: tuple[float, float, float]
-    tensor: tuple[float, float, float]
+    mass: Annotated[takes.Mass, takes.ABOVE_ZERO]
+    centre_of_gravity: takes.Point
+    inertia: Annotated[tuple[float, ...], takes.numbers(3, "inertia", "three numbers [x, y, z] of inertia")]
 
 
 @brief
 @dataclass(frozen=True, slots=True)
-class TableDeclaration:
+class TableDeclaration(takes.Declaration):
     """One ``[[table]]`` of a campaign.
 
     Attributes
     ----------
     file : str
+        From the folder of the campaign.toml.
     sha256 : str
         Expected hash, or empty.
     contains_inertia : bool or None
-        None where it was not declared.
+        Whether forces and moments hold the model's own inertia; a rotating arm has to say so.
     labels, ignore : tuple of str
         Columns that name rows, and columns to skip.
     select : mapping of str to str
-        Only rows with this text in that label column enter fits.
-    select_reason : str
+        Only rows with this text in that label column enter fits; ``reason`` says why.
     cells : str
         Column with the cells of the grid that computed each row, or empty.
+    source_sha256 : str
+        Of the file that the table was made from; for people.
     """
 
-    file: str
-    sha256: str
-    contains_inertia: bool | None
-    labels: tuple[str, ...]
-    ignore: tuple[str, ...]
-    select: Mapping[str, str]
-    select_reason: str
-    cells: str = ""
+    file: takes.Text
+    sha256: takes.Words = ""
+    contains_inertia: takes.Flag | None = None
+    labels: takes.Texts = ()
+    ignore: takes.Texts = ()
+    select: Mapping[str, Any] = field(default_factory=dict)
+    cells: takes.Words = ""
+    source_sha256: takes.Anything = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "select", MappingProxyType(dict(self.select)))
+
+    def check(self) -> None:
+        """The reason of the selection is a text."""
+        if not isinstance(self.select_reason, str):
+            raise InputError(shown(self.select_reason), "a text", column="select.reason")
+
+    @property
+    def selected(self) -> Mapping[str, str]:
+        """Text that each label column has in the rows that enter fits."""
+        return {name: str(text) for name, text in self.select.items() if name != "reason"}
+
+    @property
+    def select_reason(self) -> str:
+        """Why the others do not."""
+        return Verbatim(self.select.get("reason", "not selected by the campaign"))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignHead(takes.Declaration):
+    """What the campaign is.
+
+    Attributes
+    ----------
+    name : str
+        The folder's unless given.
+    title : str
+        As reports print it.
+    body : str
+        Configuration of a body.toml that the tables are about.
+    importer : str
+        Format of the tables; ``coeflab formats`` lists them.
+    half_model : bool
+        Whether the tables are of one half of a symmetric model.
+    appendages, reynolds, notes, configuration, date : any
+        For people.
+    """
+
+    name: takes.Words | None = None
+    title: takes.Text
+    body: takes.Text
+    importer: takes.Words = "csv"
+    half_model: takes.Flag = False
+    appendages: takes.Anything = None
+    reynolds: takes.Anything = None
+    notes: takes.Anything = None
+    configuration: takes.Anything = None
+    date: takes.Anything = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignAxes(DatumKeys):
+    """Axes and signs of the tables' columns.
+
+    Attributes
+    ----------
+    frame : str or list of str
+        FRD, FLU, CFD (x aft, y starboard, z up), or where x, y and z point.
+    alpha, beta : str
+        Which sign the angle has, as a formula: v = +U sin(beta) or v = -U sin(beta), w = +U sin(alpha) or w = -U sin(alpha).
+    reference_point : (3,) array
+        Of moments and rates, [x, y, z], m, FRD, from the datum.
+    """
+
+    frame: Frame
+    alpha: takes.Text | None = None
+    beta: takes.Text | None = None
+    reference_point: takes.Point
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignConditions(Conditions):
+    """Fluid and speed of the test.
+
+    Attributes
+    ----------
+    appendages, notes, configuration, date : any
+        For people.
+    """
+
+    appendages: takes.Anything = None
+    notes: takes.Anything = None
+    configuration: takes.Anything = None
+    date: takes.Anything = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TableSource(Source):
+    """Where the tables come from.
+
+    Attributes
+    ----------
+    sha256, url : any
+        Of what was read; for people.
+    """
+
+    kind: Annotated[str, takes.one_of(*TABLE_KINDS)]
+    sha256: takes.Anything = None
+    url: takes.Anything = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignFile(takes.Declaration):
+    """A campaign.toml: what a folder of tables from one test or one set of computations declares about them.
+
+    Attributes
+    ----------
+    campaign : table
+        What the campaign is.
+    axes : table
+        Axes, signs and the reference point of the tables' columns.
+    scaling : table
+        The length of the primes.
+    conditions : table
+        Fluid and speed.
+    source : table
+        Where the tables come from.
+    inertia : table
+        Mass properties of the model, where tables contain its inertia.
+    uncertainty : table
+        95 % half-widths of errors that all points share; absent where not assessed, which is not zero.
+    table : array of tables
+        One for each file.
+    """
+
+    campaign: CampaignHead
+    axes: CampaignAxes
+    scaling: Scaling
+    conditions: CampaignConditions
+    source: TableSource
+    inertia: Annotated[TowedInertia | None, takes.OrEmpty()] = None
+    uncertainty: Annotated[InputUncertainty | None, takes.OrEmpty()] = None
+    table: tuple[TableDeclaration, ...] = ()
+
+    def check(self) -> None:
+        """At least one table."""
+        if not self.table:
+            raise InputError(
+                "no [[table]]", "at least one table", column="table", advice='Add [[table]] with file = "table.csv".'
+            )
 
 
 @brief
@@ -178,7 +294,7 @@ class Campaign:
     scaling: Scaling
     conditions: Conditions
     half_model: bool
-    inertia: Inertia | None
+    inertia: TowedInertia | None
     source: Source
     tables: tuple[TableDeclaration, ...]
     uncertainty: InputUncertainty | None = None
@@ -186,43 +302,6 @@ class Campaign:
     def __post_init__(self) -> None:
         object.__setattr__(self, "signs", MappingProxyType(dict(self.signs)))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
-
-
-def _inertia(section: Section) -> Inertia | None:
-    if not section.content:
-        return None
-    centre = section.point("centre_of_gravity")
-    out = Inertia(
-        section.positive("mass", "mass"),
-        (float(centre[0]), float(centre[1]), float(centre[2])),
-        section.triple("inertia", "inertia"),
-    )
-    section.finish()
-    return out
-
-
-def _tables(root: Section) -> tuple[TableDeclaration, ...]:
-    out = []
-    for t in root.sections("table"):
-        select = t.section("select", required=False)
-        chosen = {k: str(select.raw(k)) for k in select.content if k != "reason"}
-        out.append(
-            TableDeclaration(
-                file=t.text("file"),
-                sha256=t.text("sha256", ""),
-                contains_inertia=t.flag("contains_inertia") if t.has("contains_inertia") else None,
-                labels=t.texts("labels"),
-                ignore=t.texts("ignore"),
-                select=MappingProxyType(chosen),
-                select_reason=select.text("reason", "not selected by the campaign"),
-                cells=t.text("cells", ""),
-            )
-        )
-        t.raw("source_sha256")
-        t.finish()
-    if not out:
-        raise root.fail("table", "no [[table]]", "at least one table", 'Add [[table]] with file = "table.csv".')
-    return tuple(out)
 
 
 def read_campaign(path: Path) -> Campaign:
@@ -236,37 +315,26 @@ def read_campaign(path: Path) -> Campaign:
     Raises
     ------
     InputError
-        Anything missing, unknown or inconsistent, by file and key.
+        Everything missing, unknown or inconsistent, by file, line and key.
     """
-    root = read_toml(path)
-    head = root.section("campaign")
-    axes = root.section("axes")
-    scaling = root.section("scaling")
-    conditions = root.section("conditions")
-    source = root.section("source")
-    campaign = Campaign(
+    file = takes.declared(CampaignFile, read_toml(path))
+    head, axes, at, source = file.campaign, file.axes, file.conditions, file.source
+    signs = {"alpha": axes.alpha, "beta": axes.beta}
+    return Campaign(
         path=path,
-        name=Verbatim(head.text("name", path.parent.name)),
-        title=head.text("title"),
-        body=head.text("body"),
-        importer=head.text("importer", "csv"),
-        axes=parse_axes(axes.raw("frame"), path),
-        signs={k: str(axes.text(k)) for k in ("alpha", "beta") if axes.has(k)},
-        datum=read_datum(axes),
-        reference_point=axes.point("reference_point"),
-        scaling=read_scaling(scaling),
-        conditions=read_conditions(conditions),
-        half_model=head.flag("half_model", False),
-        inertia=_inertia(root.section("inertia", required=False)),
-        source=read_source(source, TABLE_KINDS, required=True),
-        tables=_tables(root),
-        uncertainty=read_input_uncertainty(root.section("uncertainty", required=False)),
+        name=Verbatim(path.parent.name) if head.name is None else head.name,
+        title=head.title,
+        body=head.body,
+        importer=head.importer,
+        axes=axes.frame,
+        signs={name: str(sign) for name, sign in signs.items() if sign is not None},
+        datum=axes.origin,
+        reference_point=axes.reference_point,
+        scaling=file.scaling,
+        conditions=Conditions(at.density, at.speed, at.viscosity, at.reynolds),
+        half_model=head.half_model,
+        inertia=file.inertia,
+        source=Source(*(getattr(source, f.name) for f in fields(Source))),
+        tables=file.table,
+        uncertainty=file.uncertainty,
     )
-    for optional in ("appendages", "reynolds", "notes", "configuration", "date"):
-        head.raw(optional)
-        conditions.raw(optional)
-    source.raw("sha256")
-    source.raw("url")
-    for section in (head, axes, scaling, conditions, source, root):
-        section.finish()
-    return campaign

@@ -18,7 +18,7 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
 from coeflab.law.transforms import rigid_body_force
-from coeflab.tables.campaign import Campaign, Inertia, TableDeclaration
+from coeflab.tables.campaign import Campaign, TableDeclaration, TowedInertia
 from coeflab.tables.force_table import Exclusion, ForceTable
 
 
@@ -250,7 +250,7 @@ def _exclusions(
     usable = {c: np.ones(len(columns), dtype=bool) for c in have}
     settings = {*columns.settings, "U"}
     out: list[Exclusion] = []
-    for label in table.select:
+    for label in table.selected:
         if label not in columns.labels:
             raise InputError(
                 f"a selection by {shown(label)}", "a label column of the table", file=campaign.path,
@@ -268,7 +268,7 @@ def _exclusions(
                     "a blank cell", "a number", row=row, name=column,
                     advice=f'If the source has no readable value there, name {column} under "uncertain".',
                 )  # fmt: skip
-        for label, wanted in table.select.items():
+        for label, wanted in table.selected.items():
             if columns.labels[label][row] != wanted:
                 out.append(Exclusion(row, line, "", f"{label} {columns.labels[label][row]}: {table.select_reason}"))
                 for mask in usable.values():
@@ -276,7 +276,7 @@ def _exclusions(
     return usable, tuple(out)
 
 
-def _contained(campaign: Campaign, table: TableDeclaration) -> Inertia | None:
+def _contained(campaign: Campaign, table: TableDeclaration) -> TowedInertia | None:
     """The inertia that the forces of a rotating test contain, if they do."""
     if table.contains_inertia is None:
         raise InputError(
@@ -295,11 +295,11 @@ def _contained(campaign: Campaign, table: TableDeclaration) -> Inertia | None:
 
 
 def _without_inertia(
-    inertia: Inertia, campaign: Campaign, forces: Mapping[str, Array], motion: Mapping[str, Array]
+    inertia: TowedInertia, campaign: Campaign, forces: Mapping[str, Array], motion: Mapping[str, Array]
 ) -> dict[str, Array]:
     """Add what holds the model on its circle, so that the fluid's force remains."""
-    centre = np.array(inertia.centre) - campaign.reference_point
-    tensor = np.diag(inertia.tensor) + inertia.mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+    centre = inertia.centre_of_gravity - campaign.reference_point
+    tensor = np.diag(inertia.inertia) + inertia.mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
     nu = np.column_stack([motion[m] for m in MOTIONS])
     held = rigid_body_force(inertia.mass, centre, tensor, nu)
     return {c: values + held[:, COMPONENTS.index(c)] for c, values in forces.items()}

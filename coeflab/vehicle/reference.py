@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 from types import MappingProxyType
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.axes import Datum, read_datum
+from coeflab.core import declarations as takes
+from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
-from coeflab.core.text.toml import Section, read_toml
+from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief, locked
 from coeflab.core.units import quantity
 from coeflab.law.coefficient import Coefficient, CoefficientSet
-from coeflab.law.scaling import Scaling, read_scaling
-from coeflab.law.symbols import symbol_at
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import derivative
 
 STABILITY = ("G_h", "G_v")
 
@@ -193,27 +195,153 @@ def _beside(c: Coefficient, r: Reference, references: tuple[Reference, ...]) -> 
     return c.body in quoted
 
 
-def _values(section: Section, named: tuple[str, ...] = ()) -> tuple[PublishedValue, ...]:
+Printed = dict[str, takes.Text]
+
+
+def _values(printed: Mapping[str, str], table: str, known: tuple[str, ...] = ()) -> tuple[PublishedValue, ...]:
     """Of derivatives, or of these names."""
     out = []
-    for symbol in section.content:
-        printed = section.text(symbol)
-        if not named:
-            symbol_at(section, symbol, symbol)
-        elif symbol not in named:
-            raise section.fail(symbol, shown(symbol), f"one of {', '.join(named)}")
+    for symbol, text in printed.items():
         try:
-            value: float | None = quantity(printed, "none")
-        except InputError:
-            if not printed.endswith("?"):
-                raise section.fail(symbol, shown(printed), 'a number, or one that ends in "?" if illegible') from None
-            value = None
-        out.append(PublishedValue(symbol, printed, value))
+            out.append(_value(symbol, text, known))
+        except InputError as why:
+            raise InputError(why.found, why.expected, column=f"{table}.{symbol}", advice=why.advice) from None
     return tuple(out)
 
 
-def _uncertainties(section: Section) -> dict[str, float]:
-    return {name: section.positive(name, "none") for name in section.content}
+def _value(symbol: str, text: str, known: tuple[str, ...]) -> PublishedValue:
+    if not known:
+        derivative(symbol)
+    elif symbol not in known:
+        raise InputError(shown(symbol), f"one of {', '.join(known)}")
+    return PublishedValue(symbol, text, _number(text))
+
+
+def _number(printed: str) -> float | None:
+    try:
+        return quantity(printed, "none")
+    except InputError:
+        if not printed.endswith("?"):
+            raise InputError(shown(printed), 'a number, or one that ends in "?" if illegible') from None
+        return None
+
+
+@dataclass(frozen=True, slots=True)
+class LiteratureKeys(takes.Declaration):
+    """Published values that may enter a parameter file.
+
+    Attributes
+    ----------
+    method : str
+        How they were found.
+    uncertainty : float
+        Stated, relative.
+    values : mapping of str to str
+        By symbol, as printed; a closing ? is an illegible digit.
+    """
+
+    method: takes.Text
+    uncertainty: Annotated[takes.Pure, takes.ABOVE_ZERO]
+    values: Printed
+
+    def check(self) -> None:
+        """Derivatives and numbers."""
+        _values(self.values, "values")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReferenceKeys(takes.Declaration):
+    """One column of published derivatives.
+
+    Attributes
+    ----------
+    name, citation, place, body, note : str
+        Of the column; where it is printed; which body it is about.
+    relation : {"re-analysis", "cross-body", "quoted"}
+        What it is to ours.
+    campaigns : tuple of str
+        Whose re-analysis it is.
+    length, length_name : float, str
+        Of its primes.
+    other_length, other_length_name : float, str
+        Another length that the source may have used.
+    values, indices : mapping of str to str
+        Derivatives, and G_h and G_v, as printed; a closing ? is an illegible digit.
+    literature : mapping
+        Values that may enter a parameter file, by kind.
+    uncertainties : mapping of str to float
+        Relative, as stated, by symbol or ``default``.
+    reference_point : (3,) array
+        [x, y, z], m, FRD, from the datum.
+    datum, datum_note : str
+        Id of the point that the reference point counts from, and where it is.
+    """
+
+    name: takes.Text
+    citation: takes.Text
+    place: takes.Words = ""
+    body: takes.Text
+    relation: Annotated[str, takes.one_of(*(r.value for r in Relation))]
+    campaigns: takes.Texts = ()
+    length: Annotated[takes.Length, takes.ABOVE_ZERO]
+    length_name: takes.Text
+    other_length: Annotated[takes.Length, takes.ABOVE_ZERO] | None = None
+    other_length_name: takes.Text | None = None
+    note: takes.Words = ""
+    values: Printed
+    literature: dict[str, LiteratureKeys] = field(default_factory=dict)
+    uncertainties: dict[str, Annotated[takes.Pure, takes.ABOVE_ZERO]] = field(default_factory=dict)
+    reference_point: takes.Point | None = None
+    indices: Printed = field(default_factory=dict)
+    datum: takes.Text | None = None
+    datum_note: takes.Words | None = None
+
+    def check(self) -> None:
+        """Keys that go together, derivatives and numbers."""
+        for key, other in (("other_length", "other_length_name"), ("datum_note", "datum")):
+            if getattr(self, key) is not None and getattr(self, other) is None:
+                raise InputError("nothing", f"what goes with {key}", column=other, advice=f"Add {other}.")
+        if self.other_length_name is not None and self.other_length is None:
+            raise InputError("a name without a length", "other_length", column="other_length_name")
+        _ = self.made
+
+    @property
+    def made(self) -> Reference:
+        """The column."""
+        other, name = self.other_length, self.other_length_name
+        return Reference(
+            name=self.name,
+            citation=self.citation,
+            place=self.place,
+            body=self.body,
+            relation=Relation(self.relation),
+            campaigns=self.campaigns,
+            scaling=Scaling(self.length, self.length_name),
+            other_scaling=None if other is None or name is None else Scaling(other, name),
+            note=self.note,
+            values=_values(self.values, "values"),
+            literature=tuple(
+                Literature(kind, k.method, k.uncertainty, _values(k.values, "values"))
+                for kind, k in self.literature.items()
+            ),
+            uncertainties=self.uncertainties,
+            reference_point=self.reference_point,
+            indices=_values(self.indices, "indices", STABILITY),
+            datum=None if self.datum is None else Datum.named(self.datum, self.datum_note or ""),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceFile(takes.Declaration):
+    """A published.toml.
+
+    Attributes
+    ----------
+    reference : array of tables
+        Columns of published derivatives.
+    """
+
+    reference: tuple[ReferenceKeys, ...] = ()
 
 
 def read_references(path: Path) -> tuple[Reference, ...]:
@@ -222,38 +350,6 @@ def read_references(path: Path) -> tuple[Reference, ...]:
     Raises
     ------
     InputError
-        By file and key.
+        Everything that is wrong, by file, line and key.
     """
-    root = read_toml(path)
-    out = []
-    for s in root.sections("reference"):
-        kinds = s.section("literature", required=False)
-        literature = []
-        for kind in kinds.content:
-            k = kinds.section(kind)
-            literature.append(
-                Literature(kind, k.text("method"), k.positive("uncertainty", "none"), _values(k.section("values")))
-            )
-            k.finish()
-        out.append(
-            Reference(
-                name=s.text("name"),
-                citation=s.text("citation"),
-                place=s.text("place", ""),
-                body=s.text("body"),
-                relation=Relation(s.text("relation", choices=tuple(r.value for r in Relation))),
-                campaigns=s.texts("campaigns"),
-                scaling=read_scaling(s),
-                other_scaling=read_scaling(s, "other_") if s.has("other_length") else None,
-                note=s.text("note", ""),
-                values=_values(s.section("values")),
-                literature=tuple(literature),
-                uncertainties=_uncertainties(s.section("uncertainties", required=False)),
-                reference_point=s.point("reference_point") if s.has("reference_point") else None,
-                indices=_values(s.section("indices", required=False), STABILITY),
-                datum=read_datum(s) if s.has("datum") else None,
-            )
-        )
-        s.finish()
-    root.finish()
-    return tuple(out)
+    return tuple(r.made for r in takes.declared(ReferenceFile, read_toml(path)).reference)

@@ -136,7 +136,7 @@ def test_shipped_bodies() -> None:
         ("length = 2.0", 'length = "2 kg"', ['"part[0].length"', "a unit of length"]),
         ("length = 2.0\n", "", ['"part[0].length"', "found nothing"]),
         ('"cylinder"', '"cilinder"', ['"part[0].form"', '"cylinder" or "plate"']),
-        ("radius =", "raduis =", ['"part[0].radius"', "found nothing"]),
+        ("radius =", "raduis =", ['"part[0].raduis"', "Did you mean part[0].radius?"]),
         ("length = 2.0", "length = 2.0\nspan = 1", ["part[0].span", "an unknown key"]),
         ("centre = [1.0, 0.0, 0.0]", "centre = [1.0]", ['"part[0].centre"', "a point"]),
         ("centre =", 'rotation = ["1 m", 0, 0]\ncentre =', ['"part[0].rotation"', "a unit of angle"]),

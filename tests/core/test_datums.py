@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.core.axes import SHIPPED, Datum, read_datum
+from coeflab.core.axes import SHIPPED, Datum, DatumKeys
+from coeflab.core.declarations import declared_key
 from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.text.toml import read_toml
 from coeflab.study.plan import read_plan
@@ -40,7 +41,7 @@ def test_ids_are_compared_and_prose_is_an_id_of_its_own(one: str, other: str, sa
 def test_notes_are_shown_and_never_compared(tmp_path: Path) -> None:
     file = tmp_path / "a.toml"
     file.write_text('[axes]\ndatum = "nose"\ndatum_note = "tip of the sonar dome"\n')
-    found = read_datum(read_toml(file).section("axes"))
+    found = declared_key(read_toml(file), "axes", DatumKeys).origin
     assert str(found) == "nose, tip of the sonar dome"
     assert found == Datum("nose", "somewhere else")
     assert str(Datum.named("nose, on the hull's axis")) == "nose, on the hull's axis"
@@ -51,7 +52,7 @@ def test_a_datum_that_is_no_text_is_one_error(tmp_path: Path) -> None:
     file = tmp_path / "a.toml"
     file.write_text('[axes]\ndatum = ["nose"]\n')
     with pytest.raises(InputError, match=r"axes\.datum"):
-        read_datum(read_toml(file).section("axes"))
+        declared_key(read_toml(file), "axes", DatumKeys)
 
 
 def campaign(folder: Path, symbol: str, datum: str) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.declarations import declared_key
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.provenance import Source
@@ -19,7 +20,7 @@ from coeflab.fits.slope_at_origin import fit
 from coeflab.fits.uncertainty.budget import Budget, BudgetPart, budgets_of, covariance, with_budget
 from coeflab.fits.uncertainty.grid_convergence import Convergence, gravest, grid_studies
 from coeflab.study.validation import validation
-from coeflab.tables.campaign import InputUncertainty, read_campaign, read_input_uncertainty
+from coeflab.tables.campaign import InputUncertainty, read_campaign
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable, declared, with_declarations
 from coeflab.vehicle.derived import centre_of_pressure, stability
@@ -333,7 +334,8 @@ def test_validation_brings_the_measurement_to_the_length_of_the_computation() ->
 def section(tmp_path: Path, text: str) -> InputUncertainty | None:
     file = tmp_path / "campaign.toml"
     file.write_text("x = 1\n" + text)
-    return read_input_uncertainty(read_toml(file).section("uncertainty", required=False))
+    toml = read_toml(file)
+    return declared_key(toml, "uncertainty", InputUncertainty) if "uncertainty" in toml.content else None
 
 
 def test_declared_input_uncertainties(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.declarations import declared_key
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.table import Severity
@@ -15,7 +16,7 @@ from coeflab.formats.lost import lost_by_all
 from coeflab.law.scaling import Scaling
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
-from coeflab.tables.campaign import read_input_uncertainty
+from coeflab.tables.campaign import InputUncertainty
 from coeflab.tables.importers import PlannedTable
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.workbench import run
@@ -57,7 +58,7 @@ def test_an_angle_in_radians_that_was_meant_in_degrees_is_refused(tmp_path: Path
     file = tmp_path / "campaign.toml"
     file.write_text("[uncertainty]\nangle = 0.1\n")
     with pytest.raises(InputError, match=r"0\.1 deg"):
-        read_input_uncertainty(read_toml(file).section("uncertainty"))
+        declared_key(read_toml(file), "uncertainty", InputUncertainty)
 
 
 def test_the_added_mass_of_a_plan_reaches_file_and_study() -> None:

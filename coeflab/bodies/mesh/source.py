@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +12,10 @@ from numpy.typing import NDArray
 from coeflab.bodies.mesh.file import load
 from coeflab.bodies.mesh.gates import examined, repaired
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.core.axes import parse_axes
-from coeflab.core.errors import UnitsError
+from coeflab.core import declarations as takes
+from coeflab.core.axes import Frame
+from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.text.toml import Section
 from coeflab.core.types import Array, locked
 from coeflab.core.units import factor
 
@@ -64,25 +65,41 @@ class MeshSource:
         return TriangleMesh(placed, sound.faces), sound.statements
 
 
-def mesh_source(section: Section, folder: Path) -> MeshSource:
-    """Read ``path`` (from the folder), ``unit``, ``axes``, ``origin`` and ``repair``; the file itself is not opened.
-
-    Raises
-    ------
-    InputError
-        Anything missing, unknown or of the wrong unit, by file and key.
-    """
-    file = folder / section.text("path")
-    name = section.text("unit")
+def _unit(value: Any, file: Path) -> float:
     try:
-        unit = factor(name, "length")
+        return factor(takes.text_of(value, file), "length")
     except UnitsError as why:
-        raise section.fail("unit", why.found, why.expected, 'Name the unit of the file: "m", "mm", "ft" ...') from None
-    repair = section.flag("repair", False)
-    axes = parse_axes(section.raw("axes"), section.file, section.key("axes"))
-    origin = section.point("origin") if section.has("origin") else np.zeros(3)
-    section.finish()
-    return MeshSource(file, unit, axes.rotation, origin, repair)
+        raise InputError(why.found, why.expected, advice='Name the unit of the file: "m", "mm", "ft" ...') from None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeshKeys(takes.Declaration):
+    """A surface of triangles.
+
+    Attributes
+    ----------
+    path : str
+        STL, OBJ, PLY or GLB, from the folder of the body.toml.
+    unit : str
+        Of its numbers, such as m, mm or ft.
+    axes : str or list of str
+        FRD, FLU, CFD (x aft, y starboard, z up), or where x, y and z point.
+    origin : (3,) array
+        Where its origin lies, [x, y, z], m, FRD, from the datum; the datum itself unless given.
+    repair : bool
+        Mend a mesh that is not sound.
+    """
+
+    path: takes.Text
+    unit: Annotated[float, takes.Takes("a text", _unit, {"type": "string"})]
+    axes: Frame
+    origin: takes.Point | None = None
+    repair: takes.Flag = False
+
+    def source(self, folder: Path) -> MeshSource:
+        """The file itself is not opened."""
+        origin = np.zeros(3) if self.origin is None else self.origin
+        return MeshSource(folder / self.path, self.unit, self.axes.rotation, origin, self.repair)
 
 
 def ply(vertices: Array, faces: NDArray[np.int64]) -> bytes:

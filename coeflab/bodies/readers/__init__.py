@@ -12,15 +12,19 @@ from coeflab.core.text.toml import read_toml
 
 def read_body(path: Path) -> Body:
     """A body, by the reader that its body.toml names."""
-    head = read_toml(path).section("body")
-    reader = head.text("reader", "particulars")
+    head = read_toml(path).content.get("body")
+    named = head.get("reader") if isinstance(head, dict) else None
+    reader = named if isinstance(named, str) else "particulars"
     with BODIES.guarded(reader):
         return BODIES.load(reader).read(path)
 
 
 @runtime_checkable
 class BodyReader(Plugin, Protocol):
-    """Reads a body."""
+    """Reads a body.
+
+    A reader may have ``File``, the declaration of its body.toml: the published JSON Schema holds it.
+    """
 
     def read(self, path: Path) -> Body:
         """The body of a file.

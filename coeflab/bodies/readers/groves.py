@@ -14,18 +14,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial import Polynomial
 
 from coeflab.bodies.body import Body, Configuration
-from coeflab.bodies.body_file import open_body_file
+from coeflab.bodies.body_file import ShapedBodyFile
 from coeflab.bodies.closed_forms import graded_nodes
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed, united
 from coeflab.bodies.mesh.structured_surface import lofted
 from coeflab.bodies.shape import Revolution
+from coeflab.core.declarations import Declaration, Flag, declared
 from coeflab.core.errors import InputError
+from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array, brief
 
 Hull = Callable[[Array], tuple[Array, Array]]
@@ -357,6 +360,34 @@ def _solid(sections: Array, roll: float) -> TriangleMesh:
     return TriangleMesh(vertices @ np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]]).T, faces)
 
 
+@dataclass(frozen=True, slots=True)
+class HullKeys(Declaration):
+    """What is attached to the hull.
+
+    Attributes
+    ----------
+    sail, planes : bool
+        The sail, and the four stern planes.
+    """
+
+    sail: Flag = False
+    planes: Flag = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class File(ShapedBodyFile):
+    """A body.toml whose shape is DARPA SUBOFF.
+
+    Attributes
+    ----------
+    hull : table
+        What is attached to the hull.
+    """
+
+    reader: ClassVar[str] = "groves"
+    hull: HullKeys = HullKeys()
+
+
 def read(path: Path) -> Body:
     """Read a body.toml whose shape is SUBOFF; ``[hull]`` may say ``sail = true`` and ``planes = true``.
 
@@ -366,11 +397,9 @@ def read(path: Path) -> Body:
     Raises
     ------
     InputError
-        Anything missing, unknown or of the wrong unit, by file and key.
+        Everything missing, unknown or of the wrong unit, by file, line and key.
     """
-    opened = open_body_file(path, "groves")
-    chosen = opened.root.section("hull", required=False)
-    with_sail, with_planes = chosen.flag("sail", False), chosen.flag("planes", False)
-    chosen.finish()
+    file = declared(File, read_toml(path))
+    with_sail, with_planes = file.hull.sail, file.hull.planes
     shape = mesh(with_sail, with_planes) if with_sail or with_planes else meridian()
-    return opened.body(shape, appended(with_sail, with_planes))
+    return file.shaped(path, shape, appended(with_sail, with_planes))

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 
 from coeflab.bodies.body import Body, Configuration
-from coeflab.bodies.body_file import open_body_file
+from coeflab.bodies.body_file import ShapedBodyFile
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import UNITS, computed, likely_unit, require_plausible
-from coeflab.bodies.mesh.source import mesh_source
-from coeflab.core.text.toml import Section
+from coeflab.bodies.mesh.source import MeshKeys
+from coeflab.core.declarations import declared
+from coeflab.core.errors import InputError
+from coeflab.core.text.toml import read_toml
 from coeflab.core.units import factor
 
 summary = "a closed mesh (STL, OBJ, PLY, GLB) with declared unit and axes, refused unless sound"
 citations = ("eberly2002",)
 
+Refusal = Callable[..., InputError]
 NEAR, FAR = 0.005, 0.05
 STATED = (
     ("length", 0, ("length", "length_overall", "loa")),
@@ -27,7 +32,7 @@ STATED = (
 )
 
 
-def _require_size(mesh: TriangleMesh, unit: float, lengths: dict[str, float], section: Section) -> tuple[str, ...]:
+def _require_size(mesh: TriangleMesh, unit: float, lengths: dict[str, float], fail: Refusal) -> tuple[str, ...]:
     """Hold the mesh against the stated sizes; what lies 0.5 to 5 % off is returned in words.
 
     Raises
@@ -38,14 +43,14 @@ def _require_size(mesh: TriangleMesh, unit: float, lengths: dict[str, float], se
     said = []
     stated = {name: (axis, lengths[key]) for name, axis, keys in STATED for key in keys if key in lengths}
     if not stated:
-        require_plausible(mesh, unit, partial(section.fail, "unit"))
+        require_plausible(mesh, unit, partial(fail, "mesh.unit"))
     for name, (axis, value) in stated.items():
         found = float(mesh.extents[axis])
         if not _near(found, value):
             axes = "Are the axes right?" if np.any(np.abs(mesh.extents / value - 1.0) <= FAR) else ""
             advice = axes or likely_unit(found / unit, value)
-            raise section.fail(
-                "path", f"a {name} of {found:.6g} m", f"{value:.6g} m as in [particulars], within 5 %", advice
+            raise fail(
+                "mesh.path", f"a {name} of {found:.6g} m", f"{value:.6g} m as in [particulars], within 5 %", advice
             )
         if abs(found / value - 1.0) > NEAR:
             said.append(f"{name} {100.0 * (found / value - 1.0):+.1f} % from the stated")
@@ -53,7 +58,7 @@ def _require_size(mesh: TriangleMesh, unit: float, lengths: dict[str, float], se
 
 
 def _require_volume(
-    mesh: TriangleMesh, unit: float, printed: tuple[Configuration, ...], section: Section
+    mesh: TriangleMesh, unit: float, printed: tuple[Configuration, ...], fail: Refusal
 ) -> tuple[str, ...]:
     """Hold the volume against the nearest of the stated ones, in the same way."""
     stated = [(abs(mesh.volume / c.volume - 1.0), c) for c in printed if c.volume]
@@ -65,8 +70,8 @@ def _require_volume(
         likely = (
             f'Is the unit "{u}"?' for u in UNITS if _near(mesh.volume * (factor(u, "length") / unit) ** 3, volume)
         )
-        raise section.fail(
-            "path",
+        raise fail(
+            "mesh.path",
             f"a volume of {mesh.volume:.6g} m^3",
             f"{volume:.6g} m^3 as in [[configuration]] {nearest.name}, within 5 %",
             next(likely, "Does the mesh show the same body, all of it and once?"),
@@ -76,6 +81,20 @@ def _require_volume(
 
 def _near(found: float, stated: float) -> bool:
     return abs(found / stated - 1.0) <= FAR
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class File(ShapedBodyFile):
+    """A body.toml whose shape is a mesh.
+
+    Attributes
+    ----------
+    mesh : table
+        A file of triangles.
+    """
+
+    reader: ClassVar[str] = "mesh"
+    mesh: MeshKeys
 
 
 def read(path: Path) -> Body:
@@ -92,13 +111,13 @@ def read(path: Path) -> Body:
         Anything missing, unknown or of the wrong unit, by file and key; a file that is no sound mesh; a body far from
         its stated size.
     """
-    opened = open_body_file(path, "mesh")
-    section = opened.root.section("mesh")
-    source = mesh_source(section, path.parent)
+    toml = read_toml(path)
+    file = declared(File, toml)
+    source = file.mesh.source(path.parent)
     shape, statements = source.read()
-    body = opened.body(shape, computed(shape, statements))
-    said = _require_size(shape, source.unit, dict(body.lengths), section)
-    said += _require_volume(shape, source.unit, body.configurations[1:], section)
+    body = file.shaped(path, shape, computed(shape, statements))
+    said = _require_size(shape, source.unit, dict(body.lengths), toml.fail)
+    said += _require_volume(shape, source.unit, body.configurations[1:], toml.fail)
     return dataclasses.replace(
         body,
         configurations=(computed(shape, statements + said), *body.configurations[1:]),

@@ -9,16 +9,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 
 from coeflab.bodies.body import Body, Configuration
-from coeflab.bodies.body_file import open_body_file
+from coeflab.bodies.body_file import ShapedBodyFile
 from coeflab.bodies.closed_forms import graded_nodes
 from coeflab.bodies.shape import Revolution, within_reach
+from coeflab.core.declarations import Angle, Declaration, Length, Pure, declared
 from coeflab.core.errors import InputError
 from coeflab.core.limits import LONGEST_PART
-from coeflab.core.text.toml import Section
+from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array
 
 summary = "a Myring hull from the lengths of nose, middle body and tail, diameter, exponent and tail angle"
@@ -28,7 +30,7 @@ BLUNTEST, SHARPEST = 5.0, 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class Myring:
+class Myring(Declaration):
     """The parameters of a Myring hull; m and rad.
 
     Attributes
@@ -51,14 +53,14 @@ class Myring:
         negative radius or swells beyond the diameter.
     """
 
-    nose: float
-    middle: float
-    tail: float
-    diameter: float
-    exponent: float
-    tail_angle: float
-    nose_offset: float = 0.0
-    tail_offset: float = 0.0
+    nose: Length
+    middle: Length
+    tail: Length
+    diameter: Length
+    exponent: Pure
+    tail_angle: Angle
+    nose_offset: Length = 0.0
+    tail_offset: Length = 0.0
 
     def __post_init__(self) -> None:
         for name in ("nose", "tail", "diameter"):
@@ -133,15 +135,18 @@ class Myring:
         return Revolution(-x, weight, np.clip(radius, 0.0, None), -slope, np.zeros(2), self.joints[-1])
 
 
-def _hull(section: Section) -> Myring:
-    lengths = {key: section.quantity(key, "length") for key in ("nose", "middle", "tail", "diameter")}
-    offsets = {key: section.optional_quantity(key, "length") or 0.0 for key in ("nose_offset", "tail_offset")}
-    exponent, angle = section.quantity("exponent", "none"), section.quantity("tail_angle", "angle")
-    section.finish()
-    try:
-        return Myring(**lengths, exponent=exponent, tail_angle=angle, **offsets)
-    except InputError as why:
-        raise section.fail(why.column or "", why.found, why.expected, why.advice) from None
+@dataclass(frozen=True, slots=True, kw_only=True)
+class File(ShapedBodyFile):
+    """A body.toml whose shape is a Myring hull.
+
+    Attributes
+    ----------
+    hull : table
+        Parameters of the hull.
+    """
+
+    reader: ClassVar[str] = "myring"
+    hull: Myring
 
 
 def read(path: Path) -> Body:
@@ -150,17 +155,16 @@ def read(path: Path) -> Body:
     Raises
     ------
     InputError
-        Anything missing, unknown, of the wrong unit or out of bounds, by file and key.
+        Everything missing, unknown, of the wrong unit or out of bounds, by file, line and key.
     """
-    opened = open_body_file(path, "myring")
-    form = _hull(opened.root.section("hull"))
-    hull = form.meridian()
+    file = declared(File, read_toml(path))
+    hull = file.hull.meridian()
     computed = Configuration(
         name="by_equations",
         title="integrals of the equations",
         volume=hull.volume,
-        wetted_surface=hull.integrals.wetted_surface + form.flat_ends,
+        wetted_surface=hull.integrals.wetted_surface + file.hull.flat_ends,
         centre_of_buoyancy=hull.centre_of_volume,
         mass=None,
     )
-    return opened.body(hull, computed)
+    return file.shaped(path, hull, computed)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Pl
 from coeflab.bodies.simplify.part_forms import Likeness, Piece, likeness
 from coeflab.bodies.simplify.segmentation import convex_pieces, segments, without_overlap
 from coeflab.bodies.simplify.simplified import KEPT_FACES, Simplification, SimplifiedPart
+from coeflab.core.declarations import Declaration, Text, declared, numbers
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.provenance import Source
@@ -76,6 +77,55 @@ def _length(text: str) -> float:
         return quantity(text, "length", key="--box")
 
 
+Side = Annotated[tuple[float, ...], numbers(2, "length", "[low, high], lengths in m or with units")]
+
+
+@dataclass(frozen=True, slots=True)
+class BoxKeys(Declaration):
+    """A box drawn around a part.
+
+    Attributes
+    ----------
+    name : str
+        Of the part inside.
+    x, y, z : (float, float)
+        [low, high], m, FRD, from the datum.
+    """
+
+    name: Text
+    x: Side
+    y: Side
+    z: Side
+
+    def check(self) -> None:
+        """A box from a lower to a higher corner."""
+        _ = self.made
+
+    @property
+    def made(self) -> NamedBox:
+        """The box."""
+        (x0, x1), (y0, y1), (z0, z1) = self.x, self.y, self.z
+        return NamedBox(self.name, (x0, y0, z0), (x1, y1, z1))
+
+
+@dataclass(frozen=True, slots=True)
+class BoxFile(Declaration):
+    """Boxes that a person draws around parts of a body.
+
+    Attributes
+    ----------
+    box : array of tables
+        One for each part.
+    """
+
+    box: tuple[BoxKeys, ...] = ()
+
+    def check(self) -> None:
+        """One at least."""
+        if not self.box:
+            raise InputError("no [[box]]", "at least one, with name, x, y and z", column="box")
+
+
 def read_boxes(path: Path) -> tuple[NamedBox, ...]:
     """The ``[[box]]`` tables of a TOML file, each with name, x, y and z as [low, high].
 
@@ -83,25 +133,7 @@ def read_boxes(path: Path) -> tuple[NamedBox, ...]:
     ------
     InputError
     """
-    root = read_toml(path)
-    out = []
-    for section in root.sections("box"):
-        name, pairs = section.text("name"), []
-        for key in "xyz":
-            pair = section.raw(key)
-            if not isinstance(pair, list) or len(pair) != 2:
-                raise section.fail(key, shown(pair), "[low, high], lengths in m or with units")
-            pairs.append([quantity(v, "length", file=path, key=section.key(key)) for v in pair])
-        section.finish()
-        low, high = zip(*pairs, strict=True)
-        try:
-            out.append(NamedBox(name, low, high))
-        except InputError as why:
-            raise InputError(why.found, why.expected, file=path, column="box") from None
-    root.finish()
-    if not out:
-        raise InputError("no [[box]]", "at least one, with name, x, y and z", file=path)
-    return tuple(out)
+    return tuple(b.made for b in declared(BoxFile, read_toml(path)).box)
 
 
 MOST_FACES, DRAWN_FACES = 1_000_000, 20_000

@@ -1,4 +1,4 @@
-"""Reading the TOML files that people write: every complaint names file and key, unknown keys are errors.
+"""Reading the TOML files that people write, with the lines of their keys.
 
 Writing TOML: tables, arrays of tables and values, all digits, nothing that a parser would take for something else.
 """
@@ -6,46 +6,44 @@ Writing TOML: tables, arrays of tables and values, all digits, nothing that a pa
 from __future__ import annotations
 
 import codecs
-import difflib
+import functools
 import math
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from coeflab.core.errors import InputError, shown
-from coeflab.core.limits import INTEGER_DIGITS, TOML_BYTES, TOML_NAMES_IN_A_KEY, TOML_TABLES, positive_number
-from coeflab.core.units import quantity
-from coeflab.core.wording import Verbatim
+from coeflab.core.errors import InputError
+from coeflab.core.limits import INTEGER_DIGITS, TOML_BYTES, TOML_NAMES_IN_A_KEY, TOML_TABLES
 
 _NAME = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
 _LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_NAME}(?:[ \t]*+\.[ \t]*+{_NAME}){{{TOML_NAMES_IN_A_KEY},}}")
+_LONGEST_STATEMENT = 1 << 14  # the parser goes over it once a line
 _LONG_INTEGER = re.compile(rf"[0-9_]{{{INTEGER_DIGITS + 1},}}+")
 
 
-class Section:
-    """One table of a TOML file, read key by key.
+@dataclass(frozen=True, slots=True)
+class TomlFile:
+    """A TOML file that was read, with the lines of its keys for messages.
 
-    Parameters
+    Attributes
     ----------
-    content : dict
-    file : path
-    name : str
-        Dotted name of the table, for messages.
+    path : Path
+    content : mapping
+    text : str
     """
 
-    def __init__(self, content: dict[str, Any], file: Path, name: str = "") -> None:
-        self.content, self.file, self.name = content, file, name
-        self._read: set[str] = set()
-        self._known: set[str] = set()
+    path: Path
+    content: Mapping[str, Any]
+    text: str
 
-    def key(self, key: str) -> str:
-        """Dotted name of a key."""
-        return f"{self.name}.{key}" if self.name else key
+    def line(self, place: Sequence[str | int]) -> int | None:
+        """The line of a key, of the table that lacks it, or None; array items count from 0."""
+        lines = _lines(self.text)
+        known = (lines[tuple(place[:n])] for n in range(len(place), 0, -1) if tuple(place[:n]) in lines)
+        return next(known, None)
 
     def fail(self, key: str, found: str, expected: str, advice: str = "") -> InputError:
         """An error about one key, to be raised by the caller.
@@ -53,139 +51,47 @@ class Section:
         Parameters
         ----------
         key : str
+            Dotted, such as ``free[0].places``.
         found, expected : str
         advice : str, optional
         """
-        return InputError(found, expected, file=self.file, column=self.key(key), advice=advice)
+        return InputError(found, expected, file=self.path, line=self.line(dotted(key)), key=key, advice=advice)
 
-    def has(self, key: str) -> bool:
-        """Whether the key is there."""
-        self._known.add(key)
-        return key in self.content
 
-    def raw(self, key: str, default: Any = None) -> Any:
-        """The value as TOML gives it."""
-        self._read.add(key)
-        return self.content.get(key, default)
+def dotted(key: str) -> tuple[str | int, ...]:
+    """The place of a dotted key: ``free[0].places``."""
+    return tuple(int(number) if number else name for number, name in re.findall(r"\[(\d+)\]|([^.\[\]]+)", key))
 
-    def _required(self, key: str, kind: str) -> Any:
-        if key not in self.content:
-            raise self.fail(key, "nothing", kind, f"Add {self.key(key)}.")
-        return self.raw(key)
 
-    def text(self, key: str, default: str | None = None, choices: tuple[str, ...] = ()) -> str:
-        """A text, optionally one of several; else the user's own words.
-
-        Parameters
-        ----------
-        key : str
-        default : str, optional
-            Without it the key is required, and not blank.
-        choices : tuple of str, optional
-            Words that are allowed; empty: any.
-        """
-        value = self._required(key, "a text") if default is None else self.raw(key, default)
-        if not isinstance(value, str) or (default is None and not value.strip()):
-            raise self.fail(key, shown(value), "a text")
-        if choices and value not in choices:
-            raise self.fail(key, shown(value), " or ".join(f'"{c}"' for c in choices))
-        return value if choices or key not in self.content else Verbatim(value)
-
-    def flag(self, key: str, default: bool | None = None) -> bool:
-        """True or false."""
-        value = self._required(key, "true or false") if default is None else self.raw(key, default)
-        if not isinstance(value, bool):
-            raise self.fail(key, shown(value), "true or false")
-        return value
-
-    def integer(self, key: str, default: int, low: int, high: int) -> int:
-        """A whole number within bounds.
-
-        Parameters
-        ----------
-        key : str
-        default, low, high : int
-            The bounds are allowed values.
-        """
-        value = self.raw(key, default)
-        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
-            raise self.fail(key, shown(value), f"a whole number from {low} to {high}")
-        return value
-
-    def quantity(self, key: str, dimension: str) -> float:
-        """A number in SI or a text with its unit; required."""
-        value = self._required(key, f"a {dimension}")
-        return quantity(value, dimension, file=self.file, key=self.key(key))
-
-    def optional_quantity(self, key: str, dimension: str) -> float | None:
-        """A number in SI or a text with its unit, if given."""
-        return self.quantity(key, dimension) if self.has(key) else None
-
-    def positive(self, key: str, dimension: str) -> float:
-        """A required number above zero."""
-        value = self.quantity(key, dimension)
-        if expected := positive_number(value):
-            raise self.fail(key, f"{shown(self.raw(key))}", expected)
-        return value
-
-    def optional_positive(self, key: str, dimension: str) -> float | None:
-        """A number above zero, if given."""
-        return self.positive(key, dimension) if self.has(key) else None
-
-    def point(self, key: str) -> NDArray[np.float64]:
-        """A point or triple of lengths, m."""
-        return np.array(self.triple(key, "length", "a point [x, y, z] in metres, FRD, from the datum"))
-
-    def triple(self, key: str, dimension: str, kind: str = "") -> tuple[float, float, float]:
-        """Three numbers in SI or texts with units.
-
-        Parameters
-        ----------
-        key, dimension : str
-            The latter of `coeflab.core.units.SI`.
-        kind : str, optional
-            What the three are, for the error.
-        """
-        expected = kind or f"three numbers [x, y, z] of {dimension}"
-        value = self._required(key, expected)
-        if not isinstance(value, list) or len(value) != 3:
-            raise self.fail(key, shown(value), expected)
-        x, y, z = (quantity(v, dimension, file=self.file, key=self.key(key)) for v in value)
-        return x, y, z
-
-    def texts(self, key: str) -> tuple[str, ...]:
-        """A list of texts, empty by default."""
-        value = self.raw(key, [])
-        if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
-            raise self.fail(key, shown(value), "a list of texts")
-        return tuple(map(Verbatim, value))
-
-    def section(self, key: str, required: bool = True) -> Section:
-        """A sub-table; an empty one where it is absent and not required."""
-        value = self._required(key, "a table") if required else self.raw(key, {})
-        if not isinstance(value, dict):
-            raise self.fail(key, shown(value), f"a table [{self.key(key)}]")
-        return Section(value, self.file, self.key(key))
-
-    def sections(self, key: str) -> list[Section]:
-        """An array of tables, empty by default."""
-        value = self.raw(key, [])
-        if not isinstance(value, list) or not all(isinstance(v, dict) for v in value):
-            raise self.fail(key, shown(value), f"tables [[{self.key(key)}]]")
-        return [Section(v, self.file, f"{self.key(key)}[{i}]") for i, v in enumerate(value)]
-
-    def finish(self) -> None:
-        """Refuse keys that nobody read."""
-        for key in self.content:
-            if key not in self._read:
-                known = sorted(self._read | self._known)
-                near = difflib.get_close_matches(key, known, n=1)
-                raise self.fail(
-                    key,
-                    "an unknown key",
-                    "one of " + ", ".join(known),
-                    f"Did you mean {self.key(near[0])}?" if near else "",
-                )
+@functools.lru_cache(maxsize=1)
+def _lines(text: str) -> dict[tuple[str | int, ...], int]:
+    """Line of every table and key, statement by statement; empty behind a value that goes over too many lines."""
+    out: dict[tuple[str | int, ...], int] = {}
+    counts: dict[tuple[str | int, ...], int] = {}
+    table: tuple[str | int, ...] = ()
+    statement, began = "", 1
+    for number, line in enumerate(text.split("\n"), 1):
+        began = began if statement else number
+        statement += line + "\n"
+        try:
+            read: Any = tomllib.loads(statement)
+        except ValueError:
+            if len(statement) > _LONGEST_STATEMENT:
+                break
+            continue
+        is_header, statement = statement.lstrip().startswith("["), ""
+        place = () if is_header else table
+        while isinstance(read, dict) and len(read) == 1:
+            ((name, read),) = read.items()
+            place = (*place, name)
+            out.setdefault(place, began)
+            if is_header and isinstance(read, list):
+                counts[place] = counts.get(place, 0) + 1
+            if is_header and place in counts:
+                place = (*place, counts[place] - 1)
+                out.setdefault(place, began)
+        table = place if is_header else table
+    return out
 
 
 def read_text(path: Path, largest: int = TOML_BYTES) -> str:
@@ -226,7 +132,7 @@ def read_text(path: Path, largest: int = TOML_BYTES) -> str:
     return text
 
 
-def read_toml(path: Path) -> Section:
+def read_toml(path: Path) -> TomlFile:
     """Parse a TOML file.
 
     Raises
@@ -237,7 +143,7 @@ def read_toml(path: Path) -> Section:
     text = read_text(path)
     _within_bounds(text, path)
     try:
-        return Section(tomllib.loads(text), path)
+        return TomlFile(path, tomllib.loads(text), text)
     except tomllib.TOMLDecodeError as why:
         raise InputError(f"a TOML error ({why})", "valid TOML", file=path) from None
     except RecursionError:

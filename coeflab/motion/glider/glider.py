@@ -6,27 +6,44 @@ Reading a glider file: TOML with units, one clear error with file and key.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Literal, cast
+from typing import Annotated, Literal
 
 import numpy as np
 
+from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
-from coeflab.core.text.toml import Section, read_toml, toml_text
+from coeflab.core.text.toml import read_toml, toml_text
 from coeflab.core.types import brief
-from coeflab.core.units import STANDARD_GRAVITY, quantity
+from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.motion.glider.motion import GliderBody, Polar, Setting
 from coeflab.motion.manoeuvre import Manoeuvre, Phase, Until
 
 AngleUnit = Literal["deg", "rad"]
-SYMBOLS = ("K_L0", "K_L", "K_D0", "K_D", "K_M0", "K_M")
+LONGEST = 1e7
+TWO_ANGLES = 'two angles of attack, such as ["-8 deg", "8 deg"], within 90 deg'
+UNIT_OF_ANGLE = replace(
+    takes.one_of("deg", "rad"),
+    words='"deg" or "rad"',
+    absent="K_L and K_M per degree are 57.3 times smaller than per radian, K_D 3283 times. Coefficients without their "
+    "unit cannot be used; `coeflab fit` with glide_polar finds it from the forces.",
+)
+UPWARD_OR_AFT = takes.Within(
+    lambda v: "" if v > 0.0 else "a value above zero: lift is upward, drag aft", schema={"exclusiveMinimum": 0}
+)
+WITHIN_RIGHT_ANGLES = takes.Within(lambda v: "" if -math.pi / 2 < v[0] < v[1] < math.pi / 2 else TWO_ANGLES)
+NOT_FOR_EVER = takes.Within(lambda v: f"at most {LONGEST:g} s" if v > LONGEST else "")
 WIDE = (-np.pi / 6, np.pi / 6)
 
 
+def _require_order(low: float, high: float, unit: str) -> None:
+    if low > high:
+        raise InputError(f"{low:g} {unit}", f"no more than high, {high:g} {unit}", column="low")
+
+
 @dataclass(frozen=True, slots=True)
-class GliderMass:
+class GliderMass(takes.Declaration):
     """Mass of the vehicle without the sliding mass, about the reference point.
 
     Attributes
@@ -39,15 +56,15 @@ class GliderMass:
         Sums of m g x and m g z at neutral buoyancy, N m.
     """
 
-    surge: float
-    heave: float
-    pitch_inertia: float
-    moment_ahead: float
-    moment_below: float
+    surge: Annotated[takes.Mass, takes.ABOVE_ZERO]
+    heave: Annotated[takes.Mass, takes.ABOVE_ZERO]
+    pitch_inertia: Annotated[takes.Inertia, takes.ABOVE_ZERO]
+    moment_ahead: takes.Moment
+    moment_below: takes.Moment
 
 
 @dataclass(frozen=True, slots=True)
-class SlidingMass:
+class SlidingMass(takes.Declaration):
     """A mass that slides along x.
 
     Attributes
@@ -62,15 +79,19 @@ class SlidingMass:
         m/s.
     """
 
-    mass: float
-    below: float
-    low: float
-    high: float
-    rate: float
+    mass: Annotated[takes.Mass, takes.ZERO_OR_MORE]
+    below: takes.Length
+    low: takes.Length
+    high: takes.Length
+    rate: Annotated[takes.Speed, takes.ABOVE_ZERO]
+
+    def check(self) -> None:
+        """A travel from low to high."""
+        _require_order(self.low, self.high, "m")
 
 
 @dataclass(frozen=True, slots=True)
-class BuoyancyEngine:
+class BuoyancyEngine(takes.Declaration):
     """What makes the vehicle heavy or light.
 
     Attributes
@@ -83,15 +104,19 @@ class BuoyancyEngine:
         kg/s.
     """
 
-    ahead: float
-    low: float
-    high: float
-    rate: float
+    ahead: takes.Length = 0.0
+    low: takes.Mass = field(kw_only=True)
+    high: takes.Mass = field(kw_only=True)
+    rate: Annotated[takes.MassRate, takes.ABOVE_ZERO] = field(kw_only=True)
+
+    def check(self) -> None:
+        """A net mass from low to high."""
+        _require_order(self.low, self.high, "kg")
 
 
 @brief
 @dataclass(frozen=True, slots=True)
-class StatedPolar:
+class StatedPolar(takes.Declaration):
     """L = (K_L0 + K_L a) V^2, D = (K_D0 + K_D a^2) V^2, M = (K_M0 + K_M a) V^2 - damping V q.
 
     Attributes
@@ -108,16 +133,16 @@ class StatedPolar:
         Angles of attack that the data cover, rad.
     """
 
-    angle_unit: AngleUnit
-    K_L0: float
-    K_L: float
-    K_D0: float
-    K_D: float
-    K_M0: float
-    K_M: float
-    pitch_damping: float
-    contains_munk: bool
-    covered: tuple[float, float] | None = None
+    angle_unit: Annotated[AngleUnit, UNIT_OF_ANGLE]
+    K_L0: takes.Pure
+    K_L: Annotated[takes.Pure, UPWARD_OR_AFT]
+    K_D0: Annotated[takes.Pure, UPWARD_OR_AFT]
+    K_D: Annotated[takes.Pure, takes.ZERO_OR_MORE]
+    K_M0: takes.Pure
+    K_M: takes.Pure
+    pitch_damping: Annotated[takes.Pure, takes.ZERO_OR_MORE]
+    contains_munk: takes.Flag
+    covered: Annotated[tuple[float, float], takes.numbers(2, "angle", TWO_ANGLES), WITHIN_RIGHT_ANGLES] | None = None
 
     @property
     def per_radian(self) -> Polar:
@@ -134,12 +159,13 @@ class StatedPolar:
 
 
 @dataclass(frozen=True, slots=True)
-class GliderPhase:
+class GliderPhase(takes.Declaration):
     """Orders that stand for a time, or until a depth is met.
 
     Attributes
     ----------
     name : str
+        Of the phase.
     net_mass, position : float
         Ordered net mass, kg, and position of the sliding mass, m.
     lasts : float
@@ -148,11 +174,11 @@ class GliderPhase:
         m; met on the way down where the glider is heavy, on the way up where it is light.
     """
 
-    name: str
-    net_mass: float
-    position: float
-    lasts: float
-    until_depth: float | None = None
+    name: takes.Text
+    net_mass: takes.Mass
+    position: takes.Length = 0.0
+    lasts: Annotated[takes.Time, takes.ABOVE_ZERO, NOT_FOR_EVER] = field(kw_only=True)
+    until_depth: takes.Length | None = field(default=None, kw_only=True)
 
     @property
     def setting(self) -> Setting:
@@ -236,7 +262,73 @@ class Glider:
 
 KINDS = ("printed", "derived", "calibrated", "assumed")
 TABLES = ("glider", "mass", "sliding_mass", "engine", "polar", "phase")
-LONGEST = 1e7
+
+
+def _no_name(text: str) -> str:
+    return "" if all(c.isascii() and (c.isalnum() or c in "_-") for c in text) else "letters, digits, _ and -"
+
+
+@dataclass(frozen=True, slots=True)
+class GliderHead(takes.Declaration):
+    """What the glider is.
+
+    Attributes
+    ----------
+    name : str
+        Letters, digits, _ and -.
+    title : str
+        As reports print it.
+    citation : str
+        Key of a work or free text.
+    gravity : float
+        Acceleration; the standard one unless given.
+    """
+
+    name: Annotated[takes.Text, takes.Within(_no_name, schema={"pattern": "^[A-Za-z0-9_-]+$"})]
+    title: takes.Text
+    citation: takes.Text
+    gravity: Annotated[takes.Acceleration, takes.ABOVE_ZERO] = STANDARD_GRAVITY
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GliderFile(takes.Declaration):
+    """A glider file: a vehicle with a sliding mass and a buoyancy engine, and one cycle of it.
+
+    Attributes
+    ----------
+    glider : table
+        What the glider is.
+    mass : table
+        Masses without the sliding mass, about the reference point.
+    sliding_mass : table
+        A mass that slides along x; none unless given.
+    engine : table
+        What makes the vehicle heavy or light.
+    polar : table
+        Lift, drag and moment over the angle of attack.
+    phase : array of tables
+        Orders of one cycle, one after the other.
+    basis : mapping of str to str
+        Where a table or ``"table.key"`` of this file comes from: begins with printed, derived, calibrated or assumed.
+    """
+
+    glider: GliderHead
+    mass: GliderMass
+    sliding_mass: SlidingMass = SlidingMass(0.0, 0.0, 0.0, 0.0, 1.0)
+    engine: BuoyancyEngine
+    polar: StatedPolar
+    phase: tuple[GliderPhase, ...] = ()
+    basis: dict[str, takes.Text] = field(default_factory=dict)
+
+    def check(self) -> None:
+        """Orders that the glider can follow."""
+        if not self.phase:
+            raise InputError("no phase", "at least one [[phase]] with net_mass, position and lasts", column="phase")
+        for i, phase in enumerate(self.phase):
+            for key, part, unit in (("net_mass", self.engine, "kg"), ("position", self.sliding_mass, "m")):
+                if not part.low <= (value := getattr(phase, key)) <= part.high:
+                    expected = f"{part.low:g} to {part.high:g} {unit}, which it reaches"
+                    raise InputError(f"{value:g} {unit}", expected, column=f"phase[{i}].{key}")
 
 
 def read_glider(path: Path) -> Glider:
@@ -245,28 +337,24 @@ def read_glider(path: Path) -> Glider:
     Raises
     ------
     InputError
-        Not readable, a key that lacks, is unknown or has no sense; one error that names file and key.
+        Not readable, a key that lacks, is unknown or has no sense; one error that names file, line and key.
     """
-    root = read_toml(path)
-    head = root.section("glider")
-    mass, sliding, engine = _mass(root.section("mass")), _sliding(root), _engine(root.section("engine"))
-    out = Glider(
-        name=_name(head),
-        title=head.text("title"),
-        citation=head.text("citation"),
-        gravity=head.positive("gravity", "acceleration") if head.has("gravity") else STANDARD_GRAVITY,
-        mass=mass,
-        sliding_mass=sliding,
-        engine=engine,
-        polar=_polar(root.section("polar")),
-        phases=tuple(_phase(s, sliding, engine) for s in root.sections("phase")),
-        basis=_basis(root),
-    )
-    head.finish()
-    root.finish()
-    if not out.phases:
-        raise root.fail("phase", "no phase", "at least one [[phase]] with net_mass, position and lasts")
-    return out
+    toml = read_toml(path)
+    file = takes.declared(GliderFile, toml)
+    head = file.glider
+    for key, said in file.basis.items():
+        table, _, inner = key.partition(".")
+        content = toml.content.get(table, {}) if table in TABLES else {}
+        if not (table in TABLES and table in toml.content) or (
+            inner and not (isinstance(content, dict) and inner in content)
+        ):
+            raise toml.fail(f"basis.{key}", shown(key), "a table of this file, or table.key")
+        if said.split()[0].rstrip(":,") not in KINDS:
+            raise toml.fail(f"basis.{key}", shown(said), "a text that begins with " + ", ".join(KINDS))
+    return Glider(
+        head.name, head.title, head.citation, head.gravity, file.mass, file.sliding_mass, file.engine, file.polar,
+        file.phase, tuple(file.basis.items()),
+    )  # fmt: skip
 
 
 def gliders_at(path: Path) -> tuple[Glider, ...]:
@@ -292,127 +380,4 @@ def gliders_at(path: Path) -> tuple[Glider, ...]:
                 column="glider.name",
             )
         found[name] = file
-    return tuple(out)
-
-
-def _name(head: Section) -> str:
-    name = head.text("name")
-    if not all(c.isascii() and (c.isalnum() or c in "_-") for c in name):
-        raise head.fail("name", shown(name), "letters, digits, _ and -")
-    return name
-
-
-def _mass(section: Section) -> GliderMass:
-    out = GliderMass(
-        surge=section.positive("surge", "mass"),
-        heave=section.positive("heave", "mass"),
-        pitch_inertia=section.positive("pitch_inertia", "inertia"),
-        moment_ahead=section.quantity("moment_ahead", "moment"),
-        moment_below=section.quantity("moment_below", "moment"),
-    )
-    section.finish()
-    return out
-
-
-def _range(section: Section, dimension: str) -> tuple[float, float]:
-    low, high = section.quantity("low", dimension), section.quantity("high", dimension)
-    if low > high:
-        raise section.fail("low", shown(section.raw("low")), f"no more than high, {shown(section.raw('high'))}")
-    return low, high
-
-
-def _sliding(root: Section) -> SlidingMass:
-    if not root.has("sliding_mass"):
-        return SlidingMass(0.0, 0.0, 0.0, 0.0, 1.0)
-    section = root.section("sliding_mass")
-    mass = section.quantity("mass", "mass")
-    if mass < 0.0:
-        raise section.fail("mass", shown(section.raw("mass")), "zero or more")
-    out = SlidingMass(
-        mass, section.quantity("below", "length"), *_range(section, "length"), section.positive("rate", "speed")
-    )
-    section.finish()
-    return out
-
-
-def _engine(section: Section) -> BuoyancyEngine:
-    ahead = section.quantity("ahead", "length") if section.has("ahead") else 0.0
-    out = BuoyancyEngine(ahead, *_range(section, "mass"), section.positive("rate", "mass rate"))
-    section.finish()
-    return out
-
-
-def _polar(section: Section) -> StatedPolar:
-    if not section.has("angle_unit"):
-        raise section.fail(
-            "angle_unit", "nothing", '"deg" or "rad"',
-            "K_L and K_M per degree are 57.3 times smaller than per radian, K_D 3283 times. Coefficients without their "
-            "unit cannot be used; `coeflab fit` with glide_polar finds it from the forces.",
-        )  # fmt: skip
-    unit = cast(AngleUnit, section.text("angle_unit", choices=("deg", "rad")))
-    k = {symbol: section.quantity(symbol, "none") for symbol in SYMBOLS}
-    for symbol in ("K_L", "K_D0"):
-        if not k[symbol] > 0.0:
-            raise section.fail(symbol, shown(section.raw(symbol)), "a value above zero: lift is upward, drag aft")
-    damping = section.quantity("pitch_damping", "none")
-    for symbol, value in (("K_D", k["K_D"]), ("pitch_damping", damping)):
-        if value < 0.0:
-            raise section.fail(symbol, shown(section.raw(symbol)), "zero or more")
-    out = StatedPolar(
-        angle_unit=unit,
-        K_L0=k["K_L0"],
-        K_L=k["K_L"],
-        K_D0=k["K_D0"],
-        K_D=k["K_D"],
-        K_M0=k["K_M0"],
-        K_M=k["K_M"],
-        pitch_damping=damping,
-        contains_munk=section.flag("contains_munk"),
-        covered=_covered(section),
-    )
-    section.finish()
-    return out
-
-
-def _covered(section: Section) -> tuple[float, float] | None:
-    if not section.has("covered"):
-        return None
-    value, expected = section.raw("covered"), 'two angles of attack, such as ["-8 deg", "8 deg"], within 90 deg'
-    if not isinstance(value, list) or len(value) != 2:
-        raise section.fail("covered", shown(value), expected)
-    low, high = (quantity(v, "angle", file=section.file, key=section.key("covered")) for v in value)
-    if not -math.pi / 2 < low < high < math.pi / 2:
-        raise section.fail("covered", shown(value), expected)
-    return low, high
-
-
-def _phase(section: Section, sliding: SlidingMass, engine: BuoyancyEngine) -> GliderPhase:
-    out = GliderPhase(
-        name=section.text("name"),
-        net_mass=section.quantity("net_mass", "mass"),
-        position=section.quantity("position", "length") if section.has("position") else 0.0,
-        lasts=section.positive("lasts", "time"),
-        until_depth=section.optional_quantity("until_depth", "length"),
-    )
-    for key, value, part, unit in (("net_mass", out.net_mass, engine, "kg"), ("position", out.position, sliding, "m")):
-        if not part.low <= value <= part.high:
-            raise section.fail(key, f"{value:g} {unit}", f"{part.low:g} to {part.high:g} {unit}, which it reaches")
-    if out.lasts > LONGEST:
-        raise section.fail("lasts", shown(section.raw("lasts")), f"at most {LONGEST:g} s")
-    section.finish()
-    return out
-
-
-def _basis(root: Section) -> tuple[tuple[str, str], ...]:
-    section = root.section("basis", required=False)
-    known = {name for name in TABLES if root.has(name)}
-    out = []
-    for key in section.content:
-        said, (table, _, inner) = section.text(key), key.partition(".")
-        content = root.raw(table, {}) if table in known else {}
-        if table not in known or (inner and not (isinstance(content, Mapping) and inner in content)):
-            raise section.fail(key, shown(key), "a table of this file, or table.key")
-        if said.split()[0].rstrip(":,") not in KINDS:
-            raise section.fail(key, shown(said), "a text that begins with " + ", ".join(KINDS))
-        out.append((key, said))
     return tuple(out)

@@ -9,19 +9,19 @@ the thrust curve, ``ahead`` or ``astern``), ``thruster left y`` (position). A mi
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
-from coeflab.core.files import located
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
-from coeflab.core.text.toml import Section, read_toml
+from coeflab.core.text.toml import TomlFile, read_toml
 from coeflab.core.types import Array, brief, locked
-from coeflab.core.units import factor, quantity
+from coeflab.core.units import factor
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.motion.vehicle import THRUST
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
@@ -217,6 +217,8 @@ def _zero(coefficients: tuple[float, ...], near: float) -> float | None:
 QUANTITIES = {"u": "speed", "v": "speed", "V": "speed", "r": "rate", "beta": "angle", "radius": "length"}
 SIGNED = ("v", "r", "beta")
 FROM_RESIDUALS = "from residuals"
+FilePath = Annotated[Path, takes.located_in("cfd_data")]
+ERRORS = f'a standard error for each measured column, or "{FROM_RESIDUALS}"'
 FIRST_GUESS = 0.1  # of the spread of what was measured: the rounds replace it
 
 
@@ -310,6 +312,130 @@ class TuningPlan:
     from_residuals: bool
 
 
+def _no_name(text: str) -> str:
+    return "" if text.replace("_", "").replace("-", "").isalnum() else "letters, digits, _ and -"
+
+
+def _errors_given(value: Any, _file: Path) -> Any:
+    if value != FROM_RESIDUALS and not isinstance(value, dict):
+        raise InputError(shown(value), ERRORS)
+    return value
+
+
+@dataclass(frozen=True, slots=True)
+class TuneKeys(takes.Declaration):
+    """What is tuned.
+
+    Attributes
+    ----------
+    name : str
+        Letters, digits, _ and -; of the results.
+    parameters : Path
+        A parameter file, or a shipped name.
+    """
+
+    name: Annotated[takes.Text, takes.Within(_no_name)]
+    parameters: FilePath
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeasuredKeys(takes.Declaration):
+    """Steady turns that were measured.
+
+    Attributes
+    ----------
+    table : Path
+        A CSV, or a shipped name.
+    where : mapping of str to str
+        Only rows with this text in that column.
+    ignore : tuple of str
+        Columns to skip.
+    magnitudes : tuple of str
+        Columns whose sign was not measured: v, r, beta.
+    errors : mapping of str to float, or str
+        Standard error of each measured column, or "from residuals".
+    """
+
+    table: FilePath
+    where: Mapping[str, takes.Text] = field(default_factory=dict)
+    ignore: takes.Texts = ()
+    magnitudes: takes.Texts = ()
+    errors: Annotated[
+        Any, takes.Takes(ERRORS, _errors_given, {"anyOf": [{"const": FROM_RESIDUALS}, {"type": "object"}]})
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class PriorKeys(takes.Declaration):
+    """What is known of a parameter beforehand.
+
+    Attributes
+    ----------
+    mean : float
+        What stands in the file unless given.
+    error : float
+        Standard uncertainty; infinite unless given.
+    """
+
+    mean: takes.Pure | None = None
+    error: Annotated[takes.Pure, takes.Within(lambda v: "" if v > 0.0 else "a standard uncertainty above zero")] = (
+        np.inf
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FreeKeys(takes.Declaration):
+    """A number that is free.
+
+    Attributes
+    ----------
+    name : str
+        The first place unless given.
+    places : tuple of str
+        Where it stands in the parameter file: Yv', C_D beta^2 (term of a table), mass, added_mass Yvdot, thruster NAME ahead
+        c0 or thruster NAME y. A minus in front takes the opposite sign.
+    size : float
+        What counts as a large change; what stands there unless given.
+    prior : table
+        What is known of it beforehand.
+    low, high : float
+        Bounds.
+    """
+
+    name: takes.Words | None = None
+    places: Annotated[takes.Texts, takes.Within(lambda v: "" if v else "a list of places in the parameter file")]
+    size: takes.Pure | None = None
+    prior: PriorKeys = PriorKeys()
+    low: takes.Pure = -np.inf
+    high: takes.Pure = np.inf
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TuningFile(takes.Declaration):
+    """A tuning plan: which numbers of a parameter file are free, and what was measured.
+
+    Attributes
+    ----------
+    tune : table
+        What is tuned.
+    measured : table
+        Steady turns that were measured.
+    free : array of tables
+        Numbers that are free, one at least.
+    """
+
+    tune: TuneKeys
+    measured: MeasuredKeys
+    free: tuple[FreeKeys, ...] = ()
+
+    def check(self) -> None:
+        """Something is free."""
+        if not self.free:
+            raise InputError(
+                "nothing", "at least one [[free]]", column="free", advice="Name a number of the parameter file."
+            )
+
+
 def read_tuning_plan(path: Path) -> TuningPlan:
     """Read and check a plan.
 
@@ -318,74 +444,54 @@ def read_tuning_plan(path: Path) -> TuningPlan:
     InputError
         With file, line and key.
     """
-    file = read_toml(path)
-    head, measured = file.section("tune"), file.section("measured")
-    name = head.text("name")
-    if not name.replace("_", "").replace("-", "").isalnum():
-        raise head.fail("name", shown(name), "letters, digits, _ and -")
-    source = located(head.text("parameters"), "cfd_data", path.parent)
-    head.finish()
-    parameters = read_parameter_file(source)
-    free = tuple(_free(s, parameters) for s in file.sections("free"))
-    if not free:
-        raise file.fail("free", "nothing", "at least one [[free]]", "Name a number of the parameter file.")
+    toml = read_toml(path)
+    file = takes.declared(TuningFile, toml)
+    parameters = read_parameter_file(file.tune.parameters)
+    free = tuple(_free(keys, parameters, toml, f"free[{i}]") for i, keys in enumerate(file.free))
     twice = [w.text.strip().removeprefix("-").strip() for f in free for w in f.places]
     if len(set(twice)) < len(twice):
-        raise file.fail("free", f"{max(twice, key=twice.count)} more than once", "every place once")
+        raise toml.fail("free", f"{max(twice, key=twice.count)} more than once", "every place once")
     if len({f.name for f in free}) < len(free):
-        raise file.fail("free", "a name more than once", "names of their own")
-    cases, from_residuals = _cases(measured, parameters, path.parent)
-    measured.finish()
-    file.finish()
-    return TuningPlan(name, path, source, parameters, free, cases, from_residuals)
+        raise toml.fail("free", "a name more than once", "names of their own")
+    cases, from_residuals = _cases(file.measured, parameters, toml)
+    return TuningPlan(file.tune.name, path, file.tune.parameters, parameters, free, cases, from_residuals)
 
 
-def _free(s: Section, p: ParameterFile) -> FreeParameter:
-    texts = s.texts("places")
-    if not texts:
-        raise s.fail("places", "nothing", "a list of places in the parameter file")
+def _free(keys: FreeKeys, p: ParameterFile, toml: TomlFile, at: str) -> FreeParameter:
     try:
-        places = tuple(place(t, p) for t in texts)
+        places = tuple(place(t, p) for t in keys.places)
     except InputError as why:
-        raise s.fail("places", why.found, why.expected, why.advice) from None
+        raise toml.fail(f"{at}.places", why.found, why.expected, why.advice) from None
     values = [value_at(p, w) for w in places]
     if max(values) - min(values) > 1e-9 * max(abs(v) for v in values):
-        raise s.fail("places", f"different values {', '.join(f'{v:g}' for v in values)}", "one value at all places",
-                     "A minus before a place takes the opposite sign.")  # fmt: skip
+        raise toml.fail(f"{at}.places", f"different values {', '.join(f'{v:g}' for v in values)}",
+                        "one value at all places", "A minus before a place takes the opposite sign.")  # fmt: skip
     start = values[0]
-    size = _number(s, "size", abs(start))
+    size = abs(start) if keys.size is None else keys.size
     if not size > 0.0:
-        raise s.fail(
-            "size", f"{size:g}", "a size above zero", "The parameter is zero: say what would be a large value."
-        )
-    prior = s.section("prior", required=False)
-    mean, error = _number(prior, "mean", start), _number(prior, "error", np.inf)
-    prior.finish()
-    low, high = _number(s, "low", -np.inf), _number(s, "high", np.inf)
-    if not error > 0.0:
-        raise prior.fail("error", f"{error:g}", "a standard uncertainty above zero")
+        advice = "The parameter is zero: say what would be a large value."
+        raise toml.fail(f"{at}.size", f"{size:g}", "a size above zero", advice)
+    low, high = keys.low, keys.high
     if not low < high or not low <= start <= high:
-        raise s.fail("low", f"bounds {low:g} and {high:g} about {start:g}", "low < high, with the file's value between")
-    out = FreeParameter(s.text("name", texts[0]), places[0].unit, places, start, size, mean, error, low, high)
-    s.finish()
-    return out
+        found = f"bounds {low:g} and {high:g} about {start:g}"
+        raise toml.fail(f"{at}.low", found, "low < high, with the file's value between")
+    name, mean = (
+        keys.places[0] if keys.name is None else keys.name,
+        start if keys.prior.mean is None else keys.prior.mean,
+    )
+    return FreeParameter(name, places[0].unit, places, start, size, mean, keys.prior.error, low, high)
 
 
-def _number(s: Section, key: str, default: float) -> float:
-    return quantity(s.raw(key), "none", file=s.file, key=s.key(key)) if s.has(key) else default
-
-
-def _cases(s: Section, p: ParameterFile, base: Path) -> tuple[SteadyCases, bool]:
-    table = located(s.text("table"), "cfd_data", base)
+def _cases(keys: MeasuredKeys, p: ParameterFile, toml: TomlFile) -> tuple[SteadyCases, bool]:
+    table = keys.table
     cells = read_cells(table)
-    where, ignored, sizes = s.section("where", required=False), s.texts("ignore"), s.texts("magnitudes")
-    rows = _chosen(cells, where)
+    rows = _chosen(cells, keys.where, toml)
     thrusters = {t.name: t.curve.unit for t in p.thrusters}
     known = (*QUANTITIES, *thrusters, *CONTROLS, THRUST)
     names: list[str] = []
     columns: dict[str, Array] = {}
     for h in cells.headers:
-        if h.name in where.content or h.name in ignored:
+        if h.name in keys.where or h.name in keys.ignore:
             continue
         if h.name not in known:
             raise InputError(
@@ -397,11 +503,11 @@ def _cases(s: Section, p: ParameterFile, base: Path) -> tuple[SteadyCases, bool]
         names += [h.name] if h.name in QUANTITIES else []
     if not names:
         raise InputError("no measured column", f"one of {', '.join(QUANTITIES)}", file=table)
-    strange = [n for n in sizes if n not in names or n not in SIGNED]
+    strange = [n for n in keys.magnitudes if n not in names or n not in SIGNED]
     if strange:
-        raise s.fail("magnitudes", shown(strange[0]), f"measured ones of {', '.join(SIGNED)}")
+        raise toml.fail("measured.magnitudes", shown(strange[0]), f"measured ones of {', '.join(SIGNED)}")
     measured = np.column_stack([columns[n] for n in names])
-    errors, from_residuals = _errors(s, names, measured)
+    errors, from_residuals = _errors(keys.errors, toml, names, measured)
     commands = [c for c in columns if c not in QUANTITIES and c not in CONTROLS]
     for name in (*commands, *(c for c in CONTROLS if c in columns)):
         for i in np.flatnonzero(np.isnan(columns[name])):
@@ -409,18 +515,19 @@ def _cases(s: Section, p: ParameterFile, base: Path) -> tuple[SteadyCases, bool]
     controls = np.column_stack([columns.get(c, np.zeros(len(rows))) for c in CONTROLS])
     listed = tuple({c: float(columns[c][i]) for c in commands} for i in range(len(rows)))
     lines = tuple(cells.line(int(i)) for i in rows)
-    return SteadyCases(table, lines, listed, controls, tuple(names), measured, errors, sizes), from_residuals
+    cases = SteadyCases(table, lines, listed, controls, tuple(names), measured, errors, keys.magnitudes)
+    return cases, from_residuals
 
 
-def _chosen(cells: Cells, where: Section) -> NDArray[np.int64]:
+def _chosen(cells: Cells, where: Mapping[str, str], toml: TomlFile) -> NDArray[np.int64]:
     keep = np.ones(len(cells), dtype=bool)
-    for key in where.content:
-        wanted = where.text(key)
-        if key not in [h.name for h in cells.headers]:
-            raise where.fail(key, f"no column {shown(key)}", f"one of {', '.join(h.name for h in cells.headers)}")
+    headers = [h.name for h in cells.headers]
+    for key, wanted in where.items():
+        if key not in headers:
+            raise toml.fail(f"measured.where.{key}", f"no column {shown(key)}", f"one of {', '.join(headers)}")
         keep &= np.array(cells.texts(key)) == wanted
     if not np.any(keep):
-        raise where.fail("", "no row", "rows of the table that fit all of it")
+        raise toml.fail("measured.where", "no row", "rows of the table that fit all of it")
     return np.flatnonzero(keep)
 
 
@@ -439,14 +546,16 @@ def _column(cells: Cells, name: str, unit: str, thrusters: dict[str, str]) -> Ar
         ) from None
 
 
-def _errors(s: Section, names: list[str], measured: Array) -> tuple[Array, bool]:
-    given: Any = s.raw("errors")
+def _errors(given: Any, toml: TomlFile, names: list[str], measured: Array) -> tuple[Array, bool]:
     if given == FROM_RESIDUALS:
         spread = np.nanstd(measured, axis=0)
         return np.broadcast_to(FIRST_GUESS * np.where(spread > 0.0, spread, 1.0), measured.shape), True
-    if not isinstance(given, dict):
-        raise s.fail("errors", shown(given), f'a standard error for each of {", ".join(names)}, or "{FROM_RESIDUALS}"')
-    table = s.section("errors")
-    out = np.array([table.positive(n, QUANTITIES[n]) for n in names])
-    table.finish()
+    for name in given:
+        if name not in names:
+            expected = "one of " + ", ".join(sorted(names))
+            raise toml.fail(f"measured.errors.{name}", "an unknown key", expected)
+    kinds: list[Any] = [Annotated[float, takes.number_in(QUANTITIES[n]), takes.ABOVE_ZERO] for n in names]
+    out = np.array(
+        [takes.declared_key(toml, f"measured.errors.{n}", kind) for n, kind in zip(names, kinds, strict=True)]
+    )
     return np.broadcast_to(out, measured.shape), False

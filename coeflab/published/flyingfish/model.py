@@ -13,14 +13,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
-from coeflab.core.errors import shown
+from coeflab.core import declarations as takes
 from coeflab.core.files import shipped
 from coeflab.core.text.delimited import read_cells
-from coeflab.core.text.toml import Section, read_toml
+from coeflab.core.text.toml import TomlFile, read_toml
 from coeflab.core.types import Array, brief, locked
 from coeflab.motion.trim.operating_point import Equation, OperatingPoint, Unknown, operating_point
 from coeflab.vehicle.parameter_parts import CurveSegment, ParameterCurve, ParameterThruster
@@ -175,24 +175,24 @@ def read_flyingfish(folder: Path | None = None) -> FlyingFish:
     """
     folder = shipped("cfd_data") / "flyingfish" if folder is None else folder
     file = read_toml(folder / "vehicle.toml")
-    damping, rotor, constants = file.section("damping"), file.section("rotor"), file.section("calibrated")
-    thrusters = file.sections("thruster")
+    at = range(len(file.content.get("thruster", ())))
     cells = read_cells(folder / "operating_points.csv")
     motion = np.column_stack([cells.numbers(n) for n in ("u", "w", "r", "phi", "theta")])
     motion[:, 2:] = np.radians(motion[:, 2:])
-    third = file.section("row3")
-    motion[cells.texts("motion").index("3"), :2] = third.quantity("u", "speed"), third.quantity("w", "speed")
+    motion[cells.texts("motion").index("3"), :2] = [
+        takes.declared_key(file, f"row3.{name}", takes.Speed) for name in "uw"
+    ]
     return FlyingFish(
-        Rotors(*(_numbers(damping, k, 6) for k in ("linear", "quadratic")),
-               *(_numbers(rotor, k, 2) for k in ("thrust", "torque"))),
-        {name: constants.quantity(name, "none") for name in CONSTANTS},
-        rotor.positive("largest_speed", "none"),
-        np.array([t.triple("arm", "none") for t in thrusters]),
-        tuple(1 if t.integer("handedness", 1, -1, 1) > 0 else -1 for t in thrusters),
+        Rotors(*(_numbers(file, f"damping.{k}", 6) for k in ("linear", "quadratic")),
+               *(_numbers(file, f"rotor.{k}", 2) for k in ("thrust", "torque"))),
+        {name: takes.declared_key(file, f"calibrated.{name}", takes.Pure) for name in CONSTANTS},
+        takes.declared_key(file, "rotor.largest_speed", Annotated[takes.Pure, takes.ABOVE_ZERO]),
+        np.array([_numbers(file, f"thruster[{i}].arm", 3) for i in at]),
+        tuple(1 if takes.declared_key(file, f"thruster[{i}].handedness", takes.Pure) > 0 else -1 for i in at),
         motion,
         np.radians(np.column_stack([cells.numbers(f"beta{i}") for i in ROTORS])),
         np.column_stack([cells.numbers(f"omega{i}") for i in ROTORS]),
-        file.section("errata").texts("texts"),
+        takes.declared_key(file, "errata.texts", takes.Texts),
     )  # fmt: skip
 
 
@@ -216,11 +216,10 @@ def thrusters(fish: FlyingFish) -> tuple[ParameterThruster, ...]:
     )  # fmt: skip
 
 
-def _numbers(section: Section, key: str, count: int) -> Array:
-    found = section.raw(key)
-    if not isinstance(found, list) or len(found) != count or not all(isinstance(x, float) for x in found):
-        raise section.fail(key, shown(found), f"{count} numbers")
-    return locked(found)
+def _numbers(file: TomlFile, key: str, count: int) -> Array:
+    return locked(
+        takes.declared_key(file, key, Annotated[tuple[float, ...], takes.numbers(count, "none", f"{count} numbers")])
+    )
 
 
 DEGREE, RPM = 1.0, 20.0

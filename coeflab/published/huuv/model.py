@@ -8,15 +8,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core import declarations as takes
 from coeflab.core.files import shipped
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.delimited import read_cells
-from coeflab.core.text.toml import Section, read_toml
+from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.version import VERSION
 from coeflab.formats.stated_file import stated_table
@@ -24,7 +25,15 @@ from coeflab.law.scaling import Scaling
 from coeflab.motion.steady_state import COEFFICIENTS
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 
-DIMENSIONS = {"m": "mass", "mx": "mass", "my": "mass", "inertia": "inertia"}
+KINDS: Mapping[str, Any] = {"m": takes.Mass, "mx": takes.Mass, "my": takes.Mass, "inertia": takes.Inertia}
+CHOSEN: Mapping[str, Any] = {
+    "length": takes.Length,
+    "density": takes.Density,
+    "speed": takes.Speed,
+    "rigid_inertia": takes.Inertia,
+    "largest_drift": takes.Angle,
+    "largest_rate": takes.Rate,
+}
 MATLAB, TRACKER = "matlab", "tracker"
 
 
@@ -106,33 +115,29 @@ def read_huuv(folder: Path | None = None) -> Huuv:
     """
     folder = shipped("cfd_data") / "huuv" if folder is None else folder
     file = read_toml(folder / "vehicle.toml")
-    turn, thruster, chosen = (file.section(name) for name in ("steady_turn", "thruster", "parameter_file"))
-    constants = {name: turn.quantity(name, DIMENSIONS.get(name, "none")) for name in COEFFICIENTS}
-    constants |= {name: _plain(thruster, name) for name in ("slope", "intercept")}
-    constants["arm"] = thruster.positive("arm", "length")
+    constants = {
+        name: takes.declared_key(file, f"steady_turn.{name}", KINDS.get(name, takes.Pure)) for name in COEFFICIENTS
+    }
+    constants |= {name: takes.declared_key(file, f"thruster.{name}", takes.Pure) for name in ("slope", "intercept")}
+    constants["arm"] = takes.declared_key(file, "thruster.arm", Annotated[takes.Length, takes.ABOVE_ZERO])
     accepted, rate = _operating_points(folder / "operating_points.csv")
     return Huuv(
         constants,
-        _plain(thruster, "printed_intercept"),
-        _plain(thruster, "dead_zone"),
-        (_plain(thruster, "reverse_intercept"), _plain(thruster, "reverse_slope")),
+        takes.declared_key(file, "thruster.printed_intercept", takes.Pure),
+        takes.declared_key(file, "thruster.dead_zone", takes.Pure),
+        (
+            takes.declared_key(file, "thruster.reverse_intercept", takes.Pure),
+            takes.declared_key(file, "thruster.reverse_slope", takes.Pure),
+        ),
         _turns(folder / "turns.csv"),
         accepted,
         rate,
         {
-            "length": chosen.positive("length", "length"),
-            "density": chosen.positive("density", "density"),
-            "speed": chosen.positive("speed", "speed"),
-            "rigid_inertia": chosen.positive("rigid_inertia", "inertia"),
-            "largest_drift": chosen.positive("largest_drift", "angle"),
-            "largest_rate": chosen.positive("largest_rate", "rate"),
+            name: takes.declared_key(file, f"parameter_file.{name}", Annotated[kind, takes.ABOVE_ZERO])
+            for name, kind in CHOSEN.items()
         },
-        file.section("errata").texts("texts"),
+        takes.declared_key(file, "errata.texts", takes.Texts),
     )
-
-
-def _plain(section: Section, key: str) -> float:
-    return section.quantity(key, "none")
 
 
 def _turns(path: Path) -> dict[str, Turns]:

@@ -9,10 +9,9 @@ from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.symbols import primed
 from coeflab.study.validation import Validation
-from coeflab.tables.campaign import DIMENSIONS
 from coeflab.vehicle.derived import Derived
 
-UNITS = {"angle": "rad", "length": "m"}
+UNITS = {"angle": "rad", "reference point": "m"}
 
 
 def overview(budgets: Sequence[Budget]) -> Table:
@@ -82,8 +81,7 @@ def budget(b: Budget) -> Table:
 
 def _unit(name: str) -> str:
     """Unit of the half-width of an input: ``angle beta`` is an angle, ``reference point`` a length."""
-    kinds = (k for k in DIMENSIONS if name.replace("_", " ").startswith(k.replace("_", " ")))
-    return UNITS.get(DIMENSIONS.get(next(kinds, ""), ""), "-")
+    return next((unit for kind, unit in UNITS.items() if name.replace("_", " ").startswith(kind)), "-")
 
 
 def shared(model: FittedModel) -> Table:
