@@ -161,7 +161,7 @@ def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
     """
     speed, length = parameters.conditions.speed, parameters.scaling.length
     ranges: dict[str, tuple[float, float]] = {}
-    for c in parameters.covered:
+    for c in parameters.offered:
         name = ANGLES.get(c.variable, c.variable.removesuffix("'"))
         if name not in MOTIONS:
             continue

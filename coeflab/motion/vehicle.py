@@ -237,7 +237,7 @@ def vehicle(
         name=parameters.name, mass=mass.mass, centre=centre, inertia=inertia, added=water.matrix, water=water, terms=terms,
         law=as_arrays(terms, open_products(parameters, tables)), hydrostatics=hydrostatics, thrusters=parameters.thrusters,
         surfaces=parameters.surfaces, free=moves, speed=parameters.conditions.speed, length=parameters.scaling.length,
-        density=parameters.conditions.density, covered=parameters.covered, statements=tuple(said),
+        density=parameters.conditions.density, covered=parameters.offered, statements=tuple(said),
     )  # fmt: skip
     _positive(made)
     return made

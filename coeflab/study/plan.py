@@ -22,6 +22,7 @@ from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
 
 JOINT = "manoeuvring_model"
+DEFAULT_FITS = ("slope_at_origin", "tied_law")
 _NAME = re.compile(r"^[\w][\w .+-]{0,79}$")
 
 
@@ -56,7 +57,7 @@ def _tables(root: Section) -> tuple[PlannedTable, ...]:
     out = []
     for s in root.sections("table"):
         path = _path(s, "campaign", "cfd_data")
-        fits = s.texts("fits") or ("slope_at_origin",)
+        fits = s.texts("fits") or DEFAULT_FITS
         options = s.section("options", required=False)
         chosen = {name: dict(options.section(name).content) for name in options.content}
         idle = next((name for name in chosen if name not in fits), None)
