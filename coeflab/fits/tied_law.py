@@ -38,6 +38,7 @@ completes = "slope_at_origin"
 SIMPLER = 2.0  # AICc that a longer form has to gain
 EXACT = 1e-12  # residuals over the largest force that count as none
 NEAR = 1e-3  # settings closer than this share are one
+UP_DOWN = ("w", "q")
 TOGETHER = 4  # rows in which two motions move, for a cross term
 
 
@@ -141,7 +142,11 @@ def _forms(component: str, variables: Sequence[str], rows: _Rows) -> Iterator[tu
     each = []
     for v in variables:
         odd = (named(), named(f"{v}|{v}|"), named(v * 3), named(f"{v}|{v}|", v * 3))
-        each.append((named(), named(v * 4)) if component == "X" else odd)
+        even = (named(), named(v * 4))
+        own, other, least = (even, odd, v) if component == "X" else (odd, (named(),), v * 2)
+        # Nothing makes a body alike above and below: there what is even has an odd part, and the reverse.
+        both = [(*f, *named(least), *g) for f in own for g in other] if v in UP_DOWN and component in "XZM" else []
+        each.append((*own, *both))
     forms = [sum(chosen, ()) for chosen in product(*each)]
     crossed = tuple(t for t in _cross_terms(component, variables) if _both_move(t, rows))
     yield from ((*form, *crossed) for form in sorted(forms, key=len))
@@ -256,7 +261,7 @@ def _coefficients(
                 u95=u95,
                 status=Status.SINGLE_ESTIMATOR if u95 is None else Status.FORM_ASSUMED,
                 body=first.body,
-                parts=Parts(random=half, model_form=None if void[i] else float(carried[i])),
+                parts=Parts(random=half, input=None if void[i] else float(carried[i])),
                 origin="fit",
                 table=", ".join(tables),
                 campaign=first.campaign,

@@ -137,7 +137,8 @@ def gathered(
                 continue
             elsewhere = [s for s in _tied_to(chosen[k], i) if s not in entries or entries[s][0].campaign != c.campaign]
             if elsewhere:
-                notes.append(f"{primed(c.symbol)} of {c.campaign} left out: {', '.join(map(primed, elsewhere))} is another's")
+                slopes = ", ".join(map(primed, elsewhere))
+                notes.append(f"{primed(c.symbol)} of {c.campaign} left out: it is tied to another value of {slopes}")
                 continue
             earlier = entries[c.symbol][0] if c.symbol in entries else None
             used, other = (
@@ -169,8 +170,12 @@ def gathered(
 
 
 def _tied_to(f: FitResult, row: int) -> list[str]:
-    """Coefficients of another fit that one of this was tied to."""
-    return [] if f.tied is None else [s for s, m in zip(f.tied.symbols, f.tied.moves[row], strict=True) if m]
+    """Slopes and curvatures in the same motions that a term was tied to."""
+    if f.tied is None:
+        return []
+    motions = set(derivative(f.coefficients.coefficients[row].symbol).factors)
+    held = zip(f.tied.symbols, f.tied.moves[row], strict=True)
+    return [s for s, move in held if move and motions & set(derivative(s).factors)]
 
 
 def _between(a: FitResult, i: int, b: FitResult, j: int) -> float:

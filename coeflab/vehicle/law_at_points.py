@@ -367,8 +367,7 @@ def _within(m: MeasuredTable, component: str, held: Sequence[HeldRange], primes:
         v = motion_of(h.variable)
         if (h.component, h.campaign) == (component, m.campaign) and v in primes:
             low, high = (np.sin(h.low), np.sin(h.high)) if h.variable.startswith("asin(") else (h.low, h.high)
-            slack = NEAR * max(abs(low), abs(high), 1.0)
-            out &= (primes[v] >= low - slack) & (primes[v] <= high + slack)
+            out &= (primes[v] >= low - AT_REST) & (primes[v] <= high + AT_REST)
     return out
 
 
@@ -396,7 +395,7 @@ def held_ranges(
                 if (f.component, v) not in cap or not np.any(np.abs(x[used]) > AT_REST):
                     continue
                 limit = cap[f.component, v]
-                low, high = max(float(x[used].min()), -limit), min(float(x[used].max()), limit)
+                low, high = max(min(float(x[used].min()), 0.0), -limit), min(max(float(x[used].max()), 0.0), limit)
                 before = ends.get((f.component, v, m.campaign), (low, high))
                 ends[f.component, v, m.campaign] = min(low, before[0]), max(high, before[1])
     out = []
