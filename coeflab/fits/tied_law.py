@@ -113,7 +113,7 @@ def _bases(component: str, among: CoefficientSet) -> dict[str, tuple[NamedTerm, 
 def _rows(component: str, tables: Sequence[ForceTable], variables: Sequence[str], length: float) -> _Rows:
     """Usable rows ahead in which nothing but these variables moves."""
     xs: dict[str, list[Array]] = {v: [] for v in variables}
-    ys, at, names = [], [], []
+    ys, at, names = list[Array](), list[NDArray[np.intp]](), list[str]()
     for table in tables:
         if component not in table.forces:
             continue
@@ -136,6 +136,7 @@ def _rows(component: str, tables: Sequence[ForceTable], variables: Sequence[str]
 
 def _forms(component: str, variables: Sequence[str], rows: _Rows) -> Iterator[tuple[NamedTerm, ...]]:
     """Forms to choose from, the simplest first; cross terms stand in each of them."""
+
     def named(*suffixes: str) -> tuple[NamedTerm, ...]:
         return tuple(read_term(component + s, "tied_law") for s in suffixes)
 
@@ -156,7 +157,11 @@ def _cross_terms(component: str, variables: Sequence[str]) -> Iterator[NamedTerm
     """Products of two of the motions in the standard sets."""
     for symbol in dict.fromkeys((*SETS["horizontal"], *SETS["vertical"])):
         t = read_term(symbol, "set") if symbol[0] == component else None
-        if t is not None and len({v for v, _, _ in t.term.factors}) == 2 and {v for v, _, _ in t.term.factors} <= set(variables):
+        if (
+            t is not None
+            and len({v for v, _, _ in t.term.factors}) == 2
+            and {v for v, _, _ in t.term.factors} <= set(variables)
+        ):
             yield t
 
 
@@ -211,11 +216,10 @@ def _chosen(
     caps = {v: float(np.abs(rows.x[v]).max()) for v in variables}
     reach = dict(caps)
     while law is not None and float(np.abs(law.residuals).max()) > allowed_miss(_scatter(law), largest):
-        worst = int(np.abs(law.residuals).argmax())
-        v = max(variables, key=lambda name: abs(law.rows.x[name][worst]) / reach[name])
-        inner = np.abs(law.rows.x[v])
-        inner = inner[inner < caps[v] * (1.0 - NEAR)]
-        caps[v] = float(inner.max(initial=0.0))
+        x, worst = law.rows.x, int(np.abs(law.residuals).argmax())
+        v = max(variables, key=lambda name, x=x, worst=worst: abs(x[name][worst]) / reach[name])  # type: ignore[misc]
+        inner = np.abs(x[v])
+        caps[v] = float(inner[inner < caps[v] * (1.0 - NEAR)].max(initial=0.0))
         if caps[v] < NARROWEST * reach[v]:
             return whole
         law = over(rows.within(caps))
@@ -252,7 +256,9 @@ def _coefficients(
         value, half = float(law.values[k + i]), finite(float(fit.half_width[k + i]))
         u95 = None if half is None or void[i] else float(np.hypot(half, carried[i]))
         names = [v for v, _, _ in t.term.factors]
-        moved = np.logical_and.reduce([law.rows.moved(v) for v in names]) if names else np.ones(len(law.rows.y), dtype=bool)
+        moved = (
+            np.logical_and.reduce([law.rows.moved(v) for v in names]) if names else np.ones(len(law.rows.y), dtype=bool)
+        )
         tables = dict.fromkeys(law.rows.names[n] for n in law.rows.table[moved])
         out.append(
             Coefficient(
@@ -275,9 +281,7 @@ def _coefficients(
     return out, fit.correlation[k:, k:] * np.outer(half_width, half_width), moves
 
 
-def complete(
-    found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]
-) -> FitResult:
+def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
     """The terms beyond the slopes that a fit has found.
 
     Parameters
@@ -331,9 +335,7 @@ def complete(
         fit="tied_law",
         campaign=first.campaign,
         body=first.body,
-        coefficients=CoefficientSet(
-            tuple(every), covariance, scaling, first.reference_point, first.datum, first.body
-        ),
+        coefficients=CoefficientSet(tuple(every), covariance, scaling, first.reference_point, first.datum, first.body),
         sweeps=(),
         citations=citations,
         settings={"at_rest": chosen.at_rest},

@@ -243,7 +243,11 @@ def loss_of(
     if added_mass is not None:
         compared, why = accelerations_apart(parameters, added_mass(files), nu, theirs, ours)
     found = law_at_points(
-        parameters.measured, parameters.law_holds, lambda at, _: force(files, at), parameters.scaling.length, controls=False
+        parameters.measured,
+        parameters.law_holds,
+        lambda at, _: force(files, at),
+        parameters.scaling.length,
+        controls=False,
     )
     return Loss(target, not_held, lost, changes, apart(theirs, ours), compared, why, water, words, found)
 

@@ -30,8 +30,8 @@ from coeflab.law.rigid_body import about_another
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivative, primed
 from coeflab.tables.force_table import ForceTable
-from coeflab.vehicle.force_law import full_force, spoken
-from coeflab.vehicle.law_at_points import caps, held_ranges, law_at_points, measured_tables, with_scatter
+from coeflab.vehicle.force_law import full_force, points_of, spoken
+from coeflab.vehicle.law_at_points import caps, held_ranges, measured_tables, with_scatter
 from coeflab.vehicle.parameter_file import (
     CoveredRange,
     InputRecord,
@@ -501,8 +501,8 @@ def with_points(parameters: ParameterFile, tables: Sequence[ForceTable], fits: S
     )
     measured = with_scatter(measured, force, length)
     held = held_ranges(measured, caps(measured, force, length, law.beyond_slopes), length)
-    found = law_at_points(measured, held, force, length)
-    return parameters.model_copy(update={"measured": measured, "law_holds": held, "law_at_points": found})
+    made = parameters.model_copy(update={"measured": measured, "law_holds": held})
+    return made.model_copy(update={"law_at_points": points_of(made)})
 
 
 @brief

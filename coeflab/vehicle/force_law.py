@@ -23,6 +23,7 @@ from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.law.terms import Term, parse_suffix
 from coeflab.vehicle.inertia import water_inertia
+from coeflab.vehicle.law_at_points import LawAtPoints, law_at_points
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_model import ANGLE_OF, ParameterModel
 from coeflab.vehicle.parameter_parts import ParameterCoefficient
@@ -365,6 +366,12 @@ def full_force(parameters: ParameterFile) -> Callable[[Array, Array], Array]:
     """Velocities (n, 6) and controls (n, 3) -> forces (n, 6): the law that a simulation of the file moves by."""
     law = as_arrays(motion_terms(parameters, tables=False)[0], open_products(parameters, tables=False))
     return law.force
+
+
+def points_of(parameters: ParameterFile) -> tuple[LawAtPoints, ...]:
+    """How far the law of a file, as it is now, is from the points in it."""
+    length = parameters.scaling.length
+    return law_at_points(parameters.measured, parameters.law_holds, full_force(parameters), length)
 
 
 @brief

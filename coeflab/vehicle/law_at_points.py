@@ -45,7 +45,9 @@ class MeasuredForce(Strict):
     ]
     at_rest: Annotated[
         tuple[Finite, ...],
-        told("force of the set-up at no angle and no rate, by row; no part of the law, taken off the values", "N or N m"),
+        told(
+            "force of the set-up at no angle and no rate, by row; no part of the law, taken off the values", "N or N m"
+        ),
     ]
     scatter: Annotated[NotNegative | None, told("of repeated runs about the law; null where none repeats", "N or N m")]
     small: Annotated[bool, told("below 1 % of the largest force or moment of its table: not judged")] = False
@@ -63,7 +65,11 @@ class MeasuredTable(Strict):
     @model_validator(mode="after")
     def _as_long(self) -> MeasuredTable:
         n = len(self.labels)
-        columns = [*(m.values for m in self.motion), *(f.values for f in self.forces), *(f.at_rest for f in self.forces)]
+        columns = [
+            *(m.values for m in self.motion),
+            *(f.values for f in self.forces),
+            *(f.at_rest for f in self.forces),
+        ]
         if any(len(c) != n for c in columns):
             raise ValueError(f"{self.table}: columns that are not as long as the {n} labels")
         return self
@@ -165,7 +171,11 @@ def measured_tables(
                 combined[row] = not any(moved <= together for together in crossed.get(c, ()))
             usable = t.usable[c] & (t.motion["u"] > 0.0) & ~strange & ~combined
             if np.any(usable):
-                rest = np.zeros(len(t)) if c in constants else _at_rest(t, c, fits, usable & ~np.any(moving, axis=0), length)
+                rest = (
+                    np.zeros(len(t))
+                    if c in constants
+                    else _at_rest(t, c, fits, usable & ~np.any(moving, axis=0), length)
+                )
                 forces.append((c, usable, np.asarray(t.forces[c]) * scale, rest * scale))
         if not forces:
             continue
@@ -185,7 +195,9 @@ def measured_tables(
                     MeasuredForce.model_validate(
                         {
                             "component": c,
-                            "values": tuple(float(v) if u else None for v, u in zip(f[keep], usable[keep], strict=True)),
+                            "values": tuple(
+                                float(v) if u else None for v, u in zip(f[keep], usable[keep], strict=True)
+                            ),
                             "at_rest": tuple(map(float, rest[keep])),
                             "scatter": None,
                             "small": _is_small(t, c, usable, length),
@@ -198,7 +210,9 @@ def measured_tables(
     return tuple(out)
 
 
-def _at_rest(t: ForceTable, component: str, fits: Sequence[FitResult], still: NDArray[np.bool_], length: float) -> Array:
+def _at_rest(
+    t: ForceTable, component: str, fits: Sequence[FitResult], still: NDArray[np.bool_], length: float
+) -> Array:
     """Force at rest of a set-up, by row: what a fit took off, else the mean of the rows at rest, else zero; at the table's density."""
     unit = 1.0 / t.primed_force(component, length, np.ones(len(t)))
     found = [v for f in fits if f.tied for name, c, v in f.tied.at_rest if (name, c) == (t.name, component)]
@@ -218,6 +232,7 @@ def _at_rest(t: ForceTable, component: str, fits: Sequence[FitResult], still: ND
 
 def _is_small(t: ForceTable, component: str, usable: NDArray[np.bool_], length: float) -> bool:
     """Whether a component is next to nothing beside its like."""
+
     def largest(c: str, rows: NDArray[np.bool_]) -> float:
         return float(np.max(np.abs(t.primed_force(c, length)[rows]), initial=0.0))
 
@@ -225,7 +240,7 @@ def _is_small(t: ForceTable, component: str, usable: NDArray[np.bool_], length: 
     return largest(component, usable) < SMALL * max(largest(c, np.asarray(t.usable[c])) for c in like)
 
 
-def _misses(m: MeasuredTable, f: MeasuredForce, force: Array) -> Array:
+def _misses(f: MeasuredForce, force: Array) -> Array:
     """Measured less rest less law, NaN where no fit used the row."""
     values = np.array([np.nan if v is None else v for v in f.values])
     return np.asarray(values - np.array(f.at_rest) - force[:, COMPONENTS.index(f.component)])
@@ -243,7 +258,7 @@ def with_scatter(measured: Sequence[MeasuredTable], force: Force, length: float)
         shares = np.column_stack([x / max(float(np.abs(x).max()), AT_REST) for x in m.primes(length).values()])
         forces = []
         for f in m.forces:
-            missed = _misses(m, f, by)
+            missed = _misses(f, by)
             rows = np.isfinite(missed)
             forces.append(f.model_copy(update={"scatter": scatter_of_replicates(shares[rows], missed[rows])}))
         out.append(m.model_copy(update={"forces": tuple(forces)}))
@@ -280,9 +295,9 @@ def caps(
     for m in measured:
         primes, by = m.primes(length), force(*m.states)
         for f in m.forces:
-            missed = np.abs(_misses(m, f, by))
+            missed = np.abs(_misses(f, by))
             allowed = allowed_miss(f.scatter, _largest(f))
-            for row in np.flatnonzero(np.isfinite(missed)):
+            for row in map(int, np.flatnonzero(np.isfinite(missed))):
                 v = _dominant(primes, row)
                 if not v:
                     continue
@@ -326,7 +341,7 @@ def law_at_points(
         (nu, angles), primes = m.states, m.primes(length)
         by = force(nu, angles)
         for f in m.forces:
-            missed = _misses(m, f, by)
+            missed = _misses(f, by)
             if not controls:
                 missed[np.any(np.abs(angles) > AT_REST, axis=1)] = np.nan
             rows = np.flatnonzero(np.isfinite(missed))
@@ -361,7 +376,9 @@ def motion_of(variable: str) -> str:
     return variable.removeprefix("asin(").split("/")[0].removesuffix("'")
 
 
-def _within(m: MeasuredTable, component: str, held: Sequence[HeldRange], primes: Mapping[str, Array]) -> NDArray[np.bool_]:
+def _within(
+    m: MeasuredTable, component: str, held: Sequence[HeldRange], primes: Mapping[str, Array]
+) -> NDArray[np.bool_]:
     out = np.ones(len(m.labels), dtype=bool)
     for h in held:
         v = motion_of(h.variable)
@@ -401,11 +418,10 @@ def held_ranges(
     out = []
     for (c, v, campaign), (low, high) in ends.items():
         name, unit = ANGLES.get(v, v if v in CONTROLS else f"{v}'"), "rad" if v in ANGLES or v in CONTROLS else "1"
-        if v in ANGLES:
-            low, high = (float(np.arcsin(np.clip(x, -1.0, 1.0))) for x in (low, high))
+        first, last = (float(np.arcsin(np.clip(x, -1.0, 1.0))) if v in ANGLES else x for x in (low, high))
         out.append(
             HeldRange.model_validate(
-                {"component": c, "variable": name, "low": low, "high": high, "unit": unit, "campaign": campaign}
+                {"component": c, "variable": name, "low": first, "high": last, "unit": unit, "campaign": campaign}
             )
         )
     return tuple(out)

@@ -232,7 +232,8 @@ class ParameterFile(Strict):
         tuple[MeasuredTable, ...], told("points that the coefficients were fitted to", since="1.4")
     ] = ()
     law_holds: Annotated[
-        tuple[HeldRange, ...], told("motions over which the law meets its points; may be less than `covered`", since="1.4")
+        tuple[HeldRange, ...],
+        told("motions over which the law meets its points; may be less than `covered`", since="1.4"),
     ] = ()
     law_at_points: Annotated[
         tuple[LawAtPoints, ...], told("how far the law is from its points, by component and table", since="1.4")
@@ -245,9 +246,7 @@ class ParameterFile(Strict):
         out = []
         for c in self.covered:
             held = [
-                h
-                for h in self.law_holds
-                if (h.variable, h.campaign) == (c.variable, c.campaign) and h.component != "X"
+                h for h in self.law_holds if (h.variable, h.campaign) == (c.variable, c.campaign) and h.component != "X"
             ]
             low, high = max((h.low for h in held), default=c.low), min((h.high for h in held), default=c.high)
             out.append(c.model_copy(update={"low": max(c.low, low), "high": min(c.high, high)}))

@@ -17,6 +17,7 @@ from coeflab.formats.loss import LOSSLESS, Apart, Loss
 from coeflab.formats.lost import Kind
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.inertia import WaterInertia
 from coeflab.vehicle.law_at_points import LawAtPoints
 from coeflab.vehicle.parameter_file import FIRST_VERSION, SCHEMA_VERSION, VERSIONS, ParameterFile, is_later, schema
@@ -69,11 +70,13 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
         Whether rows with a control off zero are among the points.
     """
     rows = tuple(
-        (f.component, f.table, str(f.n_points - len(f.beyond)), *(percent(x) for x in (f.share, f.rms_share)), f.worst_at,
+        (f.component, f.table, str(f.n_points - len(f.beyond)), *(ABSENT if f.small else percent(x) for x in (f.share, f.rms_share)), f.worst_at,
          percent(f.allowed / f.largest if f.largest else 0.0), at_points_verdict(f))
         for f in found
     )  # fmt: skip
-    notes = ["in % of the largest measured force of the component in that table; a set-up's own force at rest is taken off"]
+    notes = [
+        "in % of the largest measured force of the component in that table; a set-up's own force at rest is taken off"
+    ]
     if not controls:
         notes.append("points with a control off zero are left out: no force of controls is compared")
     notes += [
@@ -172,7 +175,7 @@ def as_text(loss: Loss, parameters: ParameterFile) -> str:
         else f"This export is not lossless: {counted(loss) or 'force or acceleration differs'}."
     )
     measured = at_points(loss.at_points, f"Force law of {loss.target}", controls=False)
-    own = at_points(parameters.law_at_points, "Force law of the parameter file")
+    own = at_points(points_of(parameters), "Force law of the parameter file")
     if not own.rows:
         lines.append("The parameter file has no measured points: neither law is compared with any.")
     for table in (forces(loss), measured, own, parts(parameters, loss.water)):
