@@ -217,10 +217,11 @@ def _chosen(
     reach = dict(caps)
     while law is not None and float(np.abs(law.residuals).max()) > allowed_miss(_scatter(law), largest):
         x, worst = law.rows.x, int(np.abs(law.residuals).argmax())
-        v = max(variables, key=lambda name, x=x, worst=worst: abs(x[name][worst]) / reach[name])  # type: ignore[misc]
+        shares = {v: abs(float(x[v][worst])) / reach[v] for v in variables}
+        v = max(shares, key=shares.__getitem__)
         inner = np.abs(x[v])
         caps[v] = float(inner[inner < caps[v] * (1.0 - NEAR)].max(initial=0.0))
-        if caps[v] < NARROWEST * reach[v]:
+        if shares[v] < NARROWEST or caps[v] < NARROWEST * reach[v]:
             return whole
         law = over(rows.within(caps))
     return law or whole

@@ -191,6 +191,7 @@ def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
         f"{n}' {a:.3g} to {b:.3g}{' (covered by no campaign)' if n in assumed else ''}" for n, (a, b) in ranges.items()
     )
     words = words or "straight motion"
+    words = "; ".join((words, *parameters.narrowed))
     return np.array(rows), f"{words}; U {', '.join(f'{f * speed:.3g}' for f in SPEEDS)} m/s; {len(rows)} states"
 
 

@@ -223,7 +223,7 @@ def vehicle(
         why = "" if free else f"; the file does not know enough of {', '.join(m for m in MOTIONS if m not in known)}"
         said.append(f"{', '.join(lacking)} held at the values of the start{why}")
     inertia = _inertia(parameters, moves)
-    said += water.statements
+    said += (*water.statements, *parameters.narrowed)
     hydrostatics = parameters.hydrostatics
     if hydrostatics is None:
         hydrostatics = ParameterHydrostatics(

@@ -275,7 +275,7 @@ def _dominant(primes: Mapping[str, Array], row: int) -> str:
 def caps(
     measured: Sequence[MeasuredTable], force: Force, length: float, higher: Mapping[str, frozenset[str]]
 ) -> Mapping[tuple[str, str], float]:
-    """How far from rest each component's law meets its points, by (component, variable).
+    """How far from rest a component's law meets its points, by (component, variable), where that is less than they go.
 
     Where a law with terms beyond its slopes misses a point within half of the range, no smaller range is named: the law is
     wrong, not short. Slopes alone, and the even law of X, may hold in any part.
@@ -305,7 +305,7 @@ def caps(
                 reach[f.component, v] = max(at, reach.get((f.component, v), 0.0))
                 if missed[row] > allowed and not f.small:
                     cap[f.component, v] = min(at, cap.get((f.component, v), np.inf))
-    out = dict(reach)
+    out = {}
     for (c, v), first in cap.items():
         sizes = [
             abs(float(x))
@@ -405,16 +405,14 @@ def held_ranges(
     """Where the law of every component holds, as far as the points of a campaign go; angles of v/U and w/U."""
     ends: dict[tuple[str, str, str], tuple[float, float]] = {}
     for m in measured:
-        primes = m.primes(length)
-        for f in m.forces:
-            used = np.array([v is not None for v in f.values])
-            for v, x in primes.items():
-                if (f.component, v) not in cap or not np.any(np.abs(x[used]) > AT_REST):
-                    continue
-                limit = cap[f.component, v]
-                low, high = max(min(float(x[used].min()), 0.0), -limit), min(max(float(x[used].max()), 0.0), limit)
-                before = ends.get((f.component, v, m.campaign), (low, high))
-                ends[f.component, v, m.campaign] = min(low, before[0]), max(high, before[1])
+        for v, x in m.primes(length).items():
+            low, high = min(float(x.min()), 0.0), max(float(x.max()), 0.0)
+            for f in m.forces:
+                moved = [value for value, at in zip(f.values, x, strict=True) if abs(at) > AT_REST]
+                if any(value is not None for value in moved):
+                    limit = cap.get((f.component, v), np.inf)
+                    before = ends.get((f.component, v, m.campaign), (0.0, 0.0))
+                    ends[f.component, v, m.campaign] = min(max(low, -limit), before[0]), max(min(high, limit), before[1])
     out = []
     for (c, v, campaign), (low, high) in ends.items():
         name, unit = ANGLES.get(v, v if v in CONTROLS else f"{v}'"), "rad" if v in ANGLES or v in CONTROLS else "1"

@@ -54,6 +54,7 @@ VERSIONS = {
     "1.3": "Buoyancy, gravity, thrusters and the limits of control surfaces.",
     "1.4": "The measured points behind the law, how far the law is from them, and the range in which it holds.",
 }
+NARROWER = 1e-3  # of a range: less is what a campaign is run at
 _MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)
 FIRST_VERSION, SCHEMA_VERSION = next(iter(VERSIONS)), next(reversed(VERSIONS))
 
@@ -251,6 +252,17 @@ class ParameterFile(Strict):
             low, high = max((h.low for h in held), default=c.low), min((h.high for h in held), default=c.high)
             out.append(c.model_copy(update={"low": max(c.low, low), "high": min(c.high, high)}))
         return tuple(out)
+
+    @property
+    def narrowed(self) -> tuple[str, ...]:
+        """Where less is offered than is covered, in words."""
+        return tuple(
+            f"{c.variable} of {c.campaign}: the law holds from {o.low:.3g} to {o.high:.3g}{unit}, the data go from {c.low:.3g} to "
+            f"{c.high:.3g}{unit}; beyond the former it misses its points"
+            for c, o in zip(self.covered, self.offered, strict=True)
+            for unit in [" rad" if c.unit == "rad" else ""]
+            if max(o.low - c.low, c.high - o.high) > NARROWER * max(abs(c.low), abs(c.high))
+        )
 
     @property
     def primes(self) -> Scaling:
