@@ -16,6 +16,7 @@ from pydantic import Field, model_validator
 
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.rows.sweeps import NEAR_ZERO
 from coeflab.fits.statistics.diagnostics import NARROWEST, allowed_miss, scatter_of_replicates
 from coeflab.law.symbols import COMPONENTS, CONTROLS, FORCES, LINEAR, MOTIONS
 from coeflab.tables.force_table import AT_REST, ForceTable
@@ -148,7 +149,7 @@ def measured_tables(
     spoken : mapping of (component, table) to variables
         Motions that a coefficient fitted to that table speaks of.
     crossed : mapping of component to sets of variables
-        Motions that one term combines.
+        Motions that one term combines; rows that combine others count where a fit took them in, see `coeflab.fits.tied_law`.
     constants : frozenset of str
         Components whose force at rest is part of the law.
     length, density : float
@@ -160,12 +161,13 @@ def measured_tables(
         moving = np.array([np.abs(t.primed_motion(m, length)) > AT_REST for m in names])
         forces = []
         scale = density / t.conditions.density
+        tied = any(f.tied is not None and f.campaign == t.campaign for f in fits)
         for c in COMPONENTS:
             variables = spoken.get((c, t.name))
             if variables is None or c not in t.forces:
                 continue
             strange = np.any(moving[[m not in variables for m in names]], axis=0)
-            combined = moving.sum(axis=0) > 1
+            combined = _combined(t, names, length) & (not tied)
             for row in np.flatnonzero(combined):
                 moved = {m for m, on in zip(names, moving[:, row], strict=True) if on}
                 combined[row] = not any(moved <= together for together in crossed.get(c, ()))
@@ -208,6 +210,13 @@ def measured_tables(
             )
         )
     return tuple(out)
+
+
+def _combined(t: ForceTable, names: Sequence[str], length: float) -> NDArray[np.bool_]:
+    """Rows in which two motions move at once, incidence by more than an alignment leaves."""
+    limits = [NEAR_ZERO if m in LINEAR else AT_REST for m in names]
+    moved = [np.abs(t.primed_motion(m, length)) > limit for m, limit in zip(names, limits, strict=True)]
+    return np.asarray(np.sum(moved, axis=0) > 1)
 
 
 def _at_rest(
@@ -412,7 +421,10 @@ def held_ranges(
                 if any(value is not None for value in moved):
                     limit = cap.get((f.component, v), np.inf)
                     before = ends.get((f.component, v, m.campaign), (0.0, 0.0))
-                    ends[f.component, v, m.campaign] = min(max(low, -limit), before[0]), max(min(high, limit), before[1])
+                    ends[f.component, v, m.campaign] = (
+                        min(max(low, -limit), before[0]),
+                        max(min(high, limit), before[1]),
+                    )
     out = []
     for (c, v, campaign), (low, high) in ends.items():
         name, unit = ANGLES.get(v, v if v in CONTROLS else f"{v}'"), "rad" if v in ANGLES or v in CONTROLS else "1"
