@@ -38,6 +38,7 @@ NOT_EVEN = (
     "By symmetry X is even in drift; where the measured one is not, no law can follow it. Exports and motions keep the range of "
     "the other components."
 )
+CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth
 PRODUCTS = {"N": "u v", "M": "u w"}
 
 
@@ -339,12 +340,23 @@ def plausibility(parameters: ParameterFile) -> tuple[Check, ...]:
 def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
     """The law, as the file has it, against the measured points in the file, by component and table.
 
-    A point missed where the law is said to hold fails; points outside of that range are a warning that names them.
+    A point missed where the law is said to hold fails; points outside of that range are a warning that names them. So does a
+    law that is no longer the one whose misses the file states.
     """
     rule = "every point within 3 scatter of repeated runs + 5 % of the largest force"
     out = []
+    stated = {(f.component, f.table): f for f in parameters.law_at_points}
     for f in points_of(parameters):
         largest = f.largest or 1.0
+        before = stated.get((f.component, f.table), f)
+        if max(abs(f.rms - before.rms), abs(f.worst - before.worst)) > CHANGED * f.largest:
+            now, then = (
+                f"rms {100.0 * x.rms / largest:.3g} %, worst {100.0 * x.worst / largest:.3g} %" for x in (f, before)
+            )
+            means = "A coefficient was changed after the file was written: this is not the law that was compared."
+            out.append(
+                Check("law at points", f"{f.component} {f.table}", Severity.FAIL, now, f"{then}, as stated", means)
+            )
         said = f"worst {100.0 * f.worst / largest:.2g} %, rms {100.0 * f.rms / largest:.2g} %, at {f.worst_at or 'no point'}"
         severity, comment = Severity.PASS, "The law holds at its points."
         if f.small:
