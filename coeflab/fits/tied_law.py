@@ -2,8 +2,8 @@
 
 A law that is to hold over the whole range of the data is fitted with its linear part held at the slope that
 `coeflab.fits.slope_at_origin` recommends, so that the two never contradict each other at rest. Of the forms none, x|x|, x^3
-and both the one with the least AICc counts (Hurvich & Tsai 1989); within 2 of it the simplest. Cross terms are those of the
-standard sets (Gertler & Hagen 1967, Feldman 1979) whose motions the data combine.
+and both the one with the least AICc counts (Hurvich & Tsai 1989); within 2 of it the simplest. Variables take turns.
+Cross terms are those of the standard sets (Gertler & Hagen 1967, Feldman 1979) whose motions the data combine.
 
 With y = s x + A b the coefficients are b = A+ (y - s x), so that they move by -A+ x with the slope: that share of the
 slope's uncertainty is carried (GUM, JCGM 100:2008, 5.2).
@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -37,7 +36,7 @@ citations = ("hurvich1989", "gertler1967", "feldman1979", "mackinnon1985", "bell
 completes = "slope_at_origin"
 SIMPLER = 2.0  # AICc that a longer form has to gain
 EXACT = 1e-12  # residuals over the largest force that count as none
-NEAR = 1e-3  # settings closer than this share are one
+STEP = 0.995  # by which a range shrinks at the least
 UP_DOWN = ("w", "q")
 TOGETHER = 4  # rows in which two motions move, for a cross term
 
@@ -134,23 +133,18 @@ def _rows(component: str, tables: Sequence[ForceTable], variables: Sequence[str]
     return _Rows({v: np.concatenate(p) for v, p in xs.items()}, np.concatenate(ys), np.concatenate(at), tuple(names))
 
 
-def _forms(component: str, variables: Sequence[str], rows: _Rows) -> Iterator[tuple[NamedTerm, ...]]:
-    """Forms to choose from, the simplest first; cross terms stand in each of them."""
+def _forms(component: str, v: str) -> list[tuple[NamedTerm, ...]]:
+    """Forms over one variable to choose from, the simplest first."""
 
     def named(*suffixes: str) -> tuple[NamedTerm, ...]:
         return tuple(read_term(component + s, "tied_law") for s in suffixes)
 
-    each = []
-    for v in variables:
-        odd = (named(), named(f"{v}|{v}|"), named(v * 3), named(f"{v}|{v}|", v * 3))
-        even = (named(), named(v * 4))
-        own, other, least = (even, odd, v) if component == "X" else (odd, (named(),), v * 2)
-        # Nothing makes a body alike above and below: there what is even has an odd part, and the reverse.
-        both = [(*f, *named(least), *g) for f in own for g in other] if v in UP_DOWN and component in "XZM" else []
-        each.append((*own, *both))
-    forms = [sum(chosen, ()) for chosen in product(*each)]
-    crossed = tuple(t for t in _cross_terms(component, variables) if _both_move(t, rows))
-    yield from ((*form, *crossed) for form in sorted(forms, key=len))
+    odd = [named(), named(f"{v}|{v}|"), named(v * 3), named(f"{v}|{v}|", v * 3)]
+    even = [named(), named(v * 4)]
+    own, other, least = (even, odd, v) if component == "X" else (odd, [named()], v * 2)
+    # Nothing makes a body alike above and below: there what is even has an odd part, and the reverse.
+    both = [(*f, *named(least), *g) for f in own for g in other] if v in UP_DOWN and component in "XZM" else []
+    return sorted((*own, *both), key=len)
 
 
 def _cross_terms(component: str, variables: Sequence[str]) -> Iterator[NamedTerm]:
@@ -192,10 +186,10 @@ def _fitted(
     return _Law(rows, form, columns, tied, values, left - columns @ values)
 
 
-def _simplest(laws: Sequence[_Law]) -> _Law | None:
+def _simplest(laws: Sequence[tuple[tuple[NamedTerm, ...], _Law]]) -> tuple[tuple[NamedTerm, ...], _Law] | None:
     """The first of the laws, the simplest first, that is within `SIMPLER` of the least AICc."""
-    best = min((f.aicc for f in laws), default=0.0)
-    return next((f for f in laws if f.aicc <= best + SIMPLER), None)
+    best = min((f.aicc for _, f in laws), default=0.0)
+    return next(((form, f) for form, f in laws if f.aicc <= best + SIMPLER), None)
 
 
 def _chosen(
@@ -207,9 +201,22 @@ def _chosen(
     own = (read_term(f"{component}0", "tied_law"),) if constant else ()
 
     def over(some: _Rows) -> _Law | None:
-        forms = _forms(component, variables, some)
-        found = (_fitted(some, bases, (*own, *form), apart=apart) for form in forms)
-        return _simplest([f for f in found if f is not None])
+        crossed = tuple(t for t in _cross_terms(component, variables) if _both_move(t, some))
+        return by_turns(some, (*own, *crossed)) or by_turns(some, own)
+
+    def by_turns(some: _Rows, always: tuple[NamedTerm, ...]) -> _Law | None:
+        """One variable after the other, its form with those of the others as they are; twice."""
+        law, chosen = None, dict.fromkeys(variables, tuple[NamedTerm, ...]())
+        for v in (*variables, *variables):
+            laws = []
+            for form in _forms(component, v):
+                each = (*always, *(t for terms in (chosen | {v: form}).values() for t in terms))
+                laws.append((form, _fitted(some, bases, each, apart=apart)))
+            found = _simplest([(form, f) for form, f in laws if f is not None])
+            if found is None:
+                return None
+            chosen[v], law = found
+        return law
 
     largest = float(np.max(np.abs(rows.y), initial=0.0))
     whole = law = over(rows)
@@ -220,7 +227,7 @@ def _chosen(
         shares = {v: abs(float(x[v][worst])) / reach[v] for v in variables}
         v = max(shares, key=shares.__getitem__)
         inner = np.abs(x[v])
-        caps[v] = float(inner[inner < caps[v] * (1.0 - NEAR)].max(initial=0.0))
+        caps[v] = float(inner[inner <= caps[v] * STEP].max(initial=0.0))
         if shares[v] < NARROWEST or caps[v] < NARROWEST * reach[v]:
             return whole
         law = over(rows.within(caps))
