@@ -142,6 +142,7 @@ def export(made: Export) -> dict[str, Any]:
         "rms_difference": None if loss is None else loss.rms.tolist(),
         "largest_force": None if loss is None else loss.largest.tolist(),
         "accelerations_compared": None if loss is None else accelerations_compared(loss),
+        "law_at_points": [] if loss is None else [f.model_dump(mode="json") for f in loss.at_points],
     }
 
 
@@ -184,6 +185,9 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
             }
             for c in s.comparisons
         ],
+        "law_at_points": {
+            name: [f.model_dump(mode="json") for f in p.law_at_points] for name, p in s.parameter_files.items()
+        },
         "checks": [
             {
                 "check": c.name,

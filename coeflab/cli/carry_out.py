@@ -46,11 +46,13 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
 
 def summarise(study: Study) -> None:
     """Comparison, coefficients, fitted models and grave findings."""
+    from coeflab.report.tables import formats as format_tables
     from coeflab.report.tables import models as joint_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import results as tables
     from coeflab.vehicle.derived import stability
+    from coeflab.vehicle.force_law import points_of
 
     show.text(study.plan.title)
     show.sentence(tables.headline(study))
@@ -67,6 +69,8 @@ def summarise(study: Study) -> None:
         show.table(noun_tables.terms(model))
     show.table(model_tables.quality(models))
     show.table(joint_tables.campaigns(study.fits))
+    for name, parameters in study.parameter_files.items():
+        show.table(format_tables.at_points(points_of(parameters), f"Force law of {name}"))
     findings(study)
     decided = {f"{p.name} {d.name}" for p in study.parameter_files.values() for d in stability(p) if d.decided}
     for c in study.checks:

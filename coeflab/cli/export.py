@@ -33,6 +33,9 @@ def command(
     loss = made.loss
     if loss is not None and not json:
         show.table(loss_tables.forces(loss))
+        show.table(loss_tables.at_points(loss.at_points, f"Force law of {to}", controls=False))
+        if not parameters.measured:
+            show.text("The parameter file has no measured points to compare the law with.")
         show.table(loss_tables.parts(parameters, loss.water))
     refused = loss is not None and not made.lossless and (strict or not accept_loss)
     if refused and json:

@@ -61,6 +61,9 @@ def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
             show.text(line)
         for line in (*(f"Parameter file: {note}" for note in found.file_notes), *acceptance_document.headline(found)):
             show.text(line)
+        bare = [p.name for p in found.parameter_files if not p.measured]
+        if bare:
+            show.text(f"No measured points in {', '.join(bare)}: these laws are not compared with any.")
         for path in paths:
             show.text(f"  {path}")
     if not found.holds:

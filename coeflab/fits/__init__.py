@@ -40,4 +40,25 @@ class Fit(Plugin, Protocol):
         ...
 
 
+@runtime_checkable
+class CompletingFit(Fit, Protocol):
+    """A fit of what another one leaves out; ``completes`` names that, and a study hands over its result."""
+
+    completes: str
+
+    def complete(
+        self, found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]
+    ) -> FitResult:
+        """As `fit`, with the result of the other fit over the same tables.
+
+        Parameters
+        ----------
+        found : FitResult
+        tables : sequence of ForceTable
+        scaling : Scaling
+        options : mapping of str to value
+        """
+        ...
+
+
 FITS = Registry("coeflab.fits", "fit", Fit, __name__)  # type: ignore[type-abstract]

@@ -22,6 +22,7 @@ from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.law.terms import Term, canonical, parse_suffix
 from coeflab.vehicle.force_law import ForceLaw, LawTerm, force_law
 from coeflab.vehicle.inertia import centre_of_gravity, water_inertia
+from coeflab.vehicle.law_at_points import motion_of
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import SecondOrder, resists, second_order, slot
 
@@ -70,7 +71,78 @@ def exported_law(parameters: ParameterFile) -> ExportedLaw:
         matrix = np.diag(np.maximum(np.diag(matrix), 0.0))
         said = "added mass: only its diagonal, because the whole is not positive and no mass is known: entries are missing or wrong"
         statements = (*statements, said)
-    return ExportedLaw(law, second_order(law), matrix, statements)
+    form, taken = _nearest(second_order(law), law, parameters)
+    return ExportedLaw(law, form, matrix, (*statements, *taken))
+
+
+STEPS, ROUNDS = 41, 40  # points over the range; rounds of weights, after which the worst changes by less than 1 %
+ACROSS = ("v", "w")
+LEAST = 1e-3  # of the largest force of a component, that a change is worth
+
+
+def _nearest(form: SecondOrder, law: ForceLaw, parameters: ParameterFile) -> tuple[SecondOrder, tuple[str, ...]]:
+    """The form whose x|x| and x^2 are nearest, over the range in which the law holds, to what else has no place in it.
+
+    Slopes stay. Taken up are v^3 and its like, and u for U; only in files that say where their law holds.
+    """
+    if not parameters.law_holds:
+        return form, ()
+    speed, length = parameters.conditions.speed, parameters.scaling.length
+    signed, absolute, said = form.signed.copy(), form.absolute.copy(), list[str]()
+    for name, reach in _reaches(parameters).items():
+        j = MOTIONS.index(name)
+        x = np.linspace(-reach, reach, STEPS)
+        nu = np.zeros((STEPS, 6))
+        nu[:, 0] = speed * (np.sqrt(1.0 - x**2) if name in ACROSS else 1.0)
+        nu[:, j] = speed * x / (1.0 if name in ACROSS else length)
+        wanted = law.force(nu)
+        left = wanted - form.force(nu)
+        bent = np.column_stack([nu[:, j] * np.abs(nu[:, j]), nu[:, j] ** 2])
+        more = _least_worst(bent, left - left[STEPS // 2])
+        for i, c in enumerate(COMPONENTS):
+            largest = float(np.abs(wanted[:, i]).max())
+            kept = np.abs(more[:, i]) * np.abs(bent).max(axis=0) > LEAST * largest
+            absolute[i, j, j] += more[0, i] * kept[0]
+            signed[i, j, j] += more[1, i] * kept[1]
+            said += [f"{c}{name}|{name}|"] if kept[0] else []
+            said += [f"{c}{name}{name}"] if kept[1] else []
+    if not said:
+        return form, ()
+    words = (
+        f"{', '.join(said)}: hold what this form has no place for (v^3 and its like, U for u), with the least largest difference over "
+        "the range in which the law holds"
+    )
+    return SecondOrder(form.linear, signed, absolute, form.resistance), (words,)
+
+
+def _least_worst(columns: Array, wanted: Array) -> Array:
+    """Coefficients (p, m) of columns (n, p) with the least largest difference from (n, m), by Lawson's weights.
+
+    C. L. Lawson, Contributions to the theory of linear least maximum approximation, UCLA 1961.
+    """
+    out = np.zeros((columns.shape[1], wanted.shape[1]))
+    for k, d in enumerate(wanted.T):
+        weights, least = np.ones(len(d)), np.inf
+        for _ in range(ROUNDS):
+            root = np.sqrt(weights)
+            found = np.linalg.lstsq(columns * root[:, None], d * root, rcond=None)[0]
+            away = np.abs(d - columns @ found)
+            if away.max() < least:
+                least, out[:, k] = float(away.max()), found
+            if not away.max():
+                break
+            weights = weights * away / float((weights * away).sum())
+    return out
+
+
+def _reaches(parameters: ParameterFile) -> Mapping[str, float]:
+    """The largest prime of every motion that the file offers."""
+    out: dict[str, float] = {}
+    for c in parameters.offered:
+        name, size = motion_of(c.variable), max(abs(c.low), abs(c.high))
+        if name in MOTIONS and size > 0.0:
+            out[name] = max(out.get(name, 0.0), float(np.sin(size)) if c.variable.startswith("asin(") else size)
+    return out
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,6 +14,7 @@ from coeflab.law.rigid_body import momentum_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
 from coeflab.vehicle.force_law import ForceLaw, LawTerm, force_of_tables
 from coeflab.vehicle.inertia import WaterInertia, known_mass, water_inertia
+from coeflab.vehicle.law_at_points import LawAtPoints, law_at_points
 from coeflab.vehicle.parameter_file import ParameterFile
 
 SPEEDS = (0.5, 1.0, 1.5)  # of the file's: a law that holds at one speed only shows
@@ -94,6 +95,8 @@ class Loss:
         The accelerations that the export was asked for.
     grid : str
         The velocities that were tried, in words.
+    at_points : tuple of LawAtPoints
+        How far the target's force is from the measured points of the file; empty where the file has none.
     """
 
     target: str
@@ -105,6 +108,7 @@ class Loss:
     not_compared: str
     water: WaterInertia
     grid: str
+    at_points: tuple[LawAtPoints, ...] = ()
 
     @property
     def worst(self) -> Array:
@@ -154,14 +158,14 @@ class Loss:
 
 
 def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
-    """Velocities (n, 6) over what the file's campaigns cover, at half, full and one and a half times its speed.
+    """Velocities (n, 6) over what the file offers, see `ParameterFile.offered`, at half, full and one and a half times its speed.
 
     Every combination of a few values of each covered motion; straight motion alone where none is covered. A motion that
     the file has terms of and no campaign covers, such as a rate from literature, is tried to 0.2 either way.
     """
     speed, length = parameters.conditions.speed, parameters.scaling.length
     ranges: dict[str, tuple[float, float]] = {}
-    for c in parameters.covered:
+    for c in parameters.offered:
         name = ANGLES.get(c.variable, c.variable.removesuffix("'"))
         if name not in MOTIONS:
             continue
@@ -187,6 +191,7 @@ def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
         f"{n}' {a:.3g} to {b:.3g}{' (covered by no campaign)' if n in assumed else ''}" for n, (a, b) in ranges.items()
     )
     words = words or "straight motion"
+    words = "; ".join((words, *parameters.narrowed))
     return np.array(rows), f"{words}; U {', '.join(f'{f * speed:.3g}' for f in SPEEDS)} m/s; {len(rows)} states"
 
 
@@ -238,7 +243,14 @@ def loss_of(
     compared, why = None, "its exporter does not say what added mass it integrates"
     if added_mass is not None:
         compared, why = accelerations_apart(parameters, added_mass(files), nu, theirs, ours)
-    return Loss(target, not_held, lost, changes, apart(theirs, ours), compared, why, water, words)
+    found = law_at_points(
+        parameters.measured,
+        parameters.law_holds,
+        lambda at, _: force(files, at),
+        parameters.scaling.length,
+        controls=False,
+    )
+    return Loss(target, not_held, lost, changes, apart(theirs, ours), compared, why, water, words, found)
 
 
 def accelerations_apart(

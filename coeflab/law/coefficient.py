@@ -63,7 +63,7 @@ class Parts:
         Reserved for a separately assessed window part.
     input : float or None
         What enters from outside the points: declared uncertainty of angle, speed, calibration, lengths, and the grid
-        error of a computation with a grid study.
+        error of a computation with a grid study; in a term tied to a slope, that of the slope.
     """
 
     random: float | None = None

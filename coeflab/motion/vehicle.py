@@ -223,7 +223,7 @@ def vehicle(
         why = "" if free else f"; the file does not know enough of {', '.join(m for m in MOTIONS if m not in known)}"
         said.append(f"{', '.join(lacking)} held at the values of the start{why}")
     inertia = _inertia(parameters, moves)
-    said += water.statements
+    said += (*water.statements, *parameters.narrowed)
     hydrostatics = parameters.hydrostatics
     if hydrostatics is None:
         hydrostatics = ParameterHydrostatics(
@@ -237,7 +237,7 @@ def vehicle(
         name=parameters.name, mass=mass.mass, centre=centre, inertia=inertia, added=water.matrix, water=water, terms=terms,
         law=as_arrays(terms, open_products(parameters, tables)), hydrostatics=hydrostatics, thrusters=parameters.thrusters,
         surfaces=parameters.surfaces, free=moves, speed=parameters.conditions.speed, length=parameters.scaling.length,
-        density=parameters.conditions.density, covered=parameters.covered, statements=tuple(said),
+        density=parameters.conditions.density, covered=parameters.offered, statements=tuple(said),
     )  # fmt: skip
     _positive(made)
     return made

@@ -36,10 +36,12 @@ from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.export import export_sections
 from coeflab.report.sections.manoeuvre import manoeuvre_sections
 from coeflab.report.sections.stability import in_words, stability_sections
+from coeflab.report.tables import formats as format_tables
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.study.study import Study
+from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.reference import Comparison, Relation
 
 Part = TypeVar("Part")
@@ -129,6 +131,7 @@ def _document(study: Study) -> Document:
         *_comparison(study),
         _coefficients(study),
         *_models(study),
+        *_laws(study),
         *about,
         *export_sections(study),
         Section(
@@ -273,6 +276,21 @@ def _models(study: Study) -> tuple[Section, ...]:
     )
     each = tuple(noun_tables.terms(m) for m in models)
     return (Section("models", "Fitted models", text, filled(model_tables.quality(models), *each)),)
+
+
+def _laws(study: Study) -> tuple[Section, ...]:
+    each = filled(
+        *(format_tables.at_points(points_of(p), f"Force law of {name}") for name, p in study.parameter_files.items())
+    )
+    if not each:
+        return ()
+    text = (
+        "The force law of every parameter file, evaluated as a simulation evaluates it, at the measured points that it was fitted "
+        "to. It may miss a point by three times the scatter of repeated runs plus 5 % of the largest force of that component in "
+        "that table; a point missed by more, where the law is said to hold, is a failure. Exports and motions are given the range "
+        "in which it holds.",
+    )
+    return (Section("law-at-points", "The law at the measured points", text, each),)
 
 
 def _comparison(study: Study) -> tuple[Section, ...]:

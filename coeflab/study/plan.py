@@ -24,6 +24,7 @@ from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
 
 JOINT = "manoeuvring_model"
+DEFAULT_FITS = ("slope_at_origin", "tied_law")
 _NAME = re.compile(r"^[\w][\w .+-]{0,79}$")
 
 
@@ -129,7 +130,7 @@ class TableKeys(takes.Declaration):
     campaign : Path
         Folder of the campaign, its campaign.toml, one CSV of it, or a shipped name.
     fits : tuple of str
-        Names of fits, slope_at_origin unless given; ``coeflab formats`` lists them.
+        Names of fits, slope_at_origin and tied_law unless given; ``coeflab formats`` lists them.
     options : mapping
         A table of options for each fit, by its name.
     """
@@ -154,7 +155,7 @@ class TableKeys(takes.Declaration):
     @property
     def used(self) -> tuple[str, ...]:
         """The fits."""
-        return self.fits or ("slope_at_origin",)
+        return self.fits or DEFAULT_FITS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -30,6 +30,8 @@ from coeflab.law.rigid_body import about_another
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivative, primed
 from coeflab.tables.force_table import ForceTable
+from coeflab.vehicle.force_law import full_force, points_of, spoken
+from coeflab.vehicle.law_at_points import caps, held_ranges, measured_tables, with_scatter
 from coeflab.vehicle.parameter_file import (
     CoveredRange,
     InputRecord,
@@ -110,7 +112,7 @@ def _owners(chosen: Sequence[FitResult]) -> tuple[dict[str, str], list[str]]:
     for f in chosen:
         for c in f.coefficients.coefficients:
             component = derivative(c.symbol).component
-            if c.value is not None and owner.setdefault(component, f.fit) != f.fit:
+            if c.value is not None and owner.setdefault(component, f.law) != f.law:
                 left.setdefault((component, f.fit), []).append(primed(c.symbol))
     return owner, [
         f"{component}' is that of {owner[component]}; left out, from {fit}: {', '.join(dict.fromkeys(symbols))}"
@@ -131,7 +133,12 @@ def gathered(
     entries: dict[str, tuple[Coefficient, int, int]] = {}
     for k, s in enumerate(sets):
         for i, c in enumerate(s.coefficients):
-            if owner.get(derivative(c.symbol).component, chosen[k].fit) != chosen[k].fit:
+            if owner.get(derivative(c.symbol).component, chosen[k].law) != chosen[k].law:
+                continue
+            elsewhere = [s for s in _tied_to(chosen[k], i) if s not in entries or entries[s][0].campaign != c.campaign]
+            if elsewhere:
+                slopes = ", ".join(map(primed, elsewhere))
+                notes.append(f"{primed(c.symbol)} of {c.campaign} left out: it is tied to another value of {slopes}")
                 continue
             earlier = entries[c.symbol][0] if c.symbol in entries else None
             used, other = (
@@ -153,13 +160,32 @@ def gathered(
         if c.symbol in entries:
             _, k, row = entries[c.symbol]
             for j, d in enumerate(coefficients):
-                if d.symbol in entries and entries[d.symbol][1] == k:
-                    covariance[i, j] = sets[k].covariance[row, entries[d.symbol][2]]
+                if d.symbol in entries:
+                    covariance[i, j] = _between(chosen[k], row, chosen[entries[d.symbol][1]], entries[d.symbol][2])
         elif c.u95 is not None:
             covariance[i, i] = (c.u95 / 2.0) ** 2
     void = np.array([c.u95 is None for c in coefficients], dtype=bool)
     covariance[void, :] = covariance[:, void] = np.nan
     return coefficients, covariance, notes
+
+
+def _tied_to(f: FitResult, row: int) -> list[str]:
+    """Slopes and curvatures in the same motions that a term was tied to."""
+    if f.tied is None:
+        return []
+    motions = set(derivative(f.coefficients.coefficients[row].symbol).factors)
+    held = zip(f.tied.symbols, f.tied.moves[row], strict=True)
+    return [s for s, move in held if move and motions & set(derivative(s).factors)]
+
+
+def _between(a: FitResult, i: int, b: FitResult, j: int) -> float:
+    """Covariance of two coefficients of one fit, or of two of which one is tied to the fit of the other; else zero."""
+    if a is b:
+        return float(a.coefficients.covariance[i, j])
+    for (f, row), (other, column) in (((a, i), (b, j)), ((b, j), (a, i))):
+        if f.tied is not None and (f.tied.fit, f.campaign) == (other.fit, other.campaign):
+            return float(f.tied.moves[row] @ np.nan_to_num(other.coefficients.covariance[:, column]))
+    return 0.0
 
 
 ANGLES = ("alpha", "beta")
@@ -406,7 +432,7 @@ def assemble(
             notes.append(
                 f"added mass of {group.body} computed from the shape {shape.name} ({shape.title}): {alike.words}"
             )
-    return ParameterFile(
+    made = ParameterFile(
         name=group.name,
         body=group.body,
         scaling=ParameterScaling(length=first.scaling.length, length_name=first.scaling.length_name),
@@ -454,6 +480,29 @@ def assemble(
             notes=tuple(notes),
         ),
     )
+    about = [t.about(first.reference_point) for t in tables if t.datum == first.datum]
+    return with_points(made, [t for t in about if any(t.campaign in f.campaigns for f in chosen)], chosen)
+
+
+def with_points(parameters: ParameterFile, tables: Sequence[ForceTable], fits: Sequence[FitResult]) -> ParameterFile:
+    """The file with the points behind its law, where the law holds and how far it is from them.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    tables : sequence of ForceTable
+        About the file's reference point.
+    fits : sequence of FitResult
+        Which took off what forces at rest.
+    """
+    length, law, force = parameters.scaling.length, spoken(parameters), full_force(parameters)
+    measured = measured_tables(
+        tables, fits, law.by_table, law.together, law.constants, length, parameters.conditions.density
+    )
+    measured = with_scatter(measured, force, length)
+    held = held_ranges(measured, caps(measured, force, length, law.beyond_slopes), length)
+    made = parameters.model_copy(update={"measured": measured, "law_holds": held})
+    return made.model_copy(update={"law_at_points": points_of(made)})
 
 
 @brief

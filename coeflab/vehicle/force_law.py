@@ -9,7 +9,7 @@ The force law of a parameter file as arrays: derivatives, controls and fitted ta
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,11 +23,13 @@ from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.law.terms import Term, parse_suffix
 from coeflab.vehicle.inertia import water_inertia
+from coeflab.vehicle.law_at_points import LawAtPoints, law_at_points
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_model import ANGLE_OF, ParameterModel
 from coeflab.vehicle.parameter_parts import ParameterCoefficient
 
 SLOWEST = 1e-9
+LONG = 9  # a table is more than slopes
 
 
 @brief
@@ -358,6 +360,71 @@ def as_arrays(terms: Iterable[MotionTerm], ideal: np.ndarray) -> MotionLaw:
         absolute=absolute,
         ideal=ideal,
     )
+
+
+def full_force(parameters: ParameterFile) -> Callable[[Array, Array], Array]:
+    """Velocities (n, 6) and controls (n, 3) -> forces (n, 6): the law that a simulation of the file moves by."""
+    law = as_arrays(motion_terms(parameters, tables=False)[0], open_products(parameters, tables=False))
+    return law.force
+
+
+def points_of(parameters: ParameterFile) -> tuple[LawAtPoints, ...]:
+    """How far the law of a file, as it is now, is from the points in it."""
+    length = parameters.scaling.length
+    return law_at_points(parameters.measured, parameters.law_holds, full_force(parameters), length)
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Spoken:
+    """What the law of a file was fitted to.
+
+    Attributes
+    ----------
+    by_table : mapping of (component, table) to set of variables
+        Motions and controls that the component's terms from that table speak of.
+    together : mapping of component to sets of variables
+        Motions that one term combines.
+    constants : frozenset of str
+        Components with a force at rest in the law.
+    beyond_slopes : mapping of component to set of variables
+        In which the law has more than slopes and curvatures.
+    """
+
+    by_table: Mapping[tuple[str, str], frozenset[str]]
+    together: Mapping[str, tuple[frozenset[str], ...]]
+    constants: frozenset[str]
+    beyond_slopes: Mapping[str, frozenset[str]]
+
+
+def spoken(parameters: ParameterFile) -> Spoken:
+    """The motions that the fitted terms of a file speak of; of acceleration derivatives and literature none."""
+    none: frozenset[str] = frozenset()
+    by_table: dict[tuple[str, str], frozenset[str]] = {}
+    together: dict[str, tuple[frozenset[str], ...]] = {}
+    higher: dict[str, frozenset[str]] = {}
+    constants = set()
+    parts: list[tuple[str, str, frozenset[str], int]] = []
+    for c in parameters.coefficients:
+        d = derivative(c.symbol)
+        if c.value is None or c.law == "rest" or any(f.endswith("dot") for f in d.factors):
+            continue
+        moved = frozenset(d.factors) - {"u"}
+        constants |= {d.component} if not moved else set()
+        parts.append((d.component, c.table or "", moved, len(d.factors)))
+    for m in _used(parameters, _derivatives(parameters), tables=False):
+        moved = frozenset(v for name in m.names for v in (_moves(name) or (name,))) & {*MOTIONS[1:], *CONTROLS}
+        for component in _components(m):
+            constants.add(component)
+            parts.append((component, m.table, moved, LONG))
+    for component, tables, moved, degree in parts:
+        for table in filter(None, tables.split(", ")):
+            by_table[component, table] = by_table.get((component, table), none) | moved
+        if len(moved) > 1:
+            together[component] = (*together.get(component, ()), moved)
+        if degree > (2 if component == "X" else 1):
+            higher[component] = higher.get(component, none) | moved
+    return Spoken(by_table, together, frozenset(constants), higher)
 
 
 def force_of_tables(parameters: ParameterFile, nu: Array) -> Array | None:

@@ -28,6 +28,7 @@ from coeflab.core.text.toml import read_text
 from coeflab.core.wording import repeated
 from coeflab.law.added_mass import potential_part
 from coeflab.law.scaling import Scaling
+from coeflab.vehicle.law_at_points import HeldRange, LawAtPoints, MeasuredTable
 from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.parameter_parts import (
     Finite,
@@ -51,7 +52,9 @@ VERSIONS = {
     "1.2": "Added mass and the potential part of every coefficient; damping about a state of rest; centre of gravity and "
     "inertia matrix; what the half-widths of models hold; the status form_assumed.",
     "1.3": "Buoyancy, gravity, thrusters and the limits of control surfaces.",
+    "1.4": "The measured points behind the law, how far the law is from them, and the range in which it holds.",
 }
+NARROWER = 1e-3  # of a range: less is what a campaign is run at
 _MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)
 FIRST_VERSION, SCHEMA_VERSION = next(iter(VERSIONS)), next(reversed(VERSIONS))
 
@@ -226,7 +229,40 @@ class ParameterFile(Strict):
     ] = None
     thrusters: Annotated[tuple[ParameterThruster, ...], told("thrusters, none twice", since="1.3")] = ()
     surfaces: Annotated[tuple[ParameterSurface, ...], told("limits of control surfaces, none twice", since="1.3")] = ()
+    measured: Annotated[
+        tuple[MeasuredTable, ...], told("points that the coefficients were fitted to", since="1.4")
+    ] = ()
+    law_holds: Annotated[
+        tuple[HeldRange, ...],
+        told("motions over which the law meets its points; may be less than `covered`", since="1.4"),
+    ] = ()
+    law_at_points: Annotated[
+        tuple[LawAtPoints, ...], told("how far the law is from its points, by component and table", since="1.4")
+    ] = ()
     provenance: Annotated[Provenance, told("where it all comes from")]
+
+    @property
+    def offered(self) -> tuple[CoveredRange, ...]:
+        """What is covered, less where the law of a component does not hold; X, which steers nothing, does not narrow it."""
+        out = []
+        for c in self.covered:
+            held = [
+                h for h in self.law_holds if (h.variable, h.campaign) == (c.variable, c.campaign) and h.component != "X"
+            ]
+            low, high = max((h.low for h in held), default=c.low), min((h.high for h in held), default=c.high)
+            out.append(c.model_copy(update={"low": max(c.low, low), "high": min(c.high, high)}))
+        return tuple(out)
+
+    @property
+    def narrowed(self) -> tuple[str, ...]:
+        """Where less is offered than is covered, in words."""
+        return tuple(
+            f"{c.variable} of {c.campaign}: the law holds from {o.low:.3g} to {o.high:.3g}{unit}, the data go from {c.low:.3g} to "
+            f"{c.high:.3g}{unit}; beyond the former it misses its points"
+            for c, o in zip(self.covered, self.offered, strict=True)
+            for unit in [" rad" if c.unit == "rad" else ""]
+            if max(o.low - c.low, c.high - o.high) > NARROWER * max(abs(c.low), abs(c.high))
+        )
 
     @property
     def primes(self) -> Scaling:

@@ -24,7 +24,7 @@ from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import ROUNDING, definiteness
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
-from coeflab.vehicle.force_law import LawTerm, force_law, force_of_tables
+from coeflab.vehicle.force_law import LawTerm, force_law, force_of_tables, points_of
 from coeflab.vehicle.imperial_units import displaced, gravity, gyration, water
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -34,6 +34,11 @@ from coeflab.vehicle.second_order import products_once
 SIMILAR = (0.5, 2.0)
 USUAL_SPEEDS = (0.5, 4.0)
 MOMENTS = {"N": (5, 0, 1), "M": (4, 0, 2)}
+NOT_EVEN = (
+    "By symmetry X is even in drift; where the measured one is not, no law can follow it. Exports and motions keep the range of "
+    "the other components."
+)
+CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth
 PRODUCTS = {"N": "u v", "M": "u w"}
 
 
@@ -334,7 +339,47 @@ def plausibility(parameters: ParameterFile, signs: str = "") -> tuple[Check, ...
         *added_mass_findings(parameters, signs),
         *_munk(parameters),
         *damping_findings(parameters, signs),
+        *law_findings(parameters),
     )
+
+
+def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
+    """The law, as the file has it, against the measured points in the file, by component and table.
+
+    A point missed where the law is said to hold fails; points outside of that range are a warning that names them. So does a
+    law that is no longer the one whose misses the file states.
+    """
+    rule = "every point within 3 scatter of repeated runs + 5 % of the largest force"
+    out = []
+    stated = {(f.component, f.table): f for f in parameters.law_at_points}
+    for f in points_of(parameters):
+        largest = f.largest or 1.0
+        before = stated.get((f.component, f.table), f)
+        if max(abs(f.rms - before.rms), abs(f.worst - before.worst)) > CHANGED * f.largest:
+            now, then = (
+                f"rms {100.0 * x.rms / largest:.3g} %, worst {100.0 * x.worst / largest:.3g} %" for x in (f, before)
+            )
+            means = "A coefficient was changed after the file was written: this is not the law that was compared."
+            out.append(
+                Check("law at points", f"{f.component} {f.table}", Severity.FAIL, now, f"{then}, as stated", means)
+            )
+        said = f"worst {100.0 * f.worst / largest:.2g} %, rms {100.0 * f.rms / largest:.2g} %, at {f.worst_at or 'no point'}"
+        severity, comment = Severity.PASS, "The law holds at its points."
+        if f.small:
+            severity, comment = Severity.NOTE, "Next to nothing beside its like in this table (below 1 %): not judged."
+        elif f.missed:
+            severity = Severity.FAIL
+            comment = (
+                f'It misses {", ".join(f.missed)}. Fit the law beyond its slopes (fits = ["slope_at_origin", "tied_law"]), '
+                "or look for a coefficient or a sign that is not the fit's."
+            )
+        elif f.beyond:
+            severity = Severity.WARN
+            comment = (
+                f"The law is not said to hold at {', '.join(f.beyond)}, which it misses by up to {100.0 * f.worst_beyond / largest:.2g} %. "
+            ) + (NOT_EVEN if f.component == "X" else "Exports and motions are given the smaller range.")
+        out.append(Check("law at points", f"{f.component} {f.table}", severity, said, rule, comment))
+    return tuple(out)
 
 
 def _units(p: ParameterFile) -> list[Check]:

@@ -15,7 +15,7 @@ from coeflab.core.machine import one_thread
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import Check, Severity
 from coeflab.core.wording import Verbatim
-from coeflab.fits import FITS
+from coeflab.fits import FITS, CompletingFit
 from coeflab.fits.joint.rows import joint_name, one_length
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.uncertainty.budget import Budget, budgets_of, with_budget
@@ -97,7 +97,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
         scaling = plan.scaling or read[0].scaling
         for name in planned.fits:
-            fitted, found = _fitted(name, read, scaling, planned.options.get(name, {}))
+            fitted, found = _fitted(name, read, scaling, planned.options.get(name, {}), fits)
             budgets += found
             fits.append(fitted)
             progress(f"fitted {read[0].campaign} by {name}")
@@ -171,14 +171,23 @@ def _in_their_words(c: Check) -> Check:
 
 
 def _fitted(
-    name: str, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]
+    name: str,
+    tables: Sequence[ForceTable],
+    scaling: Scaling,
+    options: Mapping[str, Any],
+    earlier: Sequence[FitResult] = (),
 ) -> tuple[FitResult, tuple[Budget, ...]]:
-    """One fit with its budgets in it, and these."""
+    """One fit with its budgets in it, and these; one that completes another is given that, budgets and all."""
     _refuse_several(name, tables)
 
     def once(some: Sequence[ForceTable], by: Scaling) -> FitResult:
         with FITS.guarded(name):
-            return FITS.load(name).fit(some, by, options)
+            plugin = FITS.load(name)
+            if isinstance(plugin, CompletingFit):
+                own = [f for f in earlier if (f.fit, f.campaign) == (plugin.completes, tables[0].campaign)]
+                if own:
+                    return plugin.complete(own[-1], some, by, options)
+            return plugin.fit(some, by, options)
 
     fit = once(tables, scaling)
     _refuse_starved(fit)

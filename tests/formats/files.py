@@ -63,3 +63,15 @@ def control_force(file: ParameterFile, nu: np.ndarray, delta: np.ndarray) -> np.
             scale = 0.5 * file.conditions.density * file.scaling.length ** d.powers[1] * speed ** d.powers[0]
             out[:, "XYZKMN".index(d.component)] += c.value * scale * parse_suffix(d.text[1:]).evaluate(columns)
     return out
+
+
+def slopes_alone(parameters: ParameterFile) -> ParameterFile:
+    """The file without the terms that `coeflab.fits.tied_law` found, and without points."""
+    kept = tuple(c for c in parameters.coefficients if not c.estimator.startswith("least squares beyond"))
+    names = [c.symbol for c in kept]
+    rows = [parameters.covariance.symbols.index(n) for n in names]
+    covariance = {"symbols": names, "matrix": [[parameters.covariance.matrix[i][j] for j in rows] for i in rows]}
+    content = parameters.model_dump(exclude={"measured", "law_holds", "law_at_points"})
+    return ParameterFile.model_validate(
+        {**content, "coefficients": [c.model_dump() for c in kept], "covariance": covariance}
+    )

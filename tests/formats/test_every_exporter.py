@@ -14,7 +14,7 @@ from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.workbench.exports import export
-from tests.formats.files import HOSTILE
+from tests.formats.files import HOSTILE, slopes_alone
 
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
 BODIES = ["suboff_fully_appended", "suboff_bare_hull"]
@@ -63,7 +63,7 @@ def test_the_munk_moment_is_counted_once(suboff: Study, target: str, body: str) 
     """The yaw moment in steady drift is the measured one, but for u where the target has it in the place of U; or the target
     says that it holds Nv at straight motion alone, or not at all, and then has at most one Munk moment.
     """
-    given, to = file(suboff, body), plugin(target)
+    given, to = slopes_alone(file(suboff, body)), plugin(target)
     found, measured, munk = in_drift(target, given, BETA)
     assert abs(munk) > 1000.0
     assert abs(found - (measured + munk)) > 0.8 * abs(munk)

@@ -20,6 +20,7 @@ from coeflab.vehicle.inertia import centre_of_gravity, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCoefficient
 from coeflab.vehicle.second_order import SURGE, second_order
+from tests.formats.files import slopes_alone
 from tests.formats.vehicles import FACTS, vehicle
 
 READ_BY = {
@@ -85,7 +86,7 @@ def file(request: pytest.FixtureRequest) -> ParameterFile:
     if request.param in FACTS:
         return vehicle(request.param)
     study: Study = request.getfixturevalue("suboff")
-    return study.parameter_files[request.param]
+    return slopes_alone(study.parameter_files[request.param])
 
 
 def test_every_importer_is_tried() -> None:

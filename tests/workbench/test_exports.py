@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from coeflab.core.errors import InputError, PluginError
+from coeflab.core.table import Severity
 from coeflab.formats.export import PlannedExport
 from coeflab.report.content import document
 from coeflab.study.plan import read_plan
@@ -56,11 +57,10 @@ def test_without_exports_nothing_but_tables_is_written(tmp_path: Path) -> None:
 def test_the_report_shows_every_export_with_its_loss(study: Study) -> None:
     (section,) = (s for s in document(study).sections if s.anchor == "exports")
     (table,) = section.tables
-    assert [row[:3] for row in table.rows] == [
-        ("my_vehicle", "mss", "accepted: 1 missing"),
-        ("my_vehicle", "gazebo", "accepted: 2 missing"),
-        ("my_vehicle", "csv", "none: tables of the file's own values"),
-    ]
+    assert [row[:2] for row in table.rows] == [("my_vehicle", t) for t in ("mss", "gazebo", "csv")]
+    mss, gazebo, csv = (row[2] for row in table.rows)
+    assert (mss, csv) == ("accepted: 1 missing", "none: tables of the file's own values")
+    assert re.fullmatch(r"accepted: \d not held, 2 missing", gazebo)
     assert [s.title for s in section.subsections] == ["my_vehicle for mss", "my_vehicle for gazebo"]
     shown = section.subsections[1].tables[0]
     assert shown.rows[0][0] == "X"
@@ -84,7 +84,7 @@ def test_a_loss_has_to_be_accepted(tmp_path: Path, table: str, key: str, expecte
     why = refused.why
     assert (refused.parameters, refused.target) == ("my_vehicle", "gazebo")
     assert (why.file, why.column) == (tmp_path / "plan.toml", key)
-    assert why.found.startswith("gazebo cannot hold all of my_vehicle: missing: roll inertia: the file has")
+    assert re.match(r"gazebo cannot hold all of my_vehicle: it has no .*Yvvv.* missing: roll inertia: the", why.found)
     assert expected in why.expected
     assert "\n" not in str(why)
     assert found.failed
@@ -95,9 +95,37 @@ def test_a_loss_has_to_be_accepted(tmp_path: Path, table: str, key: str, expecte
     assert b"Refused, and not written: my_vehicle for gazebo" in files["report.html"]
 
 
+ACROSS = {"suboff_fully_appended": "YNZM", "suboff_bare_hull": "YN", "suboff_bare_hull_cfd": "YN"}
+
+
+@pytest.mark.parametrize("target", ["mss", "xdyn", "gazebo"])
+def test_suboff_exports_hold_their_own_points(suboff: Study, target: str) -> None:
+    """At most 8 % of the largest force to 18 degrees, by the force law of each target from its written files."""
+    made = {e.parameters: e for e in suboff.exports if e.target == target}
+    for name, components in ACROSS.items():
+        loss = made[name].loss
+        assert loss is not None
+        found = [f for f in loss.at_points if f.component in components]
+        assert {f.component for f in found} == set(components)
+        assert max(f.share for f in found) <= 0.08
+        assert not any(f.beyond for f in found)
+        text = made[name].files[f"{name}.{target}.loss.txt"].decode()
+        assert f"Force law of {target} against the measured points" in text
+        assert "Force law of the parameter file against the measured points" in text
+
+
+def test_points_that_suboff_leaves_out_are_named_in_a_warning(suboff: Study) -> None:
+    """X, which is not even in drift in the tank; K at most; no component fails."""
+    found = [c for c in suboff.checks if c.name == "law at points"]
+    assert [c.subject for c in found if c.severity is Severity.FAIL] == []
+    warned = {c.subject: c.comment for c in found if c.severity is Severity.WARN}
+    assert {s.split()[1] for s in warned} <= {"X", "K"}
+    assert "80, 81" in warned["suboff_fully_appended X suboff_roddy_2/table.csv"]
+
+
 def test_a_refusal_names_what_is_not_held(tmp_path: Path) -> None:
     (refused,) = run(planned(tmp_path, 'to = "uuv_simulator"')).refused
-    said = r"uuv_simulator cannot hold all of my_vehicle: it has no Xvv, and missing: .* and X differs by"
+    said = r"uuv_simulator cannot hold all of my_vehicle: it has no Xvv, .*, and missing: .* and [XN] differs by"
     assert re.search(said, str(refused.why))
 
 

@@ -287,6 +287,32 @@ class Sweep:
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
+class Tied:
+    """What coefficients of one fit owe to those of another that they were tied to.
+
+    Attributes
+    ----------
+    fit : str
+        The other fit, of the same campaign.
+    symbols : tuple of str
+        Its coefficients.
+    moves : (n, m) array
+        Change of every coefficient with each of those.
+    at_rest : tuple of (table, component, value)
+        Primed forces at rest that the fit took off and no coefficient holds.
+    """
+
+    fit: str
+    symbols: tuple[str, ...]
+    moves: Array
+    at_rest: tuple[tuple[str, str, float], ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "moves", locked(self.moves))
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
 class FitResult:
     """Coefficients of one campaign, or of several jointly, by one fit.
 
@@ -307,6 +333,8 @@ class FitResult:
         What each of several campaigns adds, one a component.
     differences : tuple of str
         What sets several campaigns apart: bodies, Reynolds numbers, sources, points.
+    tied : Tied or None
+        The fit whose law these coefficients complete.
     """
 
     fit: str
@@ -319,6 +347,12 @@ class FitResult:
     models: tuple[FittedModel, ...] = ()
     poolings: tuple[Pooling, ...] = ()
     differences: tuple[str, ...] = ()
+    tied: Tied | None = None
+
+    @property
+    def law(self) -> str:
+        """The fit whose force law the coefficients belong to."""
+        return self.tied.fit if self.tied else self.fit
 
     @property
     def campaigns(self) -> tuple[str, ...]:

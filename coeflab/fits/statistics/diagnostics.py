@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.spatial import cKDTree
 from scipy.special import chdtrc, fdtrc
 
 from coeflab.core.types import Array
@@ -41,6 +42,41 @@ def replicate_groups(x: Array, tolerance: float) -> list[Index]:
         else:
             groups.append([int(i)])
     return [np.array(g) for g in groups if len(g) > 1]
+
+
+REPEATED = 0.01  # of the largest setting: a model is aligned to a nominal angle no better
+
+
+def scatter_of_replicates(settings: Array, residuals: Array) -> float | None:
+    """Standard deviation of one run, from runs that all but repeat a setting; None where none does.
+
+    Every row is compared with its nearest neighbour; residuals about a law take out what the settings differ by.
+
+    Parameters
+    ----------
+    settings : (n, d) array
+        Each column as a share of its largest value; rows within `REPEATED` of each other repeat a setting.
+    residuals : (n,) array
+    """
+    if len(residuals) < 2:
+        return None
+    away, other = cKDTree(settings).query(settings, k=2, p=np.inf)
+    # Of rows at no distance either may come first.
+    own = other[:, 0] == np.arange(len(residuals))
+    nearest = np.where(own, other[:, 1], other[:, 0])
+    near = away[:, 1] <= REPEATED
+    if not np.any(near):
+        return None
+    return float(np.sqrt(np.mean((residuals[near] - residuals[nearest[near]]) ** 2) / 2.0))
+
+
+SHARE, SCATTERS = 0.05, 3.0
+NARROWEST = 0.5  # of the range of the data, in which a law that is to hold over it may be said to hold
+
+
+def allowed_miss(scatter: float | None, largest: float) -> float:
+    """What a law may miss a point by: three times the scatter of repeated runs plus 5 % of the largest force."""
+    return SCATTERS * (scatter or 0.0) + SHARE * largest
 
 
 def lack_of_fit(f: Factorised, residuals: Array, x: Array, tolerance: float, known_errors: bool) -> float:

@@ -177,7 +177,7 @@ def _geom(
     turn = next((t for t in ("Nr", "Mq", "Kp") if {t, _drag_of(t)} & set(of)), "")
     if not turn:
         return still
-    rates = [max(abs(r.low), abs(r.high)) / 2.0 for r in parameters.covered if r.variable == f"{turn[1]}'"]
+    rates = [max(abs(r.low), abs(r.high)) / 2.0 for r in parameters.offered if r.variable == f"{turn[1]}'"]
     rate = max(rates, default=0.0) or RATE
     i, states = MOTIONS.index(turn[1]), _states(turn[1], (rate,), parameters)
     most = replace(still, ellipsoid=replace(still.ellipsoid, angular=1.0))

@@ -19,6 +19,7 @@ from coeflab.core.wording import finite, listed
 from coeflab.law.added_mass import potential_part
 from coeflab.motion.tune.output_error import Estimate, Problem
 from coeflab.motion.tune.plan import Place, TuningPlan, moved
+from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, InputRecord, ParameterFile
 from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.parameter_parts import ParameterCovariance, UncertaintyParts
@@ -249,7 +250,7 @@ def tuned_file(plan: TuningPlan, tuning: Tuning) -> ParameterFile:
         ),
     }
     p = _coefficients(p.model_copy(update=update), numbered, tuning)
-    return ParameterFile.model_validate(p.model_dump())
+    return ParameterFile.model_validate(p.model_copy(update={"law_at_points": points_of(p)}).model_dump())
 
 
 def _inputs(plan: TuningPlan) -> tuple[InputRecord, ...]:

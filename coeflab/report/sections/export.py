@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from coeflab.core.table import ABSENT, Table
 from coeflab.formats.export import Export, Refused
-from coeflab.formats.loss import ASSUMED, LOSSLESS
+from coeflab.formats.loss import ASSUMED, LOSSLESS, Loss
 from coeflab.report.document import Section
 from coeflab.report.tables import formats as loss_tables
 from coeflab.study.study import Study
@@ -23,12 +23,17 @@ def export_sections(study: Study) -> tuple[Section, ...]:
     if not study.exports and not study.refused:
         return ()
     each = tuple(
-        Section(f"export-{i}", f"{made.parameters} for {made.target}", tables=(loss_tables.forces(made.loss),))
+        Section(f"export-{i}", f"{made.parameters} for {made.target}", tables=_tables(made.target, made.loss))
         for i, made in enumerate(study.exports)
         if made.loss is not None
     )
     refused = tuple(f"Refused, and not written: {_sentence(r)}" for r in study.refused)
     return (Section("exports", "Exports", (*TEXT, *refused), (summary(study),), subsections=each),)
+
+
+def _tables(target: str, loss: Loss) -> tuple[Table, ...]:
+    points = loss_tables.at_points(loss.at_points, f"Force law of {target}", controls=False)
+    return (loss_tables.forces(loss), *((points,) if points.rows else ()))
 
 
 def _sentence(refused: Refused) -> str:

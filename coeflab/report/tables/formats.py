@@ -17,7 +17,9 @@ from coeflab.formats.loss import LOSSLESS, Apart, Loss
 from coeflab.formats.lost import Kind
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.inertia import WaterInertia
+from coeflab.vehicle.law_at_points import LawAtPoints
 from coeflab.vehicle.parameter_file import FIRST_VERSION, SCHEMA_VERSION, VERSIONS, ParameterFile, is_later, schema
 
 NAMED = 3
@@ -54,6 +56,46 @@ def forces(loss: Loss) -> Table:
     return Table(
         f"Force law of {loss.target} against the parameter file", headers, tuple(rows), tuple(notes), frozenset({0, 1})
     )
+
+
+def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True) -> Table:
+    """A law against the measured points, by component and table; no rows where the file has no points.
+
+    Parameters
+    ----------
+    found : sequence of LawAtPoints
+    whose : str
+        Whose law it is, in words.
+    controls : bool
+        Whether rows with a control off zero are among the points.
+    """
+    rows = tuple(
+        (f.component, f.table, str(f.n_points - len(f.beyond)), *(ABSENT if f.small else percent(x) for x in (f.share, f.rms_share)), f.worst_at,
+         percent(f.allowed / f.largest if f.largest else 0.0), at_points_verdict(f))
+        for f in found
+    )  # fmt: skip
+    notes = [
+        "in % of the largest measured force of the component in that table; a set-up's own force at rest is taken off"
+    ]
+    if not controls:
+        notes.append("points with a control off zero are left out: no force of controls is compared")
+    notes += [
+        f"{f.component}, {f.table}: the law is not said to hold at {', '.join(f.beyond)}; it misses them by up to "
+        f"{percent(f.worst_beyond / f.largest if f.largest else 0.0)}"
+        for f in found
+        if f.beyond
+    ]
+    headers = ("", "table", "points", "worst", "rms", "where", "allowed", "")
+    return Table(f"{whose} against the measured points", headers, rows, tuple(notes), frozenset({0, 1, 5, 7}))
+
+
+def at_points_verdict(f: LawAtPoints) -> str:
+    """One word or two on a component."""
+    if f.small:
+        return "too small to judge"
+    if f.missed:
+        return f"misses {len(f.missed)}"
+    return f"{len(f.beyond)} beyond" if f.beyond else "holds"
 
 
 def _row(name: str, unit: str, found: Apart, i: int) -> tuple[str, ...]:
@@ -132,7 +174,11 @@ def as_text(loss: Loss, parameters: ParameterFile) -> str:
         if loss.lossless
         else f"This export is not lossless: {counted(loss) or 'force or acceleration differs'}."
     )
-    for table in (forces(loss), parts(parameters, loss.water)):
+    measured = at_points(loss.at_points, f"Force law of {loss.target}", controls=False)
+    own = at_points(points_of(parameters), "Force law of the parameter file")
+    if not own.rows:
+        lines.append("The parameter file has no measured points: neither law is compared with any.")
+    for table in (forces(loss), measured, own, parts(parameters, loss.water)):
         if table.rows:
             lines += ["", table.title, *_aligned(table), *(f"  {n}" for n in table.notes)]
     return "\n".join(lines) + "\n"

@@ -1,0 +1,157 @@
+"""The law of a parameter file against the points behind it: what breaks it fails, what it does not reach is named."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coeflab.core.table import Severity
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.law.scaling import Conditions
+from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.force_law import points_of
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.vehicle.plausibility import law_findings, plausibility
+from tests.fits.test_tied_law import ANGLES, V, beyond, planted, slopes
+
+GROUP = PlannedParameterFile("file", "body of tow", ("tow",), ())
+AT = Conditions(1025.0, 2.0)
+TRUTH = {"Yv": -0.03, "Yv|v|": -0.1, "Y0": 1e-4, "Nv": -0.014, "Nv|v|": 0.02}
+SLOPES = {"Yv": -0.03, "Nv": -0.014}
+
+
+def made(fits: list[FitResult], table: object) -> ParameterFile:
+    return assemble(GROUP, "study", fits, [table], [], [], None, AT, [])  # type: ignore[list-item]
+
+
+@pytest.fixture(scope="module")
+def whole() -> ParameterFile:
+    table = planted(TRUTH, {"v": V})
+    return made([slopes(table, **SLOPES), beyond(table, **SLOPES)], table)
+
+
+def changed(p: ParameterFile, symbol: str, factor: float, *, stated_anew: bool = True) -> ParameterFile:
+    each = [
+        c.model_copy(update={"value": factor * c.value, "value_si": factor * c.value_si}) if c.symbol == symbol else c
+        for c in p.coefficients
+    ]
+    out = p.model_copy(update={"coefficients": tuple(each)})
+    return out.model_copy(update={"law_at_points": points_of(out)}) if stated_anew else out
+
+
+def worst(p: ParameterFile) -> Severity:
+    order = [Severity.PASS, Severity.NOTE, Severity.WARN, Severity.FAIL]
+    return max((c.severity for c in law_findings(p)), key=order.index)
+
+
+def test_a_planted_law_holds_at_its_points_at_another_density_and_speed(whole: ParameterFile) -> None:
+    found = points_of(whole)
+    assert [(f.component, f.n_points) for f in found] == [("Y", len(ANGLES)), ("N", len(ANGLES))]
+    assert max(f.share for f in found) < 1e-9
+    assert worst(whole) is Severity.PASS
+    assert whole.law_at_points == found
+    assert whole.offered == whole.covered
+    assert not whole.narrowed
+
+
+@pytest.mark.parametrize("symbol", ["Yv'", "Yv|v|'", "Nv'", "Nv|v|'"])
+def test_a_flipped_sign_fails_and_names_the_points(whole: ParameterFile, symbol: str) -> None:
+    broken = changed(whole, symbol, -1.0)
+    assert worst(broken) is Severity.FAIL
+    failed = next(c for c in law_findings(broken) if c.severity is Severity.FAIL)
+    assert failed.subject.startswith(symbol[0])
+    assert "misses 0, 1, 2" in failed.comment.replace("It ", "")
+    assert failed.subject in {c.subject for c in plausibility(broken)}
+
+
+@pytest.mark.parametrize("symbol", ["Yv'", "Yv|v|'", "Nv'", "Nv|v|'"])
+@pytest.mark.parametrize("factor", [0.95, 1.05])
+def test_five_per_cent_on_one_coefficient_of_a_written_file_fails(
+    whole: ParameterFile, symbol: str, factor: float
+) -> None:
+    """Less than the law may miss its points by, but not the law whose misses the file states."""
+    broken = changed(whole, symbol, factor, stated_anew=False)
+    failed = [c for c in law_findings(broken) if c.severity is Severity.FAIL]
+    assert failed[0].subject.startswith(symbol[0])
+    assert "changed after the file was written" in failed[0].comment
+
+
+def test_the_limit_is_five_per_cent_of_the_largest_force(whole: ParameterFile) -> None:
+    def all_of_y(factor: float) -> ParameterFile:
+        return changed(changed(whole, "Yv'", factor), "Yv|v|'", factor)
+
+    assert worst(all_of_y(1.049)) is Severity.PASS
+    assert worst(all_of_y(1.053)) is Severity.FAIL
+
+
+def test_scatter_of_repeated_runs_widens_the_limit(whole: ParameterFile) -> None:
+    table = planted(TRUTH, {"v": np.concatenate([V, V])}, noise=2e-4)
+    noisy = made([slopes(table, **SLOPES), beyond(table, **SLOPES)], table)
+    y = next(f for f in noisy.measured[0].forces if f.component == "Y")
+    unit = 0.5 * 1025.0 * 1.5**2 * 2.0**2
+    assert y.scatter == pytest.approx(2e-4 * unit, rel=0.4)
+    assert points_of(noisy)[0].allowed > points_of(whole)[0].allowed
+
+
+def test_a_tangent_names_where_it_holds_and_is_a_warning_with_the_points_left_out() -> None:
+    table = planted(TRUTH, {"v": V})
+    tangent = made([slopes(table, **SLOPES)], table)
+    assert worst(tangent) is Severity.WARN
+    y = next(c for c in law_findings(tangent) if c.subject.startswith("Y"))
+    assert "0, 1, 2" in y.comment
+    assert "16" in y.comment
+    (offered,) = tangent.offered
+    assert abs(offered.high) < 0.6 * abs(tangent.covered[0].high)
+    assert len(tangent.narrowed) == 1
+    assert worst(changed(tangent, "Yv'", -1.0)) is Severity.FAIL
+
+
+def test_a_law_beyond_its_slopes_that_misses_within_half_of_its_range_names_no_smaller_one() -> None:
+    """A sign that flips between fit and file must not come out as a short range."""
+    table = planted(TRUTH, {"v": V})
+    law = beyond(table, **SLOPES)
+    among = law.coefficients
+    flipped = tuple(
+        replace(c, value=-5.0 * c.value) if c.value and c.symbol == "Yv|v|" else c for c in among.coefficients
+    )
+    wrong = made([slopes(table, **SLOPES), replace(law, coefficients=replace(among, coefficients=flipped))], table)
+    assert wrong.offered == wrong.covered
+    assert worst(wrong) is Severity.FAIL
+
+
+def test_a_component_next_to_nothing_is_not_judged() -> None:
+    table = planted({**TRUTH, "Kvv": 1e-5}, {"v": V})
+    values = {**SLOPES, "Kv": 1e-6}
+    found = {f.component: f for f in points_of(made([slopes(table, **values), beyond(table, **values)], table))}
+    assert found["K"].small
+    assert found["K"].missed
+    assert not found["N"].small
+
+
+def test_points_and_range_travel_with_the_file_and_earlier_versions_have_none(whole: ParameterFile, tmp_path) -> None:
+    path = tmp_path / "file.json"
+    path.write_bytes(whole.to_json())
+    again = read_parameter_file(path)
+    assert again == whole
+    old = ParameterFile.model_validate(
+        {**whole.model_dump(exclude={"measured", "law_holds", "law_at_points"}), "schema_version": "1.3"}
+    )
+    path.write_bytes(old.to_json())
+    assert b"law_holds" not in old.to_json()
+    assert read_parameter_file(path).measured == ()
+    assert points_of(old) == ()
+    assert read_parameter_file(path).offered == old.covered
+
+
+def test_covariance_joins_slopes_and_what_is_tied_to_them(whole: ParameterFile) -> None:
+    names = whole.covariance.symbols
+    i, j = names.index("Yv'"), names.index("Yv|v|'")
+    table = planted(TRUTH, {"v": V})
+    tied = beyond(table, **SLOPES).tied
+    assert tied is not None
+    row = whole.covariance.matrix[i]
+    assert row[j] == pytest.approx(tied.moves[0, 0] * 0.0015**2, rel=1e-6)
+    matrix = np.array(whole.covariance.matrix, dtype=float)
+    assert np.linalg.eigvalsh(matrix / np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))).min() > -1e-9
