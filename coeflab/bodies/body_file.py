@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.body import Body, Configuration, MassProperties, Measured, mass_from_primes
+from coeflab.bodies.body import Body, Configuration, Measured, mass_from_primes
 from coeflab.bodies.shape import Shape
 from coeflab.core.axes import read_datum
 from coeflab.core.errors import InputError, shown
@@ -19,7 +19,7 @@ from coeflab.core.provenance import InputFile, read_source, sha256_of
 from coeflab.core.text.toml import Section, read_toml
 from coeflab.core.types import brief
 from coeflab.core.units import quantity
-from coeflab.law.rigid_body import about_another, inertia_doubt
+from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
 from coeflab.law.scaling import Scaling, read_scaling
 from coeflab.law.symbols import symbol_at
 

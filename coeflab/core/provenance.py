@@ -8,7 +8,9 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
+from coeflab.core.stored import Told, Within, stored
 from coeflab.core.text.toml import Section
 
 TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic")
@@ -65,12 +67,20 @@ def read_source(section: Section, kinds: tuple[str, ...] = BODY_KINDS, required:
     )
 
 
+@stored()
 @dataclass(frozen=True, slots=True)
 class InputFile:
-    """A file that a study read: its name as written in the plan, and its sha256."""
+    """A file that went in.
 
-    name: str
-    sha256: str
+    Attributes
+    ----------
+    name : str
+        As written in the plan.
+    sha256 : str
+    """
+
+    name: Annotated[str, Told("file name")]
+    sha256: Annotated[str, Within((("pattern", "^[0-9a-f]{64}$"),)), Told("of its bytes, hexadecimal")]
 
 
 def sha256_of(path: Path) -> str:

@@ -304,7 +304,7 @@ def sname(name: str) -> str:
 
 def written_terms(parameters: ParameterFile) -> tuple[WrittenTerm, ...]:
     """Every coefficient with a value but accelerations, then the ideal fluid's products that these leave open."""
-    density, primes = parameters.conditions.density, parameters.primes
+    density, primes = parameters.conditions.density, parameters.scaling
     out = []
     for c in parameters.coefficients:
         d = derivative(c.symbol)
@@ -344,7 +344,7 @@ def written_accelerations(parameters: ParameterFile) -> tuple[dict[str, float], 
     """Primed acceleration derivatives that are not zero, and where they come from."""
     water = water_inertia(parameters)
     matrix, source = water.matrix, water.source
-    density, primes = parameters.conditions.density, parameters.primes
+    density, primes = parameters.conditions.density, parameters.scaling
     out = {}
     for i, component in enumerate(COMPONENTS):
         for j, motion in enumerate(MOTIONS):

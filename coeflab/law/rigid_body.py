@@ -14,12 +14,16 @@ h = M21 v + M22 w, the force is -w x p and the moment -w x h - v x p, which is -
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
-from coeflab.core.types import Array, brief
+from coeflab.core.stored import Finite, Positive, Square3, Told, Vector, stored
+from coeflab.core.types import Array, brief, locked
+from coeflab.law.scaling import Scaling
 from coeflab.law.transforms import rigid_body_force, skew
 
 ROUNDING = 1e-9
@@ -73,6 +77,71 @@ def inertia_doubt(mass: float, centre: Array, inertia: Array) -> str:
     if high > (low + middle) * (1.0 + ROUNDING):
         return f"principal moments of inertia {low:g}, {middle:g}, {high:g} kg m^2, one larger than the others' sum"
     return ""
+
+
+@stored("mass mass_moment inertia? mass_prime mass_moment_prime centre? inertia_matrix?")
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class MassProperties:
+    """Mass properties about the reference point.
+
+    Attributes
+    ----------
+    mass : float
+        kg.
+    mass_moment : float
+        x_G m about the reference point, kg m, positive forward.
+    inertia : float or None
+        About the transverse axes (Iy = Iz) through the reference point, kg m^2.
+    centre : (3,) array, optional
+        Centre of gravity from the reference point, m, FRD.
+    inertia_matrix : (3, 3) array, optional
+        About the reference point, kg m^2.
+    mass_prime, mass_moment_prime : float
+        m' = m / (1/2 rho L^3) and x_G' m', where they are known.
+    """
+
+    mass: Annotated[Positive, Told("mass m of the body", "kg")]
+    mass_moment: Annotated[Finite, Told("x_G m, positive forward", "kg m")]
+    inertia: Annotated[Positive | None, Told("transverse, Iy = Iz", "kg m^2")] = None
+    centre: Annotated[
+        Vector | None, Told("centre of gravity from the reference point, x y z, FRD", "m", since="1.2")
+    ] = None
+    inertia_matrix: Annotated[
+        Square3 | None,
+        Told("about the reference point, FRD; products with their sign in the matrix", "kg m^2", since="1.2"),
+    ] = None
+    mass_prime: Annotated[Positive, Told("m / (1/2 rho L^3)", "1")] = math.nan
+    mass_moment_prime: Annotated[Finite, Told("x_G m / (1/2 rho L^4)", "1")] = math.nan
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "mass_moment", "mass_prime", "mass_moment_prime"):
+            object.__setattr__(self, name, float(getattr(self, name)))
+        for name in ("centre", "inertia_matrix"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, locked(getattr(self, name)))
+
+    def primed(self, scaling: Scaling, density: float) -> MassProperties:
+        """With m' and x_G' m'."""
+        unit = scaling.unit("m", density)
+        return replace(self, mass_prime=self.mass / unit, mass_moment_prime=self.mass_moment / (unit * scaling.length))
+
+    @property
+    def centre_of_gravity(self) -> Array:
+        """(3,) from the reference point, m, FRD; on the x axis where only the moment of the mass is known."""
+        return np.array([self.mass_moment / self.mass, 0.0, 0.0]) if self.centre is None else self.centre
+
+    def refuse(self) -> None:
+        """Raise ValueError for what is no rigid body's, or does not agree with itself."""
+        if self.inertia_matrix is not None and self.centre is None:
+            raise ValueError("an inertia matrix without the centre of gravity")
+        if self.centre is None:
+            return
+        moment = self.mass * float(self.centre[0])
+        if not math.isclose(moment, self.mass_moment, rel_tol=1e-6, abs_tol=1e-9 * self.mass):
+            raise ValueError(f"mass_moment {self.mass_moment:g} is not m x_G, {moment:g}")
+        if self.inertia_matrix is not None and (why := inertia_doubt(self.mass, self.centre, self.inertia_matrix)):
+            raise ValueError(why)
 
 
 def rigid_body_inertia(mass: float, centre: Array, inertia: Array) -> Array:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import overload
+from typing import Annotated, overload
 
 import numpy as np
 
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.limits import positive_number
+from coeflab.core.stored import Positive, Told, Words, stored
 from coeflab.core.text.toml import Section
 from coeflab.core.types import Array
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, derivative
@@ -26,9 +27,12 @@ QUANTITIES: dict[str, tuple[int, int, int]] = {
 }
 
 
+@stored("density speed viscosity?")
 @dataclass(frozen=True, slots=True)
 class Conditions:
-    """Fluid and speed; nothing is assumed.
+    """Conditions of the dimensional values.
+
+    Nothing is assumed.
 
     Attributes
     ----------
@@ -39,12 +43,12 @@ class Conditions:
     viscosity : float, optional
         Kinematic, m^2/s.
     reynolds : float, optional
-        As the source states it.
+        As the source states it; no file holds it.
     """
 
-    density: float
-    speed: float
-    viscosity: float | None = None
+    density: Annotated[Positive, Told("density rho of the water", "kg/m^3")]
+    speed: Annotated[Positive, Told("speed U at the reference point", "m/s")]
+    viscosity: Annotated[Positive | None, Told("kinematic", "m^2/s")] = None
     reynolds: float | None = None
 
     def __post_init__(self) -> None:
@@ -58,9 +62,12 @@ class Conditions:
         return self.reynolds if self.viscosity is None else self.speed * length / self.viscosity
 
 
+@stored()
 @dataclass(frozen=True, slots=True)
 class Scaling:
-    """The prime system on one length: Y' = Y / (1/2 rho U^2 L^2), N' with L^3, v' = v/U, r' = r L/U.
+    """Length of the primes.
+
+    The prime system on it: Y' = Y / (1/2 rho U^2 L^2), N' with L^3, v' = v/U, r' = r L/U.
 
     Attributes
     ----------
@@ -70,8 +77,8 @@ class Scaling:
         What that length is, for example ``LBP``.
     """
 
-    length: float
-    length_name: str
+    length: Annotated[Positive, Told("length L of the primes", "m")]
+    length_name: Annotated[Words, Told("which length it is, for example LBP or LOA")]
 
     def __post_init__(self) -> None:
         if expected := positive_number(self.length):

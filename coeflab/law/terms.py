@@ -16,14 +16,25 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.stored import Name, Told, Within, stored
 from coeflab.core.types import Array, brief
 from coeflab.law.symbols import COMPONENTS, PORT_STARBOARD
 
 _FACTOR = re.compile(r"\|(dr|ds|db|[uvwpqr])\||(dr|ds|db|[uvwpqr])")
+
+
+@stored()
+class Factor(NamedTuple):
+    """A power of a variable."""
+
+    variable: Annotated[Name, Told("one of `variables`")]
+    power: Annotated[int, Within((("ge", 1), ("le", 40))), Told("exponent")]
+    absolute: Annotated[bool, Told("true: |variable|^power")] = False
 
 
 @brief

@@ -213,7 +213,7 @@ def vehicle(
         )  # fmt: skip
     water = water_inertia(parameters, accelerations)
     parameters = with_accelerations(parameters, accelerations)
-    centre = np.array(mass.centre if mass.centre is not None else (mass.mass_moment / mass.mass, 0.0, 0.0))
+    centre = mass.centre_of_gravity
     terms, statements = motion_terms(parameters, tables)
     known = _known(parameters, terms)
     moves = tuple(m for m in MOTIONS if m in free) or (MOTIONS if known == MOTIONS or not plane else PLANES[plane])

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS
+from coeflab.law.coefficient import Coefficient
 from coeflab.law.motion_law import BASE, REVERSAL, WIND, MotionLaw
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
@@ -25,7 +26,6 @@ from coeflab.law.terms import Term, parse_suffix
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_model import ANGLE_OF, ParameterModel
-from coeflab.vehicle.parameter_parts import ParameterCoefficient
 
 SLOWEST = 1e-9
 
@@ -103,7 +103,7 @@ def force_law(parameters: ParameterFile) -> ForceLaw:
 
     Literature values stand in where nothing was fitted, as in the file. Coefficients without a value give nothing.
     """
-    density, primes = parameters.conditions.density, parameters.primes
+    density, primes = parameters.conditions.density, parameters.scaling
     terms, left_out = [], []
     for c in parameters.coefficients:
         d = derivative(c.symbol)
@@ -274,16 +274,16 @@ def _derivatives(parameters: ParameterFile) -> tuple[MotionTerm, ...]:
             continue
         term = parse_suffix(d.text[1:])
         motions = sum(n for v, n, _ in term.factors if v not in CONTROLS)
-        scale = parameters.primes.unit(d.text, parameters.conditions.density)
+        scale = parameters.scaling.unit(d.text, parameters.conditions.density)
         factors = tuple((_free(v), n, a) for v, n, a in term.factors)
         out.append(MotionTerm(c.symbol, d.component, scale * c.value, scale, 2 - motions, factors))
     return tuple(out)
 
 
-def _scale(c: ParameterCoefficient, parameters: ParameterFile) -> float:
+def _scale(c: Coefficient, parameters: ParameterFile) -> float:
     """SI coefficient of one unit of a coefficient that is zero."""
     at = parameters.conditions
-    return parameters.primes.unit(c.symbol, at.density, at.speed if c.law == "rest" else 1.0)
+    return parameters.scaling.unit(c.symbol, at.density, at.speed if c.law == "rest" else 1.0)
 
 
 def _free(name: str) -> Variable:

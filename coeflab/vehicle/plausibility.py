@@ -126,7 +126,7 @@ def stated_matrix(parameters: ParameterFile) -> Array:
         d = derivative(c.symbol)
         if c.value is not None and len(d.factors) == 1 and d.factors[0].endswith("dot"):
             at = COMPONENTS.index(d.component), MOTIONS.index(d.factors[0][0])
-            out[at] = 0.0 - c.value * parameters.primes.unit(d.text, density)
+            out[at] = 0.0 - c.value * parameters.scaling.unit(d.text, density)
     return out
 
 
@@ -180,7 +180,7 @@ def _diagonal(stated: Array) -> list[Check]:
 
 def _size(p: ParameterFile, diagonal: Array) -> list[Check]:
     out = []
-    prime = float(np.max(diagonal[1:])) / p.primes.unit("m", p.conditions.density)
+    prime = float(np.max(diagonal[1:])) / p.scaling.unit("m", p.conditions.density)
     if p.scaling.length_name != "1 m" and 0.0 < prime < SMALLEST_PRIME:
         out.append(_added_mass_check("M_A Yv, Zw", Severity.FAIL, f"{prime:.1e} of 1/2 rho L^3", f"at least {SMALLEST_PRIME:g}",
                           "Primes read as SI? Convert them; in a .m file r3 = rho*L^3/2 tells that they are primes."))  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -134,7 +135,7 @@ def test_an_added_mass_of_the_wrong_sign_does_not_pass(tmp_path: Path) -> None:
     """xdyn 26.8 warns where the sum is not positive definite, and goes on; earlier ones stopped."""
     file = torpedo()
     heavier = file.model_copy(update={
-        "added_mass": file.added_mass.model_copy(update={"matrix": tuple(tuple(1.5 * v for v in r) for r in ADDED)})
+        "added_mass": replace(file.added_mass, matrix=tuple(tuple(1.5 * v for v in r) for r in ADDED))
     })  # fmt: skip
     _, said = in_xdyn(tmp_path, rendered(heavier), 0.1)
     assert said == ""

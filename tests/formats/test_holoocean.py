@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -169,7 +169,7 @@ def test_no_torpedo_without_mass() -> None:
 
 def test_no_torpedo_that_is_a_ball() -> None:
     heavy = with_mass(made.plain())
-    file = heavy.model_copy(update={"mass": heavy.mass.model_copy(update={"mass": 1e5})})
+    file = heavy.model_copy(update={"mass": replace(heavy.mass, mass=1e5)})
     with pytest.raises(InputError, match="a body longer than thick"):
         exporter.render(file)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -37,8 +39,7 @@ def accelerating(hull: bool) -> ParameterFile:
 def restated(file: ParameterFile, symbols: tuple[str, ...], deviation: np.ndarray) -> ParameterFile:
     by = dict(zip(symbols, deviation, strict=True))
     changed = tuple(
-        c.model_copy(update={"value": (c.value or 0.0) + by.get(c.symbol, 0.0), "value_si": None})
-        for c in file.coefficients
+        replace(c, value=(c.value or 0.0) + by.get(c.symbol, 0.0), value_si=None) for c in file.coefficients
     )
     return file.model_copy(update={"coefficients": changed})
 

@@ -96,8 +96,9 @@ def _facts(parameters: ParameterFile) -> list[str]:
     if p.mass is not None:
         facts += [("m", p.mass.mass, "mass (kg)"), ("mxG", p.mass.mass_moment, "x_G*m (kg m)")]
         facts += [("I_transverse", p.mass.inertia, "Iyy = Izz about the reference point (kg m^2)")]
-        facts += [(f"{axis}G", x, "centre of gravity (m)") for axis, x in zip("xyz", p.mass.centre or (), strict=False)]
-        rows = enumerate(p.mass.inertia_matrix or (), 1)
+        centre = () if p.mass.centre is None else p.mass.centre.tolist()
+        facts += [(f"{axis}G", x, "centre of gravity (m)") for axis, x in zip("xyz", centre, strict=False)]
+        rows = enumerate(() if p.mass.inertia_matrix is None else p.mass.inertia_matrix.tolist(), 1)
         facts += [(f"I{i}{j}", x, "of the inertia matrix (kg m^2)") for i, row in rows for j, x in enumerate(row, 1)]
     if p.hydrostatics is not None:
         facts += [

@@ -170,7 +170,7 @@ def _moments(parameters: ParameterFile) -> tuple[float | None, ...]:
     if mass is None or mass.inertia_matrix is None:
         transverse = None if mass is None else mass.inertia
         return None, transverse, transverse
-    return tuple(mass.inertia_matrix[i][i] for i in range(3))
+    return tuple(mass.inertia_matrix.diagonal().tolist())
 
 
 def _products(parameters: ParameterFile) -> tuple[float, ...]:

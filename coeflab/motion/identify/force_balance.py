@@ -393,7 +393,7 @@ def _named(symbol: str, parameters: ParameterFile) -> Candidate:
     """A candidate by its SNAME symbol."""
     d = derivative(symbol)
     entry = parameters.coefficient(d.text)
-    at, primes = parameters.conditions, parameters.primes
+    at, primes = parameters.conditions, parameters.scaling
     per_prime = primes.unit(d.text, at.density)
     dots = [f for f in d.factors if f.endswith("dot")]
     if dots:

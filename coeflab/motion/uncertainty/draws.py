@@ -285,7 +285,7 @@ def _added(vehicle: Vehicle, parameters: ParameterFile, symbols: Sequence[str], 
         return None
     out = np.zeros((len(deviations), 6, 6))
     for k, (i, j), s in moved:
-        change = -deviations[:, k] * parameters.primes.unit(s, vehicle.density)
+        change = -deviations[:, k] * parameters.scaling.unit(s, vehicle.density)
         share = 0.5 if i != j and (j, i) in stated else 1.0
         out[:, i, j] += share * change
         if i != j:
