@@ -22,9 +22,10 @@ from numpy.typing import NDArray
 from coeflab.core.table import Check, Severity
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import ROUNDING, definiteness
+from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
-from coeflab.vehicle.force_law import LawTerm, force_law, force_of_tables
+from coeflab.vehicle.force_law import force_law, force_of_tables
 from coeflab.vehicle.imperial_units import displaced, gravity, gyration, water
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -216,7 +217,7 @@ WRONG = "a sign is wrong."
 class _Own:
     """A term of a motion on itself."""
 
-    term: LawTerm
+    term: ForceTerm
     motion: str
     odd: bool
 

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from coeflab.formats.xdyn import write as xdyn
-from coeflab.law.rigid_body import Trajectory, motion, rotation
 from coeflab.law.transforms import force_transfer, velocity_transfer
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -18,6 +17,7 @@ from tests.consumers.lxdyn_environment import PYTHON
 from tests.formats.files import at_rest, control_force, full
 from tests.formats.massed import ADDED, CENTRE, INERTIA, MASS, OWN, torpedo, with_mass
 from tests.formats.of_a_vehicle import floating, quaternion, restoring
+from tests.rigid_motion import Trajectory, motion, rotation
 
 RUN = Path(__file__).with_name("run_lxdyn.py")
 SECONDS, STEP = 60.0, 0.02  # s
