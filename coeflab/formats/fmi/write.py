@@ -31,8 +31,9 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.lost import missing_mass, missing_water
-from coeflab.law.force_law import ForceTerm
+from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.law.terms import Factor, Term
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -233,20 +234,13 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
     velocities at once, with zero control angles.
     """
     model, values = _read(files)
-    moving = np.hstack([nu, np.zeros((len(nu), len(CONTROLS)))])
-    speed = np.maximum(np.linalg.norm(nu[:, :3], axis=1), SLOWEST)
-    out = np.zeros((len(nu), 6))
+    terms = []
     for t in model["terms"]:
         k = t["length_power"]
-        share = (
-            values[t["value"]]
-            * (0.5 * values["density"] * model["length"] ** k if k else 1.0)
-            * speed ** t["speed_power"]
-        )
-        for index, power, absolute in t["factors"]:
-            share = share * (np.abs(moving[:, index]) if absolute else moving[:, index]) ** power
-        out[:, t["force"]] += share
-    return out
+        value = values[t["value"]] * (0.5 * values["density"] * model["length"] ** k if k else 1.0)
+        term = Term(tuple(Factor(_MOVING[index], power, absolute) for index, power, absolute in t["factors"]))
+        terms.append(ForceTerm(t["value"], COMPONENTS[t["force"]], term, value, t["speed_power"], 1.0))
+    return ForceLaw(tuple(terms), np.zeros((6, 6, 6))).force(nu)
 
 
 def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:

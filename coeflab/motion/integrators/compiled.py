@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array
-from coeflab.law.force_law import SLOWEST, Ints
+from coeflab.law.force_law import SLOWEST, ForceLaw, Ints
 from coeflab.law.rigid_body import axes_in_earth, kinematics, weighed
 from coeflab.law.transforms import along_body
 from coeflab.motion.dynamics import FIRST, FLAT, Dynamics
@@ -284,18 +284,28 @@ def march(
     dynamics: Dynamics, orders: Orders, start: Array, step: float, every: int = 1, fastest: float = 1e3
 ) -> Marching:
     """As `coeflab.motion.integrators.fixed_step.march`."""
-    law = dynamics.law
     steps = orders.steps(step)
     out = blank(len(start), orders, step, every)
-    gathered = np.column_stack([law.gathered.T, law.component]).astype(np.uint64)
-    terms = (law.source, np.column_stack([law.prime, law.low, law.high]), law.powers, gathered, law.angled)
     _all(
-        terms, np.array(np.atleast_2d(law.coefficient)), _bodies(dynamics), orders.angles, orders.begin, orders.rate,
+        _terms(dynamics.law), np.array(np.atleast_2d(dynamics.law.coefficient)), _bodies(dynamics), orders.angles, orders.begin, orders.rate,
         orders.wrench.reshape(-1, orders.count, 6), orders.watched, orders.sign, orders.value, orders.longest,
         np.ascontiguousarray(start), step, steps, every, fastest, out.records, out.switch_time, out.switch_state, out.met,
         out.ended, out.end_time, out.end_state,
     )  # fmt: skip
     return out
+
+
+def rates(dynamics: Dynamics, state: Array, controls: Array, wrench: Array) -> Array:
+    """(14,) as `Dynamics.rates` of one vehicle, state (14,), angles (3,) and wrench (6,): to compare both."""
+    law = (*_terms(dynamics.law), np.array(dynamics.law.coefficient).reshape(-1))
+    out, total, pool = np.empty(14), np.empty(9), np.empty(1 + len(law[2]) + 2 * len(law[0]))
+    _rates(law, _bodies(dynamics)[0], state, controls, wrench, out, total, pool)
+    return out
+
+
+def _terms(law: ForceLaw) -> tuple[Ints, Array, Ints, NDArray[np.uint64], bool]:
+    gathered = np.column_stack([law.gathered.T, law.component]).astype(np.uint64)
+    return law.source, np.column_stack([law.prime, law.low, law.high]), law.powers, gathered, law.angled
 
 
 def _bodies(dynamics: Dynamics) -> Array:
