@@ -15,45 +15,10 @@ from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source
 from coeflab.core.types import brief, locked
+from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Scaling
 
 SAME_VOLUME, SAME_SURFACE = 0.01, 0.03  # printed particulars of one model; sail and planes of a submarine are more
-
-
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
-class MassProperties:
-    """Mass properties about the body's reference point.
-
-    Attributes
-    ----------
-    mass : float
-        kg.
-    mass_moment : float
-        x_G m about the reference point, kg m, positive forward.
-    inertia : float or None
-        About the transverse axes (Iy = Iz) through the reference point, kg m^2.
-    centre : (3,) array, optional
-        Centre of gravity from the reference point, m, FRD.
-    inertia_matrix : (3, 3) array, optional
-        About the reference point, kg m^2.
-    """
-
-    mass: float
-    mass_moment: float
-    inertia: float | None
-    centre: NDArray[np.float64] | None = None
-    inertia_matrix: NDArray[np.float64] | None = None
-
-    def __post_init__(self) -> None:
-        for name in ("centre", "inertia_matrix"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, locked(getattr(self, name)))
-
-    def primed(self, scaling: Scaling, density: float) -> tuple[float, float]:
-        """(m', xG' m') with m' = m / (1/2 rho L^3)."""
-        unit = scaling.unit("m", density)
-        return self.mass / unit, self.mass_moment / (unit * scaling.length)
 
 
 @brief

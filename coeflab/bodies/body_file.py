@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 
-from coeflab.bodies.body import Body, Configuration, MassProperties, Measured, mass_from_primes
+from coeflab.bodies.body import Body, Configuration, Measured, mass_from_primes
 from coeflab.bodies.shape import Shape
 from coeflab.core import declarations as takes
 from coeflab.core.axes import DatumKeys
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source, sha256_of
 from coeflab.core.types import Array
-from coeflab.law.rigid_body import about_another, inertia_doubt
+from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import derivative
 

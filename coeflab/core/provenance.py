@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Annotated
 
 from coeflab.core.declarations import Declaration, Text, Words, one_of
+from coeflab.core.stored import Told, Within, stored
 
 TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic")
 BODY_KINDS = (*TABLE_KINDS, "computed")
@@ -41,12 +42,20 @@ class Source(Declaration):
     stated_uncertainty: Words = ""
 
 
+@stored()
 @dataclass(frozen=True, slots=True)
 class InputFile:
-    """A file that a study read: its name as written in the plan, and its sha256."""
+    """A file that went in.
 
-    name: str
-    sha256: str
+    Attributes
+    ----------
+    name : str
+        As written in the plan.
+    sha256 : str
+    """
+
+    name: Annotated[str, Told("file name")]
+    sha256: Annotated[str, Within((("pattern", "^[0-9a-f]{64}$"),)), Told("of its bytes, hexadecimal")]
 
 
 def sha256_of(path: Path) -> str:

@@ -18,9 +18,10 @@ import numpy as np
 from coeflab.core.types import Array, brief
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.added_mass import definiteness
+from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
-from coeflab.law.terms import Term, canonical, parse_suffix
-from coeflab.vehicle.force_law import ForceLaw, LawTerm, force_law
+from coeflab.law.terms import canonical
+from coeflab.vehicle.force_law import force_law, ideal_terms, stated_terms
 from coeflab.vehicle.inertia import centre_of_gravity, water_inertia
 from coeflab.vehicle.law_at_points import motion_of
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -232,7 +233,7 @@ def common_changes(parameters: ParameterFile, law: ExportedLaw, *, whole: bool) 
 TOLERANCE, STEP = 1e-6, 1e-5
 
 
-def canonical_name(term: LawTerm) -> str | None:
+def canonical_name(term: ForceTerm) -> str | None:
     """What a term is on a straight course ahead, where U = u = |u|: ``Yv`` for Yv, Yuv, Yv|u|; ``X0`` for X0, Xu|u|, Xuu, Xu;
     ``Yv|v|``; None for products of other motions and for terms even in one.
     """
@@ -271,7 +272,7 @@ def straight_coefficients(law: ForceLaw, speed: float) -> Mapping[str, float]:
     return out
 
 
-def held_when_straight(force: Callable[[Array], Array], law: ForceLaw, speed: float) -> Callable[[LawTerm], bool]:
+def held_when_straight(force: Callable[[Array], Array], law: ForceLaw, speed: float) -> Callable[[ForceTerm], bool]:
     """A test of terms: constants and those linear in one velocity are held if the target's force has them to 1e-6.
 
     Terms that are alike on a straight course, such as Yv and Yuv, are held together or not at all.
@@ -288,7 +289,7 @@ def held_when_straight(force: Callable[[Array], Array], law: ForceLaw, speed: fl
     straight = np.array([speed, 0.0, 0.0, 0.0, 0.0, 0.0])
     wanted = straight_coefficients(law, speed)
 
-    def held(t: LawTerm) -> bool:
+    def held(t: ForceTerm) -> bool:
         name = canonical_name(t)
         if name is None or "|" in name or t.speed_power + t.term.degree != 2:
             return False
@@ -310,58 +311,25 @@ def held_when_straight(force: Callable[[Array], Array], law: ForceLaw, speed: fl
 _SPELT = re.compile(r"a(dr|ds|db|[uvwpqr](?!dot))")
 
 
-@brief
-@dataclass(frozen=True, slots=True)
-class WrittenTerm:
-    """One term of the law.
+def expression(term: ForceTerm, place: Callable[[str, str], str], power: str) -> str:
+    """A term as an expression.
 
-    Attributes
+    Parameters
     ----------
-    group : {"prime", "rest", "potential"}
-        Primed and multiplied by 1/2 rho L^k and a power of U; SI, whatever U is; primed products of the ideal fluid.
-    name : str
-        SNAME, spelt for a program.
-    value : float
-    component : str
-    length_power : int
-        k of 1/2 rho L^k; 0 for SI.
-    speed_power : int
-    term : Term
-    note : str
-        U95 and origin, in words.
+    term : ForceTerm
+    place : callable
+        Kind and name, as `spelt` has it -> what the program calls the number.
+    power : str
+        ``^`` or ``**``.
     """
-
-    group: str
-    name: str
-    value: float
-    component: str
-    length_power: int
-    speed_power: int
-    term: Term
-    note: str
-
-    def expression(self, place: Callable[[str, str], str], power: str) -> str:
-        """The term as an expression.
-
-        Parameters
-        ----------
-        place : callable
-            Group and name -> what the program calls the number.
-        power : str
-            ``^`` or ``**``.
-        """
-        parts = [f"r{self.length_power}"] if self.length_power else []
-        parts.append(place(self.group, self.name))
-        if self.speed_power > 0:
-            parts.append("U" + (f"{power}{self.speed_power}" if self.speed_power > 1 else ""))
-        for variable, n, absolute in self.term.factors:
-            parts.append((f"abs({variable})" if absolute else variable) + (f"{power}{n}" if n > 1 else ""))
-        text = "*".join(parts)
-        return (
-            text
-            if self.speed_power >= 0
-            else f"{text}/U" + (f"{power}{-self.speed_power}" if self.speed_power < -1 else "")
-        )
+    parts = [f"r{term.length_power}"] if term.length_power else []
+    parts.append(place(term.kind, spelt(term.symbol)))
+    if term.speed_power > 0:
+        parts.append("U" + (f"{power}{term.speed_power}" if term.speed_power > 1 else ""))
+    for variable, n, absolute in term.term.factors:
+        parts.append((f"abs({variable})" if absolute else variable) + (f"{power}{n}" if n > 1 else ""))
+    text, below = "*".join(parts), -term.speed_power
+    return text if below <= 0 else f"{text}/U" + (f"{power}{below}" if below > 1 else "")
 
 
 def spelt(symbol: str) -> str:
@@ -374,49 +342,16 @@ def sname(name: str) -> str:
     return name[:1] + _SPELT.sub(r"|\1|", name[1:])
 
 
-def written_terms(parameters: ParameterFile) -> tuple[WrittenTerm, ...]:
+def written_terms(parameters: ParameterFile) -> tuple[ForceTerm, ...]:
     """Every coefficient with a value but accelerations, then the ideal fluid's products that these leave open."""
-    density, primes = parameters.conditions.density, parameters.primes
-    out = []
-    for c in parameters.coefficients:
-        d = derivative(c.symbol)
-        if c.value is None or any(f.endswith("dot") for f in d.factors):
-            continue
-        note = c.origin if c.u95 is None else f"U95 {c.u95:.2g}, {c.origin}"
-        rest = c.law == "rest" and c.value_si is not None
-        value = c.value_si if rest and c.value_si is not None else c.value
-        scale, power = (0, 0) if rest else (d.powers[1], d.powers[0])
-        out.append(
-            WrittenTerm(
-                "rest" if rest else "prime",
-                spelt(d.text),
-                value,
-                d.component,
-                scale,
-                power,
-                parse_suffix(d.text[1:]),
-                note,
-            )
-        )
-    ideal = force_law(parameters).ideal
-    for i, component in enumerate(COMPONENTS):
-        for j, first in enumerate(MOTIONS):
-            for k, second in enumerate(MOTIONS[j:], j):
-                value = ideal[i, j, k] * (1.0 if j == k else 2.0)
-                name = component + first + second
-                scale = derivative(name).powers[1]
-                if value:
-                    prime = float(value / primes.unit(name, density))
-                    term = parse_suffix(first + second)
-                    out.append(WrittenTerm("potential", name, prime, component, scale, 0, term, ""))
-    return tuple(out)
+    return (*stated_terms(parameters), *ideal_terms(parameters))
 
 
 def written_accelerations(parameters: ParameterFile) -> tuple[dict[str, float], str]:
     """Primed acceleration derivatives that are not zero, and where they come from."""
     water = water_inertia(parameters)
     matrix, source = water.matrix, water.source
-    density, primes = parameters.conditions.density, parameters.primes
+    density, primes = parameters.conditions.density, parameters.scaling
     out = {}
     for i, component in enumerate(COMPONENTS):
         for j, motion in enumerate(MOTIONS):
@@ -426,9 +361,9 @@ def written_accelerations(parameters: ParameterFile) -> tuple[dict[str, float], 
     return out, source
 
 
-def written_controls(terms: tuple[WrittenTerm, ...]) -> tuple[str, ...]:
+def written_controls(terms: tuple[ForceTerm, ...]) -> tuple[str, ...]:
     """The controls that terms use."""
-    used = {v for t in terms for v, _, _ in t.term.factors}
+    used = {v for t in terms for v in t.variables}
     return tuple(c for c in CONTROLS if c in used)
 
 

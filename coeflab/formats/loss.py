@@ -10,9 +10,10 @@ import numpy as np
 
 from coeflab.core.types import Array, brief, locked
 from coeflab.formats.lost import Lost
-from coeflab.law.rigid_body import momentum_quadratics
+from coeflab.law.force_law import ForceLaw, ForceTerm
+from coeflab.law.rigid_body import momentum_force
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
-from coeflab.vehicle.force_law import ForceLaw, LawTerm, force_of_tables
+from coeflab.vehicle.force_law import force_of_tables
 from coeflab.vehicle.inertia import WaterInertia, known_mass, water_inertia
 from coeflab.vehicle.law_at_points import LawAtPoints, law_at_points
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -57,9 +58,9 @@ class Apart:
 
     @property
     def furthest(self) -> tuple[int, float]:
-        """The component with the largest relative difference, and that."""
+        """The component with the largest relative difference, the first of those that are alike to rounding, and that."""
         shares = np.nan_to_num(self.relative, nan=0.0, posinf=np.inf)
-        return int(shares.argmax()), float(shares.max())
+        return int(np.argmax(shares >= shares.max() * (1.0 - LOSSLESS))), float(shares.max())
 
 
 def apart(theirs: Array, ours: Array) -> Apart:
@@ -267,8 +268,7 @@ def accelerations_apart(
     largest = np.abs(ours).max(axis=0)
     groups = np.repeat([largest[:3].max(), largest[3:].max()], 3)
     push = np.diag(np.where(largest > 0.0, largest, np.where(groups > 0.0, groups, 1.0)))
-    turned = momentum_quadratics(rigid)
-    own = np.einsum("ijk,nj,nk->ni", turned, nu, nu)
+    own = momentum_force(nu @ rigid.T, nu)
     at = np.ix_(known, known)
 
     def rates(mass: Array, forces: Array) -> Array:
@@ -286,7 +286,7 @@ def accelerations_apart(
     return found, f"{', '.join(held)}: not compared, the file does not state the inertia" if held else ""
 
 
-def unheld(law: ForceLaw, held: Callable[[LawTerm], bool], *, ideal: bool) -> tuple[str, ...]:
+def unheld(law: ForceLaw, held: Callable[[ForceTerm], bool], *, ideal: bool) -> tuple[str, ...]:
     """What of a law a target does not take, in words, in the order of the file.
 
     Parameters

@@ -23,44 +23,18 @@ from coeflab.core.types import Array, brief, locked
 from coeflab.core.version import VERSION
 from coeflab.core.wording import one_line
 from coeflab.law.added_mass import AddedMass, definiteness, potential_part
-from coeflab.law.rigid_body import ideal_quadratics, inertia_doubt
+from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.rigid_body import MassProperties, ideal_quadratics, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
 from coeflab.law.transforms import skew
-from coeflab.vehicle.parameter_file import (
-    InputRecord,
-    ParameterConditions,
-    ParameterFile,
-    ParameterPoint,
-    ParameterScaling,
-    Provenance,
-)
-from coeflab.vehicle.parameter_parts import (
-    ParameterAddedMass,
-    ParameterCoefficient,
-    ParameterCovariance,
-    ParameterMass,
-    UncertaintyParts,
-)
+from coeflab.vehicle.parameter_file import ParameterFile, ParameterPoint, Provenance
+from coeflab.vehicle.parameter_parts import ParameterCovariance
 from coeflab.vehicle.second_order import ACROSS, ROUNDING, SURGE, SecondOrder, products_once
 
 Law = Literal["motion", "rest"]
 MODEL_ORIGIN = Datum("origin of the model")
 Term = tuple[tuple[tuple[str, int, bool], ...], float]
-
-
-@brief
-@dataclass(frozen=True, slots=True, eq=False)
-class StatedMass:
-    """Mass, kg; x_G m, kg m; where they are known transverse inertia, kg m^2, the centre of gravity (3,) from the
-    reference point, m, and the inertia (3, 3) about that point, kg m^2.
-    """
-
-    mass: float
-    moment: float
-    inertia: float | None = None
-    centre: Array | None = None
-    inertia_matrix: Array | None = None
 
 
 @brief
@@ -79,7 +53,7 @@ class Stated:
     matrix : (6, 6) array or None
         Added mass about the point, where the file is to hold it as such: symmetric and positive.
     matrix_body, matrix_method : str
-    mass : StatedMass or None
+    mass : MassProperties or None
     notes : tuple of str
     """
 
@@ -93,7 +67,7 @@ class Stated:
     matrix: Array | None = None
     matrix_body: str = ""
     matrix_method: str = "stated"
-    mass: StatedMass | None = None
+    mass: MassProperties | None = None
     notes: tuple[str, ...] = field(default=())
 
 
@@ -114,63 +88,45 @@ def stated_file(stated: Stated, sources: Sequence[InputFile], citations: tuple[s
 
 
 def _built(stated: Stated, sources: Sequence[InputFile], citations: tuple[str, ...]) -> ParameterFile:
-    s, at = stated, stated.conditions
+    s = stated
     hull = None
     if s.matrix is not None:
-        hull = AddedMass(s.matrix, np.array(s.point), s.datum, s.matrix_body or s.body, s.matrix_method)
-    unit = s.scaling.unit("m", at.density)
+        body = s.matrix_body or s.body
+        hull = AddedMass(s.matrix, np.array(s.point), s.datum, body, s.matrix_method, density=s.conditions.density)
     return ParameterFile(
         name=s.name,
         body=s.body,
-        scaling=ParameterScaling(length=s.scaling.length, length_name=s.scaling.length_name),
+        scaling=s.scaling,
         reference_point=ParameterPoint(point=s.point, datum=s.datum.id),
-        conditions=ParameterConditions(density=at.density, speed=at.speed, viscosity=at.viscosity),
-        mass=None
-        if s.mass is None
-        else ParameterMass.model_validate(
-            {
-                "mass": s.mass.mass,
-                "mass_moment": s.mass.moment,
-                "inertia": s.mass.inertia,
-                "mass_prime": s.mass.mass / unit,
-                "mass_moment_prime": s.mass.moment / (unit * s.scaling.length),
-                "centre": None if s.mass.centre is None else s.mass.centre.tolist(),
-                "inertia_matrix": None if s.mass.inertia_matrix is None else s.mass.inertia_matrix.tolist(),
-            }
-        ),
+        conditions=s.conditions,
+        mass=None if s.mass is None else s.mass.primed(s.scaling, s.conditions.density),
         coefficients=tuple(_coefficient(symbol, *value, s, hull) for symbol, value in s.coefficients.items()),
         covariance=ParameterCovariance(symbols=(), matrix=()),
         covered=(),
-        added_mass=None
-        if hull is None
-        else ParameterAddedMass.model_validate(
-            {"body": hull.body, "method": hull.method, "density": at.density, "matrix": hull.matrix.tolist()}
-        ),
+        added_mass=hull,
         provenance=Provenance(
             coeflab_version=VERSION,
             study=sources[0].name if sources else s.name,
-            inputs=tuple(InputRecord(name=i.name, sha256=i.sha256) for i in sources),
+            inputs=tuple(sources),
             citations=citations,
             notes=s.notes,
         ),
     )
 
 
-def _coefficient(symbol: str, value: float, law: Law, s: Stated, hull: AddedMass | None) -> ParameterCoefficient:
+def _coefficient(symbol: str, value: float, law: Law, s: Stated, hull: AddedMass | None) -> Coefficient:
     potential = None
     if hull is not None and law == "motion":
         potential = potential_part(symbol, hull, s.scaling, s.conditions.density)
-    return ParameterCoefficient(
-        symbol=primed(symbol),
-        value=value,
-        u95=None,
-        unit="1",
+    return Coefficient(
+        primed(symbol),
+        value,
+        None,
+        Status.STATED,
+        origin="literature",
+        law=law,
         value_si=value * s.scaling.unit(symbol, s.conditions.density, s.conditions.speed),
         unit_si=derivative(symbol).unit,
-        status="stated",
-        origin="literature",
-        parts=UncertaintyParts(),
-        law=law,
         potential=potential,
     )
 
@@ -326,7 +282,7 @@ def _take(row: Array, part: float) -> None:
     row[0] = 0.0 if abs(left) <= ROUNDING * abs(part) else left
 
 
-def stated_mass(mass: float | None, centre: Array, inertia: Array | None, notes: list[str]) -> StatedMass | None:
+def stated_mass(mass: float | None, centre: Array, inertia: Array | None, notes: list[str]) -> MassProperties | None:
     """Mass properties about the link's origin, FRD.
 
     Parameters
@@ -351,7 +307,7 @@ def stated_mass(mass: float | None, centre: Array, inertia: Array | None, notes:
             about = None
     equal = about is not None and abs(about[1, 1] - about[2, 2]) <= 1e-9 * abs(about[1, 1])
     transverse = float(about[1, 1]) if about is not None and equal else None
-    return StatedMass(mass, mass * float(centre[0]), transverse, centre, about)
+    return MassProperties(mass, mass * float(centre[0]), transverse, centre, about)
 
 
 @brief

@@ -11,13 +11,15 @@ Mq, Xvr and others. A simulator that adds C_A(nu) itself must be given the visco
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
+from coeflab.core.stored import Name, Positive, Square6, Told, Words, stored
 from coeflab.core.table import html_by
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.rigid_body import ideal_quadratics
@@ -107,10 +109,21 @@ def definiteness(matrix: Array) -> Definiteness:
     return Definiteness(float(np.max(np.abs(scaled - scaled.T))), smallest)
 
 
+@stored()
+class OtherMethod(NamedTuple):
+    """The same matrix by another method, to be compared with."""
+
+    method: Annotated[Name, Told("name of the method")]
+    matrix: Annotated[Square6, Told("as that of `added_mass`", "kg, kg m, kg m^2")]
+
+
+@stored("body method density matrix others? statements?")
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
 class AddedMass:
-    """M_A in FRD about a named point; acceleration derivatives are its negatives (Xudot = -M_A[0, 0]).
+    """M_A, positive, FRD, about the file's reference point; acceleration derivatives are its negatives.
+
+    Where it is no file's it is about a point of its own. Xudot = -M_A[0, 0].
 
     Attributes
     ----------
@@ -126,16 +139,27 @@ class AddedMass:
         Estimate of the numerical error of each entry, at least zero, where the method gives one.
     rough : bool
         The method itself says that it is only a rough guide for this body.
+    density : float
+        Of the water that it holds for, kg/m^3; NaN where nothing says so.
+    others : tuple of OtherMethod
+        In a parameter file: the same by other methods, about the same point.
     """
 
-    matrix: NDArray[np.float64]
-    reference_point: NDArray[np.float64]
-    datum: Datum
-    body: str
-    method: str
-    statements: tuple[str, ...] = ()
+    matrix: Annotated[
+        Square6,
+        Told(
+            "rows X Y Z K M N, columns of the accelerations du dv dw dp dq dr; symmetric, positive", "kg, kg m, kg m^2"
+        ),
+    ]
+    reference_point: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    datum: Datum = field(default_factory=lambda: Datum("reference point"))
+    body: Annotated[Words, Told("whose shape it was computed from")] = ""
+    method: Annotated[Name, Told("how; stated where it was read from somebody's model")] = ""
+    statements: Annotated[tuple[str, ...], Told("assumptions and limits of the method, in words")] = ()
     error: NDArray[np.float64] | None = None
     rough: bool = False
+    density: Annotated[Positive, Told("density of the water that the matrix holds for", "kg/m^3")] = np.nan
+    others: Annotated[tuple[OtherMethod, ...], Told("the same by other methods, to be compared with")] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", locked(self.matrix))
@@ -148,6 +172,15 @@ class AddedMass:
     def _repr_html_(self) -> str:
         """The matrix, for notebooks."""
         return html_by("matrix", self)
+
+    def refuse(self) -> None:
+        """Raise ValueError for what is no kinetic energy."""
+        found = self.definiteness
+        if not found.holds:
+            raise ValueError(
+                f"the added mass by {self.method} is no kinetic energy: asymmetric by {found.asymmetry:.1e}, smallest "
+                f"scaled eigenvalue {found.smallest:.1e}"
+            )
 
     @property
     def definiteness(self) -> Definiteness:
@@ -174,7 +207,8 @@ class AddedMass:
         if self.error is not None:
             lever = np.abs(velocity_transfer(-shift))
             error = lever.T @ self.error @ lever
-        return replace(self, matrix=matrix, reference_point=np.asarray(point), error=error)
+        others = tuple(OtherMethod(o.method, moved(o.matrix, shift)) for o in self.others)
+        return replace(self, matrix=matrix, reference_point=np.asarray(point), error=error, others=others)
 
     def derivatives(self) -> dict[str, float]:
         """All 36 acceleration derivatives, SI: Xudot, ..., Nrdot."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
-from coeflab.core.errors import ScalingMismatchError, shown
+from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.stored import Choice, Count, Finite, NotNegative, Told, stored
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative
@@ -48,9 +49,10 @@ class Status(StrEnum):
         }[self]
 
 
+@stored()
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """95 % half-widths that make up U95; None where a part was not assessed.
+    """95 % half-widths that make up U95; null where not assessed.
 
     Attributes
     ----------
@@ -66,12 +68,21 @@ class Parts:
         error of a computation with a grid study; in a term tied to a slope, that of the slope.
     """
 
-    random: float | None = None
-    model_form: float | None = None
-    window: float | None = None
-    input: float | None = None
+    random: Annotated[NotNegative | None, Told("scatter of the points", "1")] = None
+    model_form: Annotated[NotNegative | None, Told("what other forms of the curve would give", "1")] = None
+    window: Annotated[NotNegative | None, Told("choice of the window, where it is assessed by itself", "1")] = None
+    input: Annotated[
+        NotNegative | None, Told("declared uncertainty of angle, speed, calibration and length; grid error", "1")
+    ] = None
 
 
+WITHOUT_VALUE = (Status.NO_TABLE, Status.TOO_FEW_POINTS, Status.NOT_DETERMINED)
+
+
+@stored(
+    "symbol value u95 unit value_si unit_si status origin parts table? campaign? estimator? window? n_points? citation? law? "
+    "potential?"
+)
 @brief
 @dataclass(frozen=True, slots=True)
 class Coefficient:
@@ -80,7 +91,7 @@ class Coefficient:
     Attributes
     ----------
     symbol : str
-        SNAME symbol without prime.
+        SNAME symbol, in a parameter file with its prime, elsewhere without.
     value : float or None
         None unless the status says that it is one to use.
     u95 : float or None
@@ -101,23 +112,65 @@ class Coefficient:
     law : str
         ``motion``: the force scales with the speed of the motion, 1/2 rho U^(2-n) for n motion variables, as the prime
         system has it. ``rest``: damping about a state of rest, whose SI value multiplies the velocities whatever U is.
+    value_si, unit_si : float or None, str
+        In a parameter file, at its conditions.
+    potential : float or None
+        In a parameter file: the part that its added mass gives.
     """
 
-    symbol: str
-    value: float | None
-    u95: float | None
-    status: Status
-    body: str
-    parts: Parts = Parts()
-    origin: str = "none"
-    unit: str = "1"
-    table: str | None = None
-    campaign: str | None = None
-    estimator: str = ""
-    window: tuple[float, float] | None = None
-    n_points: int = 0
-    citation: str = ""
-    law: Literal["motion", "rest"] = "motion"
+    symbol: Annotated[
+        str, Told("SNAME symbol with prime, for example Yv'; |v| is an absolute value, Nrdot' an acceleration")
+    ]
+    value: Annotated[Finite | None, Told("total, potential part included; null where the status gives none", "1")]
+    u95: Annotated[NotNegative | None, Told("95 % half-width of the value; null where it is not known", "1")]
+    status: Annotated[
+        Status,
+        Choice(tuple(Status), Status),
+        Told(
+            "ok: fitted with U95; single_estimator: fitted, its model-form error unknown; form_assumed (since 1.2): U95 holds "
+            "for the form that was asked for; stated: from the literature; no_table, too_few_points, not_determined: no value"
+        ),
+    ]
+    body: str = ""
+    parts: Annotated[Parts, Told("what makes up U95")] = Parts()
+    origin: Annotated[str, Choice(("fit", "literature", "none")), Told("where the value comes from")] = "none"
+    unit: Annotated[str, Choice(("1",)), Told("1: nondimensional by the prime system of `scaling`")] = "1"
+    table: Annotated[str | None, Told("file of the table that it was fitted to")] = None
+    campaign: Annotated[str | None, Told("campaign of that table")] = None
+    estimator: Annotated[str, Told("how the value was made, in words")] = ""
+    window: Annotated[
+        tuple[Finite, Finite] | None,
+        Told("range of the motion that was used: angles in radians, rates as r' = r L/U", "rad or 1"),
+    ] = None
+    n_points: Annotated[Count, Told("points in that range")] = 0
+    citation: Annotated[str, Told("keys of works, separated by commas")] = ""
+    law: Annotated[
+        Literal["motion", "rest"],
+        Told(
+            "motion: the force goes with 1/2 rho U^(2-n) for n motion variables; rest: value_si times the velocities "
+            "whatever U is, damping about a state of rest",
+            since="1.2",
+        ),
+    ] = "motion"
+    value_si: Annotated[Finite | None, Told("the value at the density and speed of `conditions`", "see unit_si")] = None
+    unit_si: Annotated[str, Told("SI unit of `value_si`, for example N/(m/s)")] = ""
+    potential: Annotated[
+        Finite | None,
+        Told("part of the value that -C_A(nu) nu gives, by `added_mass`; the rest is viscous", "1", since="1.2"),
+    ] = None
+
+    def refuse(self) -> None:
+        """Raise ValueError for a coefficient that no parameter file may hold."""
+        if not self.symbol.endswith("'"):
+            raise ValueError(f"{self.symbol}: a symbol without prime; write {self.symbol}'")
+        try:
+            derivative(self.symbol)
+        except InputError as why:
+            raise ValueError(str(why)) from None
+        if (self.value is None) != (self.status in WITHOUT_VALUE):
+            raise ValueError(f"{self.symbol}: value {self.value} does not go with status {self.status}")
+        if self.u95 is not None and self.value is None:
+            raise ValueError(f"{self.symbol}: an interval without a value")
 
     def scaled(self, factor: float, unit: str) -> Coefficient:
         """Value and uncertainties times a factor."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, overload
+from typing import Annotated, ClassVar, overload
 
 import numpy as np
 
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.limits import positive_number
+from coeflab.core.stored import Told
 from coeflab.core.types import Array
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, derivative
 
@@ -28,7 +29,9 @@ QUANTITIES: dict[str, tuple[int, int, int]] = {
 
 @dataclass(frozen=True, slots=True)
 class Conditions(takes.Declaration):
-    """Fluid and speed; nothing is assumed.
+    """Conditions of the dimensional values.
+
+    Nothing is assumed.
 
     Attributes
     ----------
@@ -39,12 +42,13 @@ class Conditions(takes.Declaration):
     viscosity : float, optional
         Kinematic, m^2/s.
     reynolds : float, optional
-        As the source states it.
+        As the source states it; no file holds it.
     """
 
-    density: Annotated[takes.Density, takes.ABOVE_ZERO]
-    speed: Annotated[takes.Speed, takes.ABOVE_ZERO]
-    viscosity: Annotated[takes.Viscosity, takes.ABOVE_ZERO] | None = None
+    __stored__: ClassVar = ("density", "speed", "viscosity?")
+    density: Annotated[takes.Density, takes.ABOVE_ZERO, Told("density rho of the water", "kg/m^3")]
+    speed: Annotated[takes.Speed, takes.ABOVE_ZERO, Told("speed U at the reference point", "m/s")]
+    viscosity: Annotated[Annotated[takes.Viscosity, takes.ABOVE_ZERO] | None, Told("kinematic", "m^2/s")] = None
     reynolds: Annotated[takes.Pure, takes.ABOVE_ZERO] | None = None
 
     def __post_init__(self) -> None:
@@ -60,7 +64,9 @@ class Conditions(takes.Declaration):
 
 @dataclass(frozen=True, slots=True)
 class Scaling(takes.Declaration):
-    """The prime system on one length: Y' = Y / (1/2 rho U^2 L^2), N' with L^3, v' = v/U, r' = r L/U.
+    """Length of the primes.
+
+    The prime system on it: Y' = Y / (1/2 rho U^2 L^2), N' with L^3, v' = v/U, r' = r L/U.
 
     Attributes
     ----------
@@ -70,8 +76,9 @@ class Scaling(takes.Declaration):
         What that length is, for example ``LBP``.
     """
 
-    length: Annotated[takes.Length, takes.ABOVE_ZERO]
-    length_name: takes.Text
+    __stored__: ClassVar = ("length", "length_name")
+    length: Annotated[takes.Length, takes.ABOVE_ZERO, Told("length L of the primes", "m")]
+    length_name: Annotated[takes.Text, Told("which length it is, for example LBP or LOA")]
 
     def __post_init__(self) -> None:
         if expected := positive_number(self.length):

@@ -26,6 +26,7 @@ FLOW_ANGLES = {
 }
 PORT_STARBOARD = frozenset("YKNvpr") | {"dr"}
 
+LONGEST = 5  # factors; no model has more
 _FACTOR = r"(?:dr|ds|db|[uvwpqr]dot|[uvwpqr])"
 _TOKEN = re.compile(rf"\|(?P<absolute>{_FACTOR})\||(?P<signed>{_FACTOR})")
 
@@ -78,9 +79,24 @@ class Derivative:
     @property
     def odd_in_port_starboard(self) -> bool:
         """True when a body symmetric port to starboard must have zero for this derivative; |v| does not flip."""
-        signed = [m["signed"].removesuffix("dot") for m in _TOKEN.finditer(self.text, 1) if m["signed"]]
+        signed = [name.removesuffix("dot") for name, absolute in read_factors(self.text[1:]) or () if not absolute]
         flips = [self.component, *signed]
         return sum(name in PORT_STARBOARD for name in flips) % 2 == 1
+
+
+def read_factors(subscript: str) -> tuple[tuple[str, bool], ...] | None:
+    """The variables of a subscript such as ``v|r|`` or ``rdot``, in order, each with whether it stands between bars.
+
+    Empty for ``0``; None where the text is no subscript.
+    """
+    out, at = [], 0
+    while at < len(subscript) and subscript != "0":
+        match = _TOKEN.match(subscript, at)
+        if match is None:
+            return None
+        out.append((match["absolute"] or match["signed"], match["absolute"] is not None))
+        at = match.end()
+    return tuple(out) if subscript else None
 
 
 def derivative(symbol: str) -> Derivative:
@@ -98,17 +114,8 @@ def derivative(symbol: str) -> Derivative:
     """
     text = symbol.removesuffix("'")
     component, rest = text[:1], text[1:]
-    factors: list[str] = []
-    valid = component in COMPONENTS and bool(rest)
-    if valid and rest != "0":
-        at = 0
-        while at < len(rest) and valid:
-            match = _TOKEN.match(rest, at)
-            valid = match is not None
-            if match is not None:
-                factors.append(match["absolute"] or match["signed"])
-                at = match.end()
-    if not valid or len(factors) > 5:
+    read = read_factors(rest) if component in COMPONENTS else None
+    if read is None or len(read) > LONGEST:
         known = [c + f for c in COMPONENTS for f in ("v", "w", "r", "q", "p", "vv", "ww", "rr", "dr", "ds", "0")]
         near = difflib.get_close_matches(text[:12], known, n=3, cutoff=0.4)
         raise InputError(
@@ -116,7 +123,7 @@ def derivative(symbol: str) -> Derivative:
             "a SNAME derivative such as Yv', Nr', Xvv', X0' or Ydr'",
             advice=f"Did you mean {', '.join(n + chr(39) for n in near)}?" if near else "",
         )
-    return Derivative(component, tuple(factors), text)
+    return Derivative(component, tuple(name for name, _ in read), text)
 
 
 def primed(symbol: str) -> str:

@@ -13,17 +13,27 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.stored import Name, Told, Within, stored
 from coeflab.core.types import Array, brief
-from coeflab.law.symbols import COMPONENTS, PORT_STARBOARD
+from coeflab.law.symbols import COMPONENTS, LONGEST, PORT_STARBOARD, read_factors
 
-_FACTOR = re.compile(r"\|(dr|ds|db|[uvwpqr])\||(dr|ds|db|[uvwpqr])")
+
+@stored()
+class Factor(NamedTuple):
+    """A power of a variable."""
+
+    variable: Annotated[Name, Told("one of `variables`")]
+    power: Annotated[int, Within((("ge", 1), ("le", 40))), Told("exponent")]
+    absolute: Annotated[bool, Told("true: |variable|^power")] = False
 
 
 @brief
@@ -81,20 +91,17 @@ def parse_suffix(suffix: str) -> Term:
     ValueError
         Not a product of motion variables and control angles.
     """
-    if suffix == "0":
-        return Term()
-    counts: dict[tuple[str, bool], int] = {}
-    at = 0
-    while at < len(suffix):
-        match = _FACTOR.match(suffix, at)
-        if match is None:
-            raise ValueError(suffix)
-        key = (match.group(1) or match.group(2), match.group(1) is not None)
-        counts[key] = counts.get(key, 0) + 1
-        at = match.end()
-    if not counts:
+    if (term := _term(suffix)) is None:
         raise ValueError(suffix)
-    return Term(tuple((v, n, a) for (v, a), n in counts.items()))
+    return term
+
+
+def _term(suffix: str) -> Term | None:
+    """A subscript as a term; None where it is none of a steady motion."""
+    factors = read_factors(suffix)
+    if factors is None or any(name.endswith("dot") for name, _ in factors):
+        return None
+    return Term(tuple(Factor(name, n, absolute) for (name, absolute), n in Counter(factors).items()))
 
 
 def power_terms(variables: tuple[str, ...], degree: int, form: str, parity: Mapping[str, str]) -> tuple[Term, ...]:
@@ -147,10 +154,8 @@ SETS: dict[str, tuple[str, ...]] = {
 CATALOGUE = tuple(
     dict.fromkeys([*SETS["horizontal"], *SETS["vertical"], *(f"{c}{v * 3}" for c in COMPONENTS for v in "vwpqr")])
 )
-LONGEST = 5
 Key = tuple[str, tuple[tuple[str, int, bool], ...]]
 
-_TERM_FACTOR = re.compile(r"\|(dr|ds|db|[uvwpqr])\||(dr|ds|db|[uvwpqr])")
 _NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 _SYMBOL = re.compile(r"[A-Z][A-Za-z0-9|]*'?")
 
@@ -193,22 +198,6 @@ def symmetric(component: str, term: Term) -> bool:
     return flips % 2 == (component in PORT_STARBOARD)
 
 
-def _suffix(text: str) -> Term | None:
-    """Read a subscript such as ``v|r|``; None where it is none or longer than any model has."""
-    counts: dict[tuple[str, bool], int] = {}
-    at = 0
-    while at < len(text) and text != "0":
-        match = _TERM_FACTOR.match(text, at)
-        if match is None:
-            return None
-        key = match.group(1) or match.group(2), match.group(1) is not None
-        counts[key] = counts.get(key, 0) + 1
-        at = match.end()
-    if not text or sum(counts.values()) > LONGEST:
-        return None
-    return Term(tuple((v, n, a) for (v, a), n in counts.items()))
-
-
 def read_term(text: str, place: str) -> NamedTerm:
     """Read a SNAME symbol as a term.
 
@@ -225,16 +214,14 @@ def read_term(text: str, place: str) -> NamedTerm:
         No term of steady motion; names the nearest ones.
     """
     symbol = text.strip().removesuffix("'")
-    term = _suffix(symbol[1:]) if symbol[:1] in COMPONENTS else None
-    if term is None:
-        near = difflib.get_close_matches(symbol[:12], CATALOGUE, n=3, cutoff=0.5)
-        advice = f"Did you mean {', '.join(near)}?" if near else ""
-        if "dot" in symbol:
-            advice = "Steady tests hold no acceleration; added mass gives that derivative."
-        raise InputError(
-            shown(text), "a term such as Yv, Yv|v|, Yv|r|, Y|v|r, Nrr|r| or Y0", column=place, advice=advice
-        )
-    return NamedTerm(symbol, symbol[0], term)
+    term = _term(symbol[1:]) if symbol[:1] in COMPONENTS else None
+    if term is not None and term.degree <= LONGEST:
+        return NamedTerm(symbol, symbol[0], term)
+    near = difflib.get_close_matches(symbol[:12], CATALOGUE, n=3, cutoff=0.5)
+    advice = f"Did you mean {', '.join(near)}?" if near else ""
+    if "dot" in symbol:
+        advice = "Steady tests hold no acceleration; added mass gives that derivative."
+    raise InputError(shown(text), "a term such as Yv, Yv|v|, Yv|r|, Y|v|r, Nrr|r| or Y0", column=place, advice=advice)
 
 
 def read_terms(texts: tuple[str, ...], place: str) -> tuple[NamedTerm, ...]:

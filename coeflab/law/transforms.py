@@ -13,6 +13,7 @@ Attitudes of parts: angles of a rotation, and which of the equivalent ones is th
 from __future__ import annotations
 
 from itertools import permutations, product
+from typing import Any
 
 import numpy as np
 
@@ -43,32 +44,6 @@ def derivative_transfer(shift: Array) -> tuple[Array, Array]:
     return force_transfer(shift), velocity_transfer(-shift)
 
 
-def rigid_body_force(mass: float, centre: Array, inertia: Array, nu: Array) -> Array:
-    """C_RB(nu) nu, the force and moment that hold a body in a steady motion, shape (n, 6).
-
-    Parameters
-    ----------
-    mass : float
-        kg.
-    centre : (3,) array
-        Centre of gravity from the reference point, m, FRD.
-    inertia : (3, 3) array
-        About the reference point, kg m^2.
-    nu : (n, 6) array
-        Velocities at the reference point.
-
-    Notes
-    -----
-    Newton-Euler about a body point (Fossen 2011, equation 3.42): F = m (w x v + w x (w x rG)),
-    K = w x (I w) + m rG x (w x v).
-    """
-    v, w = nu[:, :3], nu[:, 3:]
-    spin = np.cross(w, v)
-    force = mass * (spin + np.cross(w, np.cross(w, centre)))
-    moment = np.cross(w, w @ inertia.T) + mass * np.cross(centre, spin)
-    return np.hstack([force, moment])
-
-
 def incidence(u: Array, v: Array, w: Array) -> tuple[Array, Array]:
     """(alpha, beta) = (atan2(w, u), asin(v / V)), radians; zero at V = 0."""
     speed = np.sqrt(u**2 + v**2 + w**2)
@@ -87,7 +62,11 @@ def wind_forces(alpha: Array, beta: Array, x: Array, y: Array, z: Array) -> tupl
 
 def body_forces(alpha: Array, beta: Array, drag: Array, side: Array, lift: Array) -> tuple[Array, Array, Array]:
     """(X, Y, Z) in FRD from (D, S, L), each (n,)."""
-    ca, sa, cb, sb = np.cos(alpha), np.sin(alpha), np.cos(beta), np.sin(beta)
+    return along_body(np.cos(alpha), np.sin(alpha), np.cos(beta), np.sin(beta), drag, side, lift)
+
+
+def along_body(ca: Any, sa: Any, cb: Any, sb: Any, drag: Any, side: Any, lift: Any) -> tuple[Any, Any, Any]:
+    """The same from cosines and sines of alpha and beta: arithmetic alone, for numbers, arrays and what numba compiles."""
     return (
         -ca * cb * drag - ca * sb * side + sa * lift,
         -sb * drag + cb * side,

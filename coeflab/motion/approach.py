@@ -56,8 +56,8 @@ def turning_sense(vehicle: Vehicle, control: str, about: str, speed: float) -> f
     InputError
         No coefficient of the file speaks of that control, or it gives no moment.
     """
-    if not any(v[0] == control for t in vehicle.terms for v, _, _ in t.factors):
-        known = [c for c in CONTROLS if any(v[0] == c for t in vehicle.terms for v, _, _ in t.factors)]
+    if not any(control in t.variables for t in vehicle.law.terms):
+        known = [c for c in CONTROLS if any(c in t.variables for t in vehicle.law.terms)]
         raise InputError(
             f"no coefficient of {control}", f"a derivative such as {'N' if about == 'r' else 'M'}{control}",
             column="coefficients",
@@ -204,9 +204,9 @@ def has_rotary_limit(vehicle: Vehicle, rate: str, components: Sequence[str]) -> 
     """Whether a term of second or higher degree in a rate, beyond its product with V or u, stands in these components."""
     return any(
         t.component in components
-        and any(v[0] == rate for v, _, _ in t.factors)
-        and sum(n for v, n, _ in t.factors if v[0] in ("v", "w", "p", "q", "r")) > 1
-        for t in vehicle.terms
+        and rate in t.variables
+        and sum(n for v, n, _ in t.term.factors if v in ("v", "w", "p", "q", "r")) > 1
+        for t in vehicle.law.terms
     )
 
 

@@ -31,8 +31,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array, brief
-from coeflab.law.motion_law import SLOWEST, MotionLaw
-from coeflab.law.transforms import rigid_body_force, skew
+from coeflab.law.force_law import SLOWEST, ForceLaw
+from coeflab.law.rigid_body import axes_in_earth, kinematics, weighed
+from coeflab.law.transforms import along_body, skew
 
 FIRST, SECOND = np.triu_indices(6)
 FLAT = 1e-12
@@ -45,7 +46,7 @@ class Dynamics:
 
     Attributes
     ----------
-    law : MotionLaw
+    law : ForceLaw
         Its terms; the ideal quadratics are those of ``quadratics``.
     quadratics : (6, 21) or (m, 6, 21) array
         Force of every pair of velocities u u, u v, .. r r.
@@ -59,7 +60,7 @@ class Dynamics:
         North, east, down, m/s.
     """
 
-    law: MotionLaw
+    law: ForceLaw
     quadratics: Array
     inverse: Array
     excess: Array
@@ -94,49 +95,28 @@ class Dynamics:
         """
         nu = state[7:13]
         # Numbers are several times quicker than arrays of one.
-        w, x, y, z, u, v, down, p, q, r = state[3:13] if state.shape[1] > 1 else state[3:13, 0].tolist()
-        ahead = (1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y))
-        aside = (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x))
-        below = (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y))
+        moving = tuple(state[3:13] if state.shape[1] > 1 else state[3:13, 0].tolist())
+        axes = axes_in_earth(*moving[:4])
+        *steady, turning, flat = kinematics(axes, *moving)
         out = np.empty_like(state)
-        for k in range(3):
-            out[k] = ahead[k] * u + aside[k] * v + below[k] * down + self.current[k]
-        out[3] = -0.5 * (x * p + y * q + z * r)
-        out[4] = 0.5 * (w * p + y * r - z * q)
-        out[5] = 0.5 * (w * q + z * p - x * r)
-        out[6] = 0.5 * (w * r + x * q - y * p)
+        for k, rate in enumerate(steady):
+            out[k] = rate
+        out[:3] += self.current[:, None]
         total = self.law.term_force(nu, controls) + wrench
         pairs = nu[FIRST] * nu[SECOND]
         total += (
             self.quadratics @ pairs if self.quadratics.ndim == 2 else np.einsum("nip,pn->in", self.quadratics, pairs)
         )
-        gx, gy, gz = ahead[2], aside[2], below[2]
-        lx, ly, lz = self.lever
-        for k, weight in enumerate((gx, gy, gz)):
-            total[k] += self.excess * weight
-        total[3] += ly * gz - lz * gy
-        total[4] += lz * gx - lx * gz
-        total[5] += lx * gy - ly * gx
+        for k, force in enumerate(weighed(self.excess, *self.lever, *axes[2::3])):
+            total[k] += force
         out[7:13] = self.inverse @ total if self.inverse.ndim == 2 else np.einsum("nij,jn->in", self.inverse, total)
-        # Horizontal direction of the x axis, which moves as r times the y axis less q times the z axis.
-        flat = ahead[0] * ahead[0] + ahead[1] * ahead[1]
-        north, east = r * aside[0] - q * below[0], r * aside[1] - q * below[1]
-        out[13] = np.where(flat > FLAT, (ahead[0] * east - ahead[1] * north) / np.maximum(flat, FLAT), 0.0)
+        out[13] = np.where(flat > FLAT, turning / np.maximum(flat, FLAT), 0.0)
         return out
 
 
-def rigid_body_quadratics(mass: float, centre: Array, inertia: Array) -> Array:
-    """(6, 21) -C_RB(nu) nu as a form of the pairs (Fossen 2011, equation 3.42), by polarisation."""
-    unit = np.eye(6)
-    alone = -rigid_body_force(mass, centre, inertia, unit)
-    both = -rigid_body_force(mass, centre, inertia, unit[FIRST] + unit[SECOND])
-    crossed = both - alone[FIRST] - alone[SECOND]
-    return np.asarray(np.where((FIRST == SECOND)[:, None], alone[FIRST], crossed).T)
-
-
-def ideal_pairs(ideal: Array) -> Array:
+def forms_of_pairs(quadratics: Array) -> Array:
     """(.., 6, 21) forms of the pairs from (.., 6, 6, 6) quadratics."""
-    both = ideal + np.swapaxes(ideal, -1, -2)
+    both = quadratics + np.swapaxes(quadratics, -1, -2)
     return np.asarray(both[..., FIRST, SECOND] * np.where(FIRST == SECOND, 0.5, 1.0))
 
 
@@ -146,13 +126,7 @@ POSITION, ATTITUDE, VELOCITY, HEADING = slice(0, 3), slice(3, 7), slice(7, 13), 
 
 def rotations(attitude: Array) -> Array:
     """(n, 3, 3) rotations, body to earth, of unit quaternions (n, 4)."""
-    w, x, y, z = attitude.T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
+    return np.array(axes_in_earth(*attitude.T)).T.reshape(-1, 3, 3).swapaxes(1, 2)
 
 
 def euler_angles(attitude: Array) -> Array:
@@ -184,9 +158,8 @@ def turned_about(axis: Array, angle: float) -> Array:
 
 def restoring(attitude: Array, weight: float, buoyancy: float, centre: Array, centre_of_buoyancy: Array) -> Array:
     """(n, 6) force and moment of weight and buoyancy about the reference point (Fossen 2011, equation 4.6, as a force)."""
-    down = rotations(attitude)[:, 2, :]
     lever = weight * np.asarray(centre) - buoyancy * np.asarray(centre_of_buoyancy)
-    return np.asarray(np.hstack([(weight - buoyancy) * down, np.cross(lever, down)]))
+    return np.column_stack(weighed(weight - buoyancy, *lever, *axes_in_earth(*attitude.T)[2::3]))
 
 
 Numbers = Sequence[float]
@@ -194,12 +167,12 @@ Rates = Callable[[Numbers, Numbers, Numbers], list[float]]
 Force = Callable[[Numbers, Numbers], list[float]]
 
 
-def term_force_of_one(law: MotionLaw) -> Force:
+def term_force_of_one(law: ForceLaw) -> Force:
     """The law's terms as a function of a state (14,) and the angles dr ds db, giving X Y Z K M N.
 
     Parameters
     ----------
-    law : MotionLaw
+    law : ForceLaw
         Of one vehicle: coefficients (t,) or (1, t).
     """
     limits = (law.prime.tolist(), law.low.tolist(), law.high.tolist())
@@ -234,12 +207,10 @@ def term_force_of_one(law: MotionLaw) -> Force:
             for row in rows:
                 product *= pool[row]
             out[component] += product
-        drag, side, lift = out[6:]
-        if drag or side or lift:
-            ca, sa, cb, sb = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
-            out[0] += -ca * cb * drag - ca * sb * side + sa * lift
-            out[1] += -sb * drag + cb * side
-            out[2] += -sa * cb * drag - sa * sb * side - ca * lift
+        if any(out[6:]):
+            turned = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
+            for k, value in enumerate(along_body(*turned, *out[6:])):
+                out[k] += value
         return out[:6]
 
     return force
@@ -264,43 +235,27 @@ def rates_of_one(dynamics: Dynamics) -> Rates:
     pairs = [(7 + int(FIRST[k]), 7 + int(SECOND[k])) for k in wanted]
     forms = _sparse(quadratics[:, wanted])
     inverse = _sparse(dynamics.inverse.reshape(6, 6))
-    excess, (lx, ly, lz) = float(dynamics.excess[0]), dynamics.lever[:, 0].tolist()
+    excess, lever = float(dynamics.excess[0]), dynamics.lever[:, 0].tolist()
     north, east, below = dynamics.current.tolist()
 
     def rates(state: Numbers, angles: Numbers, wrench: Numbers) -> list[float]:
-        _, _, _, w, x, y, z, u, v, down, p, q, r, _ = state
-        ax, ay, az = 1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)
-        bx, by, bz = 2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)
-        cx, cy, cz = 2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)
+        axes = axes_in_earth(*state[3:7])
+        *out, turning, flat = kinematics(axes, *state[3:13])
+        out[0], out[1], out[2] = out[0] + north, out[1] + east, out[2] + below
         total = force(state, angles)
         products = [state[i] * state[j] for i, j in pairs]
+        weight = weighed(excess, *lever, *axes[2::3])
         for i, form in enumerate(forms):
             total[i] += wrench[i]
             for k, entry in form:
                 total[i] += entry * products[k]
-        total[0] += excess * az
-        total[1] += excess * bz
-        total[2] += excess * cz
-        total[3] += ly * cz - lz * bz
-        total[4] += lz * az - lx * cz
-        total[5] += lx * bz - ly * az
-        flat = ax * ax + ay * ay
-        turned_north, turned_east = r * bx - q * cx, r * by - q * cy
-        out = [
-            ax * u + bx * v + cx * down + north,
-            ay * u + by * v + cy * down + east,
-            az * u + bz * v + cz * down + below,
-            -0.5 * (x * p + y * q + z * r),
-            0.5 * (w * p + y * r - z * q),
-            0.5 * (w * q + z * p - x * r),
-            0.5 * (w * r + x * q - y * p),
-        ]
+            total[i] += weight[i]
         for row in inverse:
             acceleration = 0.0
             for j, entry in row:
                 acceleration += entry * total[j]
             out.append(acceleration)
-        out.append((ax * turned_east - ay * turned_north) / flat if flat > FLAT else 0.0)
+        out.append(turning / flat if flat > FLAT else 0.0)
         return out
 
     return rates

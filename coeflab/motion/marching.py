@@ -15,9 +15,10 @@ from coeflab.core.errors import InputError
 from coeflab.core.limits import MOTION_STEPS, require_rows
 from coeflab.core.machine import compiles
 from coeflab.core.types import Array, brief, locked
-from coeflab.law.rigid_body import rigid_body_inertia
+from coeflab.law.force_law import ForceLaw
+from coeflab.law.rigid_body import momentum_quadratics, rigid_body_inertia
 from coeflab.law.symbols import CONTROLS
-from coeflab.motion.dynamics import Dynamics, ideal_pairs, rigid_body_quadratics
+from coeflab.motion.dynamics import Dynamics, forms_of_pairs
 from coeflab.motion.integrators import fixed_step as plain
 from coeflab.motion.integrators.adaptive import march_adaptive
 from coeflab.motion.integrators.fixed_step import fast_eigenvalues, largest_step
@@ -71,7 +72,7 @@ class Ensemble:
             given = getattr(self, name)
             if given is None:
                 continue
-            wanted = (count, len(self.vehicle.terms)) if name == "coefficients" else (count, *shape)
+            wanted = (count, len(self.vehicle.law.terms)) if name == "coefficients" else (count, *shape)
             array = locked(given)
             if array.shape != wanted or not count:
                 raise InputError(f"an array of shape {array.shape}", f"shape {wanted}, one row a member", column=name)
@@ -93,12 +94,10 @@ class Ensemble:
     def member(self, i: int) -> Vehicle:
         """One of them, as a vehicle."""
         v = self.vehicle
-        law = replace(
-            v.law, coefficient=self.coefficients[i], ideal=v.law.ideal if self.ideal is None else self.ideal[i]
-        )
-        terms = tuple(replace(t, coefficient=float(c)) for t, c in zip(v.terms, self.coefficients[i], strict=True))
+        terms = tuple(replace(t, coefficient=float(c)) for t, c in zip(v.law.terms, self.coefficients[i], strict=True))
+        law = ForceLaw(terms, v.law.ideal if self.ideal is None else self.ideal[i])
         return replace(
-            v, law=law, terms=terms,
+            v, law=law,
             added=v.added if self.added is None else self.added[i],
             mass=v.mass if self.mass is None else float(self.mass[i]),
             centre=v.centre if self.centre is None else self.centre[i],
@@ -108,7 +107,7 @@ class Ensemble:
     def dynamics(self, current: Array) -> Dynamics:
         """Arrays that a march needs, in a current (3,) north, east, down."""
         v = self.vehicle
-        rigid = np.array([rigid_body_quadratics(*body) for body in self._bodies()])
+        rigid = np.array([momentum_quadratics(rigid_body_inertia(*body)) for body in self._bodies()])
         weight = np.array([mass for mass, _, _ in self._bodies()]) * v.hydrostatics.gravity
         centres = np.array([centre for _, centre, _ in self._bodies()])
         lever = weight * centres.T - v.buoyancy * np.array(v.hydrostatics.centre_of_buoyancy)[:, None]
@@ -116,7 +115,7 @@ class Ensemble:
         free = np.linalg.inv(self._free_mass())
         inverse = np.zeros((len(free), 6, 6))
         inverse[:, rows, columns] = free
-        quadratics = ideal_pairs(v.law.ideal if self.ideal is None else self.ideal) + rigid
+        quadratics = forms_of_pairs((v.law.ideal if self.ideal is None else self.ideal) + rigid)
         shared = replace(v.law, coefficient=self.coefficients if self.count > 1 else self.coefficients[0])
         alike = len(quadratics) == 1
         return Dynamics(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief
-from coeflab.law.motion_law import BASE, Ints
+from coeflab.law.force_law import BASE, Ints
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.manoeuvre import Manoeuvre
 from coeflab.motion.vehicle import Vehicle

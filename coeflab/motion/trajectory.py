@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.table import html_by, number
 from coeflab.core.types import Array, brief, locked, locked_columns
-from coeflab.law.motion_law import SLOWEST
+from coeflab.law.force_law import SLOWEST
 from coeflab.law.symbols import ANGULAR, CONTROLS, LINEAR, MOTIONS
 from coeflab.motion.dynamics import euler_angles, rotations
 from coeflab.motion.vehicle import Vehicle, control_rows

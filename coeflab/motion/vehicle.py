@@ -10,12 +10,11 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.law.motion_law import MotionLaw
-from coeflab.law.rigid_body import rigid_body_inertia
+from coeflab.law.force_law import ForceLaw
+from coeflab.law.rigid_body import rigid_body_force, rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS
-from coeflab.law.transforms import rigid_body_force
 from coeflab.motion.dynamics import restoring, turned_about
-from coeflab.vehicle.force_law import MotionTerm, as_arrays, motion_terms, open_products
+from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.inertia import MEASURED, WaterInertia, water_inertia, with_accelerations
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurface, ParameterThruster
@@ -41,9 +40,7 @@ class Vehicle:
         M_A, that of ``water`` but in draws of it.
     water : WaterInertia
         Which accelerations were chosen, and where they come from.
-    terms : tuple of MotionTerm
-        Of ``law``, in its order.
-    law : MotionLaw
+    law : ForceLaw
     hydrostatics : ParameterHydrostatics
     thrusters : tuple of ParameterThruster
     surfaces : tuple of ParameterSurface
@@ -62,8 +59,7 @@ class Vehicle:
     inertia: Array
     added: Array
     water: WaterInertia
-    terms: tuple[MotionTerm, ...]
-    law: MotionLaw
+    law: ForceLaw
     hydrostatics: ParameterHydrostatics
     thrusters: tuple[ParameterThruster, ...]
     surfaces: tuple[ParameterSurface, ...]
@@ -126,9 +122,12 @@ class Vehicle:
         wrench : (6,) or (n, 6) array
             Of the thrusters.
         """
-        total = self.force(nu, controls) + self.restoring(attitude) + wrench
-        total = total - rigid_body_force(self.mass, self.centre, self.inertia, nu)
-        return np.asarray(total @ self.inverse_inertia().T)
+        return np.asarray(self.unbalanced(nu, attitude, controls, wrench) @ self.inverse_inertia().T)
+
+    def unbalanced(self, nu: Array, attitude: Array, controls: Array, wrench: Array) -> Array:
+        """(n, 6) force and moment that accelerate the vehicle; parameters as of `acceleration`."""
+        held = rigid_body_force(self.mass, self.centre, self.inertia, nu)
+        return np.asarray(self.force(nu, controls) + self.restoring(attitude) + wrench - held)
 
     def wrench(self, commands: Mapping[str, float]) -> Array:
         """(6,) force and moment of all thrusters about the reference point.
@@ -213,9 +212,9 @@ def vehicle(
         )  # fmt: skip
     water = water_inertia(parameters, accelerations)
     parameters = with_accelerations(parameters, accelerations)
-    centre = np.array(mass.centre if mass.centre is not None else (mass.mass_moment / mass.mass, 0.0, 0.0))
-    terms, statements = motion_terms(parameters, tables)
-    known = _known(parameters, terms)
+    centre = mass.centre_of_gravity
+    law, statements = motion_law(parameters, tables)
+    known = _known(parameters, law)
     moves = tuple(m for m in MOTIONS if m in free) or (MOTIONS if known == MOTIONS or not plane else PLANES[plane])
     said = list(statements)
     if moves != MOTIONS:
@@ -234,8 +233,7 @@ def vehicle(
         if set(moves) & set("wpq"):
             said.append("no hydrostatics in the file: neutrally buoyant, centre of buoyancy at that of gravity")
     made = Vehicle(
-        name=parameters.name, mass=mass.mass, centre=centre, inertia=inertia, added=water.matrix, water=water, terms=terms,
-        law=as_arrays(terms, open_products(parameters, tables)), hydrostatics=hydrostatics, thrusters=parameters.thrusters,
+        name=parameters.name, mass=mass.mass, centre=centre, inertia=inertia, added=water.matrix, water=water, law=law, hydrostatics=hydrostatics, thrusters=parameters.thrusters,
         surfaces=parameters.surfaces, free=moves, speed=parameters.conditions.speed, length=parameters.scaling.length,
         density=parameters.conditions.density, covered=parameters.offered, statements=tuple(said),
     )  # fmt: skip
@@ -243,14 +241,14 @@ def vehicle(
     return made
 
 
-def _known(parameters: ParameterFile, terms: Sequence[MotionTerm]) -> tuple[str, ...]:
+def _known(parameters: ParameterFile, law: ForceLaw) -> tuple[str, ...]:
     """Motions with an inertia and with a force of their own along them."""
     mass = parameters.mass
     resisted = {
         m
         for m, c in zip(MOTIONS, COMPONENTS, strict=True)
-        for t in terms
-        if (t.component in (c, "D", "S", "L") and any(v[0] in (m, "alpha", "beta") for v, _, _ in t.factors))
+        for t in law.terms
+        if (t.component in (c, "D", "S", "L") and {m, "alpha", "beta"} & set(t.variables))
         or (m == "u" and t.component == "X")
     }
     turning = {"p": False, "q": False, "r": False}

@@ -11,7 +11,8 @@ from coeflab.core.axes import Datum
 from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.formats.stated_file import Law, Stated, StatedMass, stated_file, stated_table
+from coeflab.formats.stated_file import Law, Stated, stated_file, stated_table
+from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.motion.glider.glider import Glider
@@ -41,7 +42,7 @@ def flyingfish_file(fish: FlyingFish) -> ParameterFile:
     mass, buoyancy = fish.constants["mass"], fish.constants["mass"] * STANDARD_GRAVITY - fish.constants["net_weight"]
     stated = Stated(
         "flyingfish_water", "TJ-FlyingFish in water", UNIT, WATER, damping, datum=Datum("cg"),
-        mass=StatedMass(mass, 0.0, FLYINGFISH_INERTIA, np.zeros(3), FLYINGFISH_INERTIA * np.eye(3)),
+        mass=MassProperties(mass, 0.0, FLYINGFISH_INERTIA, np.zeros(3), FLYINGFISH_INERTIA * np.eye(3)),
         notes=(
             "Damping of equation 50 and rotors of equations 47 and 48, printed. Mass, buoyancy, arm and height of the rotors are "
             "calibrated on Table 1.",
@@ -90,7 +91,7 @@ def thauv_file(glider: Glider) -> ParameterFile:
     centre = np.array([m.moment_ahead / weight, 0.0, m.moment_below / weight])
     stated = Stated(
         glider.name, glider.title, UNIT, SEA, {}, datum=Datum("cb"), matrix=added,
-        mass=StatedMass(THAUV_MASS, THAUV_MASS * float(centre[0]), m.pitch_inertia, centre),
+        mass=MassProperties(THAUV_MASS, THAUV_MASS * float(centre[0]), m.pitch_inertia, centre),
         notes=(
             "Polar of Table 3, printed. m3 - m1 and the moments of the masses are calibrated on the six published speeds; surge "
             "added mass, moment of inertia and pitch damping are assumed. Length and speed of the primes are chosen.",

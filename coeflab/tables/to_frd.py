@@ -16,8 +16,8 @@ from coeflab.core.axes import angle_sign
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief
+from coeflab.law.rigid_body import rigid_body_force
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
-from coeflab.law.transforms import rigid_body_force
 from coeflab.tables.campaign import Campaign, TableDeclaration, TowedInertia
 from coeflab.tables.force_table import Exclusion, ForceTable
 

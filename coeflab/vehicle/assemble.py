@@ -8,14 +8,14 @@ From fitted models to those of a parameter file.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.body import Body, MassProperties, likeness
+from coeflab.bodies.body import Body, likeness
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.provenance import InputFile
@@ -26,36 +26,22 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
-from coeflab.law.rigid_body import about_another
+from coeflab.law.rigid_body import MassProperties, about_another
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, CONTROLS, FLOW_ANGLES, LINEAR, derivative, primed
+from coeflab.law.terms import Factor
 from coeflab.tables.force_table import ForceTable
 from coeflab.vehicle.force_law import full_force, points_of, spoken
 from coeflab.vehicle.law_at_points import caps, held_ranges, measured_tables, with_scatter
-from coeflab.vehicle.parameter_file import (
-    CoveredRange,
-    InputRecord,
-    ParameterConditions,
-    ParameterFile,
-    ParameterPoint,
-    ParameterScaling,
-    Provenance,
-)
+from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
 from coeflab.vehicle.parameter_model import (
     ModelArea,
     ModelDomain,
-    ModelFactor,
     ModelTerm,
     ModelVariable,
     ParameterModel,
 )
-from coeflab.vehicle.parameter_parts import (
-    ParameterCoefficient,
-    ParameterCovariance,
-    ParameterMass,
-    UncertaintyParts,
-    added_mass_record,
-)
+from coeflab.vehicle.parameter_parts import ParameterCovariance, added_mass_record
 from coeflab.vehicle.reference import Reference
 
 
@@ -218,7 +204,7 @@ def record(model: FittedModel, area: ModelArea | None = None) -> ParameterModel:
             "terms": tuple(
                 ModelTerm(
                     symbol=s,
-                    factors=tuple(ModelFactor(variable=v, power=n, absolute=a) for v, n, a in t.factors),
+                    factors=tuple(Factor(*f) for f in t.factors),
                     value=finite(c),
                     half_width_95=finite(h),
                 )
@@ -269,33 +255,15 @@ def recorded(fits: Sequence[FitResult]) -> tuple[tuple[ParameterModel, ...], lis
     return tuple(out.values()), notes
 
 
-def _written(
-    c: Coefficient, scaling: Scaling, conditions: Conditions, hull: AddedMass | None, density: float
-) -> ParameterCoefficient:
-    factor = scaling.unit(c.symbol, conditions.density, conditions.speed)
-    return ParameterCoefficient(
-        symbol=primed(c.symbol),
-        value=c.value,
-        u95=c.u95,
-        unit="1",
-        value_si=None if c.value is None else c.value * factor,
-        unit_si=derivative(c.symbol).unit,
-        status=Status.OK.value if c.status is Status.SIGN_OPEN else c.status.value,  # its interval says so
-        origin=c.origin,
-        parts=UncertaintyParts(
-            random=c.parts.random, model_form=c.parts.model_form, window=c.parts.window, input=c.parts.input
-        ),
-        table=c.table,
-        campaign=c.campaign,
-        estimator=c.estimator,
-        window=c.window,
-        n_points=c.n_points,
-        citation=c.citation,
-        law=c.law,
-        potential=None
-        if hull is None or c.value is None or c.law == "rest"
-        else potential_part(c.symbol, hull, scaling, density),
-    )
+def _written(c: Coefficient, scaling: Scaling, conditions: Conditions, hull: AddedMass | None) -> Coefficient:
+    """The coefficient as the file holds it: with its prime, its SI value and its potential part."""
+    si = None if c.value is None else c.value * scaling.unit(c.symbol, conditions.density, conditions.speed)
+    booked = hull is not None and c.value is not None and c.law != "rest"
+    potential = potential_part(c.symbol, hull, scaling, hull.density) if booked and hull is not None else None
+    return replace(
+        c, symbol=primed(c.symbol), value_si=si, unit_si=derivative(c.symbol).unit, potential=potential,
+        status=Status.OK if c.status is Status.SIGN_OPEN else c.status,  # its interval says so
+    )  # fmt: skip
 
 
 def _covered(tables: Sequence[ForceTable], length: float) -> tuple[CoveredRange, ...]:
@@ -311,11 +279,6 @@ def _covered(tables: Sequence[ForceTable], length: float) -> tuple[CoveredRange,
             name = f"asin({variable}/U)" if angle else variable if variable in t.controls else f"{variable}'"
             out.append(CoveredRange(variable=name, low=low, high=high, unit=unit, campaign=t.campaign))
     return tuple(out)
-
-
-def _triple(values: np.ndarray) -> tuple[float, float, float]:
-    x, y, z = map(float, values)
-    return x, y, z
 
 
 def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tuple[MassProperties | None, list[str]]:
@@ -407,8 +370,7 @@ def assemble(
     if mass and body:
         mass, note = _mass_about(mass, body, first)
         notes += note
-    prime = mass.primed(first.scaling, conditions.density) if mass else (1.0, 0.0)
-    hull, record = None, None
+    hull = None
     if found is not None:
         alike = likeness(
             found.body, group.body, configuration, own_file=body is not None and body.files == found.body.files
@@ -416,8 +378,7 @@ def assemble(
         shape, label = found.body, ""
         if alike.same is False and shape.name == group.body:
             label = f"{shape.name}, of another shape"
-        record = added_mass_record(found, first.reference_point, first.datum, group.body if alike.same else label)
-        hull = record.as_noun(first.reference_point.tolist(), first.datum)
+        hull = added_mass_record(found, first.reference_point, first.datum, group.body if alike.same else label)
         if alike.same is None:
             notes.append(
                 f"added mass is that of {shape.name}, the coefficients are those of {group.body}: whether both are one body is "
@@ -435,42 +396,22 @@ def assemble(
     made = ParameterFile(
         name=group.name,
         body=group.body,
-        scaling=ParameterScaling(length=first.scaling.length, length_name=first.scaling.length_name),
+        scaling=first.scaling,
         reference_point=ParameterPoint(point=tuple(map(float, first.reference_point)), datum=first.datum.id),
-        conditions=ParameterConditions(
-            density=conditions.density, speed=conditions.speed, viscosity=conditions.viscosity
-        ),
-        mass=ParameterMass(
-            mass=mass.mass,
-            mass_moment=mass.mass_moment,
-            inertia=mass.inertia,
-            mass_prime=prime[0],
-            mass_moment_prime=prime[1],
-            centre=None if mass.centre is None else _triple(mass.centre),
-            inertia_matrix=None
-            if mass.inertia_matrix is None
-            else (
-                _triple(mass.inertia_matrix[0]),
-                _triple(mass.inertia_matrix[1]),
-                _triple(mass.inertia_matrix[2]),
-            ),
-        )
-        if mass
-        else None,
-        coefficients=tuple(
-            _written(c, first.scaling, conditions, hull, found.density if found else 0.0) for c in coefficients
-        ),
+        conditions=conditions,
+        mass=mass.primed(first.scaling, conditions.density) if mass else None,
+        coefficients=tuple(_written(c, first.scaling, conditions, hull) for c in coefficients),
         covariance=ParameterCovariance(
             symbols=tuple(primed(c.symbol) for c in coefficients),
             matrix=tuple(tuple(None if np.isnan(v) else float(v) for v in row) for row in covariance),
         ),
         covered=_covered([t for t in tables if any(t.campaign in f.campaigns for f in chosen)], first.scaling.length),
         models=models,
-        added_mass=record,
+        added_mass=hull,
         provenance=Provenance(
             coeflab_version=VERSION,
             study=study,
-            inputs=tuple(InputRecord(name=i.name, sha256=i.sha256) for i in inputs),
+            inputs=tuple(inputs),
             citations=tuple(
                 dict.fromkeys(
                     [k for c in coefficients if c.citation for k in c.citation.split(", ")]

@@ -16,7 +16,7 @@ import numpy as np
 
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array, brief
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Status, transfer_matrix
+from coeflab.law.coefficient import Coefficient, CoefficientSet, transfer_matrix
 from coeflab.law.domain import clamped, inside
 from coeflab.law.symbols import ANGULAR, primed
 from coeflab.vehicle.parameter_file import ParameterFile, Provenance
@@ -334,14 +334,10 @@ def coefficient_set(parameters: ParameterFile) -> CoefficientSet:
             covariance[i, i] = (c.u95 / 2.0) ** 2
     return CoefficientSet(
         tuple(
-            Coefficient(
-                c.symbol.removesuffix("'"), c.value, c.u95, Status(c.status), parameters.body, origin=c.origin,
-                table=c.table, campaign=c.campaign, citation=c.citation,
-            )
-            for c in parameters.coefficients
+            replace(c, symbol=c.symbol.removesuffix("'"), body=parameters.body) for c in parameters.coefficients
         ),
         covariance,
-        parameters.primes,
+        parameters.scaling,
         np.array(parameters.reference_point.point),
         parameters.reference_point.origin,
         parameters.body,

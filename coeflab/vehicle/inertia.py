@@ -137,7 +137,7 @@ def with_accelerations(parameters: ParameterFile, accelerations: str) -> Paramet
 
 def stated_accelerations(parameters: ParameterFile) -> dict[Entry, tuple[str, float]]:
     """Symbol and entry of the added mass of every acceleration derivative with a value, by row and column."""
-    density, primes = parameters.conditions.density, parameters.primes
+    density, primes = parameters.conditions.density, parameters.scaling
     out = {}
     for c in parameters.coefficients:
         at = entry_of(c.symbol)
@@ -164,7 +164,6 @@ def known_mass(parameters: ParameterFile) -> tuple[Array, tuple[int, ...]]:
     mass = parameters.mass
     if mass is None:
         return np.zeros((6, 6)), ()
-    centre = np.array(mass.centre if mass.centre is not None else (mass.mass_moment / mass.mass, 0.0, 0.0))
     inertia = np.zeros((3, 3))
     known: tuple[int, ...] = (0, 1, 2)
     if mass.inertia_matrix is not None:
@@ -172,7 +171,7 @@ def known_mass(parameters: ParameterFile) -> tuple[Array, tuple[int, ...]]:
     elif mass.inertia is not None:
         inertia, known = np.diag([0.0, mass.inertia, mass.inertia]), (0, 1, 2, 4, 5)
     at, out = np.ix_(known, known), np.zeros((6, 6))
-    out[at] = rigid_body_inertia(mass.mass, centre, inertia)[at]
+    out[at] = rigid_body_inertia(mass.mass, mass.centre_of_gravity, inertia)[at]
     return out, known
 
 
@@ -222,10 +221,7 @@ def converted(parameters: ParameterFile) -> tuple[str, ...]:
 
 def centre_of_gravity(parameters: ParameterFile) -> Array:
     """(3,) from the reference point, m, FRD; zero where the file has no mass."""
-    mass = parameters.mass
-    if mass is None:
-        return np.zeros(3)
-    return np.array(mass.centre if mass.centre is not None else (mass.mass_moment / mass.mass, 0.0, 0.0))
+    return np.zeros(3) if parameters.mass is None else parameters.mass.centre_of_gravity
 
 
 def central_inertia(parameters: ParameterFile) -> Array | None:

@@ -14,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from coeflab.core.stored import Finite, Name, NotNegative, Told
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.rows.sweeps import NEAR_ZERO
 from coeflab.fits.statistics.diagnostics import NARROWEST, allowed_miss, scatter_of_replicates
 from coeflab.law.symbols import COMPONENTS, CONTROLS, FORCES, LINEAR, MOTIONS
 from coeflab.tables.force_table import AT_REST, ForceTable
-from coeflab.vehicle.parameter_parts import Finite, Name, NotNegative, Strict, told
+from coeflab.vehicle.parameter_parts import Strict
 
 SMALL = 0.01  # of the largest force or moment of the table: below it nothing is judged
 NEAR = 1e-9
@@ -33,35 +34,35 @@ Force = Callable[[Array, Array], Array]  # velocities (n, 6), controls (n, 3) ->
 class MeasuredMotion(Strict):
     """One velocity, rate or control of every row."""
 
-    name: Annotated[Moved, told("u v w p q r dr ds db")]
-    values: Annotated[tuple[Finite, ...], told("about the file's reference point", "m/s, rad/s, rad")]
+    name: Annotated[Moved, Told("u v w p q r dr ds db")]
+    values: Annotated[tuple[Finite, ...], Told("about the file's reference point", "m/s, rad/s, rad")]
 
 
 class MeasuredForce(Strict):
     """One measured force component of every row."""
 
-    component: Annotated[Component, told("X Y Z K M N")]
+    component: Annotated[Component, Told("X Y Z K M N")]
     values: Annotated[
-        tuple[Finite | None, ...], told("at the density of `conditions`; null where no fit used the row", "N or N m")
+        tuple[Finite | None, ...], Told("at the density of `conditions`; null where no fit used the row", "N or N m")
     ]
     at_rest: Annotated[
         tuple[Finite, ...],
-        told(
+        Told(
             "force of the set-up at no angle and no rate, by row; no part of the law, taken off the values", "N or N m"
         ),
     ]
-    scatter: Annotated[NotNegative | None, told("of repeated runs about the law; null where none repeats", "N or N m")]
-    small: Annotated[bool, told("below 1 % of the largest force or moment of its table: not judged")] = False
+    scatter: Annotated[NotNegative | None, Told("of repeated runs about the law; null where none repeats", "N or N m")]
+    small: Annotated[bool, Told("below 1 % of the largest force or moment of its table: not judged")] = False
 
 
 class MeasuredTable(Strict):
     """The points of one table that the coefficients were fitted to."""
 
-    table: Annotated[str, told("file of the table")]
-    campaign: Annotated[str, told("campaign of the table")]
-    labels: Annotated[tuple[str, ...], told("run or point number of every row")]
-    motion: Annotated[tuple[MeasuredMotion, ...], told("what moves; all else is zero")]
-    forces: Annotated[tuple[MeasuredForce, ...], told("what was measured and fitted")]
+    table: Annotated[str, Told("file of the table")]
+    campaign: Annotated[str, Told("campaign of the table")]
+    labels: Annotated[tuple[str, ...], Told("run or point number of every row")]
+    motion: Annotated[tuple[MeasuredMotion, ...], Told("what moves; all else is zero")]
+    forces: Annotated[tuple[MeasuredForce, ...], Told("what was measured and fitted")]
 
     @model_validator(mode="after")
     def _as_long(self) -> MeasuredTable:
@@ -95,29 +96,29 @@ class MeasuredTable(Strict):
 class HeldRange(Strict):
     """Range of a motion variable in which the law of one component meets its points."""
 
-    component: Annotated[Component, told("X Y Z K M N")]
-    variable: Annotated[Name, told("as in `covered`")]
-    low: Annotated[Finite, told("lowest value", "see unit")]
-    high: Annotated[Finite, told("highest value", "see unit")]
-    unit: Annotated[Literal["rad", "1"], told("of low and high")]
-    campaign: Annotated[str, told("which campaign's points")]
+    component: Annotated[Component, Told("X Y Z K M N")]
+    variable: Annotated[Name, Told("as in `covered`")]
+    low: Annotated[Finite, Told("lowest value", "see unit")]
+    high: Annotated[Finite, Told("highest value", "see unit")]
+    unit: Annotated[Literal["rad", "1"], Told("of low and high")]
+    campaign: Annotated[str, Told("which campaign's points")]
 
 
 class LawAtPoints(Strict):
     """How far the law of one component is from the points of one table."""
 
-    component: Annotated[Component, told("X Y Z K M N")]
-    table: Annotated[str, told("file of the table")]
-    n_points: Annotated[int, Field(ge=0), told("points of the table that a fit used")]
-    largest: Annotated[NotNegative, told("largest measured force", "N or N m")]
-    allowed: Annotated[NotNegative, told("3 scatter + 5 % of the largest", "N or N m")]
-    worst: Annotated[NotNegative, told("largest miss where the law is said to hold", "N or N m")]
-    worst_at: Annotated[str, told("point of the largest miss, and its motion")]
-    rms: Annotated[NotNegative, told("root mean square miss where the law is said to hold", "N or N m")]
-    missed: Annotated[tuple[str, ...], told("points missed by more than allowed where the law is said to hold")] = ()
-    beyond: Annotated[tuple[str, ...], told("points outside of where the law is said to hold")] = ()
-    worst_beyond: Annotated[NotNegative, told("largest miss of those", "N or N m")] = 0.0
-    small: Annotated[bool, told("not judged: below 1 % of the largest force or moment of the table")] = False
+    component: Annotated[Component, Told("X Y Z K M N")]
+    table: Annotated[str, Told("file of the table")]
+    n_points: Annotated[int, Field(ge=0), Told("points of the table that a fit used")]
+    largest: Annotated[NotNegative, Told("largest measured force", "N or N m")]
+    allowed: Annotated[NotNegative, Told("3 scatter + 5 % of the largest", "N or N m")]
+    worst: Annotated[NotNegative, Told("largest miss where the law is said to hold", "N or N m")]
+    worst_at: Annotated[str, Told("point of the largest miss, and its motion")]
+    rms: Annotated[NotNegative, Told("root mean square miss where the law is said to hold", "N or N m")]
+    missed: Annotated[tuple[str, ...], Told("points missed by more than allowed where the law is said to hold")] = ()
+    beyond: Annotated[tuple[str, ...], Told("points outside of where the law is said to hold")] = ()
+    worst_beyond: Annotated[NotNegative, Told("largest miss of those", "N or N m")] = 0.0
+    small: Annotated[bool, Told("not judged: below 1 % of the largest force or moment of the table")] = False
 
     @property
     def share(self) -> float:

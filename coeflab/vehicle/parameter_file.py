@@ -13,37 +13,34 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field, ValidationError, model_validator
-from pydantic.fields import FieldInfo
+import numpy as np
+from pydantic import Field, ValidationError, model_validator
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.limits import JSON_BYTES
+from coeflab.core.provenance import InputFile
+from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Name, Told, Words, stored_fields
 from coeflab.core.table import html_by
 from coeflab.core.text.json import parse_json
 from coeflab.core.text.toml import read_text
 from coeflab.core.wording import repeated
-from coeflab.law.added_mass import potential_part
-from coeflab.law.scaling import Scaling
+from coeflab.law.added_mass import AddedMass, potential_part
+from coeflab.law.coefficient import Coefficient
+from coeflab.law.rigid_body import MassProperties
+from coeflab.law.scaling import Conditions, Scaling
 from coeflab.vehicle.law_at_points import HeldRange, LawAtPoints, MeasuredTable
 from coeflab.vehicle.parameter_model import ParameterModel
 from coeflab.vehicle.parameter_parts import (
-    Finite,
-    Name,
-    ParameterAddedMass,
-    ParameterCoefficient,
     ParameterCovariance,
     ParameterHydrostatics,
-    ParameterMass,
     ParameterSurface,
     ParameterThruster,
-    Positive,
     Strict,
-    Words,
-    told,
 )
 
 VERSIONS = {
@@ -56,13 +53,7 @@ VERSIONS = {
 }
 NARROWER = 1e-3  # of a range: less is what a campaign is run at
 _MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)
-FIRST_VERSION, SCHEMA_VERSION = next(iter(VERSIONS)), next(reversed(VERSIONS))
-
-
-def since(field: FieldInfo) -> str:
-    """The version that brought a field."""
-    extra = field.json_schema_extra
-    return str(extra["since"]) if isinstance(extra, dict) and "since" in extra else FIRST_VERSION
+SCHEMA_VERSION = next(reversed(VERSIONS))
 
 
 def is_later(version: str, other: str) -> bool:
@@ -105,71 +96,44 @@ def without(content: Any, places: Sequence[Sequence[int | str]]) -> Any:
     return out
 
 
-def too_new(model: BaseModel, version: str) -> str:
+def too_new(noun: Any, version: str) -> str:
     """The first field with a value of its own that came after a version, in words; empty where there is none."""
-    for name, field in type(model).model_fields.items():
-        value = getattr(model, name)
-        if is_later(since(field), version):
-            if value != field.get_default(call_default_factory=True):
-                return f"{name} came with version {since(field)}; this file says {version}"
+    for f in stored_fields(noun.__class__):
+        value = getattr(noun, f.name)
+        if is_later(f.since, version):
+            if value is not f.default and (isinstance(value, np.ndarray) or value != f.default):
+                return f"{f.name} came with version {f.since}; this file says {version}"
         else:
             for part in value if isinstance(value, tuple) else (value,):
-                found = too_new(part, version) if isinstance(part, BaseModel) else ""
-                if found:
-                    return f"{name}.{found}"
+                if found := too_new(part, version):
+                    return f"{f.name}.{found}"
     return ""
 
 
-def as_of(version: str, model: BaseModel) -> dict[str, Any]:
-    """The JSON content of a model without the fields that came after a version."""
-    return _without_later(model, model.model_dump(mode="json"), version)
-
-
-def _without_later(model: BaseModel, content: dict[str, Any], version: str) -> dict[str, Any]:
-    return {
-        name: _inside(getattr(model, name), content[name], version)
-        for name, field in type(model).model_fields.items()
-        if not is_later(since(field), version)
-    }
-
-
-def _inside(value: Any, content: Any, version: str) -> Any:
-    if isinstance(value, BaseModel):
-        return _without_later(value, content, version)
-    if isinstance(value, tuple):
-        return [_inside(v, c, version) for v, c in zip(value, content, strict=True)]
+def as_of(version: str, noun: Any, content: Any) -> Any:
+    """The JSON content of a noun without the fields that came after a version."""
+    if known := stored_fields(noun.__class__):
+        kept = [f.name for f in known if not is_later(f.since, version)]
+        return {name: as_of(version, getattr(noun, name), content[name]) for name in kept}
+    if isinstance(noun, tuple):
+        return [as_of(version, v, c) for v, c in zip(noun, content, strict=True)]
     return content
 
 
 SCHEMA_FILE = Path(__file__).with_name("parameter_file.schema.json")
 
 
-class ParameterScaling(Strict):
-    """Length of the primes."""
-
-    length: Annotated[Positive, told("length L of the primes", "m")]
-    length_name: Annotated[Words, told("which length it is, for example LBP or LOA")]
-
-
-class ParameterConditions(Strict):
-    """Conditions of the dimensional values."""
-
-    density: Annotated[Positive, told("density rho of the water", "kg/m^3")]
-    speed: Annotated[Positive, told("speed U at the reference point", "m/s")]
-    viscosity: Annotated[Positive | None, told("kinematic", "m^2/s")] = None
-
-
 class ParameterPoint(Strict):
     """Point that moments, rates and mass moments refer to."""
 
-    point: Annotated[tuple[Finite, Finite, Finite], told("x y z from the datum, in `axes`", "m")]
+    point: Annotated[tuple[Finite, Finite, Finite], Told("x y z from the datum, in `axes`", "m")]
     datum: Annotated[
         Words,
-        told(
+        Told(
             "id of the point of the body that points are measured from, for example nose, cg or midship; compared letter by letter"
         ),
     ]
-    axes: Annotated[Literal["FRD"], told("x forward, y starboard, z down")] = "FRD"
+    axes: Annotated[Literal["FRD"], Told("x forward, y starboard, z down")] = "FRD"
 
     @property
     def origin(self) -> Datum:
@@ -180,66 +144,59 @@ class ParameterPoint(Strict):
 class CoveredRange(Strict):
     """Range of a motion variable that a campaign covers."""
 
-    variable: Annotated[Name, told("asin(v/U) and asin(w/U) as angles; r' = r L/U and other primes; dr ds db")]
-    low: Annotated[Finite, told("lowest value", "see unit")]
-    high: Annotated[Finite, told("highest value", "see unit")]
-    unit: Annotated[Literal["rad", "1"], told("of low and high")]
-    campaign: Annotated[str, told("which campaign covers it")]
-
-
-class InputRecord(Strict):
-    """A file that went in."""
-
-    name: Annotated[str, told("file name")]
-    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$"), told("of its bytes, hexadecimal")]
+    variable: Annotated[Name, Told("asin(v/U) and asin(w/U) as angles; r' = r L/U and other primes; dr ds db")]
+    low: Annotated[Finite, Told("lowest value", "see unit")]
+    high: Annotated[Finite, Told("highest value", "see unit")]
+    unit: Annotated[Literal["rad", "1"], Told("of low and high")]
+    campaign: Annotated[str, Told("which campaign covers it")]
 
 
 class Provenance(Strict):
     """Where it all comes from."""
 
-    coeflab_version: Annotated[str, told("release that wrote the file")]
-    study: Annotated[str, told("name of the study, or of the model file that was read")]
-    inputs: Annotated[tuple[InputRecord, ...], told("every file that went in")]
-    citations: Annotated[tuple[str, ...], told("keys of the works that methods and values rest on")]
-    notes: Annotated[tuple[str, ...], told("what a reader has to know, in words")] = ()
+    coeflab_version: Annotated[str, Told("release that wrote the file")]
+    study: Annotated[str, Told("name of the study, or of the model file that was read")]
+    inputs: Annotated[tuple[InputFile, ...], Told("every file that went in")]
+    citations: Annotated[tuple[str, ...], Told("keys of the works that methods and values rest on")]
+    notes: Annotated[tuple[str, ...], Told("what a reader has to know, in words")] = ()
 
 
 class ParameterFile(Strict):
     """Hydrodynamic coefficients of one body with uncertainty and provenance."""
 
-    schema_version: Annotated[str, Field(pattern=r"^1\.\d+$"), told("version of this schema that the file follows")] = (
+    schema_version: Annotated[str, Field(pattern=r"^1\.\d+$"), Told("version of this schema that the file follows")] = (
         SCHEMA_VERSION
     )
-    name: Annotated[Words, told("name of the set of coefficients; exports are named after it")]
-    body: Annotated[Words, told("the vehicle, and in which configuration")]
-    scaling: Annotated[ParameterScaling, told("the prime system: Y' = Y / (1/2 rho U^2 L^2), N' with L^3")]
-    reference_point: Annotated[ParameterPoint, told("where all moments and velocities are taken")]
-    conditions: Annotated[ParameterConditions, told("density and speed of the dimensional values")]
-    mass: Annotated[ParameterMass | None, told("mass properties; null where they are not known")]
-    coefficients: Annotated[tuple[ParameterCoefficient, ...], told("one entry a symbol, none twice")]
-    covariance: Annotated[ParameterCovariance, told("of the coefficients, as far as it is known")]
-    covered: Annotated[tuple[CoveredRange, ...], told("motions that the tables behind the coefficients cover")]
-    models: Annotated[tuple[ParameterModel, ...], told("fitted tables and force laws", since="1.1")] = ()
+    name: Annotated[Words, Told("name of the set of coefficients; exports are named after it")]
+    body: Annotated[Words, Told("the vehicle, and in which configuration")]
+    scaling: Annotated[Scaling, AsStored(Scaling), Told("the prime system: Y' = Y / (1/2 rho U^2 L^2), N' with L^3")]
+    reference_point: Annotated[ParameterPoint, Told("where all moments and velocities are taken")]
+    conditions: Annotated[Conditions, AsStored(Conditions), Told("density and speed of the dimensional values")]
+    mass: Annotated[MassProperties | None, Told("mass properties; null where they are not known")]
+    coefficients: Annotated[tuple[Coefficient, ...], Told("one entry a symbol, none twice")]
+    covariance: Annotated[ParameterCovariance, Told("of the coefficients, as far as it is known")]
+    covered: Annotated[tuple[CoveredRange, ...], Told("motions that the tables behind the coefficients cover")]
+    models: Annotated[tuple[ParameterModel, ...], Told("fitted tables and force laws", since="1.1")] = ()
     added_mass: Annotated[
-        ParameterAddedMass | None, told("added mass in unbounded fluid; null where it is not known", since="1.2")
+        AddedMass | None, Told("added mass in unbounded fluid; null where it is not known", since="1.2")
     ] = None
     hydrostatics: Annotated[
         ParameterHydrostatics | None,
-        told("buoyancy and gravity; null: neutrally buoyant, centres together", since="1.3"),
+        Told("buoyancy and gravity; null: neutrally buoyant, centres together", since="1.3"),
     ] = None
-    thrusters: Annotated[tuple[ParameterThruster, ...], told("thrusters, none twice", since="1.3")] = ()
-    surfaces: Annotated[tuple[ParameterSurface, ...], told("limits of control surfaces, none twice", since="1.3")] = ()
+    thrusters: Annotated[tuple[ParameterThruster, ...], Told("thrusters, none twice", since="1.3")] = ()
+    surfaces: Annotated[tuple[ParameterSurface, ...], Told("limits of control surfaces, none twice", since="1.3")] = ()
     measured: Annotated[
-        tuple[MeasuredTable, ...], told("points that the coefficients were fitted to", since="1.4")
+        tuple[MeasuredTable, ...], Told("points that the coefficients were fitted to", since="1.4")
     ] = ()
     law_holds: Annotated[
         tuple[HeldRange, ...],
-        told("motions over which the law meets its points; may be less than `covered`", since="1.4"),
+        Told("motions over which the law meets its points; may be less than `covered`", since="1.4"),
     ] = ()
     law_at_points: Annotated[
-        tuple[LawAtPoints, ...], told("how far the law is from its points, by component and table", since="1.4")
+        tuple[LawAtPoints, ...], Told("how far the law is from its points, by component and table", since="1.4")
     ] = ()
-    provenance: Annotated[Provenance, told("where it all comes from")]
+    provenance: Annotated[Provenance, Told("where it all comes from")]
 
     @property
     def offered(self) -> tuple[CoveredRange, ...]:
@@ -264,22 +221,20 @@ class ParameterFile(Strict):
             if max(o.low - c.low, c.high - o.high) > NARROWER * max(abs(c.low), abs(c.high))
         )
 
-    @property
-    def primes(self) -> Scaling:
-        """The prime system of the file."""
-        return Scaling(self.scaling.length, self.scaling.length_name)
-
     @model_validator(mode="after")
     def _consistent(self) -> ParameterFile:
+        if self.added_mass is not None:
+            point, origin = np.array(self.reference_point.point), self.reference_point.origin
+            self.__dict__["added_mass"] = replace(self.added_mass, reference_point=point, datum=origin)
         symbols = [c.symbol for c in self.coefficients]
         twice = repeated(symbols)
         if twice:
             raise ValueError(f"{', '.join(twice)} stands more than once")
-        primes, at = self.primes, self.conditions
+        at = self.conditions
         for c in self.coefficients:
             if c.value is None or c.value_si is None:
                 continue
-            si = c.value * primes.unit(c.symbol, at.density, at.speed)
+            si = c.value * self.scaling.unit(c.symbol, at.density, at.speed)
             if not math.isclose(c.value_si, si, rel_tol=1e-6, abs_tol=1e-12 * abs(si)):
                 raise ValueError(f"{c.symbol}: value_si {c.value_si:g} is not its value at these conditions, {si:g}")
         unknown = sorted(set(self.covariance.symbols) - set(symbols))
@@ -295,23 +250,28 @@ class ParameterFile(Strict):
         strange = too_new(self, self.schema_version)
         if strange:
             raise ValueError(strange)
-        self._potential_parts(primes)
+        self._potential_parts()
         return self
 
-    def _potential_parts(self, primes: Scaling) -> None:
+    def _potential_parts(self) -> None:
         """Raise where a potential part is not what the added mass gives."""
         booked = [c for c in self.coefficients if c.potential is not None]
         if booked and self.added_mass is None:
             raise ValueError(f"{booked[0].symbol}: a potential part without an added mass")
         if self.added_mass is None:
             return
-        hull = self.added_mass.as_noun(self.reference_point.point, self.reference_point.origin)
         for c in booked:
-            due = potential_part(c.symbol, hull, primes, self.added_mass.density) or 0.0
+            due = potential_part(c.symbol, self.added_mass, self.scaling, self.added_mass.density) or 0.0
             if not math.isclose(c.potential or 0.0, due, rel_tol=1e-6, abs_tol=1e-9):
                 raise ValueError(f"{c.symbol}: potential {c.potential:g} is not that of the added mass, {due:g}")
 
-    def coefficient(self, symbol: str) -> ParameterCoefficient | None:
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ParameterFile) and self.model_dump() == other.model_dump()
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.body, self.coefficients))
+
+    def coefficient(self, symbol: str) -> Coefficient | None:
         """The coefficient of a symbol, with or without prime."""
         wanted = symbol.removesuffix("'") + "'"
         return next((c for c in self.coefficients if c.symbol == wanted), None)
@@ -325,7 +285,7 @@ class ParameterFile(Strict):
 
         A file of an earlier version is written as one, without the keys that came later.
         """
-        content = as_of(self.schema_version, self)
+        content = as_of(self.schema_version, self, self.model_dump(mode="json"))
         text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
         return (text + "\n").encode()
 

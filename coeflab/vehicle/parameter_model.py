@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.stored import Finite, Name, NotNegative, Positive, Told
 from coeflab.core.types import Array
 from coeflab.fits.results.fitted_model import Extrapolation
 from coeflab.law.domain import clamped, inside, taper_weight
-from coeflab.law.terms import Term, design
-from coeflab.vehicle.parameter_parts import Finite, Name, NotNegative, Positive, Strict, told
+from coeflab.law.terms import Factor, Term, design
+from coeflab.vehicle.parameter_parts import Strict
 
 ANGLE_OF = {"alpha": "w", "beta": "v"}
 
@@ -23,80 +24,72 @@ ANGLE_OF = {"alpha": "w", "beta": "v"}
 class ModelVariable(Strict):
     """A variable of a fitted model."""
 
-    name: Annotated[Name, told("alpha beta u v w p q r dr ds db")]
-    unit: Annotated[Literal["rad", "1", "m/s", "rad/s"], told("1: v/U for velocities, r L/U for rates")]
-
-
-class ModelFactor(Strict):
-    """A power of a variable."""
-
-    variable: Annotated[Name, told("one of `variables`")]
-    power: Annotated[int, Field(ge=1, le=40), told("exponent")]
-    absolute: Annotated[bool, told("true: |variable|^power")] = False
+    name: Annotated[Name, Told("alpha beta u v w p q r dr ds db")]
+    unit: Annotated[Literal["rad", "1", "m/s", "rad/s"], Told("1: v/U for velocities, r L/U for rates")]
 
 
 class ModelTerm(Strict):
     """A product of powers with its coefficient; null where the data do not determine it."""
 
-    symbol: Annotated[Name, told("name of the coefficient")]
-    factors: Annotated[tuple[ModelFactor, ...], told("their product multiplies the value; empty for the constant")]
-    value: Annotated[Finite | None, told("coefficient of the term", "of the response over that of the factors")]
-    half_width_95: Annotated[NotNegative | None, told("95 % half-width of the value", "as the value")]
+    symbol: Annotated[Name, Told("name of the coefficient")]
+    factors: Annotated[tuple[Factor, ...], Told("their product multiplies the value; empty for the constant")]
+    value: Annotated[Finite | None, Told("coefficient of the term", "of the response over that of the factors")]
+    half_width_95: Annotated[NotNegative | None, Told("95 % half-width of the value", "as the value")]
 
 
 class ModelDomain(Strict):
     """Where the model may be read, in the order of `variables`."""
 
-    low: Annotated[tuple[Finite, ...], told("lowest value of each variable", "of the variable")]
-    high: Annotated[tuple[Finite, ...], told("highest value of each variable", "of the variable")]
+    low: Annotated[tuple[Finite, ...], Told("lowest value of each variable", "of the variable")]
+    high: Annotated[tuple[Finite, ...], Told("highest value of each variable", "of the variable")]
     half_spaces: Annotated[
-        tuple[tuple[Finite, ...], ...], told("rows [a, b] with a.x + b <= 0 inside the convex hull of the data")
+        tuple[tuple[Finite, ...], ...], Told("rows [a, b] with a.x + b <= 0 inside the convex hull of the data")
     ]
     extrapolation: Annotated[
         Literal["refuse", "clamp", "taper"],
-        told("outside: no value; that of the nearest point of the hull; a blend into that"),
+        Told("outside: no value; that of the nearest point of the hull; a blend into that"),
     ]
 
 
 class ModelArea(Strict):
     """What the coefficient is divided by beside 1/2 rho V^2; moments also by the length of `scaling`."""
 
-    value: Annotated[Positive, told("the area", "m^2")]
-    name: Annotated[Name, told("what area it is, for example frontal, or L^2")]
+    value: Annotated[Positive, Told("the area", "m^2")]
+    name: Annotated[Name, Told("what area it is, for example frontal, or L^2")]
 
 
 class ParameterModel(Strict):
     """One response as a linear combination of terms."""
 
-    response: Annotated[Name, told("force component or coefficient, for example Y' or C_D")]
-    unit: Annotated[Name, told("of the response; 1: nondimensional")]
-    form: Annotated[str, told("family of the form, in words")]
-    variables: Annotated[tuple[ModelVariable, ...], Field(min_length=1), told("what the response depends on")]
-    terms: Annotated[tuple[ModelTerm, ...], Field(min_length=1), told("the response is their sum")]
+    response: Annotated[Name, Told("force component or coefficient, for example Y' or C_D")]
+    unit: Annotated[Name, Told("of the response; 1: nondimensional")]
+    form: Annotated[str, Told("family of the form, in words")]
+    variables: Annotated[tuple[ModelVariable, ...], Field(min_length=1), Told("what the response depends on")]
+    terms: Annotated[tuple[ModelTerm, ...], Field(min_length=1), Told("the response is their sum")]
     covariance: Annotated[
         tuple[tuple[Finite | None, ...], ...],
-        told("of standard uncertainties (half_width_95 / 2) of the terms; null where not determined", "of the values"),
+        Told("of standard uncertainties (half_width_95 / 2) of the terms; null where not determined", "of the values"),
     ]
-    domain: Annotated[ModelDomain, told("where it may be read")]
-    n_points: Annotated[int, Field(ge=0), told("points that it was fitted to")]
-    rms: Annotated[NotNegative, told("root mean square of the residuals", "of the response")]
+    domain: Annotated[ModelDomain, Told("where it may be read")]
+    n_points: Annotated[int, Field(ge=0), Told("points that it was fitted to")]
+    rms: Annotated[NotNegative, Told("root mean square of the residuals", "of the response")]
     press_rms: Annotated[
-        NotNegative | None, told("root mean square of every point predicted from the others", "of the response")
+        NotNegative | None, Told("root mean square of every point predicted from the others", "of the response")
     ]
-    table: Annotated[str, told("file of the table")]
-    campaign: Annotated[str, told("campaign of the table")]
-    post_selection: Annotated[bool, told("true: terms chosen on the same data, intervals too narrow")] = False
-    statements: Annotated[tuple[str, ...], told("assumptions and limits, in words")] = ()
-    area: Annotated[ModelArea | None, told("of a coefficient by an area; null where there is none")] = None
+    table: Annotated[str, Told("file of the table")]
+    campaign: Annotated[str, Told("campaign of the table")]
+    post_selection: Annotated[bool, Told("true: terms chosen on the same data, intervals too narrow")] = False
+    statements: Annotated[tuple[str, ...], Told("assumptions and limits, in words")] = ()
+    area: Annotated[ModelArea | None, Told("of a coefficient by an area; null where there is none")] = None
     holds: Annotated[
         tuple[Name, ...],
-        told(
+        Told(
             "what half widths and covariance hold: the scatter, the grid, declared inputs; never the form", since="1.2"
         ),
     ] = ("random",)
     contains_potential: Annotated[
         bool,
-        told(
+        Told(
             "true: the values are whole forces, as measured; false: -C_A(nu) nu of `added_mass` comes on top",
             since="1.3",
         ),
@@ -184,7 +177,7 @@ class ParameterModel(Strict):
         return np.where(void, np.nan, values), half, within
 
     def _rows(self, points: Array) -> Array:
-        terms = tuple(Term(tuple((f.variable, f.power, f.absolute) for f in t.factors)) for t in self.terms)
+        terms = tuple(Term(t.factors) for t in self.terms)
         return design(terms, dict(zip(self.names, points.T, strict=True)))
 
 

@@ -22,9 +22,10 @@ from numpy.typing import NDArray
 from coeflab.core.table import Check, Severity
 from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import ROUNDING, definiteness
+from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
-from coeflab.vehicle.force_law import LawTerm, force_law, force_of_tables, points_of
+from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
 from coeflab.vehicle.imperial_units import displaced, gravity, gyration, water
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -131,7 +132,7 @@ def stated_matrix(parameters: ParameterFile) -> Array:
         d = derivative(c.symbol)
         if c.value is not None and len(d.factors) == 1 and d.factors[0].endswith("dot"):
             at = COMPONENTS.index(d.component), MOTIONS.index(d.factors[0][0])
-            out[at] = 0.0 - c.value * parameters.primes.unit(d.text, density)
+            out[at] = 0.0 - c.value * parameters.scaling.unit(d.text, density)
     return out
 
 
@@ -185,7 +186,7 @@ def _diagonal(stated: Array, signs: str) -> list[Check]:
 
 def _size(p: ParameterFile, diagonal: Array) -> list[Check]:
     out = []
-    prime = float(np.max(diagonal[1:])) / p.primes.unit("m", p.conditions.density)
+    prime = float(np.max(diagonal[1:])) / p.scaling.unit("m", p.conditions.density)
     if p.scaling.length_name != "1 m" and 0.0 < prime < SMALLEST_PRIME:
         out.append(_added_mass_check("M_A Yv, Zw", Severity.FAIL, f"{prime:.1e} of 1/2 rho L^3", f"at least {SMALLEST_PRIME:g}",
                           "Primes read as SI? Convert them; in a .m file r3 = rho*L^3/2 tells that they are primes."))  # fmt: skip
@@ -220,7 +221,7 @@ ALIKE = 0.01
 class _Own:
     """A term of a motion on itself."""
 
-    term: LawTerm
+    term: ForceTerm
     motion: str
     odd: bool
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.types import Array, brief, locked
+from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.symbols import COMPONENTS, MOTIONS
-from coeflab.vehicle.force_law import ForceLaw, LawTerm
 
 FLU = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
 ROUNDING = 1e-12
@@ -86,7 +86,7 @@ def products_once(quadratics: Array) -> Array:
 Slot = tuple[str, int, int]
 
 
-def slot(term: LawTerm) -> Slot | None:
+def slot(term: ForceTerm) -> Slot | None:
     """Where a term stands: ``linear``, ``signed`` or ``absolute`` with its velocities; None where the form has no place."""
     signed = sorted(MOTIONS.index(v) for v, n, a in term.term.factors for _ in range(n) if not a and v in MOTIONS)
     bars = sorted(MOTIONS.index(v) for v, n, a in term.term.factors for _ in range(n) if a and v in MOTIONS)
@@ -111,7 +111,7 @@ def slot(term: LawTerm) -> Slot | None:
             return None
 
 
-def resists(term: LawTerm) -> bool:
+def resists(term: ForceTerm) -> bool:
     """Whether a term is the resistance X0 U^2."""
     return term.component == "X" and term.term.degree == 0 and term.speed_power == 2
 

@@ -10,8 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from coeflab.formats.fmi import write as fmi
-from coeflab.law.rigid_body import motion, rigid_body_inertia
-from coeflab.law.transforms import rigid_body_force
+from coeflab.law.rigid_body import rigid_body_force, rigid_body_inertia
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -19,6 +18,7 @@ from tests.formats import files as made
 from tests.formats.files import control_force
 from tests.formats.massed import CENTRE, INERTIA, MASS, torpedo
 from tests.formats.of_a_vehicle import floating, quaternion, restoring
+from tests.rigid_motion import motion
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy is not installed (dependency group test)")
 SECONDS, STEP = 20.0, 0.1  # s

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from coeflab.formats.xdyn import write as xdyn
-from coeflab.law.rigid_body import Trajectory, motion, rotation
 from coeflab.law.transforms import force_transfer, velocity_transfer
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -17,6 +17,7 @@ from tests.consumers.lxdyn_environment import PYTHON
 from tests.formats.files import at_rest, control_force, full
 from tests.formats.massed import ADDED, CENTRE, INERTIA, MASS, OWN, torpedo, with_mass
 from tests.formats.of_a_vehicle import floating, quaternion, restoring
+from tests.rigid_motion import Trajectory, motion, rotation
 
 RUN = Path(__file__).with_name("run_lxdyn.py")
 SECONDS, STEP = 60.0, 0.02  # s
@@ -134,7 +135,7 @@ def test_an_added_mass_of_the_wrong_sign_does_not_pass(tmp_path: Path) -> None:
     """xdyn 26.8 warns where the sum is not positive definite, and goes on; earlier ones stopped."""
     file = torpedo()
     heavier = file.model_copy(update={
-        "added_mass": file.added_mass.model_copy(update={"matrix": tuple(tuple(1.5 * v for v in r) for r in ADDED)})
+        "added_mass": replace(file.added_mass, matrix=tuple(tuple(1.5 * v for v in r) for r in ADDED))
     })  # fmt: skip
     _, said = in_xdyn(tmp_path, rendered(heavier), 0.1)
     assert said == ""

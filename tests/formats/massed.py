@@ -6,9 +6,8 @@ import numpy as np
 
 from coeflab.core.axes import Datum
 from coeflab.law.added_mass import AddedMass
-from coeflab.law.rigid_body import parallel_axis
+from coeflab.law.rigid_body import MassProperties, parallel_axis
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_parts import ParameterMass
 from tests.vehicle.test_force_law import LENGTH, parameters
 
 MASS, CENTRE = 60.0, np.array([0.04, -0.01, 0.03])
@@ -30,13 +29,8 @@ VALUES = {
 
 def with_mass(file: ParameterFile, centre: np.ndarray = CENTRE) -> ParameterFile:
     """The file with the torpedo's mass properties."""
-    unit = 0.5 * file.conditions.density * LENGTH.length**3
-    mass = ParameterMass.model_validate({
-        "mass": MASS, "mass_moment": MASS * centre[0], "mass_prime": MASS / unit,
-        "mass_moment_prime": MASS * centre[0] / (unit * LENGTH.length), "centre": centre.tolist(),
-        "inertia_matrix": (OWN + parallel_axis(MASS, centre)).tolist(),
-    })  # fmt: skip
-    return file.model_copy(update={"mass": mass})
+    mass = MassProperties(MASS, MASS * centre[0], None, centre, OWN + parallel_axis(MASS, centre))
+    return file.model_copy(update={"mass": mass.primed(LENGTH, file.conditions.density)})
 
 
 def torpedo() -> ParameterFile:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from coeflab.law.rigid_body import rotation
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurface, ParameterThruster
 from tests.formats.massed import CENTRE, MASS, torpedo
+from tests.rigid_motion import rotation
 
 VOLUME, BUOYANT, GRAVITY = 0.055, (0.09, 0.02, -0.05), 9.7
 PROPELLER = {

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from coeflab.core.axes import Datum
-from coeflab.formats.stated_file import Stated, StatedMass, stated_file
+from coeflab.formats.stated_file import Stated, stated_file
 from coeflab.law.added_mass import AddedMass
+from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_parts import ParameterMass
 from tests.formats import files as made
 from tests.vehicle.test_force_law import parameters
 
@@ -28,13 +28,8 @@ INERTIA = np.array([[0.9, 0.0, -0.02], [0.0, 6.0, 0.0], [-0.02, 0.0, 6.2]])
 
 def with_mass(file: ParameterFile, centre: np.ndarray = CENTRE) -> ParameterFile:
     """The file with 50 kg at a centre of gravity."""
-    factor = 0.5 * file.conditions.density * file.scaling.length**3
-    mass = ParameterMass.model_validate({
-        "mass": 50.0, "mass_moment": 50.0 * centre[0], "mass_prime": 50.0 / factor,
-        "mass_moment_prime": 50.0 * centre[0] / factor / file.scaling.length, "centre": centre.tolist(),
-        "inertia_matrix": INERTIA.tolist(),
-    })  # fmt: skip
-    return file.model_copy(update={"mass": mass})
+    mass = MassProperties(50.0, 50.0 * centre[0], None, centre, INERTIA)
+    return file.model_copy(update={"mass": mass.primed(file.scaling, file.conditions.density)})
 
 
 def exact(seed: int, values: dict[str, float] = EXACT) -> ParameterFile:
@@ -58,5 +53,5 @@ def bluerov2_heavy() -> ParameterFile:
         for s, v in {**linear, **square}.items()
     }
     matrix = np.diag([6.36, 7.12, 18.68, 0.189, 0.135, 0.222])
-    mass = StatedMass(13.5, 0.0, None, np.zeros(3), np.diag([0.26, 0.23, 0.37]))
+    mass = MassProperties(13.5, 0.0, None, np.zeros(3), np.diag([0.26, 0.23, 0.37]))
     return stated_file(Stated("bluerov2", "BlueROV2 Heavy", scaling, at, values, matrix=matrix, mass=mass), [], ())

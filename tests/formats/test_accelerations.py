@@ -18,8 +18,7 @@ from coeflab.formats.loss import LOSSLESS
 from coeflab.formats.uuv_simulator.law import read_fossen_link
 from coeflab.formats.xdyn.law import xdyn_body
 from coeflab.law.added_mass import moved
-from coeflab.law.rigid_body import parallel_axis, rigid_body_inertia
-from coeflab.law.transforms import rigid_body_force
+from coeflab.law.rigid_body import parallel_axis, rigid_body_force, rigid_body_inertia
 from coeflab.motion.manoeuvre import UPRIGHT
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.sections import export as export_section

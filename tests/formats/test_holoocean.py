@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,7 @@ from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.core.errors import InputError
 from coeflab.formats.holoocean import write as exporter
 from coeflab.formats.holoocean.law import CROSS_FLOW, WATER, Torpedo, lifting_area
-from coeflab.law.transforms import rigid_body_force
+from coeflab.law.rigid_body import rigid_body_force
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.workbench.exports import export
@@ -169,7 +169,7 @@ def test_no_torpedo_without_mass() -> None:
 
 def test_no_torpedo_that_is_a_ball() -> None:
     heavy = with_mass(made.plain())
-    file = heavy.model_copy(update={"mass": heavy.mass.model_copy(update={"mass": 1e5})})
+    file = heavy.model_copy(update={"mass": replace(heavy.mass, mass=1e5)})
     with pytest.raises(InputError, match="a body longer than thick"):
         exporter.render(file)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -44,7 +45,7 @@ def lost(file: ParameterFile, target: str, kind: Kind, accelerations: str = "mea
 
 def with_added(file: ParameterFile, **changed: object) -> ParameterFile:
     assert file.added_mass is not None
-    return file.model_copy(update={"added_mass": file.added_mass.model_copy(update=changed)})
+    return file.model_copy(update={"added_mass": replace(file.added_mass, **changed)})
 
 
 @each_target
@@ -67,8 +68,8 @@ def test_a_mass_that_is_needed_and_not_there_is_a_loss(target: str) -> None:
 def test_the_transverse_moment_alone_leaves_the_roll_inertia_open() -> None:
     file = torpedo()
     assert file.mass is not None
-    one = file.model_copy(update={"mass": file.mass.model_copy(update={"inertia": 14.0, "inertia_matrix": None})})
-    none = file.model_copy(update={"mass": file.mass.model_copy(update={"inertia_matrix": None})})
+    one = file.model_copy(update={"mass": replace(file.mass, inertia=14.0, inertia_matrix=None)})
+    none = file.model_copy(update={"mass": replace(file.mass, inertia_matrix=None)})
     assert missing_mass(file, "x") == ()
     assert missing_mass(one, "x")[0].startswith("roll inertia: the file has the transverse one alone")
     assert missing_mass(none, "x") == ("moments of inertia: the file has none; x",)

@@ -137,7 +137,8 @@ def test_the_importer_gives_it_back(file: object, tmp_path: Path) -> None:
     assert (back.added_mass is None) == (file.added_mass is None)
     if file.added_mass is not None:
         np.testing.assert_allclose(back.added_mass.matrix, file.added_mass.matrix, rtol=1e-12, atol=1e-12)
-    assert (back.mass and back.mass.model_copy(update=PRIMES)) == (file.mass and file.mass.model_copy(update=PRIMES))
+    masses = [f.model_dump()["mass"] for f in (back, file)]
+    assert len({str(m and {**m, **PRIMES}) for m in masses}) == 1
     assert (back.scaling, back.reference_point, back.conditions) == (
         file.scaling,
         file.reference_point,

@@ -234,7 +234,7 @@ def test_a_damping_of_the_wrong_sign_is_refused() -> None:
 
 def test_a_table_is_a_loss_and_no_reason_to_refuse() -> None:
     """The drag and the side force of the HUUV are tables alone, which no simulator is given."""
-    hull = SLENDER_ADDED.model_copy(update={"body": "HUUV"})
+    hull = replace(SLENDER_ADDED, body="HUUV")
     file = huuv_file(read_huuv()).model_copy(update={"added_mass": hull})
     loss = export(file, "mujoco").loss
     assert any("simulators are given the coefficients alone" in str(x) for x in loss.lost)

@@ -100,7 +100,7 @@ def test_a_foreign_model_keeps_the_systems_law() -> None:
     np.testing.assert_allclose(force_law(file).force(nu), link.force(nu * FLU) * FLU, rtol=1e-10, atol=1e-9)
     assert file.coefficient("Zq").law == "rest"
     assert file.coefficient("Zq").value_si == pytest.approx(1.5)
-    assert file.mass.centre == (0.1, 0.0, 0.02)
+    assert file.mass.centre.tolist() == [0.1, 0.0, 0.02]
 
 
 def test_what_the_format_lets_go_wrong(tmp_path: Path) -> None:

@@ -12,13 +12,13 @@ import pytest
 from coeflab.formats import EXPORTERS, PARAMETER_IMPORTERS
 from coeflab.formats.xdyn import write as xdyn
 from coeflab.law.added_mass import moved
+from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import derivative
 from coeflab.law.transforms import derivative_transfer
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import centre_of_gravity, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_parts import ParameterCoefficient
 from coeflab.vehicle.second_order import SURGE, second_order
 from tests.formats.files import slopes_alone
 from tests.formats.vehicles import FACTS, vehicle
@@ -39,11 +39,11 @@ SECOND_ORDER = {
 }  # fmt: skip
 
 
-def is_acceleration(c: ParameterCoefficient) -> bool:
+def is_acceleration(c: Coefficient) -> bool:
     return any(f.endswith("dot") for f in derivative(c.symbol).factors)
 
 
-def stated(file: ParameterFile) -> dict[str, ParameterCoefficient]:
+def stated(file: ParameterFile) -> dict[str, Coefficient]:
     """Coefficients with a value other than zero; accelerations are compared as a matrix."""
     return {c.symbol.removesuffix("'"): c for c in file.coefficients if c.value and not is_acceleration(c)}
 

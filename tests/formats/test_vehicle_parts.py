@@ -16,12 +16,12 @@ from coeflab.formats.toml import write as toml
 from coeflab.formats.uuv_simulator import write as uuv_simulator
 from coeflab.formats.xdyn import read as xdyn_reader
 from coeflab.formats.xdyn import write as xdyn
-from coeflab.law.rigid_body import rotation
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.workbench.exports import export
 from tests.formats.massed import CENTRE, MASS, torpedo
 from tests.formats.of_a_vehicle import BUOYANT, GRAVITY, VOLUME, driven, floating, quaternion, restoring
+from tests.rigid_motion import rotation
 
 TARGETS = [n for n in EXPORTERS.names() if isinstance(EXPORTERS.load(n), SimulatorExporter)]
 HOLD = {"fmi", "gazebo", "gazebo_plugin", "mss", "python_vehicle_simulator", "uuv_simulator", "xdyn"}

@@ -7,7 +7,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from coeflab.core.arithmetic import evaluate
-from coeflab.formats.exported_law import sname, spelt, written_accelerations, written_controls, written_terms
+from coeflab.formats.exported_law import (
+    expression,
+    sname,
+    spelt,
+    written_accelerations,
+    written_controls,
+    written_terms,
+)
 from coeflab.law.symbols import COMPONENTS, derivative
 from tests.vehicle.test_force_law import HULL, parameters
 
@@ -26,7 +33,7 @@ def test_a_spelt_symbol_comes_back(symbol: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("symbol", "law", "expression"),
+    ("symbol", "law", "wanted"),
     [
         ("X0", "motion", "r2*h.X0*U^2"),
         ("Yv", "motion", "r2*h.Yv*U*v"),
@@ -38,19 +45,19 @@ def test_a_spelt_symbol_comes_back(symbol: str) -> None:
         ("Yv", "rest", "h.rest.Yv*v"),
     ],
 )
-def test_expressions(symbol: str, law: str, expression: str) -> None:
+def test_expressions(symbol: str, law: str, wanted: str) -> None:
     (term,) = written_terms(parameters({symbol: -0.01}, law=law))
     places = {"prime": "h.", "rest": "h.rest."}
-    assert term.expression(lambda group, name: places[group] + name, "^") == expression
+    assert expression(term, lambda kind, name: places[kind] + name, "^") == wanted
 
 
 def test_at_rest_the_number_is_si() -> None:
     (term,) = written_terms(parameters({"Yv": -0.03}, law="rest"))
-    assert (term.value, term.length_power, term.speed_power) == (pytest.approx(-0.03 * 500.0 * 1.5 * 4.0), 0, 0)
+    assert (term.written, term.length_power, term.speed_power) == (pytest.approx(-0.03 * 500.0 * 1.5 * 4.0), 0, 0)
 
 
 def test_products_of_the_ideal_fluid_only_where_nothing_is_measured() -> None:
-    names = {t.name: t.value for t in written_terms(parameters({"Nv": -0.014}, HULL)) if t.group == "potential"}
+    names = {t.symbol: t.written for t in written_terms(parameters({"Nv": -0.014}, HULL)) if t.kind == "potential"}
     assert "Nuv" not in names
     assert names["Yur"] == pytest.approx(-20.0 / (500.0 * 8.0))
     assert names["Muw"] == pytest.approx((580.0 - 20.0) / (500.0 * 8.0))
@@ -67,4 +74,4 @@ def test_accelerations_are_the_negative_added_mass() -> None:
 def test_controls_in_the_order_of_the_columns() -> None:
     terms = written_terms(parameters({"Mds": -0.01, "Xdrdr": -0.01, "Yv": -0.02}))
     assert written_controls(terms) == ("dr", "ds")
-    assert evaluate(terms[1].expression(lambda *_: "k", "^"), {"r2": 2.0, "k": 3.0, "U": 2.0, "dr": 0.5}) == 6.0
+    assert evaluate(expression(terms[1], lambda *_: "k", "^"), {"r2": 2.0, "k": 3.0, "U": 2.0, "dr": 0.5}) == 6.0

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from coeflab.formats.stated_file import Stated, StatedMass, stated_file
+from coeflab.formats.stated_file import Stated, stated_file
+from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import LINEAR, MOMENTS, derivative
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -43,7 +44,7 @@ def vehicle(name: str) -> ParameterFile:
             conditions=at,
             coefficients=values,
             matrix=np.diag(facts["added_mass"]) if "added_mass" in facts else None,
-            mass=StatedMass(kilograms, kilograms * float(centre[0]), None, centre, inertia),
+            mass=MassProperties(kilograms, kilograms * float(centre[0]), None, centre, inertia),
             notes=(facts["source"],),
         ),
         [],

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from coeflab.core.types import Array
-from coeflab.law.transforms import derivative_transfer, force_transfer, rigid_body_force, skew, velocity_transfer
+from coeflab.law.rigid_body import rigid_body_force
+from coeflab.law.transforms import derivative_transfer, force_transfer, skew, velocity_transfer
 
 numbers = st.floats(-10.0, 10.0, allow_subnormal=False)
 vectors = arrays(float, 3, elements=numbers)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -37,8 +39,7 @@ def accelerating(hull: bool) -> ParameterFile:
 def restated(file: ParameterFile, symbols: tuple[str, ...], deviation: np.ndarray) -> ParameterFile:
     by = dict(zip(symbols, deviation, strict=True))
     changed = tuple(
-        c.model_copy(update={"value": (c.value or 0.0) + by.get(c.symbol, 0.0), "value_si": None})
-        for c in file.coefficients
+        replace(c, value=(c.value or 0.0) + by.get(c.symbol, 0.0), value_si=None) for c in file.coefficients
     )
     return file.model_copy(update={"coefficients": changed})
 
@@ -48,7 +49,7 @@ def restated(file: ParameterFile, symbols: tuple[str, ...], deviation: np.ndarra
 def test_a_member_is_the_vehicle_of_the_drawn_file(hull: bool, accelerations: str) -> None:
     file = accelerating(hull)
     body = vehicle(file, accelerations=accelerations)
-    varied = uncertain(file, [t.symbol for t in body.terms])
+    varied = uncertain(file, [t.in_file for t in body.law.terms])
     deviations = varied.members(4, 1)
     ensemble = drawn(body, file, varied.symbols, deviations)
     rng = np.random.default_rng(3)
@@ -65,7 +66,7 @@ def test_a_coefficient_of_zero_is_drawn_too() -> None:
     file = with_mass(parameters({**VALUES, "Yvv": 0.0}))
     file = with_uncertainty(file, {"Yvv'": 0.02}, {})
     body = vehicle(file)
-    varied = uncertain(file, [t.symbol for t in body.terms])
+    varied = uncertain(file, [t.in_file for t in body.law.terms])
     found = drawn(body, file, varied.symbols, np.array([[0.03]])).member(0)
     nu = np.array([[1.5, 0.4, 0.0, 0.0, 0.0, 0.0]])
     change = (found.force(nu, np.zeros((1, 3))) - body.force(nu, np.zeros((1, 3))))[0]
@@ -76,7 +77,7 @@ def test_a_coefficient_of_zero_is_drawn_too() -> None:
 def test_what_is_unfelt_changes_no_acceleration() -> None:
     file = accelerating(hull=True)
     body = vehicle(file, free=("u", "v", "r"))
-    varied = uncertain(file, [t.symbol for t in body.terms])
+    varied = uncertain(file, [t.in_file for t in body.law.terms])
     still = unfelt(body, varied.symbols, {"dr"})
     assert {"Zw'", "Mq'", "Kp'", "Zwdot'", "Kpdot'"} <= still
     assert not {"Yv'", "Nr'", "Ndr'", "X0'", "Yrdot'", "Nrdot'", "Xudot'"} & still
@@ -94,8 +95,10 @@ def test_what_is_unfelt_changes_no_acceleration() -> None:
 def test_members_of_an_uncertain_torpedo_differ_only_where_it_is_uncertain() -> None:
     file = uncertain_torpedo()
     body = vehicle(file)
-    varied = uncertain(file, [t.symbol for t in body.terms])
+    varied = uncertain(file, [t.in_file for t in body.law.terms])
     ensemble = drawn(body, file, varied.symbols, varied.members(5, 1))
-    moved = {t.symbol for t, column in zip(body.terms, ensemble.coefficients.T, strict=True) if np.ptp(column) > 0.0}
+    moved = {
+        t.in_file for t, column in zip(body.law.terms, ensemble.coefficients.T, strict=True) if np.ptp(column) > 0.0
+    }
     assert moved == set(varied.symbols)
     assert ensemble.added is None

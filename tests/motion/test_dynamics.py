@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from coeflab.law.rigid_body import ideal_force, ideal_quadratics
-from coeflab.law.transforms import rigid_body_force
-from coeflab.motion.dynamics import euler_angles, ideal_pairs, rigid_body_quadratics, rotations
+from coeflab.law.rigid_body import (
+    ideal_force,
+    ideal_quadratics,
+    momentum_quadratics,
+    rigid_body_force,
+    rigid_body_inertia,
+)
+from coeflab.motion.dynamics import euler_angles, forms_of_pairs, rotations
 from coeflab.motion.marching import alone
 from coeflab.motion.simulators import rigid_body
 from tests.formats.massed import ADDED, CENTRE, INERTIA, MASS
@@ -54,7 +59,8 @@ def test_products_of_velocities_do_no_work() -> None:
     nu = np.random.default_rng(4).normal(size=(20, 6))
     rows, columns = np.triu_indices(6)
     pairs = (nu[:, rows] * nu[:, columns]).T
-    rigid, ideal = rigid_body_quadratics(MASS, CENTRE, INERTIA), ideal_pairs(ideal_quadratics(ADDED))
+    rigid = forms_of_pairs(momentum_quadratics(rigid_body_inertia(MASS, CENTRE, INERTIA)))
+    ideal = forms_of_pairs(ideal_quadratics(ADDED))
     np.testing.assert_allclose((rigid @ pairs).T, -rigid_body_force(MASS, CENTRE, INERTIA, nu), atol=1e-12)
     np.testing.assert_allclose((ideal @ pairs).T, ideal_force(ADDED, nu), atol=1e-12)
     for form in (rigid, ideal):

@@ -19,7 +19,7 @@ def test_a_member_is_the_vehicle_with_its_numbers() -> None:
     added = np.stack([v.added, 1.1 * v.added])
     member = Ensemble(v, rows, added=added, centre=centres).member(1)
     np.testing.assert_array_equal(member.law.coefficient, rows[1])
-    assert [t.coefficient for t in member.terms] == pytest.approx(rows[1])
+    assert [t.coefficient for t in member.law.terms] == pytest.approx(rows[1])
     np.testing.assert_array_equal(member.centre, centres[1])
     np.testing.assert_array_equal(member.added, added[1])
     assert member.mass == v.mass

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -193,8 +194,7 @@ def test_verdicts_against_u95(clean: list[Path]) -> None:
     widths = {"Yv'": 1e-3, "Nr'": 1e-12}
     shifted = {"Ydr'": 0.013}
     changed = tuple(
-        c.model_copy(update={"u95": widths.get(c.symbol, 1e-4 if c.symbol in shifted else None),
-                             "value": shifted.get(c.symbol, c.value)})
+        replace(c, u95=widths.get(c.symbol, 1e-4 if c.symbol in shifted else None), value=shifted.get(c.symbol, c.value))
         for c in FILE.coefficients
     )  # fmt: skip
     found = identify_from(clean, FILE.model_copy(update={"coefficients": changed}), {})

@@ -20,7 +20,7 @@ STILL = np.zeros(3)
 
 def scattered(count: int, spread: float = 0.1) -> Ensemble:
     v = swimmer()
-    factors = 1.0 + spread * np.random.default_rng(5).uniform(-1.0, 1.0, (count, len(v.terms)))
+    factors = 1.0 + spread * np.random.default_rng(5).uniform(-1.0, 1.0, (count, len(v.law.terms)))
     added = v.added * (1.0 + spread * np.random.default_rng(6).uniform(-1.0, 1.0, (count, 1, 1)))
     mass = v.mass * (1.0 + spread * np.random.default_rng(7).uniform(-1.0, 1.0, count))
     ideal = np.broadcast_to(v.law.ideal, (count, 6, 6, 6)) * (mass / v.mass)[:, None, None, None]

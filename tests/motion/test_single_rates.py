@@ -1,12 +1,19 @@
-"""Plain numbers and arrays give the same rates."""
+"""Arrays, plain numbers and the compiled kernel give the same rates."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from coeflab.core.files import shipped
-from coeflab.motion.dynamics import rates_of_one, term_force_of_one
+from coeflab.law.force_law import BASE, WIND, ForceLaw, ForceTerm, Reading
+from coeflab.law.symbols import COMPONENTS
+from coeflab.law.terms import Factor, Term
+from coeflab.motion.dynamics import Dynamics, rates_of_one, term_force_of_one
 from coeflab.motion.marching import alone
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.vehicle.parameter_file import read_parameter_file
@@ -37,3 +44,39 @@ def test_random_states(made: object) -> None:
     force = term_force_of_one(v.law)
     plain = np.array([force(s.tolist(), a.tolist()) for s, a in zip(states, angles, strict=True)])
     assert plain == pytest.approx(v.law.term_force(states[:, 7:13].T, angles.T).T, rel=1e-12, abs=1e-10)
+
+
+NUMBERS = st.floats(-3.0, 3.0).map(lambda x: round(x, 3))
+READINGS = st.builds(
+    Reading, st.sampled_from([0.0, 1.0, 4.2]), st.floats(-1.0, -0.1), st.floats(0.1, 1.0), st.booleans()
+)
+FACTORS = st.builds(Factor, st.sampled_from([b for b in BASE if b != "V"]), st.integers(1, 3), st.booleans())
+
+
+@st.composite
+def terms(draw: Any) -> ForceTerm:
+    """A term of at most three factors, each read as it is, primed or held."""
+    term = Term(tuple(draw(st.lists(FACTORS, max_size=3))))
+    held = {v: draw(READINGS) for v, _, _ in term.factors if draw(st.booleans())}
+    component, power = draw(st.sampled_from([*COMPONENTS, *WIND])), draw(st.integers(-2, 2))
+    return ForceTerm("any", component, term, draw(NUMBERS), power, 1.0, "table", readings=tuple(held.items()))
+
+
+@pytest.mark.slow
+@settings(max_examples=60, deadline=None)
+@given(st.lists(terms(), max_size=6), st.integers(0, 2**32 - 1))
+def test_random_laws(of: list[ForceTerm], seed: int) -> None:
+    """Any law of at most six terms on a body of random inertia: the copies are compared with the arrays."""
+    compiled = pytest.importorskip("coeflab.motion.integrators.compiled")
+    rng = np.random.default_rng(seed)
+    law = ForceLaw(tuple(of), np.zeros((6, 6, 6)))
+    forms, inverse, lever = rng.normal(size=(6, 21)), rng.normal(size=(6, 6)), rng.normal(size=(3, 1))
+    dynamics = Dynamics(law, forms, inverse, rng.normal(size=1), lever, rng.normal(size=3))
+    state, angles, wrench = rng.normal(size=14), rng.normal(0.0, 0.2, 3), rng.normal(size=6)
+    state[3:7] /= np.linalg.norm(state[3:7])
+    expected = dynamics.rates(state[:, None], angles[:, None], wrench[:, None])[:, 0]
+    scale = 1e-11 * max(1.0, float(np.abs(expected).max()))
+    assert rates_of_one(dynamics)(state.tolist(), angles.tolist(), wrench.tolist()) == pytest.approx(
+        expected, abs=scale
+    )
+    assert compiled.rates(dynamics, state, angles, wrench) == pytest.approx(expected, abs=scale)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +19,7 @@ def with_uncertainty(
     file: ParameterFile, u95: Mapping[str, float], correlation: Mapping[tuple[str, str], float]
 ) -> ParameterFile:
     """The file with U95 and a covariance of exactly these; every other coefficient has neither."""
-    coefficients = tuple(c.model_copy(update={"u95": u95.get(c.symbol)}) for c in file.coefficients)
+    coefficients = tuple(replace(c, u95=u95.get(c.symbol)) for c in file.coefficients)
     symbols = tuple(c.symbol for c in coefficients)
     matrix = np.full((len(symbols),) * 2, np.nan)
     known = [i for i, s in enumerate(symbols) if s in u95]

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from coeflab.formats.stated_file import Stated, StatedMass, stated_file
+from coeflab.formats.stated_file import Stated, stated_file
+from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurface
@@ -21,7 +22,7 @@ UNSTABLE = {**STABLE, "Nv": -6e-2}
 
 def made(values: dict[str, float] = STABLE, metacentric: float = 0.0) -> ParameterFile:
     """A parameter file of these primes; ``metacentric``: centre of buoyancy above that of gravity, m."""
-    mass = StatedMass(MASS, 0.0, None, np.zeros(3), INERTIA)
+    mass = MassProperties(MASS, 0.0, None, np.zeros(3), INERTIA)
     primes = {s: (v, "motion") for s, v in values.items()}
     file = stated_file(Stated("synthetic", "synthetic body", SCALING, AT, primes, matrix=None, mass=mass), [], ())
     hydrostatics = ParameterHydrostatics(

@@ -162,7 +162,7 @@ def test_the_centre_of_pressure_is_the_moment_over_the_force():
     file = made().model_copy(
         update={
             "body": fit.body,
-            "coefficients": (made().coefficients[0].model_copy(update={"campaign": fit.campaign}),),
+            "coefficients": (replace(made().coefficients[0], campaign=fit.campaign),),
         }
     )
     parts = Parts((Part("hull", Cylinder(0.1, 1.0), np.zeros(3), np.eye(3)),))

@@ -104,7 +104,7 @@ def test_where_the_mass_comes_from_and_what_is_said_of_it():
 def test_an_index_stands_beside_the_one_that_the_same_source_prints():
     """Roddy's Table 4: -0.443297 for the body with its appendages; a file of other campaigns gets none."""
     published = read_references(shipped("cfd_data") / "suboff" / "published.toml")
-    own = made().coefficients[0].model_copy(update={"campaign": "suboff_roddy_2"})
+    own = replace(made().coefficients[0], campaign="suboff_roddy_2")
     file = made().model_copy(update={"body": "suboff_fully_appended", "coefficients": (*made().coefficients[1:], own)})
     other = file.model_copy(update={"name": "other", "coefficients": made().coefficients})
     (section,) = stability_sections(replace(with_files(file, other), references=published))

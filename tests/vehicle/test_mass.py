@@ -9,15 +9,14 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from coeflab.bodies.body import Body, Configuration, MassProperties
+from coeflab.bodies.body import Body, Configuration
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.provenance import Source
-from coeflab.law.rigid_body import about_another
+from coeflab.law.rigid_body import MassProperties, about_another
 from coeflab.law.scaling import Conditions
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
-from coeflab.vehicle.parameter_parts import ParameterMass
 from tests.formats.massed import CENTRE, INERTIA, MASS, torpedo
 from tests.vehicle.test_assemble import fitted
 
@@ -42,9 +41,10 @@ def test_it_comes_back(tmp_path: Path) -> None:
     ],
 )
 def test_no_body_has_these(change: dict[str, object], said: str) -> None:
-    ParameterMass.model_validate(GOOD)
+    content = torpedo().model_dump()
+    ParameterFile.model_validate({**content, "mass": GOOD})
     with pytest.raises(ValidationError, match=said):
-        ParameterMass.model_validate({**GOOD, **change})
+        ParameterFile.model_validate({**content, "mass": {**GOOD, **change}})
 
 
 def test_earlier_versions_do_not_have_them(tmp_path: Path) -> None:
@@ -56,7 +56,7 @@ def test_earlier_versions_do_not_have_them(tmp_path: Path) -> None:
     path.write_text(json.dumps(content))
     with pytest.raises(InputError, match=r"came with version 1\.2"):
         read_parameter_file(path)
-    assert ParameterFile.model_validate_json(torpedo().to_json()).mass.centre == tuple(CENTRE)
+    assert ParameterFile.model_validate_json(torpedo().to_json()).mass.centre.tolist() == CENTRE.tolist()
 
 
 def test_mass_properties_move_with_the_reference_point() -> None:

@@ -10,7 +10,7 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.vehicle import vehicle
-from coeflab.vehicle.force_law import motion_terms, open_products
+from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_model import ParameterModel
 from tests.formats.massed import with_mass
@@ -74,7 +74,7 @@ def test_derivatives_speak_first_unless_tables_are_asked_for() -> None:
 
 def test_rudder_derivatives_stay_beside_tables() -> None:
     file = with_mass(parameters(VALUES, HULL)).model_copy(update={"models": (table("N'", {"v": 1.0}),)})
-    symbols = [t.symbol for t in motion_terms(file, tables=True)[0]]
+    symbols = [t.in_file for t in motion_law(file, tables=True)[0].terms]
     assert "Ndr'" in symbols
     assert "Nv'" not in symbols
 
@@ -86,6 +86,6 @@ def test_two_tables_with_a_constant_of_one_force_are_refused() -> None:
 
 
 def test_a_table_of_a_rate_leaves_the_drift_products_open() -> None:
-    over_rate = open_products(with_tables(table("N'", {"r": -1e-2}, ("r",))), tables=False)
+    over_rate = motion_law(with_tables(table("N'", {"r": -1e-2}, ("r",))), tables=False)[0].ideal
     assert over_rate[5, 0, 1] == pytest.approx((HULL.matrix[0, 0] - HULL.matrix[1, 1]) / 2.0)
     assert over_rate[5, 0, 5] == 0.0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -32,7 +34,7 @@ def test_real_vehicles_pass(suboff: Study) -> None:
 @pytest.mark.parametrize("density", [1.94, 64.0, 1.2, 998000.0])
 def test_a_density_that_is_none_of_water(density: float) -> None:
     file = second.bluerov2_heavy()
-    wrong = file.model_copy(update={"conditions": file.conditions.model_copy(update={"density": density})})
+    wrong = file.model_copy(update={"conditions": replace(file.conditions, density=density)})
     assert "density" in found(wrong)
     assert ("Convert to SI" in found(wrong)["density"]) == (density in (1.94, 64.0))
 
@@ -41,8 +43,8 @@ def test_slugs_and_feet_beside_a_density_in_si() -> None:
     """The torpedo of the reference vehicles: 1.97 slug, added masses in slug and slug ft^2, called SI."""
     file = second.bluerov2_heavy()
     matrix = np.diag([0.35, 1.48, 1.32, 0.025, 0.41, 0.38]).tolist()
-    hull = file.added_mass.model_copy(update={"matrix": matrix})
-    mass = file.mass.model_copy(update={"mass": 1.97})
+    hull = replace(file.added_mass, matrix=matrix)
+    mass = replace(file.mass, mass=1.97)
     told = found(file.model_copy(update={"added_mass": hull, "mass": mass}))
     assert any("one system of units" in c for c in told.values())
 

@@ -28,7 +28,7 @@ def doubts(study: Study) -> list[Check]:
 def changed(file: ParameterFile, **values: float) -> ParameterFile:
     """A file with other primed values."""
     coefficients = tuple(
-        c if c.symbol.removesuffix("'") not in values else c.model_copy(update={"value": values[c.symbol[:-1]]})
+        c if c.symbol.removesuffix("'") not in values else replace(c, value=values[c.symbol[:-1]])
         for c in file.coefficients
     )
     return file.model_copy(update={"coefficients": coefficients})
@@ -87,7 +87,7 @@ def test_a_flipped_slope_from_literature_fails(suboff: Study, symbol: str) -> No
     stated = file.coefficient(symbol)
     assert stated is not None
     assert stated.value is not None
-    other = stated.model_copy(update={"value": -stated.value, "origin": "literature", "estimator": "Table 4"})
+    other = replace(stated, value=-stated.value, origin="literature", estimator="Table 4")
     coefficients = tuple(other if c is stated else c for c in file.coefficients)
     found = one(suboff, file.model_copy(update={"coefficients": coefficients}))
     assert [c.subject for c in found if c.severity is Severity.FAIL] == [f"suboff_fully_appended {symbol}'"]
@@ -180,7 +180,7 @@ def test_inertia_declared_rightly_is_not(tmp_path: Path, inertia: bool, declared
 
 def bare(file: ParameterFile) -> ParameterFile:
     """Without added mass and what it gives."""
-    coefficients = tuple(c.model_copy(update={"potential": None}) for c in file.coefficients)
+    coefficients = tuple(replace(c, potential=None) for c in file.coefficients)
     return file.model_copy(update={"coefficients": coefficients, "added_mass": None})
 
 
@@ -193,7 +193,7 @@ def about_the_nose(suboff: Study) -> Callable[[float], ParameterFile]:
 
     def made(share: float) -> ParameterFile:
         assert file.mass is not None
-        mass = file.mass.model_copy(update={"mass_moment_prime": -dx * m})
+        mass = replace(file.mass, mass_moment_prime=-dx * m)
         moved = changed(
             file, Yr=yr - dx * yv - share * m, Nv=nv - dx * yv, Nr=nr - dx * (nv + yr) + dx**2 * yv + share * dx * m
         )

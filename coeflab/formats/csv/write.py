@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from coeflab.core.wording import file_stem, identifier
 from coeflab.formats.look_up import LookUp, look_up
+from coeflab.law.coefficient import Coefficient
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_parts import ParameterCoefficient
 
 summary = "coefficients.csv: primed and SI values, U95, status, origin; a table_N.csv for each fitted model"
 citations = ("sname1950",)
@@ -48,7 +48,7 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     return files
 
 
-def _coefficient(c: ParameterCoefficient) -> tuple[object, ...]:
+def _coefficient(c: Coefficient) -> tuple[object, ...]:
     low, high = c.window or (None, None)
     return (
         c.symbol, c.value, c.u95, c.parts.random, c.parts.model_form, c.parts.input, c.value_si, c.unit_si, c.status, c.origin,

@@ -23,15 +23,17 @@ from coeflab.core.errors import InputError
 from coeflab.core.text.xml import sayable
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.exported_law import (
-    WrittenTerm,
     not_written,
     number,
+    spelt,
     written_accelerations,
     written_changes,
     written_terms,
 )
 from coeflab.formats.lost import missing_mass, missing_water
+from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
+from coeflab.law.terms import Factor, Term
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -54,8 +56,8 @@ def _variable(name: str, causality: str, start: float, description: str) -> Vari
     return {"name": name, "causality": causality, "start": float(start), "description": description}
 
 
-def _place(term: WrittenTerm) -> str:
-    return f"{_GROUPS[term.group]}.{term.name}"
+def _place(term: ForceTerm) -> str:
+    return f"{_GROUPS[term.kind]}.{spelt(term.symbol)}"
 
 
 def _mass(parameters: ParameterFile) -> list[Variable]:
@@ -91,14 +93,14 @@ def _hydrostatics(parameters: ParameterFile) -> list[Variable]:
     ]
 
 
-def _variables(parameters: ParameterFile, terms: tuple[WrittenTerm, ...], dots: Mapping[str, float]) -> list[Variable]:
+def _variables(parameters: ParameterFile, terms: tuple[ForceTerm, ...], dots: Mapping[str, float]) -> list[Variable]:
     out = [_variable("density", "parameter", parameters.conditions.density, "kg/m^3")]
     out += [*_mass(parameters), *_hydrostatics(parameters)]
     start = {"u": parameters.conditions.speed}
     for n in ("north", "east", "down", "roll", "pitch", "yaw", *MOTIONS):
         out.append(_variable(f"start.{n}", "parameter", start.get(n, 0.0), "m, rad, m/s, rad/s"))
     out.append(_variable("step", "parameter", STEP, "longest step of the integration, s"))
-    out += [_variable(_place(t), "parameter", t.value, t.note) for t in terms]
+    out += [_variable(_place(t), "parameter", t.written, t.note) for t in terms]
     out += [_variable(f"acceleration.{n}", "parameter", v, "primed, less the added mass") for n, v in dots.items()]
     out += [_variable(f"control.{c}", "input", 0.0, "rad") for c in CONTROLS]
     out += [_variable(f"external.{c}", "input", 0.0, "at the reference point, N or N m") for c in COMPONENTS]
@@ -232,20 +234,13 @@ def force(files: Mapping[str, bytes], nu: NDArray[np.float64]) -> NDArray[np.flo
     velocities at once, with zero control angles.
     """
     model, values = _read(files)
-    moving = np.hstack([nu, np.zeros((len(nu), len(CONTROLS)))])
-    speed = np.maximum(np.linalg.norm(nu[:, :3], axis=1), SLOWEST)
-    out = np.zeros((len(nu), 6))
+    terms = []
     for t in model["terms"]:
         k = t["length_power"]
-        share = (
-            values[t["value"]]
-            * (0.5 * values["density"] * model["length"] ** k if k else 1.0)
-            * speed ** t["speed_power"]
-        )
-        for index, power, absolute in t["factors"]:
-            share = share * (np.abs(moving[:, index]) if absolute else moving[:, index]) ** power
-        out[:, t["force"]] += share
-    return out
+        value = values[t["value"]] * (0.5 * values["density"] * model["length"] ** k if k else 1.0)
+        term = Term(tuple(Factor(_MOVING[index], power, absolute) for index, power, absolute in t["factors"]))
+        terms.append(ForceTerm(t["value"], COMPONENTS[t["force"]], term, value, t["speed_power"], 1.0))
+    return ForceLaw(tuple(terms), np.zeros((6, 6, 6))).force(nu)
 
 
 def added_mass(files: Mapping[str, bytes]) -> NDArray[np.float64]:

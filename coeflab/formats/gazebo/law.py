@@ -17,6 +17,7 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.xml import numbers
 from coeflab.core.types import Array, brief, locked
+from coeflab.law.rigid_body import momentum_force
 
 FORCES, VELOCITIES = "xyzkmn", "UVWPQR"
 SYSTEM = {"filename": "gz-sim-hydrodynamics-system", "name": "gz::sim::systems::Hydrodynamics"}
@@ -97,10 +98,7 @@ class GzLink:
             for j in range(6):
                 damping = -self.linear[i, j] - np.abs(state) @ self.absolute[i, j] - state @ self.signed[i, j]
                 wrench[:, i] += damping * state[:, j]
-        momentum = state @ self.fluid_mass.T
-        v, w, p, h = state[:, :3], state[:, 3:], momentum[:, :3], momentum[:, 3:]
-        coriolis = np.hstack([-np.cross(p, w), -np.cross(p, v) - np.cross(h, w)])
-        return np.asarray(-wrench - coriolis)
+        return np.asarray(-wrench + momentum_force(state @ self.fluid_mass.T, state))
 
 
 def read_gz_link(root: Element, file: Path | str | None = None) -> GzLink:

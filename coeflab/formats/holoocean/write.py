@@ -18,7 +18,8 @@ from coeflab.core.wording import identifier
 from coeflab.formats.exported_law import held_when_straight, states_buoyancy, straight_coefficients
 from coeflab.formats.holoocean.law import CROSS_FLOW, WATER, Torpedo, lifting_area
 from coeflab.formats.loss import unheld
-from coeflab.vehicle.force_law import ForceLaw, LawTerm, force_law
+from coeflab.law.force_law import ForceLaw, ForceTerm
+from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import central_inertia, centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -128,7 +129,7 @@ def not_held(parameters: ParameterFile) -> tuple[str, ...]:
     torpedo, law, found = _fitted(parameters)
     straight = held_when_straight(torpedo.force, law, parameters.conditions.speed)
 
-    def held(t: LawTerm) -> bool:
+    def held(t: ForceTerm) -> bool:
         return straight(t) or (t.symbol == "Xww" and "e" in found)
 
     inertia = (_INERTIA,) if central_inertia(parameters) is not None else ()

@@ -25,9 +25,9 @@ from coeflab.formats.mss.m_file import (
     is_acceleration,
     read_m_file,
 )
-from coeflab.formats.stated_file import MODEL_ORIGIN, Law, Stated, StatedMass, matrix_doubts, stated_file
+from coeflab.formats.stated_file import MODEL_ORIGIN, Law, Stated, matrix_doubts, stated_file
 from coeflab.law.added_mass import AddedMass, potential_part
-from coeflab.law.rigid_body import ideal_quadratics
+from coeflab.law.rigid_body import MassProperties, ideal_quadratics
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.vehicle.imperial_units import SLUGS, gravity, gyration, no_mass, water, weight
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -180,12 +180,12 @@ def _own(found: MFile, path: Path) -> Stated:
     )
 
 
-def _own_mass(n: Mapping[str, float]) -> StatedMass | None:
+def _own_mass(n: Mapping[str, float]) -> MassProperties | None:
     if "m" not in n or "mxG" not in n:
         return None
     centre = [n[k] for k in ("xG", "yG", "zG") if k in n]
     inertia = [n[f"I{i}{j}"] for i in (1, 2, 3) for j in (1, 2, 3) if f"I{i}{j}" in n]
-    return StatedMass(
+    return MassProperties(
         n["m"],
         n["mxG"],
         n.get("I_transverse"),
@@ -245,7 +245,7 @@ def _coriolis_note(found: MFile, kept: bool) -> str:
     return "no C_A(nu) in the file: products of velocities that it does not name are taken as zero"
 
 
-def _mass(found: MFile, v: MValues) -> StatedMass | None:
+def _mass(found: MFile, v: MValues) -> MassProperties | None:
     """Mass where the centre of gravity is known too; in a file of primes a mass below one is a prime."""
     mass, forward = found.first(*MASSES), found.first("xG", "x_G", "xg")
     if mass is None or forward is None or mass <= 0.0:
@@ -255,4 +255,4 @@ def _mass(found: MFile, v: MValues) -> StatedMass | None:
     kilograms = mass * v.scaling.unit("m", v.conditions.density) if prime else mass * mass_unit
     pitch, yaw = found.first("Iy", "Iyy"), found.first("Iz", "Izz")
     transverse = pitch * mass_unit * length_unit**2 if pitch is not None and pitch == yaw and pitch > 1.0 else None
-    return StatedMass(kilograms, kilograms * forward * length_unit, transverse)
+    return MassProperties(kilograms, kilograms * forward * length_unit, transverse)

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from coeflab.core.arithmetic import evaluate
 from coeflab.core.wording import identifier, matlab, one_line
 from coeflab.formats.exported_law import (
-    WrittenTerm,
+    expression,
     not_written,
+    spelt,
     written_accelerations,
     written_changes,
     written_controls,
@@ -25,6 +26,7 @@ from coeflab.formats.exported_law import (
 )
 from coeflab.formats.lost import missing_water
 from coeflab.formats.mss.m_file import assignments
+from coeflab.law.force_law import ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -96,8 +98,9 @@ def _facts(parameters: ParameterFile) -> list[str]:
     if p.mass is not None:
         facts += [("m", p.mass.mass, "mass (kg)"), ("mxG", p.mass.mass_moment, "x_G*m (kg m)")]
         facts += [("I_transverse", p.mass.inertia, "Iyy = Izz about the reference point (kg m^2)")]
-        facts += [(f"{axis}G", x, "centre of gravity (m)") for axis, x in zip("xyz", p.mass.centre or (), strict=False)]
-        rows = enumerate(p.mass.inertia_matrix or (), 1)
+        centre = () if p.mass.centre is None else p.mass.centre.tolist()
+        facts += [(f"{axis}G", x, "centre of gravity (m)") for axis, x in zip("xyz", centre, strict=False)]
+        rows = enumerate(() if p.mass.inertia_matrix is None else p.mass.inertia_matrix.tolist(), 1)
         facts += [(f"I{i}{j}", x, "of the inertia matrix (kg m^2)") for i, row in rows for j, x in enumerate(row, 1)]
     if p.hydrostatics is not None:
         facts += [
@@ -122,24 +125,27 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
     accelerations, source = written_accelerations(parameters)
     lines = [*_head(function, parameters), *_facts(parameters)]
     for group, heading in _HEADINGS.items():
-        chosen = [t for t in terms if t.group == group]
+        chosen = [t for t in terms if t.kind == group]
         if chosen:
             lines += ["", f"% {heading}"]
-            lines += [f"{_place(group, t.name)} = {t.value!r};" + (f"  % {t.note}" if t.note else "") for t in chosen]
+            lines += [
+                f"{_place(group, spelt(t.symbol))} = {t.written!r};" + (f"  % {t.note}" if t.note else "")
+                for t in chosen
+            ]
     lines += ["", f"% Primed acceleration derivatives, the negative of the added mass: {one_line(source)}"]
     lines += [f"h.{name} = {value!r};" for name, value in accelerations.items()]
     lines += ["", *_force(terms, accelerations), "", *_added_mass(accelerations), "end"]
     return {f"{function}.m": ("\n".join(lines) + "\n").encode()}
 
 
-def _force(terms: tuple[WrittenTerm, ...], accelerations: Mapping[str, float]) -> list[str]:
+def _force(terms: tuple[ForceTerm, ...], accelerations: Mapping[str, float]) -> list[str]:
     scales = {t.length_power for t in terms} | {derivative(a).powers[1] for a in accelerations}
     lines = [f"{name} = nu({k});" for k, name in enumerate(MOTIONS, 1)]
     lines += [f"{name} = delta({CONTROLS.index(name) + 1});" for name in written_controls(terms)]
     lines += ["U = max(sqrt(u^2 + v^2 + w^2), 1e-9);"]
     lines += [f"r{k} = h.rho*h.L^{k}/2;" for k in sorted(scales) if k]
     for component in COMPONENTS:
-        parts = [t.expression(_place, "^") for t in terms if t.component == component] or ["0"]
+        parts = [expression(t, _place, "^") for t in terms if t.component == component] or ["0"]
         lines += [f"{component} = " + " ...\n    + ".join(parts) + ";"]
     return [*lines, "tau = [X; Y; Z; K; M; N];"]
 

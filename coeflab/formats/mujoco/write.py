@@ -24,8 +24,9 @@ from coeflab.formats.exported_law import held_when_straight, number, states_buoy
 from coeflab.formats.loss import unheld
 from coeflab.formats.lost import missing_mass
 from coeflab.formats.mujoco.law import FluidEllipsoid, ellipsoid_of_masses
+from coeflab.law.force_law import ForceLaw
 from coeflab.law.symbols import COMPONENTS, MOTIONS
-from coeflab.vehicle.force_law import ForceLaw, force_law, force_of_tables
+from coeflab.vehicle.force_law import force_law, force_of_tables
 from coeflab.vehicle.inertia import central_inertia, centre_of_gravity, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 

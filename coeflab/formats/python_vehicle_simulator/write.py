@@ -16,14 +16,16 @@ from numpy.typing import NDArray
 
 from coeflab.core.wording import identifier, one_line, python
 from coeflab.formats.exported_law import (
-    WrittenTerm,
+    expression,
     not_written,
+    spelt,
     written_accelerations,
     written_changes,
     written_controls,
     written_terms,
 )
 from coeflab.formats.lost import missing_mass, missing_water
+from coeflab.law.force_law import ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -152,11 +154,12 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         "        self.nu = self.nu_0.copy()",
     ]
     for group, heading in _HEADINGS.items():
-        chosen = [t for t in terms if t.group == group]
+        chosen = [t for t in terms if t.kind == group]
         if chosen:
             lines += ["", f"        # {heading}"]
             lines += [
-                f"        {_place(group, t.name)} = {t.value!r}" + (f"  # {t.note}" if t.note else "") for t in chosen
+                f"        {_place(group, spelt(t.symbol))} = {t.written!r}" + (f"  # {t.note}" if t.note else "")
+                for t in chosen
             ]
     lines += ["", f"        # Acceleration derivatives, primed: {one_line(source)}"]
     lines += [f"        self.{name} = {value!r}" for name, value in accelerations.items()]
@@ -170,7 +173,7 @@ def _moments(parameters: ParameterFile) -> tuple[float | None, ...]:
     if mass is None or mass.inertia_matrix is None:
         transverse = None if mass is None else mass.inertia
         return None, transverse, transverse
-    return tuple(mass.inertia_matrix[i][i] for i in range(3))
+    return tuple(mass.inertia_matrix.diagonal().tolist())
 
 
 def _products(parameters: ParameterFile) -> tuple[float, ...]:
@@ -193,7 +196,7 @@ def _added_mass(accelerations: Mapping[str, float]) -> list[str]:
     return [*lines, "        ])"]
 
 
-def _force(terms: tuple[WrittenTerm, ...]) -> list[str]:
+def _force(terms: tuple[ForceTerm, ...]) -> list[str]:
     lines = [
         "",
         "    def hydrodynamics(self, nu, delta=(0.0, 0.0, 0.0)):",
@@ -207,7 +210,7 @@ def _force(terms: tuple[WrittenTerm, ...]) -> list[str]:
         *_scales({t.length_power for t in terms}),
     ]
     for component in COMPONENTS:
-        parts = [t.expression(_place, "**") for t in terms if t.component == component] or ["0.0"]
+        parts = [expression(t, _place, "**") for t in terms if t.component == component] or ["0.0"]
         lines += [f"        {component} = (", *(f"            {'+ ' if i else ''}{p}" for i, p in enumerate(parts))]
         lines.append("        )")
     return [*lines, f"        return np.array([{', '.join(COMPONENTS)}], float)"]

@@ -25,6 +25,7 @@ from coeflab.core.limits import XACRO_DEEPEST, XACRO_TEXT, XACRO_WHOLE
 from coeflab.core.text.xml import numbers
 from coeflab.core.types import Array, brief, locked
 from coeflab.formats.gazebo.law import symmetric
+from coeflab.law.rigid_body import momentum_force
 from coeflab.law.transforms import force_transfer
 
 SPACE = "{http://www.ros.org/wiki/xacro}"
@@ -167,10 +168,7 @@ class FossenLink:
     def force(self, nu: Array) -> Array:
         """Force and moment (n, 6) about the link's origin in steady motion without current, for its velocities (n, 6)."""
         damping = nu @ self.linear.T + nu[:, :1] * (nu @ self.forward.T) + np.diag(self.quadratic) * np.abs(nu) * nu
-        momentum = nu @ self.added_mass.T
-        v, w, p, h = nu[:, :3], nu[:, 3:], momentum[:, :3], momentum[:, 3:]
-        coriolis = np.hstack([-np.cross(p, w), -np.cross(p, v) - np.cross(h, w)])
-        return np.asarray((damping - coriolis) @ self.arm.T)
+        return np.asarray((damping + momentum_force(nu @ self.added_mass.T, nu)) @ self.arm.T)
 
     @property
     def arm(self) -> Array:

@@ -20,10 +20,10 @@ from coeflab.formats.loss import unheld
 from coeflab.formats.lost import missing_mass, missing_water
 from coeflab.formats.uuv_simulator.law import MATRICES, read_fossen_link
 from coeflab.law.added_mass import moved
+from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.transforms import derivative_transfer, force_transfer, velocity_transfer
-from coeflab.vehicle.force_law import LawTerm
 from coeflab.vehicle.inertia import central_inertia, centre_of_gravity, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU, ROUNDING, SURGE, products_once, slot
@@ -55,7 +55,7 @@ def _matrices(law: ExportedLaw, shift: Array) -> dict[str, Array]:
     return dict(zip(MATRICES, (mass, left @ form.linear @ right, viscous, quadratic), strict=True))
 
 
-def _held(term: LawTerm) -> bool:
+def _held(term: ForceTerm) -> bool:
     match slot(term):
         case "linear", _, _:
             return True

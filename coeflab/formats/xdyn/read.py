@@ -19,11 +19,11 @@ from coeflab.core.text.yaml import number, read_yaml
 from coeflab.core.types import Array
 from coeflab.core.wording import one_line
 from coeflab.formats.exported_law import sname
-from coeflab.formats.stated_file import Law, Stated, StatedMass, matrix_doubts, stated_file
+from coeflab.formats.stated_file import Law, Stated, matrix_doubts, stated_file
 from coeflab.formats.xdyn.law import XdynBody, xdyn_body
 from coeflab.formats.xdyn.products import MultipliedOut, Product, multiplied_out
 from coeflab.law.added_mass import definiteness, moved
-from coeflab.law.rigid_body import about_another, ideal_quadratics, inertia_doubt
+from coeflab.law.rigid_body import MassProperties, about_another, ideal_quadratics, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.law.terms import parse_suffix
@@ -131,7 +131,7 @@ def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
     )
 
 
-def _mass(body: XdynBody, point: Array) -> tuple[StatedMass | None, tuple[str, ...]]:
+def _mass(body: XdynBody, point: Array) -> tuple[MassProperties | None, tuple[str, ...]]:
     """Mass properties about a point, where the matrix is that of a body."""
     if body.rigid is None:
         return None, ("the file states no rigid-body inertia",)
@@ -146,10 +146,10 @@ def _mass(body: XdynBody, point: Array) -> tuple[StatedMass | None, tuple[str, .
     doubt = inertia_doubt(mass, np.zeros(3), own)
     moment = mass * float(centre[0])
     if doubt:
-        return StatedMass(mass, moment, None, centre), (f"inertia left out: {doubt}",)
+        return MassProperties(mass, moment, None, centre), (f"inertia left out: {doubt}",)
     about = about_another(own, mass, np.zeros(3), centre)
     transverse = float(about[1, 1]) if abs(about[1, 1] - about[2, 2]) <= 1e-9 * about[1, 1] else None
-    return StatedMass(mass, moment, transverse, centre, about), ()
+    return MassProperties(mass, moment, transverse, centre, about), ()
 
 
 def _pair(product: Product) -> tuple[int, int] | None:

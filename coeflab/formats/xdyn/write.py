@@ -16,10 +16,18 @@ from coeflab.core.text.yaml import parse_yaml
 from coeflab.core.types import Array
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.core.wording import identifier, one_line
-from coeflab.formats.exported_law import WrittenTerm, not_written, written_changes, written_controls, written_terms
+from coeflab.formats.exported_law import (
+    expression,
+    not_written,
+    spelt,
+    written_changes,
+    written_controls,
+    written_terms,
+)
 from coeflab.formats.lost import missing_water
 from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, HERE, RIGID, xdyn_body
 from coeflab.law.added_mass import definiteness, moved
+from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import about_another, rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.transforms import force_transfer, velocity_transfer
@@ -57,9 +65,9 @@ def _rigid(parameters: ParameterFile) -> Array | None:
     return rigid_body_inertia(mass.mass, np.zeros(3), (about + about.T) / 2.0)
 
 
-def _damped(t: WrittenTerm, at_origin: bool) -> int:
+def _damped(t: ForceTerm, at_origin: bool) -> int:
     """The power of the damping block that takes a term: 1, 2, or 0 for none."""
-    if not at_origin or t.group != "rest" or t.term.factors[:1] == ():
+    if not at_origin or t.kind != "rest" or t.term.factors[:1] == ():
         return 0
     names = {v for v, _, _ in t.term.factors}
     powers = sorted((n, a) for _, n, a in t.term.factors)
@@ -167,19 +175,19 @@ def _restoring(parameters: ParameterFile, body: str, offset: Array) -> list[str]
     return ["      - model: gravity", "      - model: maneuvering", *("        " + line for line in lines)]
 
 
-def _damping(terms: Sequence[WrittenTerm], at_origin: bool) -> list[str]:
+def _damping(terms: Sequence[ForceTerm], at_origin: bool) -> list[str]:
     out = []
     for power, model in ((1, "linear damping"), (2, "quadratic damping")):
         chosen = [t for t in terms if _damped(t, at_origin) == power]
         if chosen:
             matrix = np.zeros((6, 6))
             for t in chosen:
-                matrix[COMPONENTS.index(t.component), MOTIONS.index(t.term.factors[0][0])] -= t.value
+                matrix[COMPONENTS.index(t.component), MOTIONS.index(t.term.factors[0][0])] -= t.written
             out += [f"      - model: {model}", *_block(8, f"{DAMPING}:", _rows(matrix))]
     return out
 
 
-def _manoeuvring(parameters: ParameterFile, body: str, offset: Array, terms: Sequence[WrittenTerm]) -> list[str]:
+def _manoeuvring(parameters: ParameterFile, body: str, offset: Array, terms: Sequence[ForceTerm]) -> list[str]:
     """The model with every other term; its frame has its origin at the reference point."""
     kept = [t for t in terms if not _damped(t, not offset.any())]
     velocities = {m: f"{m}(t)" for m in MOTIONS}
@@ -196,15 +204,15 @@ def _manoeuvring(parameters: ParameterFile, body: str, offset: Array, terms: Seq
         "U: sqrt(u^2 + v^2 + w^2 + 1e-18)",
         f"L: {parameters.scaling.length!r}  # {one_line(parameters.scaling.length_name)}",
         *(f"r{k}: 0.5*rho*L^{k}" for k in scales),
-        *(f"{_place(t.group, t.name)}: {t.value!r}" for t in kept),
+        *(f"{_place(t.kind, spelt(t.symbol))}: {t.written!r}" for t in kept),
     ]
     for component in COMPONENTS:
-        parts = [t.expression(_place, "^") for t in kept if t.component == component]
+        parts = [expression(t, _place, "^") for t in kept if t.component == component]
         lines.append(f"{component}: {' + '.join(parts) or '0'}")
     return ["      - model: maneuvering", *("        " + line for line in lines)]
 
 
-def _commands(terms: tuple[WrittenTerm, ...]) -> list[str]:
+def _commands(terms: tuple[ForceTerm, ...]) -> list[str]:
     controls = written_controls(terms)
     if not controls:
         return []

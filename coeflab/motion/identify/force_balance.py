@@ -33,10 +33,9 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief
-from coeflab.law.rigid_body import rigid_body_inertia
+from coeflab.law.rigid_body import rigid_body_force, rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.law.terms import Term, parse_suffix
-from coeflab.law.transforms import rigid_body_force
 from coeflab.motion.identify.identification import (
     ALONG,
     Products,
@@ -393,7 +392,7 @@ def _named(symbol: str, parameters: ParameterFile) -> Candidate:
     """A candidate by its SNAME symbol."""
     d = derivative(symbol)
     entry = parameters.coefficient(d.text)
-    at, primes = parameters.conditions, parameters.primes
+    at, primes = parameters.conditions, parameters.scaling
     per_prime = primes.unit(d.text, at.density)
     dots = [f for f in d.factors if f.endswith("dot")]
     if dots:

@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.types import Array, brief
 from coeflab.fits.statistics.sparse_selection import THRESHOLDS, ZERO, Optimizer, twins
-from coeflab.law.motion_law import CONTROLS, REVERSAL, SLOWEST
+from coeflab.law.force_law import AHEAD, CONTROLS, SLOWEST
 from coeflab.law.terms import Term
 
 SELDOM = 0.1
@@ -329,7 +329,7 @@ def column(component: str, term: Term, columns: Mapping[str, Array], rest: bool 
     """
     speed = np.sqrt(columns["u"] ** 2 + columns["v"] ** 2 + columns["w"] ** 2)
     if component == "X" and not term.factors:
-        ahead = np.clip(REVERSAL * columns["u"] / np.maximum(speed, SLOWEST), -1.0, 1.0)
+        ahead = np.clip(AHEAD.prime * columns["u"] / np.maximum(speed, SLOWEST), AHEAD.low, AHEAD.high)
         return np.asarray(speed**2 * ahead)
     power = 0 if rest else 2 - sum(n for v, n, _ in term.factors if v not in CONTROLS)
     out = term.evaluate(columns)

@@ -226,7 +226,7 @@ def _in_file(candidate: Candidate, parameters: ParameterFile, water: WaterInerti
         return c.value, c.u95, c.origin
     if parameters.added_mass is not None and not candidate.rate:
         ideal = potential_part(
-            candidate.symbol, water.as_noun(parameters), parameters.primes, parameters.conditions.density
+            candidate.symbol, water.as_noun(parameters), parameters.scaling, parameters.conditions.density
         )
         if ideal:
             return ideal, None, "ideal fluid"

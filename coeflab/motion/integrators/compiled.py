@@ -12,7 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array
-from coeflab.law.motion_law import SLOWEST, Ints
+from coeflab.law.force_law import SLOWEST, ForceLaw, Ints
+from coeflab.law.rigid_body import axes_in_earth, kinematics, weighed
+from coeflab.law.transforms import along_body
 from coeflab.motion.dynamics import FIRST, FLAT, Dynamics
 from coeflab.motion.integrators.fixed_step import SECANTS
 from coeflab.motion.orders import NEAR, NOT_FINITE, TOO_FAST, Marching, Orders, blank
@@ -24,6 +26,9 @@ PAIRS = len(FIRST)
 INVERSE, LOAD, CURRENT = PAIRS, PAIRS + 6, PAIRS + 7  # rows of the body's array, below the forms of the pairs
 jitted = numba.njit(cache=True, error_model="numpy")
 inlined = numba.njit(cache=True, error_model="numpy", forceinline=True)
+# The same source as the plain rates; numba does not see that it changed: touch this file after an edit of theirs.
+_along_body, _axes_in_earth = inlined(along_body), inlined(axes_in_earth)
+_kinematics, _weighed = inlined(kinematics), inlined(weighed)
 
 
 @inlined
@@ -65,9 +70,10 @@ def _term_force(law: Law, s: Array, controls: Array, out: Array, pool: Array) ->
     drag, side, lift = out[6], out[7], out[8]
     if drag != 0.0 or side != 0.0 or lift != 0.0:
         ca, sa, cb, sb = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
-        out[0] += -ca * cb * drag - ca * sb * side + sa * lift
-        out[1] += -sb * drag + cb * side
-        out[2] += -sa * cb * drag - sa * sb * side - ca * lift
+        ahead, aside, below = _along_body(ca, sa, cb, sb, drag, side, lift)
+        out[0] += ahead
+        out[1] += aside
+        out[2] += below
 
 
 @inlined
@@ -75,26 +81,16 @@ def _rates(
     law: Law, body: Array, s: Array, controls: Array, wrench: Array, out: Array, total: Array, pool: Array
 ) -> None:
     """Time derivatives of the state ``s`` into ``out``; ``total`` (9,) and ``pool`` are working space."""
-    w, x, y, z, u, v, down, p, q, r = s[3], s[4], s[5], s[6], s[7], s[8], s[9], s[10], s[11], s[12]
-    ax, ay, az = 1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)
-    bx, by, bz = 2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)
-    cx, cy, cz = 2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)
-    out[0] = ax * u + bx * v + cx * down + body[CURRENT, 0]
-    out[1] = ay * u + by * v + cy * down + body[CURRENT, 1]
-    out[2] = az * u + bz * v + cz * down + body[CURRENT, 2]
-    out[3] = -0.5 * (x * p + y * q + z * r)
-    out[4] = 0.5 * (w * p + y * r - z * q)
-    out[5] = 0.5 * (w * q + z * p - x * r)
-    out[6] = 0.5 * (w * r + x * q - y * p)
+    axes = _axes_in_earth(s[3], s[4], s[5], s[6])
+    moved = _kinematics(axes, s[3], s[4], s[5], s[6], s[7], s[8], s[9], s[10], s[11], s[12])
+    for k in range(3):
+        out[k] = moved[k] + body[CURRENT, k]
+    for k in range(3, 7):
+        out[k] = moved[k]
     _term_force(law, s, controls, total, pool)
-    excess, lx, ly, lz = body[LOAD, 0], body[LOAD, 1], body[LOAD, 2], body[LOAD, 3]
-    fx, fy, fz = (
-        total[0] + excess * az + wrench[0],
-        total[1] + excess * bz + wrench[1],
-        total[2] + excess * cz + wrench[2],
-    )
-    mx, my, mz = total[3] + ly * cz - lz * bz, total[4] + lz * az - lx * cz, total[5] + lx * bz - ly * az
-    mx, my, mz = mx + wrench[3], my + wrench[4], mz + wrench[5]
+    weight = _weighed(body[LOAD, 0], body[LOAD, 1], body[LOAD, 2], body[LOAD, 3], axes[2], axes[5], axes[8])
+    fx, fy, fz = total[0] + weight[0] + wrench[0], total[1] + weight[1] + wrench[1], total[2] + weight[2] + wrench[2]
+    mx, my, mz = total[3] + weight[3] + wrench[3], total[4] + weight[4] + wrench[4], total[5] + weight[5] + wrench[5]
     at = 0
     for j in range(7, 13):
         for k in range(j, 13):
@@ -111,8 +107,7 @@ def _rates(
         out[7 + a] = (
             body[k, 0] * fx + body[k, 1] * fy + body[k, 2] * fz + body[k, 3] * mx + body[k, 4] * my + body[k, 5] * mz
         )
-    flat = ax * ax + ay * ay
-    out[13] = (ax * (r * by - q * cy) - ay * (r * bx - q * cx)) / flat if flat > FLAT else 0.0
+    out[13] = moved[7] / moved[8] if moved[8] > FLAT else 0.0
 
 
 @inlined
@@ -289,18 +284,28 @@ def march(
     dynamics: Dynamics, orders: Orders, start: Array, step: float, every: int = 1, fastest: float = 1e3
 ) -> Marching:
     """As `coeflab.motion.integrators.fixed_step.march`."""
-    law = dynamics.law
     steps = orders.steps(step)
     out = blank(len(start), orders, step, every)
-    gathered = np.column_stack([law.gathered.T, law.component]).astype(np.uint64)
-    terms = (law.source, np.column_stack([law.prime, law.low, law.high]), law.powers, gathered, law.angled)
     _all(
-        terms, np.array(np.atleast_2d(law.coefficient)), _bodies(dynamics), orders.angles, orders.begin, orders.rate,
+        _terms(dynamics.law), np.array(np.atleast_2d(dynamics.law.coefficient)), _bodies(dynamics), orders.angles, orders.begin, orders.rate,
         orders.wrench.reshape(-1, orders.count, 6), orders.watched, orders.sign, orders.value, orders.longest,
         np.ascontiguousarray(start), step, steps, every, fastest, out.records, out.switch_time, out.switch_state, out.met,
         out.ended, out.end_time, out.end_state,
     )  # fmt: skip
     return out
+
+
+def rates(dynamics: Dynamics, state: Array, controls: Array, wrench: Array) -> Array:
+    """(14,) as `Dynamics.rates` of one vehicle, state (14,), angles (3,) and wrench (6,): to compare both."""
+    law = (*_terms(dynamics.law), np.array(dynamics.law.coefficient).reshape(-1))
+    out, total, pool = np.empty(14), np.empty(9), np.empty(1 + len(law[2]) + 2 * len(law[0]))
+    _rates(law, _bodies(dynamics)[0], state, controls, wrench, out, total, pool)
+    return out
+
+
+def _terms(law: ForceLaw) -> tuple[Ints, Array, Ints, NDArray[np.uint64], bool]:
+    gathered = np.column_stack([law.gathered.T, law.component]).astype(np.uint64)
+    return law.source, np.column_stack([law.prime, law.low, law.high]), law.powers, gathered, law.angled
 
 
 def _bodies(dynamics: Dynamics) -> Array:

@@ -16,9 +16,9 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.table import Table, number
 from coeflab.core.types import Array, brief
-from coeflab.law.motion_law import WIND
+from coeflab.law.force_law import WIND
 from coeflab.law.symbols import COMPONENTS, CONTROLS
-from coeflab.law.transforms import incidence, rigid_body_force
+from coeflab.law.transforms import incidence
 from coeflab.motion.dynamics import from_euler, growth, linearised, modes
 from coeflab.motion.trajectory import outside_in_words
 from coeflab.motion.trim.operating_point import Equation, OperatingPoint, Unknown, nearest, operating_point
@@ -75,11 +75,9 @@ class SteadyMotion:
         """Forces that would accelerate the vehicle, along its free motions."""
         nu, lean = self.state(x)
         controls, wrench = self.commands(x)
-        craft = self.vehicle
-        total = craft.force(nu[None, :], controls[None, :])[0] + wrench
-        total = total + craft.restoring(from_euler(lean[0], lean[1], 0.0)[None, :])[0]
-        total = total - rigid_body_force(craft.mass, craft.centre, craft.inertia, nu[None, :])[0]
-        return np.asarray(total[list(craft.free_columns)])
+        attitude = from_euler(lean[0], lean[1], 0.0)
+        total = self.vehicle.unbalanced(nu[None, :], attitude[None, :], controls[None, :], wrench)[0]
+        return np.asarray(total[list(self.vehicle.free_columns)])
 
     def modes(self, x: Array) -> NDArray[np.complex128]:
         """Eigenvalues of small motions about it with the commands as they are, 1/s; heading and place do not matter."""
@@ -184,7 +182,7 @@ def command_unknowns(vehicle: Vehicle, speed: float) -> tuple[Unknown, ...]:
     felt = {*WIND, *(COMPONENTS[i] for i in vehicle.free_columns)}
     limits: dict[str, float] = {s.control: s.limit for s in vehicle.surfaces}
     for c in CONTROLS:
-        if any(v[0] == c for term in vehicle.terms if term.component in felt for v, _, _ in term.factors):
+        if any(c in t.variables for t in vehicle.law.terms if t.component in felt):
             limit = limits.get(c, UNSTATED_LIMIT)
             out.append(Unknown(c, "rad", -limit, limit, limit))
     return tuple(out)

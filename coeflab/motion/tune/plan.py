@@ -9,7 +9,7 @@ the thrust curve, ``ahead`` or ``astern``), ``thruster left y`` (position). A mi
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -124,7 +124,7 @@ def value_at(p: ParameterFile, where: Place) -> float:
     elif where.kind == "mass":
         found = p.mass.mass if p.mass is not None else None
     elif where.kind == "added_mass":
-        found = -p.added_mass.matrix[key[0]][key[1]] if p.added_mass is not None else None
+        found = -float(p.added_mass.matrix[key]) if p.added_mass is not None else None
     elif where.kind == "position":
         found = p.thrusters[key[0]].position[key[1]]
     else:
@@ -145,9 +145,7 @@ def _moved(p: ParameterFile, where: Place, value: float) -> ParameterFile:
     key = where.key
     if where.kind == "coefficient":
         changed = tuple(
-            c.model_copy(update={"value": value, "value_si": _si(c.value, c.value_si, value, p, c.symbol)})
-            if c.symbol == key[0]
-            else c
+            replace(c, value=value, value_si=_si(c.value, c.value_si, value, p, c.symbol)) if c.symbol == key[0] else c
             for c in p.coefficients
         )
         return p.model_copy(update={"coefficients": changed})
@@ -158,12 +156,11 @@ def _moved(p: ParameterFile, where: Place, value: float) -> ParameterFile:
     if where.kind == "mass" and p.mass is not None:
         ratio = value / p.mass.mass
         scaled = {n: getattr(p.mass, n) * ratio for n in ("mass_moment", "mass_prime", "mass_moment_prime")}
-        return p.model_copy(update={"mass": p.mass.model_copy(update={"mass": value, **scaled})})
+        return p.model_copy(update={"mass": replace(p.mass, mass=value, **scaled)})
     if where.kind == "added_mass" and p.added_mass is not None:
         matrix = np.array(p.added_mass.matrix)
         matrix[key[0], key[1]] = matrix[key[1], key[0]] = -value
-        rows = tuple(tuple(row) for row in matrix.tolist())
-        return p.model_copy(update={"added_mass": p.added_mass.model_copy(update={"matrix": rows})})
+        return p.model_copy(update={"added_mass": replace(p.added_mass, matrix=matrix)})
     t = p.thrusters[key[0]]
     if where.kind == "position":
         t = t.model_copy(update={"position": _with(t.position, key[1], value)})
@@ -177,7 +174,7 @@ def _si(old: float | None, old_si: float | None, value: float, p: ParameterFile,
         return None
     if old:
         return old_si / old * value
-    return value * p.primes.unit(symbol, p.conditions.density, p.conditions.speed)
+    return value * p.scaling.unit(symbol, p.conditions.density, p.conditions.speed)
 
 
 def _with(values: tuple[Any, ...], at: int, value: Any) -> tuple[Any, ...]:

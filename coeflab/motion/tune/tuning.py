@@ -6,23 +6,24 @@ The parameter file that a tuning leaves behind: moved values, their intervals, a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from coeflab.core.provenance import sha256_of
+from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import number, plus_minus
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.version import VERSION
 from coeflab.core.wording import finite, listed
 from coeflab.law.added_mass import potential_part
+from coeflab.law.coefficient import Parts, Status
 from coeflab.motion.tune.output_error import Estimate, Problem
 from coeflab.motion.tune.plan import Place, TuningPlan, moved
 from coeflab.vehicle.force_law import points_of
-from coeflab.vehicle.parameter_file import SCHEMA_VERSION, InputRecord, ParameterFile
+from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_model import ParameterModel
-from coeflab.vehicle.parameter_parts import ParameterCovariance, UncertaintyParts
+from coeflab.vehicle.parameter_parts import ParameterCovariance
 
 OK, PRIOR, BOUND, OPEN = "ok", "prior_only", "at_bound", "not_identifiable"
 STATUSES = {
@@ -253,9 +254,9 @@ def tuned_file(plan: TuningPlan, tuning: Tuning) -> ParameterFile:
     return ParameterFile.model_validate(p.model_copy(update={"law_at_points": points_of(p)}).model_dump())
 
 
-def _inputs(plan: TuningPlan) -> tuple[InputRecord, ...]:
+def _inputs(plan: TuningPlan) -> tuple[InputFile, ...]:
     files = (plan.file, plan.parameters_file, plan.cases.file)
-    return tuple(InputRecord(name=f.name, sha256=sha256_of(f)) for f in files)
+    return tuple(InputFile(name=f.name, sha256=sha256_of(f)) for f in files)
 
 
 def _notes(plan: TuningPlan, tuning: Tuning) -> tuple[str, ...]:
@@ -321,12 +322,11 @@ def _coefficients(p: ParameterFile, numbered: list[Numbered], tuning: Tuning) ->
         update: dict[str, Any] = {}
         if c.symbol in mine:
             half = _half_width(tuning, mine[c.symbol][1])
-            update = {"u95": half, "status": "single_estimator" if half is None else "form_assumed", "origin": "fit",
-                      "parts": UncertaintyParts(random=half)}  # fmt: skip
+            update = {"u95": half, "status": Status.SINGLE_ESTIMATOR if half is None else Status.FORM_ASSUMED, "origin": "fit",
+                      "parts": Parts(random=half)}  # fmt: skip
         if c.potential is not None and p.added_mass is not None:
-            hull = p.added_mass.as_noun(p.reference_point.point, p.reference_point.origin)
-            update["potential"] = potential_part(c.symbol, hull, p.primes, p.added_mass.density) or 0.0
-        changed.append(c.model_copy(update=update))
+            update["potential"] = potential_part(c.symbol, p.added_mass, p.scaling, p.added_mass.density) or 0.0
+        changed.append(replace(c, **update))
     symbols = (*p.covariance.symbols, *(s for s in mine if s not in p.covariance.symbols))
     n = len(p.covariance.symbols)
     wide = [[*row, *(None,) * (len(symbols) - n)] for row in p.covariance.matrix]

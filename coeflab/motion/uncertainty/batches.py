@@ -105,7 +105,7 @@ def prepared(setup: Setup) -> tuple[ParameterFile, Vehicle, Uncertain]:
     parameters = ParameterFile.model_validate_json(setup.parameters)
     how = {"tables": setup.tables, "accelerations": setup.accelerations}
     body = moved(parameters, setup.manoeuvre, setup.free, setup.hold, **how)
-    return parameters, body, uncertain(parameters, [t.symbol for t in body.terms])
+    return parameters, body, uncertain(parameters, [t.in_file for t in body.law.terms])
 
 
 @one_thread()

@@ -16,14 +16,14 @@ from scipy.linalg import block_diag
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
 from coeflab.fits.uncertainty.propagation import reaches_zero
-from coeflab.law.motion_law import WIND
+from coeflab.law.force_law import WIND, ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.motion.manoeuvre import Figure
 from coeflab.motion.marching import Ensemble
 from coeflab.motion.vehicle import Vehicle
 from coeflab.vehicle.derived import INDICES, stability_index
-from coeflab.vehicle.force_law import MotionTerm, open_places
+from coeflab.vehicle.force_law import open_places
 from coeflab.vehicle.inertia import MEASURED, entry_of, stated_accelerations
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -124,7 +124,7 @@ def uncertain(parameters: ParameterFile, used: Iterable[str]) -> Uncertain:
     ----------
     parameters : ParameterFile
     used : iterable of str
-        Names of the terms of the law, `coeflab.vehicle.force_law.MotionTerm.symbol`: tables that it does not use are left out.
+        Names of the terms of the law, `coeflab.law.force_law.ForceTerm.in_file`: tables that it does not use are left out.
 
     Raises
     ------
@@ -260,9 +260,9 @@ def drawn(
     """
     columns = {s: k for k, s in enumerate(symbols)}
     coefficients = np.repeat(vehicle.law.coefficient[None], len(deviations), axis=0)
-    for row, t in enumerate(vehicle.terms):
-        if t.symbol in columns:
-            coefficients[:, row] += t.per_prime * deviations[:, columns[t.symbol]]
+    for row, t in enumerate(vehicle.law.terms):
+        if t.in_file in columns:
+            coefficients[:, row] += t.per_prime * deviations[:, columns[t.in_file]]
     change = _added(vehicle, parameters, symbols, deviations)
     if change is None:
         return Ensemble(vehicle, coefficients)
@@ -285,7 +285,7 @@ def _added(vehicle: Vehicle, parameters: ParameterFile, symbols: Sequence[str], 
         return None
     out = np.zeros((len(deviations), 6, 6))
     for k, (i, j), s in moved:
-        change = -deviations[:, k] * parameters.primes.unit(s, vehicle.density)
+        change = -deviations[:, k] * parameters.scaling.unit(s, vehicle.density)
         share = 0.5 if i != j and (j, i) in stated else 1.0
         out[:, i, j] += share * change
         if i != j:
@@ -304,7 +304,7 @@ def unfelt(vehicle: Vehicle, symbols: Sequence[str], ordered: Collection[str]) -
     ordered : collection of str
         Controls that the manoeuvre moves.
     """
-    terms = {t.symbol: t for t in vehicle.terms}
+    terms = {t.in_file: t for t in vehicle.law.terms}
     still = ({*MOTIONS} - {*vehicle.free, "u"}) | ({*CONTROLS} - {*ordered})
     out = set()
     for s in symbols:
@@ -318,8 +318,8 @@ def unfelt(vehicle: Vehicle, symbols: Sequence[str], ordered: Collection[str]) -
     return frozenset(out)
 
 
-def _acts(term: MotionTerm, vehicle: Vehicle, still: Collection[str]) -> bool:
-    if any(VELOCITY_OF.get(v[0], v[0]) in still for v, _, _ in term.factors):
+def _acts(term: ForceTerm, vehicle: Vehicle, still: Collection[str]) -> bool:
+    if any(VELOCITY_OF.get(v, v) in still for v in term.variables):
         return False
     return term.component in WIND or MOTIONS[COMPONENTS.index(term.component)] in vehicle.free
 

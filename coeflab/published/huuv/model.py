@@ -15,13 +15,15 @@ from numpy.typing import NDArray
 
 from coeflab.core import declarations as takes
 from coeflab.core.files import shipped
-from coeflab.core.provenance import sha256_of
+from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.delimited import read_cells
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.version import VERSION
 from coeflab.formats.stated_file import stated_table
-from coeflab.law.scaling import Scaling
+from coeflab.law.added_mass import AddedMass
+from coeflab.law.rigid_body import MassProperties
+from coeflab.law.scaling import Conditions, Scaling
 from coeflab.motion.steady_state import COEFFICIENTS
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 
@@ -205,10 +207,10 @@ def parameter_file(huuv: Huuv) -> ParameterFile:
         "schema_version": SCHEMA_VERSION,
         "name": "huuv",
         "body": "HUUV, horizontal plane",
-        "scaling": {"length": primes.length, "length_name": primes.length_name},
+        "scaling": primes,
         "reference_point": {"point": (0.0, 0.0, 0.0), "datum": "cb"},
-        "conditions": {"density": chosen["density"], "speed": chosen["speed"]},
-        "mass": _mass(huuv, primes),
+        "conditions": Conditions(chosen["density"], chosen["speed"]),
+        "mass": MassProperties(c["m"], 0.0, chosen["rigid_inertia"]).primed(primes, chosen["density"]),
         "coefficients": (),
         "covariance": {"symbols": (), "matrix": ()},
         "covered": (
@@ -237,22 +239,11 @@ def parameter_file(huuv: Huuv) -> ParameterFile:
     return ParameterFile.model_validate(body)
 
 
-def _mass(huuv: Huuv, primes: Scaling) -> dict[str, Any]:
-    mass = huuv.constants["m"]
-    return {
-        "mass": mass, "mass_moment": 0.0, "inertia": huuv.chosen["rigid_inertia"],
-        "mass_prime": mass / primes.unit("m", huuv.chosen["density"]), "mass_moment_prime": 0.0,
-    }  # fmt: skip
-
-
-def _added_mass(huuv: Huuv) -> dict[str, Any]:
+def _added_mass(huuv: Huuv) -> AddedMass:
     c, matrix = huuv.constants, np.zeros((6, 6))
     matrix[0, 0], matrix[1, 1], matrix[1, 5], matrix[5, 1] = c["mx"], c["my"], c["myr"], c["myr"]
     matrix[5, 5] = c["inertia"] - huuv.chosen["rigid_inertia"]
-    return {
-        "body": "HUUV", "method": "stated", "density": huuv.chosen["density"],
-        "matrix": tuple(tuple(row) for row in matrix.tolist()), "statements": (SPLIT, LEVEL),
-    }  # fmt: skip
+    return AddedMass(matrix, body="HUUV", method="stated", statements=(SPLIT, LEVEL), density=huuv.chosen["density"])
 
 
 def _thruster(huuv: Huuv, name: str, side: float) -> dict[str, Any]:
@@ -274,7 +265,7 @@ def _provenance() -> dict[str, Any]:
     folder = shipped("cfd_data") / "huuv"
     return {
         "coeflab_version": VERSION, "study": "huuv",
-        "inputs": tuple({"name": name, "sha256": sha256_of(folder / name)} for name in SOURCES),
+        "inputs": tuple(InputFile(name, sha256_of(folder / name)) for name in SOURCES),
         "citations": ("huuv2025",),
         "notes": (
             "Constants of vehicle.toml: tuned to the MATLAB half of Fig. 17, what the turns do not determine is chosen.",

@@ -219,7 +219,7 @@ def _rows(parameters: ParameterFile, source: str, stated: str) -> tuple[tuple[st
         ("xG' m'", mass.mass_moment_prime, ""),
     ]
     if mass.inertia_matrix is not None:
-        values += [(f"I{axis}", mass.inertia_matrix[i][i], "kg m^2") for i, axis in enumerate("xyz")]
+        values += [(f"I{axis}", float(mass.inertia_matrix[i, i]), "kg m^2") for i, axis in enumerate("xyz")]
     elif mass.inertia is not None:
         values.append(("Iy = Iz", mass.inertia, "kg m^2"))
     return tuple(

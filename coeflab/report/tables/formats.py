@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, Check, Table, coefficient, number, with_u95
 from coeflab.formats.loss import LOSSLESS, Apart, Loss
 from coeflab.formats.lost import Kind
@@ -20,7 +21,7 @@ from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.inertia import WaterInertia
 from coeflab.vehicle.law_at_points import LawAtPoints
-from coeflab.vehicle.parameter_file import FIRST_VERSION, SCHEMA_VERSION, VERSIONS, ParameterFile, is_later, schema
+from coeflab.vehicle.parameter_file import SCHEMA_VERSION, VERSIONS, ParameterFile, is_later, schema
 
 NAMED = 3
 
@@ -149,7 +150,7 @@ def parts(parameters: ParameterFile, water: WaterInertia | None = None) -> Table
     hull = parameters.added_mass
     booked = [(c, c.value, c.potential) for c in parameters.coefficients]
     if water is not None and hull is not None:
-        noun, primes, density = water.as_noun(parameters), parameters.primes, parameters.conditions.density
+        noun, primes, density = water.as_noun(parameters), parameters.scaling, parameters.conditions.density
         booked = [(c, v, None if p is None else potential_part(c.symbol, noun, primes, density)) for c, v, p in booked]
     rows = tuple(
         (c.symbol, coefficient(v), coefficient(p), coefficient(v - p), c.origin)

@@ -11,7 +11,6 @@ from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_parts import ParameterCoefficient
 from coeflab.vehicle.plausibility import MISTYPED
 
 summary = "Yv', Zw', Nr', Mq', X0' and accelerations negative, added mass symmetric; fitted and literature"
@@ -38,7 +37,7 @@ def check(study: Study) -> Sequence[Check]:
     return out
 
 
-def _signed(owner: str | None, c: Coefficient | ParameterCoefficient, source: str) -> Check | None:
+def _signed(owner: str | None, c: Coefficient, source: str) -> Check | None:
     symbol = c.symbol.removesuffix("'")
     if symbol not in NEGATIVE or c.value is None:
         return None
@@ -83,7 +82,7 @@ def _size(file: ParameterFile, symbols: tuple[str, str]) -> float:
         if own is not None and own.value is not None:
             out *= abs(own.value)
         elif file.added_mass is not None:
-            out *= file.added_mass.matrix[at][at] / file.primes.unit(name, file.added_mass.density)
+            out *= file.added_mass.matrix[at][at] / file.scaling.unit(name, file.added_mass.density)
         else:
             return 0.0
     return float(np.sqrt(out))

@@ -14,11 +14,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from coeflab.core.table import Check, Severity
+from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
 from coeflab.tables.to_frd import TAKEN_OUT
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.parameter_parts import ParameterCoefficient
 
 summary = "centres of the viscous side force against the hull; inertia in rotating-arm forces against m'"
 citations = ("feldman1979", "gertler1967")
@@ -35,10 +35,10 @@ class _Plane:
     """One plane of a file, turned so that its four derivatives have the signs of the horizontal one."""
 
     file: ParameterFile
-    slope: ParameterCoefficient | None
-    moment: ParameterCoefficient | None
-    rate: ParameterCoefficient | None
-    damping: ParameterCoefficient | None
+    slope: Coefficient | None
+    moment: Coefficient | None
+    rate: Coefficient | None
+    damping: Coefficient | None
     sign: float
     mass: float | None
     centre: float | None
@@ -49,7 +49,7 @@ class _Plane:
         """How far from the centre a force may act, x/L."""
         return REACH if self.centre is not None else ANYWHERE
 
-    def place(self, c: ParameterCoefficient, less: float = 0.0) -> tuple[float, float]:
+    def place(self, c: Coefficient, less: float = 0.0) -> tuple[float, float]:
         """Forward of the centre, x/L, with its half-width, of a value that is too large by ``less``."""
         assumed = UNSURE * (self.mass or 0.0) if c.potential is None else UNSURE * abs(c.potential)
         slope = _value(self.slope)
@@ -57,12 +57,12 @@ class _Plane:
         doubt = ((c.u95 or 0.0) + assumed + abs(x) * (self.slope.u95 or 0.0 if self.slope else 0.0)) / abs(slope)
         return x - (self.centre or 0.0), doubt
 
-    def stands(self, c: ParameterCoefficient, less: float = 0.0) -> bool:
+    def stands(self, c: Coefficient, less: float = 0.0) -> bool:
         """Whether the force acts on the body and, where the centre is known, not ahead of it."""
         x, doubt = self.place(c, less)
         return abs(x) - doubt <= self.reach and (self.centre is None or x - doubt <= 0.0)
 
-    def readings(self, c: ParameterCoefficient, prime: float) -> Iterator[tuple[str, float]]:
+    def readings(self, c: Coefficient, prime: float) -> Iterator[tuple[str, float]]:
         """What the value would be in place of what stands there: with the inertia treated the other way, with its other sign."""
         if prime and self.taken_out is not True:
             yield "if the table holds the model's inertia (contains_inertia = true)", _value(c) + prime
@@ -102,16 +102,16 @@ def _displaced(study: Study, name: str, file: ParameterFile) -> float | None:
     volume = stated.volume if stated else None
     if volume is None and name in study.hulls:
         volume = study.hulls[name].body.require_shape().volume
-    return volume / file.primes.unit("m", 1.0) if volume else None
+    return volume / file.scaling.unit("m", 1.0) if volume else None
 
 
-def _inertia_taken_out(study: Study, c: ParameterCoefficient | None) -> bool | None:
+def _inertia_taken_out(study: Study, c: Coefficient | None) -> bool | None:
     """None where no table of the study gives the value."""
     notes = [t.notes for t in study.tables if c is not None and c.table and t.name == c.table]
     return any(n.startswith(TAKEN_OUT) for n in notes[0]) if notes else None
 
 
-def _value(c: ParameterCoefficient | None) -> float:
+def _value(c: Coefficient | None) -> float:
     return 0.0 if c is None or c.value is None else c.value
 
 
@@ -154,7 +154,7 @@ def _drifts_ahead(p: _Plane) -> bool:
     return x - doubt > 0.0
 
 
-def _turning_alone(p: _Plane, c: ParameterCoefficient, prime: float) -> Check | None:
+def _turning_alone(p: _Plane, c: Coefficient, prime: float) -> Check | None:
     """Yr and Zq of a file without Yv or Zw, about a point near the centre of gravity: against m' alone."""
     if not prime or p.centre is None or abs(p.centre) > UNSURE:
         return None
@@ -187,13 +187,13 @@ def _placed(p: _Plane, x: float) -> str:
     return f"{abs(x):.2f} L {'ahead' if x > 0.0 else 'aft'} of {of if p.centre is not None else 'the reference point'}"
 
 
-def _passed(p: _Plane, c: ParameterCoefficient, x: float, rule: str) -> Check:
+def _passed(p: _Plane, c: Coefficient, x: float, rule: str) -> Check:
     where = "Acts where flow separates and tails stand." if x <= 0.0 else "Acts on the body."
     subject = f"{p.file.name} {c.symbol}"
     return Check("viscous_centre", subject, Severity.PASS, f"viscous force {_placed(p, x)}", rule, where)
 
 
-def _doubted(p: _Plane, c: ParameterCoefficient, found: str, rule: str, readings: Sequence[tuple[str, float]]) -> Check:
+def _doubted(p: _Plane, c: Coefficient, found: str, rule: str, readings: Sequence[tuple[str, float]]) -> Check:
     """A warning with every reading of the value that would stand."""
     own = f"{c.symbol} = {_value(c):.4g}"
     comment = f"No other sign or inertia explains {own}: check it and its point."

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from coeflab.law.motion_law import BASE, MotionLaw
+from coeflab.law.force_law import ForceLaw, ForceTerm, Reading
+from coeflab.law.terms import Factor, Term
 from coeflab.law.transforms import body_forces, incidence
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.force_law import force_law
@@ -22,17 +24,21 @@ def moving(n: int = 12) -> tuple[np.ndarray, np.ndarray]:
     return nu, 0.2 * rng.normal(size=(n, 3))
 
 
-def law(**more: object) -> MotionLaw:
+def term(component: str, factors: tuple[Factor, ...], coefficient: float, power: int, **readings: Reading) -> ForceTerm:
+    return ForceTerm(
+        "made", component, Term(factors), coefficient, power, 1.0, "table", readings=tuple(readings.items())
+    )
+
+
+def law(**more: Any) -> ForceLaw:
     """V^2 [0.3 + 2 clip(v/V, 0.1) |alpha|] as drag, V^-1 v|v|v r as N."""
-    source = np.array([BASE.index(b) for b in ("v", "alpha", "v", "r")])
-    arrays = {
-        "source": source, "prime": np.array([1.0, 0, 0, 0]), "low": np.array([-0.1, *[-np.inf] * 3]),
-        "high": np.array([0.1, *[np.inf] * 3]), "tabled": np.array([True, False, False, False]),
-        "component": np.array([6, 6, 5]), "coefficient": np.array([0.3, 2.0, 0.7]), "speed_power": np.array([2, 2, -1]),
-        "signed": np.array([[0, 0, 0, 0], [1, 0, 0, 0], [0, 0, 2, 1]]),
-        "absolute": np.array([[0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]), "ideal": np.zeros((6, 6, 6)),
-    }  # fmt: skip
-    return MotionLaw(**(arrays | more))  # type: ignore[arg-type]
+    odd = (Factor("v", 2), Factor("v", 1, absolute=True), Factor("r", 1))
+    terms = (
+        term("D", (), 0.3, 2),
+        term("D", (Factor("v", 1), Factor("alpha", 1, absolute=True)), 2.0, 2, v=Reading(1.0, -0.1, 0.1, True)),
+        term("N", odd, 0.7, -1),
+    )
+    return ForceLaw(**{"terms": terms, "ideal": np.zeros((6, 6, 6)), **more})
 
 
 @pytest.mark.parametrize("seed", [2, 7])

@@ -1,0 +1,269 @@
+"""The hydrodynamic force of a vehicle: one kind of term, one law of such terms, and its value at many states at once.
+
+A term is ``coefficient * V^n * product of variables``, along a body axis or along drag, side force or lift. A variable is one of
+u v w p q r, of the control angles dr ds db, or of the incidence alpha = atan2(w, u), beta = asin(v/V); as it is or primed (v/V,
+r L/V, no control), and held within the range that its table covers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.types import Array, brief, locked
+from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
+from coeflab.law.terms import Term
+from coeflab.law.transforms import body_forces, incidence
+
+BASE = ("u", "v", "w", "p", "q", "r", "dr", "ds", "db", "V", "alpha", "beta")
+SPEED, ALPHA, BETA = BASE.index("V"), BASE.index("alpha"), BASE.index("beta")
+WIND = ("D", "S", "L")
+CONTROLS = BASE[6:9]
+SLOWEST = 1e-9
+
+Ints = NDArray[np.int64]
+
+
+class Reading(NamedTuple):
+    """How a term reads a variable: times ``prime`` over V where that is not zero, and held between ``low`` and ``high``.
+
+    ``tabled``: that range is where a table has data, so that a motion beyond it is worth a word.
+    """
+
+    prime: float = 0.0
+    low: float = -np.inf
+    high: float = np.inf
+    tabled: bool = False
+
+
+PLAIN = Reading()
+# X0' V^2 turns from drag ahead to drag astern within |u| < V / 10, so that no simulator meets a jump at u = 0.
+AHEAD = Reading(10.0, -1.0, 1.0)
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class ForceTerm:
+    """One term of a force law.
+
+    Attributes
+    ----------
+    symbol : str
+        Derivative without prime, or response and term of a table.
+    component : str
+        X Y Z K M N, or D S L.
+    term : Term
+        The product of variables, without the speed.
+    coefficient : float
+        SI, with the density in it.
+    speed_power : int
+        Of V = |(u, v, w)|.
+    per_prime : float
+        SI coefficient of one unit of what the file states, so that draws of it can be scaled.
+    kind : {"prime", "rest", "potential", "table"}
+        A derivative, primed; one about a state of rest, SI whatever V is; a product of the ideal fluid; a term of a table.
+    prime : float
+        The number that the file states.
+    potential : float or None
+        Part of the coefficient that an ideal fluid gives, SI; None where that is not known.
+    readings : tuple of (variable, Reading)
+        Of the variables that are not read as they are.
+    note : str
+        U95 and origin, in words.
+    """
+
+    symbol: str
+    component: str
+    term: Term
+    coefficient: float
+    speed_power: int
+    per_prime: float
+    kind: Literal["prime", "rest", "potential", "table"] = "prime"
+    prime: float = 0.0
+    potential: float | None = None
+    readings: tuple[tuple[str, Reading], ...] = ()
+    note: str = ""
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """Of its product."""
+        return tuple(v for v, _, _ in self.term.factors)
+
+    @property
+    def in_file(self) -> str:
+        """What the parameter file calls its number."""
+        return self.symbol if self.kind == "table" else f"{self.symbol}'"
+
+    @property
+    def length_power(self) -> int:
+        """The k of 1/2 rho L^k; 0 for SI."""
+        return 0 if self.kind in ("rest", "table") else derivative(self.symbol).powers[1]
+
+    @property
+    def written(self) -> float:
+        """The number that a program states: the prime, or SI for damping about a state of rest."""
+        return self.coefficient if self.kind == "rest" else self.prime
+
+    @property
+    def pair(self) -> tuple[int, int] | None:
+        """The product of two velocities that the term is near straight motion; None for others."""
+        if any(a for _, _, a in self.term.factors) or self.term.degree > 2 or self.term.degree + self.speed_power != 2:
+            return None
+        at = sorted(MOTIONS.index(v) for v, n, _ in self.term.factors for _ in range(n))
+        first, second = [0] * (2 - len(at)) + at
+        return first, second
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class ForceLaw:
+    """Terms, and the ideal fluid's quadratics of the products that they leave open.
+
+    Attributes
+    ----------
+    terms : tuple of ForceTerm
+    ideal : (6, 6, 6) or (m, 6, 6, 6) array
+        Q of `coeflab.law.rigid_body.ideal_quadratics`, zero where a measured term speaks: force i = sum of Q[i, j, k] nu_j nu_k.
+    left_out : tuple of str
+        Symbols with a value that are no part of the law: accelerations, and controls where they are not asked for.
+    coefficient : (t,) or (m, t) array
+        SI; one row a member where the members differ. Those of the terms unless given.
+    source, prime, low, high, tabled
+        Made of the terms, once, (v,): column of the base row behind each variable, and its `Reading`.
+    component, speed_power : (t,) int array
+        X Y Z K M N as 0 to 5, D S L as 6 to 8; of V.
+    powers, gathered, primed, along, angled
+        Distinct powers of V; (f, t) rows of the pool whose product is each term; variables that are primed; (9, t) which
+        component each term adds to; whether any needs the incidence.
+    """
+
+    terms: tuple[ForceTerm, ...]
+    ideal: Array
+    left_out: tuple[str, ...] = ()
+    coefficient: Array = field(default_factory=lambda: np.empty(0))
+    source: Ints = field(init=False, repr=False)
+    prime: Array = field(init=False, repr=False)
+    low: Array = field(init=False, repr=False)
+    high: Array = field(init=False, repr=False)
+    tabled: NDArray[np.bool_] = field(init=False, repr=False)
+    component: Ints = field(init=False, repr=False)
+    powers: Ints = field(init=False, repr=False)
+    gathered: Ints = field(init=False, repr=False)
+    primed: Ints = field(init=False, repr=False)
+    along: Array = field(init=False, repr=False)
+    angled: bool = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        readings = [dict(t.readings) for t in self.terms]
+        of_terms = [
+            [((v, r.get(v, PLAIN)), n, a) for v, n, a in t.term.factors]
+            for t, r in zip(self.terms, readings, strict=True)
+        ]
+        variables = list(dict.fromkeys(v for factors in of_terms for v, _, _ in factors))
+        order = (*COMPONENTS, *WIND)
+        own = self.coefficient if self.coefficient.size else [t.coefficient for t in self.terms]
+        made = {
+            "ideal": locked(self.ideal),
+            "coefficient": locked(own),
+            "source": np.array([BASE.index(v) for v, _ in variables], dtype=np.int64),
+            "prime": np.array([r.prime for _, r in variables], dtype=np.float64),
+            "low": np.array([r.low for _, r in variables], dtype=np.float64),
+            "high": np.array([r.high for _, r in variables], dtype=np.float64),
+            "tabled": np.array([r.tabled for _, r in variables], dtype=bool),
+            "component": np.array([order.index(t.component) for t in self.terms], dtype=np.int64),
+            "powers": np.unique(np.array([t.speed_power for t in self.terms], dtype=np.int64)),
+        }
+        for name, value in made.items():
+            object.__setattr__(self, name, value)
+        object.__setattr__(self, "gathered", self._gathered(of_terms, variables))
+        object.__setattr__(self, "primed", np.flatnonzero(self.prime))
+        object.__setattr__(self, "along", (self.component == np.arange(9)[:, None]).astype(np.float64))
+        object.__setattr__(self, "angled", bool(np.any(self.component >= 6) or np.any(self.source >= ALPHA)))
+
+    def _gathered(
+        self, of_terms: list[list[tuple[tuple[str, Reading], int, bool]]], variables: list[tuple[str, Reading]]
+    ) -> Ints:
+        """(f, t) rows of the pool, which holds 1, powers of V, variables and their absolute values."""
+        at = {v: 1 + len(self.powers) + i for i, v in enumerate(variables)}
+        rows = []
+        for t, factors in zip(self.terms, of_terms, strict=True):
+            row = [1 + int(np.searchsorted(self.powers, t.speed_power))] if t.speed_power else []
+            for absolute in (False, True):
+                row += sorted(
+                    at[v] + absolute * len(variables) for v, n, a in factors if a is absolute for _ in range(n)
+                )
+            rows.append(row)
+        longest = max((len(r) for r in rows), default=0)
+        filled = [r + [0] * (max(longest, 1) - len(r)) for r in rows]
+        return np.array(filled, dtype=np.int64).reshape(len(rows), max(longest, 1)).T.copy()
+
+    def force(self, nu: Array, controls: Array | None = None) -> Array:
+        """X Y Z K M N, shape (n, 6).
+
+        Parameters
+        ----------
+        nu : (n, 6) array
+            Velocities through the water at the reference point, FRD.
+        controls : (n, 3) array, optional
+            dr, ds, db, rad; zero unless given.
+        """
+        angles = np.zeros((3, len(nu))) if controls is None else controls.T
+        return np.asarray(self.term_force(nu.T, angles).T + self._ideal(nu))
+
+    def _ideal(self, nu: Array) -> Array:
+        if self.ideal.ndim == 4:
+            return np.asarray(np.einsum("nijk,nj,nk->ni", self.ideal, nu, nu, optimize=True))
+        pairs = (nu[:, :, None] * nu[:, None, :]).reshape(len(nu), 36)
+        return np.asarray(pairs @ self.ideal.reshape(6, 36).T)
+
+    def term_force(self, nu: Array, controls: Array) -> Array:
+        """X Y Z K M N of the terms alone, shape (6, n), for velocities (6, n) and controls (3, n)."""
+        speed = np.sqrt(nu[0] ** 2 + nu[1] ** 2 + nu[2] ** 2)
+        base = np.zeros((len(BASE), len(speed)))
+        base[:6], base[6:9], base[SPEED] = nu, controls, speed
+        if self.angled:
+            base[ALPHA], base[BETA] = incidence(nu[0], nu[1], nu[2])
+        products = self._products(base)
+        if self.coefficient.ndim == 2:
+            products *= self.coefficient.T
+        else:
+            products *= self.coefficient[:, None]
+        along = self.along @ products
+        out = along[:6]
+        if self.angled:
+            out[:3] += np.array(body_forces(base[ALPHA], base[BETA], along[6], along[7], along[8]))
+        return np.asarray(out)
+
+    def _products(self, base: Array) -> Array:
+        """(t, n) every term before its coefficient."""
+        speed = base[SPEED]
+        values = self._values(base)
+        np.clip(values, self.low[:, None], self.high[:, None], out=values)
+        pool = np.empty((1 + len(self.powers) + 2 * len(values), len(speed)))
+        pool[0] = 1.0
+        for row, power in enumerate(self.powers, 1):
+            pool[row] = speed if power == 1 else speed * speed if power == 2 else np.maximum(speed, SLOWEST) ** power
+        split = 1 + len(self.powers) + len(values)
+        pool[split - len(values) : split] = values
+        np.abs(values, out=pool[split:])
+        out = pool[self.gathered[0]]
+        for rows in self.gathered[1:]:
+            out *= pool[rows]
+        return np.asarray(out)
+
+    def _values(self, base: Array) -> Array:
+        """(v, n) variables as they are, not yet held."""
+        values = base[self.source]
+        if self.primed.size:
+            values[self.primed] *= self.prime[self.primed, None] / np.maximum(base[SPEED], SLOWEST)
+        return values
+
+    def held(self, nu: Array, controls: Array) -> NDArray[np.bool_]:
+        """(n,) whether a variable lies beyond the range of its table, where the table's edge stands in."""
+        speed = np.sqrt(np.sum(nu[:, :3] ** 2, axis=1))
+        base = np.vstack([nu.T, controls.T, speed, *incidence(nu[:, 0], nu[:, 1], nu[:, 2])])
+        values = self._values(base).T
+        return np.asarray(np.any(((values < self.low) | (values > self.high)) & self.tabled, axis=1))
