@@ -83,7 +83,7 @@ def test_an_angle_without_its_unit_is_refused(coeflab: Run, tmp_path: Path) -> N
     (tmp_path / "mine.toml").write_text(text)
     done = coeflab("glide", "mine.toml")
     assert done.returncode == 2
-    assert done.stderr.startswith('error: mine.toml, "polar.angle_unit": found nothing')
+    assert done.stderr.startswith('error: mine.toml, line 27, "polar.angle_unit": found nothing')
 
 
 @pytest.mark.slow
