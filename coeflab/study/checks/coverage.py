@@ -26,9 +26,7 @@ def _points(s: Sweep, status: Status, wanted: Sequence[str]) -> Check:
     n = len(s.x)
     subject = f"{s.campaign} {primed(s.symbol)}"
     if status in (Status.TOO_FEW_POINTS, Status.SIGN_OPEN):
-        found = (
-            s.origin.reason if status is Status.TOO_FEW_POINTS else f"{primed(s.symbol)} = {plus_minus(s.value, s.u95)}"
-        )
+        found = s.reason if status is Status.TOO_FEW_POINTS else f"{primed(s.symbol)} = {plus_minus(s.value, s.u95)}"
         rule = "three settings" if status is Status.TOO_FEW_POINTS else "an interval on one side of zero"
         severity = Severity.WARN if s.symbol in wanted or status is Status.TOO_FEW_POINTS else Severity.NOTE
         return Check("coverage", subject, severity, f"{n} points, {found}", rule, status.advice)
@@ -144,7 +142,7 @@ def _robust(s: Sweep) -> list[Check]:
                 "A copied row is no new reading; each counts once.",
             )
         )
-    if any("mirror" in note for note in s.origin.notes):
+    if any("mirror" in note for note in s.notes):
         out.append(
             Check(
                 "replicates",
