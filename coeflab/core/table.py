@@ -95,7 +95,14 @@ def with_u95(value: float | None, u95: float | None) -> tuple[str, str]:
 
 
 def plus_minus(value: float | None, u95: float | None, sign: str = "+-") -> str:
-    """``value +- U95`` with the digits of `with_u95`; the value alone without a usable U95."""
+    """``value +- U95`` with the digits of `with_u95`; the value alone without a usable U95.
+
+    Parameters
+    ----------
+    value, u95 : float or None
+    sign : str
+        The renderers of texts know ``+-``; where nothing is rendered it is the sign itself.
+    """
     first, second = with_u95(value, u95)
     return f"{first} {sign} {second}" if u95 is not None and isfinite(u95) else first
 

@@ -35,6 +35,7 @@ EVEN = {"v": "X", "w": "X", "r": "X", "q": "X"}
 ANGLE_CAPS = (10.0, 12.0, 18.0)
 RATE_CAPS = (0.5, 0.75, 1.0)
 NEAR_REST = 0.02  # of the largest setting: nearer rows say nothing of a curvature
+NODES = 41  # of the recommended curve, odd: one is at rest
 NO_FLOOR = 1e-6  # relative standard error, so small that only the ratios of the rows count
 
 
@@ -101,8 +102,8 @@ def _sweep(
     length: float,
     options: Options,
     slope: float,
-    done: Sequence[Sweep],
-) -> Sweep:
+    last: tuple[Sweep, OriginSlope] | None,
+) -> tuple[Sweep, OriginSlope]:
     offset, taken_out = "", np.zeros(len(rows.table))
     if variable in INCIDENCE and slope:
         motion = INCIDENCE[variable]
@@ -116,16 +117,21 @@ def _sweep(
     far = tuple(LeftOut(float(x[i]), float(y[i]), labels[i], "beyond largest_angle") for i in np.flatnonzero(~inside))
     x, y, se = x[inside], y[inside], None if se is None else se[inside]
     labels = tuple(label for label, kept in zip(labels, inside, strict=True) if kept)
-    if done and np.array_equal(done[-1].x, x) and np.array_equal(done[-1].y, y):
-        origin, fitted, at_rest = done[-1].origin, done[-1].fitted, done[-1].at_rest
+    if last is not None and np.array_equal(last[0].x, x) and np.array_equal(last[0].y, y):
+        origin, curve, fitted, at_rest = last[1], last[0].curve, last[0].fitted, last[0].at_rest
     else:
         origin = origin_slope.estimate(x, y, se)
-        curve, halves = origin_slope.curve(origin, np.append(x, 0.0))
-        fitted, at_rest = curve[:-1], (float(curve[-1]), float(halves[-1]))
+        over = float(np.max(np.abs(x), initial=0.0)) * np.linspace(-1.0, 1.0, NODES)
+        mean, halves = origin_slope.curve(origin, np.concatenate([x, over]))
+        fitted, curve = mean[: len(x)], np.stack([over, mean[len(x) :], halves[len(x) :]])
+        at_rest = (float(curve[1, NODES // 2]), float(curve[2, NODES // 2]))
     middle = None if se is None or not np.any(se > 0.0) else float(np.median(se[se > 0.0]))
     value, u95, moved = _determined(origin, target, middle, at_rest)
     by_row = np.zeros(len(x))
     by_row[origin.used] = moved
+    random = None
+    if u95 is not None and origin.design is not None:
+        random = min(2.0 * origin.noise * float(np.linalg.norm(moved * np.sqrt(origin.design.variance))), u95)
     with_all = value
     if parity == "even" and np.any(np.isfinite(origin.without) & np.logical_not(origin.used)):
         everything = _of_all_rows(origin, x, y, se)
@@ -138,7 +144,7 @@ def _sweep(
     caps = [c for c in caps if c <= reach * 1.03] if parity == "odd" and reach else []
     shorter = origin_slope.by_largest(x, y, [w for c in caps if (w := c * (1.0 + slopes.SAME_LEVEL)) < reach], se)
     ended = [s for _, s in shorter] + [origin] * (len(caps) - len(shorter))
-    return Sweep(
+    made = Sweep(
         symbol=symbol,
         variable=variable,
         component=component,
@@ -149,10 +155,15 @@ def _sweep(
         se=se,
         labels=labels,
         left_out=left + far,
-        origin=origin,
         value=value,
         u95=u95,
+        random=random,
+        reason=origin.reason,
+        notes=origin.notes,
+        used=origin.used,
+        wrong=np.flatnonzero(np.logical_not(origin.used) & np.isfinite(origin.without)),
         with_all=with_all,
+        curve=curve,
         fitted=fitted,
         at_rest=at_rest,
         by_row=by_row,
@@ -173,6 +184,7 @@ def _sweep(
         offset=offset,
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces else "",
     )
+    return made, origin
 
 
 def _of_all_rows(slope: OriginSlope, x: Array, y: Array, se: Array | None) -> OriginSlope:
@@ -190,14 +202,12 @@ def _moved(shift: float) -> dict[str, str]:
 
 def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
     """U95 is split: random is what scatter of one reading does through the fixed mixture, the rest is the form."""
-    slope, value, u95 = sweep.origin, sweep.value, sweep.u95
-    if value is None or u95 is None or slope.design is None:
+    value, u95, random = sweep.value, sweep.u95, sweep.random
+    if value is None or u95 is None or random is None:
         return Coefficient(
             sweep.symbol, None, None, Status.TOO_FEW_POINTS, sweep.body, origin="fit", table=sweep.table,
-            campaign=sweep.campaign, n_points=len(sweep.x), citation=citation, estimator=slope.reason,
+            campaign=sweep.campaign, n_points=len(sweep.x), citation=citation, estimator=sweep.reason,
         )  # fmt: skip
-    moved = sweep.by_row[slope.used] * np.sqrt(slope.design.variance)
-    random = min(2.0 * slope.noise * float(np.linalg.norm(moved)), u95)
     estimator = {"x": "calibrated slope", "x2": "calibrated slope of the part over x", "1": "calibrated curve at rest"}
     out = ", ".join(sweep.labels[i] for i in sweep.wrong)
     return Coefficient(
@@ -214,7 +224,7 @@ def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
         + (f" without point {out}" if out else "")
         + (f", with the rest row of {sweep.borrowed}" if sweep.borrowed else ""),
         window=sweep.window,
-        n_points=int(slope.used.sum()),
+        n_points=int(sweep.used.sum()),
         citation=citation,
     )
 
@@ -304,11 +314,13 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     shift = arm_shift(tables)
     tables = [t.about(wanted + np.array([shift, 0.0, 0.0])) for t in tables]
     sweeps: list[Sweep] = []
+    last: tuple[Sweep, OriginSlope] | None = None
     for symbol, (rows, variable, component, parity) in _jobs(tables, length).items():
         static = f"{component}{INCIDENCE.get(variable, '')}"
         known = [s.value for s in sweeps if s.symbol == static and s.table == rows.table.name]
         slope = known[0] if known and known[0] is not None else 0.0
-        sweeps.append(_sweep(rows, variable, component, symbol, parity, length, chosen, slope, sweeps))
+        last = _sweep(rows, variable, component, symbol, parity, length, chosen, slope, last)
+        sweeps.append(last[0])
     first = tables[0]
     coefficients = [_coefficient(s, first.source.citation) for s in sweeps]
     return FitResult(

@@ -15,7 +15,7 @@ from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.statistics.origin_slope import estimate, estimate_many
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.coefficient import Status
-from coeflab.study.checks import coverage
+from coeflab.study.checks import coverage, significance
 from coeflab.study.study import Study
 from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.force_table import ForceTable
@@ -321,7 +321,8 @@ def test_too_few_settings_and_an_open_sign_are_statuses_with_a_text() -> None:
     assert c.value is not None
     assert c.u95 is not None
     assert abs(c.value) <= c.u95
-    assert "sign is open" in warnings(noisy)[0].comment
+    (found,) = significance.check(noisy)
+    assert (found.severity, "sign is open" in found.comment) == (Severity.WARN, True)
 
 
 def test_stated_standard_errors_weigh() -> None:

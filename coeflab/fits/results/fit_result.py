@@ -16,7 +16,7 @@ from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.misfit import UNLIKELY, OutOfSample, chance
 from coeflab.fits.statistics.groups import Poolability
 from coeflab.fits.statistics.least_squares import Index
-from coeflab.fits.statistics.origin_slope import OriginSlope, next_points
+from coeflab.fits.statistics.origin_slope import estimate, next_points
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import primed
@@ -176,14 +176,23 @@ class Sweep:
     se : (n,) array or None
     labels : tuple of str
     left_out : tuple of LeftOut
-    origin : OriginSlope
-        The calibrated model of y over x, which gives the value.
-    value, u95 : float or None
-        Recommended; None where there are too few settings.
+    value, u95, random : float or None
+        Recommended, and the part of U95 that is scatter; None where there are too few settings.
+    reason : str
+        Why there is no value or what it rests on, from the calibrated model.
+    notes : tuple of str
+        Duplicates, mirror images, one-sided sweep.
+    used : (n,) boolean array
+        Rows that carry the value: neither repeated nor left out.
+    wrong : (k,) integer array
+        Rows that were left out because they do not fit the others.
     with_all : float or None
         The value with every row, wrong or not.
+    curve : (3, m) array
+        Settings over the sweep and its mirror image, the recommended curve there and the half-width of its 95 % band; NaN
+        without one.
     fitted : (n,) array
-        The recommended curve at the rows; NaN without one.
+        The recommended curve at the rows.
     at_rest : (float, float)
         The recommended curve at zero and its 95 % half-width.
     by_row : (n,) array
@@ -209,10 +218,15 @@ class Sweep:
     se: Array | None
     labels: tuple[str, ...]
     left_out: tuple[LeftOut, ...]
-    origin: OriginSlope
     value: float | None
     u95: float | None
+    random: float | None
+    reason: str
+    notes: tuple[str, ...]
+    used: Array
+    wrong: Index
     with_all: float | None
+    curve: Array
     fitted: Array
     at_rest: tuple[float, float]
     by_row: Array
@@ -228,8 +242,8 @@ class Sweep:
     def __post_init__(self) -> None:
         object.__setattr__(self, "x", locked(self.x))
         object.__setattr__(self, "y", locked(self.y))
-        object.__setattr__(self, "fitted", locked(self.fitted))
-        object.__setattr__(self, "by_row", locked(self.by_row))
+        for name in ("curve", "fitted", "by_row"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
         if self.se is not None:
             object.__setattr__(self, "se", locked(self.se))
 
@@ -248,7 +262,7 @@ class Sweep:
     @property
     def window(self) -> tuple[float, float] | None:
         """Range of the rows that carry the value: radians for v', w' and controls, r' for rates; None without any."""
-        rows = self.x[self.origin.used]
+        rows = self.x[self.used]
         if not len(rows):
             return None
         low, high = float(rows.min()), float(rows.max())
@@ -257,14 +271,9 @@ class Sweep:
         return low, high
 
     @property
-    def wrong(self) -> Index:
-        """Rows that were left out because they do not fit the others."""
-        return np.flatnonzero(np.logical_not(self.origin.used) & np.isfinite(self.origin.without))
-
-    @property
     def repeated(self) -> Index:
         """Rows that repeat an earlier one exactly and count once."""
-        return np.setdiff1d(np.flatnonzero(np.logical_not(self.origin.used)), self.wrong)
+        return np.setdiff1d(np.flatnonzero(np.logical_not(self.used)), self.wrong)
 
     def next_runs(self, count: int) -> tuple[tuple[float, float], ...]:
         """Settings within the sweep whose reading would narrow the slope most, one after the other, and U95 after each.
@@ -282,7 +291,10 @@ class Sweep:
             step = np.radians(0.5 if max(-low, high) >= np.radians(4.0) else 0.1)
             at = step * np.arange(np.ceil(low / step - 1e-6), np.floor(high / step + 1e-6) + 1.0)
             at = np.sin(at) if self.is_angle else at
-        return tuple((float(x), float(u)) for x, u in zip(*next_points(self.origin, count, at), strict=True))
+        return tuple(
+            (float(x), float(u))
+            for x, u in zip(*next_points(estimate(self.x, self.y, self.se), count, at), strict=True)
+        )
 
 
 @brief

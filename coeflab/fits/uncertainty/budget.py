@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from coeflab.core.types import Array, brief
 from coeflab.fits.results.fit_result import FitResult, Sweep
-from coeflab.fits.statistics.origin_slope import curve
 from coeflab.fits.uncertainty.grid_convergence import GridStudy, gravest, grid_studies
 from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
 from coeflab.law.coefficient import Coefficient, CoefficientSet, transfer_matrix
@@ -29,7 +28,6 @@ from coeflab.tables.force_table import ForceTable
 
 ROUNDING = 1e-9
 NEWTON = 4
-FARTHEST, NODES = 0.5, 81  # of the largest setting: how far an offset of the angle is followed along the curve
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,12 +84,11 @@ def perturbed(sweep: Sweep, names: Sequence[str]) -> Callable[[Array], Array]:
     force_power = 3 if sweep.component in MOMENTS else 2
     rate = sweep.variable in ANGULAR
     value = sweep.value or 0.0
-    at = np.linspace(-FARTHEST, FARTHEST, NODES) * float(np.abs(sweep.x).max())
-    moved = np.zeros(NODES)
+    at, force, _ = sweep.curve
+    moved = np.zeros(len(at))
     if not rate and sweep.target != "x2":
-        force = curve(sweep.origin, at)[0]
         moved = np.gradient(force, at) if sweep.target == "x" else force
-        moved = moved - moved[NODES // 2]
+        moved = moved - moved[len(at) // 2]
 
     def values(deviations: Array) -> Array:
         error = dict(zip(names, deviations.T, strict=True))

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
+from scipy.interpolate import PchipInterpolator
 
 from coeflab.core.table import plus_minus
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import LeftOut, Sweep
-from coeflab.fits.statistics import origin_slope
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Series
 from coeflab.report.figures.panel import BOTTOM, GAP, TOP, Range, drawing, legend, limits, panel
@@ -53,7 +53,7 @@ def sweep_figure(sweep: Sweep, anchor: str) -> Figure:
             figure, BOTTOM + RESIDUALS + GAP, TOP - BOTTOM - RESIDUALS - GAP, across=across,
             up=limits(ys * factor, 0.08) or (-1.0, 1.0), name_up=f"{sweep.component}'{power}",
         )  # fmt: skip
-        fine = _fine(sweep)
+        fine = _fine(sweep) if sweep.value is not None else None
         legend(figure, _points(main, sweep, left_out, factor) + _curves(main, sweep, fine, factor))
         lower, left, below = _residuals(figure, sweep, across)
         panels = (
@@ -64,7 +64,7 @@ def sweep_figure(sweep: Sweep, anchor: str) -> Figure:
     return Figure(anchor, svg, title, _caption(sweep), _description(sweep), panels)
 
 
-def _series(sweep: Sweep, left_out: list[LeftOut], fine: Fine) -> list[Series]:
+def _series(sweep: Sweep, left_out: list[LeftOut], fine: Fine | None) -> list[Series]:
     """Points, those left out, and the recommended curve."""
     half = [""] * len(sweep.x) if sweep.se is None else [f", ± {2.0 * s:.3g}" for s in sweep.se]
     notes = [f"point {label}{h}" for label, h in zip(sweep.labels, half, strict=True)]
@@ -79,7 +79,7 @@ def _series(sweep: Sweep, left_out: list[LeftOut], fine: Fine) -> list[Series]:
             [f"point {p.label}: {p.reason}" for p in left_out],
         )
     )
-    if sweep.value is not None:
+    if fine is not None:
         x, y, _ = fine
         out.append(curve("curve", "recommended curve", on_axis(sweep, x), y))
     return out
@@ -87,9 +87,10 @@ def _series(sweep: Sweep, left_out: list[LeftOut], fine: Fine) -> list[Series]:
 
 def _fine(sweep: Sweep) -> Fine:
     """Settings, the recommended curve there and the half-width of its band."""
-    low, high = (float(f(sweep.x, initial=0.0)) for f in (np.min, np.max))
-    x = np.linspace(low, high, FINE)
-    return x, *origin_slope.curve(sweep.origin, x)
+    at, mean, half = sweep.curve
+    x = np.linspace(float(np.min(sweep.x, initial=0.0)), float(np.max(sweep.x, initial=0.0)), FINE)
+    bent = PchipInterpolator(at, np.stack([mean, half]), axis=1)(x)
+    return x, bent[0], bent[1]
 
 
 def _points(axes: Axes, sweep: Sweep, left_out: list[Any], factor: float) -> list[Any]:
@@ -113,9 +114,9 @@ def _points(axes: Axes, sweep: Sweep, left_out: list[Any], factor: float) -> lis
     return handles
 
 
-def _curves(axes: Axes, sweep: Sweep, fine: Fine, factor: float) -> list[Any]:
+def _curves(axes: Axes, sweep: Sweep, fine: Fine | None, factor: float) -> list[Any]:
     handles: list[Any] = []
-    if sweep.value is None:
+    if fine is None:
         return handles
     x, y, half = fine
     at = on_axis(sweep, x)

@@ -22,16 +22,11 @@ FEW = 7
 REPLICATE_LIMIT = 3.0
 
 
-def _points(s: Sweep, status: Status, wanted: Sequence[str]) -> Check:
+def _points(s: Sweep, status: Status) -> Check:
     n = len(s.x)
     subject = f"{s.campaign} {primed(s.symbol)}"
-    if status in (Status.TOO_FEW_POINTS, Status.SIGN_OPEN):
-        found = (
-            s.origin.reason if status is Status.TOO_FEW_POINTS else f"{primed(s.symbol)} = {plus_minus(s.value, s.u95)}"
-        )
-        rule = "three settings" if status is Status.TOO_FEW_POINTS else "an interval on one side of zero"
-        severity = Severity.WARN if s.symbol in wanted or status is Status.TOO_FEW_POINTS else Severity.NOTE
-        return Check("coverage", subject, severity, f"{n} points, {found}", rule, status.advice)
+    if status is Status.TOO_FEW_POINTS:
+        return Check("coverage", subject, Severity.WARN, f"{n} points, {s.reason}", "three settings", status.advice)
     severity = Severity.PASS if n >= FEW else Severity.NOTE
     comment = (
         "Enough to tell forms apart." if n >= FEW else "Few points: intervals rest on very few degrees of freedom."
@@ -144,7 +139,7 @@ def _robust(s: Sweep) -> list[Check]:
                 "A copied row is no new reading; each counts once.",
             )
         )
-    if any("mirror" in note for note in s.origin.notes):
+    if any("mirror" in note for note in s.notes):
         out.append(
             Check(
                 "replicates",
@@ -163,7 +158,7 @@ def check(study: Study) -> Sequence[Check]:
     out: list[Check] = []
     for f in study.fits:
         for s in f.sweeps:
-            out.append(_points(s, f.coefficients[s.symbol].status, study.plan.wanted))
+            out.append(_points(s, f.coefficients[s.symbol].status))
             found = [c for c in (_sides(s), _extrapolation(s)) if c is not None] + _replicates(s) + _robust(s)
             out += [c for c in found if c not in out]
     return out

@@ -161,8 +161,8 @@ def test_what_is_outside_or_hidden_is_not_there(ask, path):
 
 def test_files_side_by_side(ask):
     page = ask(PAIR)[2].decode()
-    assert "−0.028000" in page
-    assert "−0.040000" in page
+    assert ">−0.0280<" in page
+    assert ">−0.0400<" in page
     assert ">4.24<" in page  # 0.012 / hypot(0.002, 0.002)
     assert page.count("<bdi>apart</bdi>") == 1
     assert page.count("<bdi>within</bdi>") == 3
