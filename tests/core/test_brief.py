@@ -79,7 +79,7 @@ def test_nouns_of_other_verbs_are_short(suboff: Study) -> None:
 
 
 def test_a_noun_says_what_it_is(suboff: Study) -> None:
-    assert repr(suboff).startswith("Study(plan=<Plan 'suboff'>, tables=<5 ForceTable>, fits=<4 FitResult>")
+    assert repr(suboff).startswith("Study(plan=<Plan 'suboff'>, tables=<5 ForceTable>, fits=<8 FitResult>")
     assert "\n" not in repr(suboff)
     assert repr(suboff.parameter_files["suboff_bare_hull"]).startswith("ParameterFile(schema_version='1.")
     assert "symbol='Yv', value=-0.02" in repr(suboff.coefficients[0])
