@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.core.table import Check
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import Pooling
 from coeflab.fits.results.fitted_model import FittedModel
@@ -141,6 +142,14 @@ def accelerations_compared(loss: Loss) -> dict[str, Any]:
     }
 
 
+def finding(c: Check) -> dict[str, str]:
+    """One finding of a check."""
+    return {
+        "check": c.name, "subject": c.subject, "severity": c.severity.value, "found": c.statistic, "rule": c.rule,
+        "comment": c.comment,
+    }  # fmt: skip
+
+
 def study(s: Study, files: list[str]) -> dict[str, Any]:
     """A whole study."""
     scalings = {f.campaign: str(f.coefficients.scaling) for f in s.fits}
@@ -166,17 +175,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
             }
             for c in s.comparisons
         ],
-        "checks": [
-            {
-                "check": c.name,
-                "subject": c.subject,
-                "severity": c.severity.value,
-                "found": c.statistic,
-                "rule": c.rule,
-                "comment": c.comment,
-            }
-            for c in s.checks
-        ],
+        "checks": [finding(c) for c in s.checks],
         "exports": [export(made) for made in s.exports],
         "refused_exports": [{"parameter_file": r.parameters, "target": r.target, "why": str(r.why)} for r in s.refused],
         "files": files,

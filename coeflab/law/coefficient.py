@@ -92,6 +92,8 @@ class Coefficient:
         How the value was made.
     window : (float, float) or None
         Range of the motion variable used: v' and w' as angles in radians, rates as r' = r L/U.
+    window_over : str
+        That variable; empty where the symbol names it, which a force at rest does not.
     n_points : int
     citation : str
     law : str
@@ -111,6 +113,7 @@ class Coefficient:
     campaign: str | None = None
     estimator: str = ""
     window: tuple[float, float] | None = None
+    window_over: str = ""
     n_points: int = 0
     citation: str = ""
     law: Literal["motion", "rest"] = "motion"
@@ -125,10 +128,14 @@ class Coefficient:
         parts = Parts(times(p.random), times(p.model_form), times(p.window), times(p.input))
         return replace(self, value=times(self.value, factor), u95=times(self.u95), parts=parts, unit=unit)
 
+    @property
+    def window_is_rate(self) -> bool:
+        """Whether the window is one of p', q' or r', not of an angle."""
+        return any(f in ANGULAR for f in (self.window_over, *derivative(self.symbol).factors))
+
     def with_rates(self, longer: float) -> Coefficient:
         """With the window of a rate, r' = r L / U, for a length ``longer`` times the old one."""
-        rate = any(f in ANGULAR for f in derivative(self.symbol).factors)
-        if self.window is None or not rate:
+        if self.window is None or not self.window_is_rate:
             return self
         return replace(self, window=(self.window[0] * longer, self.window[1] * longer))
 

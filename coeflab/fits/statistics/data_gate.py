@@ -25,7 +25,16 @@ SIZES = (1.0, 3.0, 1e1, 3e1, 1e2, 3e2, 1e3, 3e3, 1e4, 3e4, 1e5)
 # Part of the other parity, in units of the noise, with its prior share.
 OTHER = ((0.0, 0.5), (2.0, 0.25), (20.0, 0.15), (200.0, 0.1))
 STRAIGHT, GROWING = 0.3, (3.0, 10.0)
-CURVES = {"power 2": 1.0, "power 3": 1.0, "series": 1.0, "spline": 1.0, "on.4": 0.7, "on.6": 0.7, "stall.4": 0.3, "stall.6": 0.3}
+CURVES = {
+    "power 2": 1.0,
+    "power 3": 1.0,
+    "series": 1.0,
+    "spline": 1.0,
+    "on.4": 0.7,
+    "on.6": 0.7,
+    "stall.4": 0.3,
+    "stall.6": 0.3,
+}
 DECAY, ORDERS = 0.8, 16
 FEWEST = 5
 # Smallest noise that is credited, of the largest reading; share of the rows that may fail.
@@ -38,6 +47,8 @@ STRAIGHT_BETWEEN = 0.02
 # Share of the second component in an error of the setting; median of a normal deviate's size.
 SECOND, MEDIAN = 0.2, 0.6745
 SAME_SETTING = 0.02
+# A setting so many times beyond the next is a slip of the decimal point.
+ISOLATED = 3.0
 
 
 class Parity(StrEnum):
@@ -204,9 +215,8 @@ def _hinges(x: Array, row: int, parity: Parity) -> Array:
     u = side * x
     mine = np.unique(np.concatenate([[0.0], u[u >= 0.0]]))
     at = int(np.searchsorted(mine, u[row]))
-    places = np.concatenate(
-        [np.linspace(mine[i], mine[i + 1], PLACES) for i in range(max(at - 2, 0), min(at + 2, len(mine) - 1))] or [[]]
-    )
+    near = mine[max(at - 2, 0) : at + 3]
+    places = np.interp(np.linspace(0.0, len(near) - 1.0, PLACES * len(near)), np.arange(len(near)), near)
     columns = np.maximum(u - places[:, None], 0.0)
     beyond = np.array([len(np.unique(x[c > 0.0])) for c in columns], dtype=int)
     columns = columns[beyond > 1]
@@ -228,7 +238,7 @@ def explained(gate: Gate, y: Array, row: int, parity: Parity) -> bool:
     squares = across @ y
     own = p[:, row, row]
     wrong = gate.log_prior - 0.5 * nu * np.log(np.maximum(squares - across[:, row] ** 2 / own, 0.0) + floor)
-    room = np.einsum("mi,kij,mj->km", columns, p, columns, optimize=True)
+    room = np.einsum("mi,kim->km", columns, p @ columns.T)
     taken = np.where(room > 1e-9 * (columns**2).sum(1), (across @ columns.T) ** 2 / np.maximum(room, 1e-300), 0.0)
     hinged = gate.log_prior[:, None] - 0.5 * nu * np.log(np.maximum(squares[:, None] - taken, 0.0) + floor)
     return bool(hinged.max() > wrong.max() - AS_LIKELY)
@@ -294,10 +304,10 @@ def screen(gate: Gate, y: Array, parity: Parity, limit: float) -> Screened:
         if not spared[row]:
             wrong[row] = True
             present = without(present, row)
-    for row in np.flatnonzero(wrong):
+    for row in map(int, np.flatnonzero(wrong)):
         others = gate
-        for other in np.flatnonzero(wrong):
-            others = others if other == row else without(others, int(other))
+        for other in map(int, np.flatnonzero(wrong)):
+            others = others if other == row else without(others, other)
         again = predict(others, y[None])
         expected[row], scatter[row], probability[row] = (
             z[0, row] for z in (again.expected, again.scatter, again.probability)
@@ -366,3 +376,38 @@ def setting_that_suits(x: Array, readings: Array, expected: Array, scatter: Arra
     far = (np.abs(curves - readings[:, None]) / room[:, None]).max(0)
     best = int(np.argmin(far))
     return float(dense[best]) if far[best] <= 1.0 else None
+
+
+def strange_settings(x: Array, readings: Array, scatter: Array, signs: Array) -> dict[int, int | None]:
+    """Rows whose setting is likely a slip: far beyond all others, or unmatched while its readings mirror another row's.
+
+    Parameters
+    ----------
+    x : (n,) array
+    readings, scatter : (c, n) array
+    signs : (c,) array
+        1 and -1 for even and odd components, 0 where there is no mirror.
+
+    Returns
+    -------
+    dict of int to int or None
+        Row, and the row whose readings it mirrors.
+    """
+    size = np.abs(x)
+    far = int(np.argmax(size))
+    if len(x) >= FEWEST and size[far] > ISOLATED * np.delete(size, far).max():
+        return {far: None}
+    if not np.all(signs):
+        return {}
+    same = SAME_SETTING * np.ptp(x)
+    lonely = [i for i in range(len(x)) if size[i] > same and np.abs(x + x[i]).min() > same]
+    if len(lonely) != 2 or len(x) < 2 * FEWEST - 2 or x[lonely[0]] * x[lonely[1]] > 0.0:
+        return {}
+    noise = np.median(scatter, axis=1)
+    a, b = lonely
+    alike = np.abs(readings[:, a] - signs * readings[:, b]) <= 4.0 * noise
+    changing = np.ptp(readings, axis=1) > 20.0 * noise
+    if not (alike.all() and changing.sum() > 1):
+        return {}
+    outer, inner = (a, b) if size[a] > size[b] else (b, a)
+    return {outer: inner}

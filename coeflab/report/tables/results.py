@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from coeflab.core.provenance import work
-from coeflab.core.table import ABSENT, Table, coefficient, number, percent, probability
+from coeflab.core.table import ABSENT, Check, Table, coefficient, number, percent, probability
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.slopes import MEMBER, Estimate
 from coeflab.law.symbols import primed
@@ -206,12 +207,12 @@ def _signed(sweep: Sweep, x: float) -> str:
     return ("-" if x < 0 else "") + _window(sweep, abs(x))
 
 
-def checks(study: Study) -> Table:
+def checks(found: Sequence[Check]) -> Table:
     """All findings, the grave ones first."""
     order = ["fail", "warn", "note", "pass"]
     rows = tuple(
         (c.severity.value, c.name.replace("_", " "), c.subject, c.statistic, c.rule, c.comment)
-        for c in sorted(study.checks, key=lambda c: order.index(c.severity))
+        for c in sorted(found, key=lambda c: order.index(c.severity))
     )
     headers = ("", "check", "subject", "found", "rule", "meaning")
     return Table("Checks", headers, rows, (), frozenset(range(6)))

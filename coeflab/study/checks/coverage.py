@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.special import fdtrc
 
 from coeflab.core.table import Check, Severity
 from coeflab.fits.results.fit_result import Sweep
-from coeflab.fits.statistics.diagnostics import high_leverage, outliers, replicate_groups
-from coeflab.fits.statistics.least_squares import factorise, solve
+from coeflab.fits.statistics.diagnostics import high_leverage, replicate_groups
+from coeflab.fits.statistics.least_squares import Index, factorise, solve
 from coeflab.fits.statistics.slopes import design
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
 
-summary = "points, symmetry of the window, distance of the first angle, replicates, outliers, leverage"
+summary = "points, symmetry of the window, distance of the first angle, replicates, leverage"
 citations = ("roddy1990",)
 
 FEW = 7
-REPLICATE_LIMIT = 3.0
+REPLICATE_LEVEL = 0.01
 
 
 def _points(s: Sweep, status: Status) -> Check:
@@ -80,17 +81,20 @@ def _extrapolation(s: Sweep) -> Check | None:
     )
 
 
-def _replicates(s: Sweep) -> list[Check]:
-    """Replicates that differ by more than three standard deviations pooled over the other rows.
+def _repeated(s: Sweep) -> list[Index]:
+    """Groups of rows at one setting of an odd sweep."""
+    size = float(np.max(np.abs(s.x), initial=0.0))
+    return replicate_groups(s.x, 1e-4 * size) if s.parity == "odd" and size > 0.0 else []
+
+
+def _replicates(s: Sweep, groups: int) -> list[Check]:
+    """Replicates that scatter more than the other rows: a ratio of variances, so that groups of any size compare.
 
     The rows outside the group are fitted by the full polynomial with even term; their residual spread is the scale, so
-    that a bad pair cannot hide in its own scatter.
+    that a bad pair cannot hide in its own scatter. ``groups`` share the level (Bonferroni).
     """
     out = []
-    size = float(np.max(np.abs(s.x), initial=0.0))
-    if s.parity != "odd" or size == 0.0:
-        return []
-    for group in replicate_groups(s.x, 1e-4 * size):
+    for group in _repeated(s):
         rest = np.setdiff1d(np.arange(len(s.x)), group)
         terms = ("1", "x", "x2", "x3")
         if len(rest) < len(terms) + 2:
@@ -99,7 +103,9 @@ def _replicates(s: Sweep) -> list[Check]:
         _, residuals = solve(f, s.y[rest])
         spread = float(np.sqrt(np.sum(residuals**2) / max(f.freedom, 1)))
         gap = float(np.ptp(s.y[group]))
-        if gap > REPLICATE_LIMIT * spread and gap > 1e-9 * float(np.max(np.abs(s.y))):
+        between = float(np.var(s.y[group], ddof=1))
+        p = float(fdtrc(len(group) - 1, f.freedom, between / spread**2)) if spread else 0.0
+        if p < REPLICATE_LEVEL / groups and gap > 1e-9 * float(np.max(np.abs(s.y))):
             names = ", ".join(s.labels[i] for i in group)
             out.append(
                 Check(
@@ -107,7 +113,7 @@ def _replicates(s: Sweep) -> list[Check]:
                     f"{s.campaign} {primed(s.symbol)}",
                     Severity.WARN,
                     f"points {names} differ by {gap:.3g}, {gap / spread if spread else np.inf:.1f} standard deviations",
-                    f"within {REPLICATE_LIMIT:g} pooled standard deviations",
+                    f"scatter of replicates against that of the other rows: F, {REPLICATE_LEVEL:g} over {groups} groups",
                     "One of them may be a bad run; all are in the fit.",
                 )
             )
@@ -118,18 +124,6 @@ def _influential(s: Sweep) -> list[Check]:
     out = []
     for e in s.recommendation.members[:1]:
         subject = f"{s.campaign} {primed(s.symbol)}"
-        odd = [s.labels[int(e.rows[i])] for i in np.flatnonzero(outliers(e.factorised, e.residuals))]
-        if odd:
-            out.append(
-                Check(
-                    "outliers",
-                    subject,
-                    Severity.NOTE,
-                    f"points {', '.join(odd)}",
-                    "studentised residual, Bonferroni 5 %",
-                    "Look at these runs; they stay in the fit.",
-                )
-            )
         heavy = [s.labels[int(e.rows[i])] for i in np.flatnonzero(high_leverage(e.factorised))]
         if heavy:
             out.append(
@@ -149,8 +143,9 @@ def check(study: Study) -> Sequence[Check]:
     """Findings on every sweep."""
     out: list[Check] = []
     for f in study.fits:
+        groups = max(sum(len(_repeated(s)) for s in f.sweeps), 1)
         for s in f.sweeps:
             out.append(_points(s, f.coefficients[s.symbol].status))
             out += [c for c in (_sides(s), _extrapolation(s)) if c is not None and c not in out]
-            out += _replicates(s) + _influential(s)
+            out += _replicates(s, groups) + _influential(s)
     return out

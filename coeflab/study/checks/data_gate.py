@@ -27,7 +27,9 @@ from coeflab.tables.force_table import ForceTable
 summary = "every reading predicted from the others of its sweep; rows that decide a derivative; pasted rows"
 citations = ("ittc_uncertainty",)
 
-LEVEL = 0.02
+# Share of clean campaigns in which a reading may fail, and in which a row may fail by all its components together.
+LEVEL, SHARED = 0.02, 0.005
+AHEAD = 0.02  # of the speed
 SAME = 0.006  # rad or primed: settings that count as one, 0.34 degrees
 LARGEST_SWEEP = 200
 SLOPES = {"beta": ("v", "YNK"), "alpha": ("w", "ZM"), "r": ("r", "YNK"), "q": ("q", "ZM"), "p": ("p", "K"),
@@ -35,7 +37,7 @@ SLOPES = {"beta": ("v", "YNK"), "alpha": ("w", "ZM"), "r": ("r", "YNK"), "q": ("
 LATERAL = ("beta", "v", "r", "p", "dr")
 EVEN = {"beta": "v", "alpha": "w", "r": "r", "q": "q"}
 MOST_LINES, MIRRORED = 12, 2
-MEANING = {"beta": "drift angle", "alpha": "angle of attack", "speed": "speed"}
+ANGLE_OF = {"beta": "asin(v/V)", "alpha": "alpha"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,6 +69,11 @@ class _Row:
 @lru_cache(maxsize=32)
 def _prepared(x: bytes, parity: Parity, variance: bytes | None) -> data_gate.Gate:
     return data_gate.prepare(np.frombuffer(x), parity, None if variance is None else np.frombuffer(variance))
+
+
+@lru_cache(maxsize=64)
+def _slope(x: bytes, y: bytes, se: bytes | None) -> origin_slope.OriginSlope:
+    return origin_slope.estimate(np.frombuffer(x), np.frombuffer(y), None if se is None else np.frombuffer(se))
 
 
 def _levels(x: Array) -> NDArray[np.intp]:
@@ -109,7 +116,9 @@ def _sweeps(table: ForceTable, kept: NDArray[np.bool_]) -> Iterator[_Sweep]:
             rows = np.flatnonzero(kept & (others == group).all(1))
             x = settings[name][rows]
             x = table.speed[rows] if name == "speed" else np.sin(x) if name in ("alpha", "beta") else x
-            rest = {n: float(np.abs(settings[n][rows]).max(initial=0.0)) <= SAME for n in names if n not in (name, "speed")}
+            rest = {
+                n: float(np.abs(settings[n][rows]).max(initial=0.0)) <= SAME for n in names if n not in (name, "speed")
+            }
             lateral = all(still for n, still in rest.items() if n in LATERAL)
             parts = -(-len(rows) // LARGEST_SWEEP)
             for p in range(parts):
@@ -181,7 +190,16 @@ def _estimates(
             x, y, se, _, _ = collect_points(rows, component, length, np.zeros(len(table)))
             index = rows.rows[table.usable[component][rows.rows]]
             if len(x) >= FEWEST and np.any(x):
-                yield name, component, component + variable, index, x, y, se, origin_slope.estimate(x, y, se)
+                yield (
+                    name,
+                    component,
+                    component + variable,
+                    index,
+                    x,
+                    y,
+                    se,
+                    _slope(x.tobytes(), y.tobytes(), None if se is None else se.tobytes()),
+                )
 
 
 def _value(value: float, half: float) -> str:
@@ -209,7 +227,7 @@ def _cell_text(table: ForceTable, component: str, row: int, cell: _Cell) -> str:
 
 
 def _without(x: Array, y: Array, se: Array | None, at: NDArray[np.bool_]) -> origin_slope.OriginSlope:
-    return origin_slope.estimate(x[~at], y[~at], None if se is None else se[~at])
+    return _slope(x[~at].tobytes(), y[~at].tobytes(), None if se is None else se[~at].tobytes())
 
 
 def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows: dict[int, _Row], limit: float) -> None:
@@ -225,6 +243,17 @@ def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows:
         expected = np.array([c.seen.expected for c in by_component.values()])
         scatter = np.array([c.seen.scatter for c in by_component.values()])
         probability = np.array([c.seen.probability for c in by_component.values()])
+        signs = np.array(
+            [{Parity.ODD: -1.0, Parity.EVEN: 1.0, Parity.ANY: 0.0}[k.parity] for k in by_component.values()]
+        )
+        for at, other in data_gate.strange_settings(first.x, y, scatter, signs).items():
+            said = rows.setdefault(int(first.rows[at]), _Row())
+            said.cells.append(f"{_setting(name, first.x[at])} lies by itself")
+            said.components += [c for c in by_component if c not in said.components]
+            if other is not None:
+                said.comments.append(
+                    f"Its readings mirror those at {_setting(name, first.x[other])}: one of the two settings is wrong."
+                )
         p = data_gate.wrong_setting(first.x, y - expected, expected, scatter, probability)
         for at, row in enumerate(first.rows):
             if not any(cells[int(row), c].sweep.rows is by_component[c].sweep.rows for c in by_component):
@@ -232,17 +261,21 @@ def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows:
             if p[at] < limit and int(row) not in rows:
                 said = rows.setdefault(int(row), _Row())
                 said.components += list(by_component)
-                said.cells += [_cell_text(table, c, int(row), _Cell(first, at, k.seen, k.parity)) for c, k in by_component.items()]
+                said.cells += [
+                    _cell_text(table, c, int(row), _Cell(first, at, k.seen, k.parity)) for c, k in by_component.items()
+                ]
                 said.comments.append("No component is off by itself; together they are.")
             if int(row) in rows and len(rows[int(row)].components) > 1:
                 suits = data_gate.setting_that_suits(first.x, y[:, at], expected, scatter, at)
                 if suits is not None:
-                    rows[int(row)].comments.append(f"{_setting(name, suits)} instead of {_setting(name, first.x[at])} suits all components.")
+                    rows[int(row)].comments.append(
+                        f"{_setting(name, suits)} instead of {_setting(name, first.x[at])} suits all components."
+                    )
 
 
 def _setting(name: str, x: float) -> str:
     if name in ("alpha", "beta"):
-        return f"{MEANING[name]} {np.degrees(np.arcsin(np.clip(x, -1.0, 1.0))):.1f} deg"
+        return f"{ANGLE_OF[name]} = {np.degrees(np.arcsin(np.clip(x, -1.0, 1.0))):.1f} deg"
     if name in ("dr", "ds", "db"):
         return f"{name} {np.degrees(x):.1f} deg"
     return f"{x:.3g} m/s" if name == "speed" else f"{name}' {x:.3g}"
@@ -305,7 +338,13 @@ def _as_check(table: ForceTable, row: int, said: _Row, readings: int) -> Check:
         Severity.WARN,
         "; ".join([*([off] if off else []), *said.values]),
         f"a reading so far out has a probability of at least {LEVEL:g}/{readings}; no row moves a derivative by its U95",
-        " ".join([*said.comments, "" if said.values else "No derivative at the origin uses it.", ADVICE if off else INFLUENTIAL]).strip(),
+        " ".join(
+            [
+                *said.comments,
+                "" if said.values else "No derivative at the origin uses it.",
+                ADVICE if off else INFLUENTIAL,
+            ]
+        ).strip(),
     )
 
 
@@ -353,7 +392,11 @@ def _is_mirrored(table: ForceTable, again: NDArray[np.bool_]) -> bool:
     sign = np.array([-1.0 if n in PORT_STARBOARD else 1.0 for n in columns] + [1.0])
     size = np.where(np.abs(matrix).max(0) > 0.0, np.abs(matrix).max(0), 1.0)
     digits = np.round(matrix / size, 12) + 0.0
-    moved = np.any(np.column_stack([columns[n] for n in side])[~again] != 0.0, axis=1) if side else np.zeros(len(matrix), bool)
+    moved = (
+        np.any(np.column_stack([columns[n] for n in side])[~again] != 0.0, axis=1)
+        if side
+        else np.zeros(len(matrix), bool)
+    )
     known = {tuple(r) for r in digits}
     return int(moved.sum()) > MIRRORED and all(tuple(r * sign + 0.0) in known for r in digits[moved])
 
@@ -376,7 +419,14 @@ def _summary(campaign: str, readings: int, missed: int, found: Sequence[Check]) 
         return Check("data_gate", campaign, Severity.NOTE, said, "every reading in a sweep of at least five",
                      f"{missed} readings are in no sweep of five in which one variable alone changes: nothing is known of them.")  # fmt: skip
     severity = Severity.NOTE if grave else Severity.PASS
-    return Check("data_gate", campaign, severity, said, "every reading in a sweep of at least five", "Each is compared with the others.")
+    return Check(
+        "data_gate",
+        campaign,
+        severity,
+        said,
+        "every reading in a sweep of at least five",
+        "Each is compared with the others.",
+    )
 
 
 def check(study: Study) -> Sequence[Check]:
@@ -406,7 +456,7 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
     missed = 0
     for table, about in zip(own, turned, strict=True):
         again = _copies(table)
-        ahead = table.motion["u"] > 0.0 if _ahead_counts(table) else np.ones(len(table), dtype=bool)
+        ahead = table.motion["u"] > AHEAD * table.speed if _ahead_counts(table) else np.ones(len(table), dtype=bool)
         cells = _screened(table, ~again & ahead, LEVEL / readings)
         missed += sum(
             int(np.count_nonzero(mask & ~again)) - sum(c == component for _, c in cells)
@@ -418,7 +468,7 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
                 said = rows.setdefault(row, _Row())
                 said.cells.append(_cell_text(table, component, row, cell))
                 said.components.append(component)
-        _shared_errors(table, cells, rows, LEVEL / max(len(table), 1))
+        _shared_errors(table, cells, rows, SHARED / sum(map(len, tables)))
         _slopes(about, turned, length, again, rows)
         _curvatures(table, cells, length, rows)
         out += [_as_check(table, row, said, readings) for row, said in sorted(rows.items())]
