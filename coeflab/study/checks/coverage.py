@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.special import fdtrc
 
 from coeflab.core.table import Check, Severity
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.diagnostics import high_leverage, replicate_groups
 from coeflab.fits.statistics.least_squares import Index, factorise, solve
+from coeflab.fits.statistics.linear_model import t_probability
 from coeflab.fits.statistics.slopes import design
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
@@ -87,11 +87,17 @@ def _repeated(s: Sweep) -> list[Index]:
     return replicate_groups(s.x, 1e-4 * size) if s.parity == "odd" and size > 0.0 else []
 
 
-def _replicates(s: Sweep, groups: int) -> list[Check]:
-    """Replicates that scatter more than the other rows: a ratio of variances, so that groups of any size compare.
+def replicates(s: Sweep, groups: int) -> list[Check]:
+    """Replicates of which one departs from the mean of its group more than the scatter of the other rows allows.
 
     The rows outside the group are fitted by the full polynomial with even term; their residual spread is the scale, so
-    that a bad pair cannot hide in its own scatter. ``groups`` share the level (Bonferroni).
+    that a bad pair cannot hide in its own scatter.
+
+    Parameters
+    ----------
+    s : Sweep
+    groups : int
+        Groups of replicates that share the level (Bonferroni).
     """
     out = []
     for group in _repeated(s):
@@ -103,8 +109,9 @@ def _replicates(s: Sweep, groups: int) -> list[Check]:
         _, residuals = solve(f, s.y[rest])
         spread = float(np.sqrt(np.sum(residuals**2) / max(f.freedom, 1)))
         gap = float(np.ptp(s.y[group]))
-        between = float(np.var(s.y[group], ddof=1))
-        p = float(fdtrc(len(group) - 1, f.freedom, between / spread**2)) if spread else 0.0
+        k = len(group)
+        largest = float(np.max(np.abs(s.y[group] - s.y[group].mean()))) * (k / (k - 1.0)) ** 0.5
+        p = float(t_probability(largest / spread, f.freedom)) * (k if k > 2 else 1) if spread else 0.0
         if p < REPLICATE_LEVEL / groups and gap > 1e-9 * float(np.max(np.abs(s.y))):
             names = ", ".join(s.labels[i] for i in group)
             out.append(
@@ -113,7 +120,7 @@ def _replicates(s: Sweep, groups: int) -> list[Check]:
                     f"{s.campaign} {primed(s.symbol)}",
                     Severity.WARN,
                     f"points {names} differ by {gap:.3g}, {gap / spread if spread else np.inf:.1f} standard deviations",
-                    f"scatter of replicates against that of the other rows: F, {REPLICATE_LEVEL:g} over {groups} groups",
+                    f"farthest of a group, probability {REPLICATE_LEVEL:g} over {groups} groups",
                     "One of them may be a bad run; all are in the fit.",
                 )
             )
@@ -147,5 +154,5 @@ def check(study: Study) -> Sequence[Check]:
         for s in f.sweeps:
             out.append(_points(s, f.coefficients[s.symbol].status))
             out += [c for c in (_sides(s), _extrapolation(s)) if c is not None and c not in out]
-            out += _replicates(s, groups) + _influential(s)
+            out += replicates(s, groups) + _influential(s)
     return out

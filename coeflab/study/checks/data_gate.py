@@ -331,20 +331,16 @@ def _curvatures(table: ForceTable, cells: dict[tuple[int, str], _Cell], length: 
 
 
 def _as_check(table: ForceTable, row: int, said: _Row, readings: int) -> Check:
-    off = "; ".join(said.cells)
+    words = [*said.comments, *([] if said.values else ["No derivative at the origin uses it."])]
     return Check(
         "data_gate",
         _where(table, row),
         Severity.WARN,
-        "; ".join([*([off] if off else []), *said.values]),
-        f"a reading so far out has a probability of at least {LEVEL:g}/{readings}; no row moves a derivative by its U95",
-        " ".join(
-            [
-                *said.comments,
-                "" if said.values else "No derivative at the origin uses it.",
-                ADVICE if off else INFLUENTIAL,
-            ]
-        ).strip(),
+        "; ".join([*said.cells, *said.values]),
+        f"probability of so far a reading above {LEVEL:g}/{readings}"
+        if said.cells
+        else "no row moves a value by its U95",
+        " ".join([*words, ADVICE if said.cells else INFLUENTIAL]),
     )
 
 
