@@ -39,11 +39,11 @@ DECAY, ORDERS = 0.8, 16
 FEWEST = 5
 # Smallest noise that is credited, of the largest reading; share of the rows that may fail.
 ROUNDING, MOST = 1e-5, 6
-# A change of slope beyond the last setting: so many times the change of force expected from the one before it. A hinge
+# A change of slope beyond the last setting but one: so many times the steepest slope of the sweep. A hinge
 # explains a reading when its log likelihood, size and place at their best, comes within this of leaving the reading out.
 KINK, AS_LIKELY, PLACES = 1.5, 3.0, 9
-# Error of straight lines between the settings, of the largest reading.
-STRAIGHT_BETWEEN = 0.02
+# Error of interpolation between the settings, of the largest reading.
+BETWEEN = 0.01
 # Share of the second component in an error of the setting; median of a normal deviate's size.
 SECOND, MEDIAN = 0.2, 0.6745
 SAME_SETTING = 0.02
@@ -245,16 +245,20 @@ def explained(gate: Gate, y: Array, row: int, parity: Parity) -> bool:
 
 
 def _onset_at_end(x: Array, y: Array, expected: Array, row: int, parity: Parity) -> bool:
-    """Whether a reading at an end without a mirror image departs no more than a change of slope there would make it."""
+    """Whether a reading at an end without a mirror image departs no more than a change of slope there would make it.
+
+    The slope may change by `KINK` times the steepest of the sweep.
+    """
     side = np.sign(x[row]) or 1.0
     u = side * x
-    mine = np.unique(u[u >= 0.0])
-    if u[row] < u.max() or np.count_nonzero(u == u[row]) > 1 or len(mine) < 2:
+    if u[row] < u.max() or np.count_nonzero(u == u[row]) > 1:
         return False
     if parity is not Parity.ANY and np.any(np.abs(u + u[row]) <= SAME_SETTING * u[row]):
         return False
-    before = float(np.mean(y[u == mine[-2]]))
-    return bool(abs(y[row] - expected[row]) <= KINK * abs(expected[row] - before))
+    settings, (means,), _ = _by_setting(x, expected[None])
+    steepest = float(np.abs(np.diff(means) / np.diff(settings)).max())
+    gap = u[row] - np.delete(u, row).max()
+    return bool(abs(y[row] - expected[row]) <= KINK * steepest * gap)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -358,7 +362,17 @@ def wrong_setting(x: Array, errors: Array, expected: Array, scatter: Array, prob
     return np.where(judged, 2.0 * special.ndtr(-together / usual), 1.0)
 
 
-def setting_that_suits(x: Array, readings: Array, expected: Array, scatter: Array, row: int) -> float | None:
+def _between(x: Array, y: Array, at: Array) -> Array:
+    """Cubic Hermite interpolation of curves (c, n) with slopes by central differences, (c, len at)."""
+    slope = np.gradient(y, x, axis=1)
+    i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
+    h = x[i + 1] - x[i]
+    s = (at - x[i]) / h
+    ends = (1.0 + 2.0 * s) * (1.0 - s) ** 2 * y[:, i] + s**2 * (3.0 - 2.0 * s) * y[:, i + 1]
+    return np.asarray(ends + h * s * (1.0 - s) * ((1.0 - s) * slope[:, i] - s * slope[:, i + 1]))
+
+
+def setting_that_suits(x: Array, readings: Array, expected: Array, scatter: Array) -> float | None:
     """The setting at which all components of a row would be as expected, or None.
 
     Parameters
@@ -367,12 +381,11 @@ def setting_that_suits(x: Array, readings: Array, expected: Array, scatter: Arra
     readings : (c,) array
         Of the row.
     expected, scatter : (c, n) array
-    row : int
     """
     settings, means, _ = _by_setting(x, expected)
     dense = np.linspace(settings[0], settings[-1], 401)
-    curves = np.array([np.interp(dense, settings, m) for m in means])
-    room = 3.0 * scatter[:, row] + STRAIGHT_BETWEEN * np.abs(expected).max(1)
+    curves = _between(settings, means, dense)
+    room = 3.0 * np.median(scatter, axis=1) + BETWEEN * np.abs(expected).max(1)
     far = (np.abs(curves - readings[:, None]) / room[:, None]).max(0)
     best = int(np.argmin(far))
     return float(dense[best]) if far[best] <= 1.0 else None

@@ -246,13 +246,15 @@ def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows:
         signs = np.array(
             [{Parity.ODD: -1.0, Parity.EVEN: 1.0, Parity.ANY: 0.0}[k.parity] for k in by_component.values()]
         )
-        for at, other in data_gate.strange_settings(first.x, y, scatter, signs).items():
+        strange = data_gate.strange_settings(first.x, y, scatter, signs)
+        for at, other in strange.items():
             said = rows.setdefault(int(first.rows[at]), _Row())
             said.cells.append(f"{_setting(name, first.x[at])} lies by itself")
             said.components += [c for c in by_component if c not in said.components]
             if other is not None:
+                partner, mirror = _setting(name, first.x[other]), _setting(name, -first.x[other])
                 said.comments.append(
-                    f"Its readings mirror those at {_setting(name, first.x[other])}: one of the two settings is wrong."
+                    f"{mirror} instead of {_setting(name, first.x[at])} makes it the image of {partner}."
                 )
         p = data_gate.wrong_setting(first.x, y - expected, expected, scatter, probability)
         for at, row in enumerate(first.rows):
@@ -265,8 +267,8 @@ def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows:
                     _cell_text(table, c, int(row), _Cell(first, at, k.seen, k.parity)) for c, k in by_component.items()
                 ]
                 said.comments.append("No component is off by itself; together they are.")
-            if int(row) in rows and len(rows[int(row)].components) > 1:
-                suits = data_gate.setting_that_suits(first.x, y[:, at], expected, scatter, at)
+            if int(row) in rows and len(rows[int(row)].components) > 1 and at not in strange:
+                suits = data_gate.setting_that_suits(first.x, y[:, at], expected, scatter)
                 if suits is not None:
                     rows[int(row)].comments.append(
                         f"{_setting(name, suits)} instead of {_setting(name, first.x[at])} suits all components."
@@ -327,6 +329,8 @@ def _curvatures(table: ForceTable, cells: dict[tuple[int, str], _Cell], length: 
                 slopes.recommend(x[k], y[k], parity="even", target=target).value
                 for k in (np.ones(len(x), bool), np.arange(len(x)) != cell.at)
             ]
+            if both[0] is None:
+                continue
             said.values.append(f"{primed(symbol)} = {number(both[0], 3)} with the row, {number(both[1], 3)} without it")
 
 
