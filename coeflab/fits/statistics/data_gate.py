@@ -41,7 +41,7 @@ FEWEST = 5
 ROUNDING, MOST = 1e-5, 6
 # A change of slope beyond the last setting but one: so many times the steepest slope of the sweep. A hinge
 # explains a reading when its log likelihood, size and place at their best, comes within this of leaving the reading out.
-KINK, AS_LIKELY, PLACES = 1.5, 3.0, 9
+KINK, AS_LIKELY, PLACES, WELL_BEYOND = 1.5, 3.0, 9, 0.2
 # Error of interpolation between the settings, of the largest reading.
 BETWEEN = 0.01
 # Share of the second component in an error of the setting; median of a normal deviate's size.
@@ -210,7 +210,7 @@ def predict(gate: Gate, y: Array) -> Prediction:
 
 
 def _hinges(x: Array, row: int, parity: Parity) -> Array:
-    """Columns (m, n) of a slope that changes once beside a row, at least two settings beyond it; one side, and both."""
+    """Columns (m, n) of a slope that changes once beside a row, two settings well beyond it; one side, and both."""
     side = np.sign(x[row]) or 1.0
     u = side * x
     mine = np.unique(np.concatenate([[0.0], u[u >= 0.0]]))
@@ -218,7 +218,7 @@ def _hinges(x: Array, row: int, parity: Parity) -> Array:
     near = mine[max(at - 2, 0) : at + 3]
     places = np.interp(np.linspace(0.0, len(near) - 1.0, PLACES * len(near)), np.arange(len(near)), near)
     columns = np.maximum(u - places[:, None], 0.0)
-    beyond = np.array([len(np.unique(x[c > 0.0])) for c in columns], dtype=int)
+    beyond = np.array([len(np.unique(x[c > WELL_BEYOND * c.max(initial=0.0)])) for c in columns], dtype=int)
     columns = columns[beyond > 1]
     if parity is not Parity.ANY:
         mirrored = np.maximum(-u - places[beyond > 1][:, None], 0.0)
