@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.core.table import Check
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, Pooling, Sweep
 from coeflab.fits.results.fitted_model import FittedModel
@@ -159,6 +160,14 @@ def accelerations_compared(loss: Loss) -> dict[str, Any]:
     }
 
 
+def finding(c: Check) -> dict[str, str]:
+    """One finding of a check."""
+    return {
+        "check": c.name, "subject": c.subject, "severity": c.severity.value, "found": c.statistic, "rule": c.rule,
+        "comment": c.comment,
+    }  # fmt: skip
+
+
 def study(s: Study, files: list[str]) -> dict[str, Any]:
     """A whole study."""
     scalings = {f.campaign: str(f.coefficients.scaling) for f in s.fits}
@@ -188,17 +197,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
         "law_at_points": {
             name: [f.model_dump(mode="json") for f in p.law_at_points] for name, p in s.parameter_files.items()
         },
-        "checks": [
-            {
-                "check": c.name,
-                "subject": c.subject,
-                "severity": c.severity.value,
-                "found": c.statistic,
-                "rule": c.rule,
-                "comment": c.comment,
-            }
-            for c in s.checks
-        ],
+        "checks": [finding(c) for c in s.checks],
         "exports": [export(made) for made in s.exports],
         "refused_exports": [{"parameter_file": r.parameters, "target": r.target, "why": str(r.why)} for r in s.refused],
         "files": files,

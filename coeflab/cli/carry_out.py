@@ -10,14 +10,20 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from coeflab.core.table import Check
     from coeflab.study.study import Plan, Study
 
 
 REPORTS = "reports"
 
 
-def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
-    """Run, render everything, then write; exit code 1 when a check or a comparison fails, or an export is refused."""
+def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False) -> None:
+    """Run, render everything, then write; exit code 1 when a check or a comparison fails, or an export is refused.
+
+    ``strict``: for a warning, too.
+    """
     from coeflab.core.files import write_all
     from coeflab.workbench import rendered, run
 
@@ -40,7 +46,7 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool) -> None:
             show.text(f"  {path}")
     for refused in study.refused:
         show.error(f"error: {refused.why}")
-    if study.failed:
+    if study.failed or (strict and study.warned):
         raise typer.Exit(1)
 
 
@@ -71,7 +77,7 @@ def summarise(study: Study) -> None:
     show.table(joint_tables.campaigns(study.fits))
     for name, parameters in study.parameter_files.items():
         show.table(format_tables.at_points(points_of(parameters), f"Force law of {name}"))
-    findings(study)
+    findings(study.checks)
     decided = {f"{p.name} {d.name}" for p in study.parameter_files.values() for d in stability(p) if d.decided}
     for c in study.checks:
         if c.name == "stability" and c.subject in decided:
@@ -81,12 +87,12 @@ def summarise(study: Study) -> None:
         show.text(f"Verdict: {sum(judged)} of {len(judged)} re-analysed coefficients agree within U95.")
 
 
-def findings(study: Study) -> None:
+def findings(found: Sequence[Check]) -> None:
     """Warnings and failures; the rest is counted."""
     from coeflab.core.table import Severity
     from coeflab.report.tables import results as tables
 
     grave = {Severity.FAIL, Severity.WARN}
-    show.table(tables.checks(study.with_checks(tuple(c for c in study.checks if c.severity in grave))))
-    counts = {s.value: sum(c.severity is s for c in study.checks) for s in Severity}
+    show.table(tables.checks([c for c in found if c.severity in grave]))
+    counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
     show.text("Checks: " + ", ".join(f"{n} {name}" for name, n in counts.items()) + ".")

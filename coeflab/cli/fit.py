@@ -42,12 +42,13 @@ def command(
     figure: Path = typer.Option(None, metavar="FILE.svg", help="Draw the fits into this file."),
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the fit, and stop."),
     include_uncertain: bool = typer.Option(False, help="Use cells that the source marks as doubtful."),
+    strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Fit the coefficients of a table, or of several jointly, and show how they were made.
 
     Any further --option VALUE goes to the fit: --seed 2, --degree 4, --terms "Yv Yv|v|". See --fit NAME --help-options.
-    Exit code 1 when a check fails.
+    Exit code 1 when a check fails; with --strict when one warns, too.
     """
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import located
@@ -104,7 +105,7 @@ def command(
             _diagnose(study)
         if figure is not None:
             show.text(f"Written: {figure}")
-    if study.failed:
+    if study.failed or (strict and study.warned):
         raise typer.Exit(1)
 
 
@@ -211,4 +212,4 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
             show.table(content)
     for f in study.fits if count else ():
         show.table(tables.next_points(f, count))
-    findings(study)
+    findings(study.checks)

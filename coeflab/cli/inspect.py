@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import typer
 
 from coeflab.cli import show
 from coeflab.core.errors import InputError
+
+if TYPE_CHECKING:
+    from coeflab.tables.force_table import ForceTable
 
 EXAMPLE = "coeflab inspect suboff_cfd_barehull"
 
@@ -18,9 +24,10 @@ def command(
     axes: str = typer.Option("", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
     density: float = typer.Option(1000.0, "--density", help="Of the water that a body displaces, kg/m^3."),
+    strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Show a force table in SI and FRD with its declarations and excluded cells.
+    """Show a force table in SI and FRD with its declarations, excluded cells and readings that do not belong.
 
     Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
     """
@@ -33,7 +40,7 @@ def command(
         raise InputError(
             "--unit, --axes or --repair", "a mesh file with them", advice="A campaign.toml says these itself."
         )
-    _tables(table, json)
+    _tables(table, json, strict)
 
 
 def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: bool) -> None:
@@ -56,16 +63,19 @@ def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: b
     show.text("  next: coeflab added-mass for the 6 x 6 matrix, coeflab simplify for cylinders and plates")
 
 
-def _tables(table: str, json: bool) -> None:
+def _tables(table: str, json: bool, strict: bool) -> None:
+    from coeflab.cli.as_json import finding
+    from coeflab.cli.carry_out import findings
     from coeflab.core.files import located
-    from coeflab.core.provenance import work
-    from coeflab.report.tables import results as tables
+    from coeflab.core.table import Severity
+    from coeflab.study.checks import data_gate
     from coeflab.tables.importers import PlannedTable
     from coeflab.workbench import read_tables
 
     path = located(table, "cfd_data")
     only = path.name if path.is_file() and path.suffix != ".toml" else None
     read = read_tables(PlannedTable(path, (), {}, only))
+    found = data_gate.findings(read, read[0].scaling.length)
     if json:
         show.json_object(
             {
@@ -86,10 +96,21 @@ def _tables(table: str, json: bool) -> None:
                         "notes": list(t.notes),
                     }
                     for t in read
-                ]
+                ],
+                "checks": [finding(c) for c in found],
             }
         )
-        return
+    else:
+        _print(read)
+        findings(found)
+    if strict and any(c.severity is Severity.WARN for c in found):
+        raise typer.Exit(1)
+
+
+def _print(read: Sequence[ForceTable]) -> None:
+    from coeflab.core.provenance import work
+    from coeflab.report.tables import results as tables
+
     for t in read:
         show.table(tables.inspected(t))
         point = ", ".join(f"{x:g}" for x in t.reference_point)

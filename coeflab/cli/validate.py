@@ -19,6 +19,7 @@ EXAMPLE = "coeflab validate suboff"
 def command(
     name: str = typer.Argument(..., help="Name of the validation: suboff, huuv, flyingfish or thauv."),
     out: Path | None = typer.Option(None, help="Folder for the files; default reports/NAME."),
+    strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Hold shipped tables against published derivatives, or reproduce a published vehicle; write what comes out."""
@@ -32,7 +33,7 @@ def command(
     if isinstance(found, Acceptance):
         _side_by_side(found, out if out is not None else Path(REPORTS) / name, json)
     else:
-        carry_out(found, out, json)
+        carry_out(found, out, json, strict)
 
 
 def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:

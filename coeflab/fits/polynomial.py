@@ -116,6 +116,7 @@ def _coefficients(
                 campaign=model.campaign,
                 estimator=f"{model.form}; model form not assessed",
                 window=(low, high),
+                window_over=chosen.variable,
                 n_points=model.n_points,
                 citation=citation,
             )

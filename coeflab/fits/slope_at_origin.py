@@ -93,6 +93,17 @@ def _determined(
     return bent.value, float(np.hypot(bent.u95, felt * half)), out - felt * moved
 
 
+def rest_and_curvature(x: Array, y: Array) -> tuple[float | None, float | None]:
+    """The force at rest and the curvature there of a sweep (n,), all rows used; None where a row is too few."""
+    origin = origin_slope.estimate(x, y)
+    if origin.design is None:
+        return None, None
+    origin = _of_all_rows(origin, x, y, None)
+    mean, half = origin_slope.curve(origin, np.zeros(1))
+    at_rest = float(mean[0]), float(half[0])
+    return at_rest[0], _determined(origin, "x2", None, at_rest)[0]
+
+
 def _sweep(
     rows: SweepRows,
     variable: str,

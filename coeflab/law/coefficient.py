@@ -107,6 +107,8 @@ class Coefficient:
         How the value was made.
     window : (float, float) or None
         Range of the motion variable used: v' and w' as angles in radians, rates as r' = r L/U.
+    window_over : str
+        That variable; empty where the symbol names it, which a force at rest does not.
     n_points : int
     citation : str
     law : str
@@ -142,6 +144,7 @@ class Coefficient:
         tuple[Finite, Finite] | None,
         Told("range of the motion that was used: angles in radians, rates as r' = r L/U", "rad or 1"),
     ] = None
+    window_over: str = ""
     n_points: Annotated[Count, Told("points in that range")] = 0
     citation: Annotated[str, Told("keys of works, separated by commas")] = ""
     law: Annotated[
@@ -182,10 +185,14 @@ class Coefficient:
         parts = Parts(times(p.random), times(p.model_form), times(p.window), times(p.input))
         return replace(self, value=times(self.value, factor), u95=times(self.u95), parts=parts, unit=unit)
 
+    @property
+    def window_is_rate(self) -> bool:
+        """Whether the window is one of p', q' or r', not of an angle."""
+        return any(f in ANGULAR for f in (self.window_over, *derivative(self.symbol).factors))
+
     def with_rates(self, longer: float) -> Coefficient:
         """With the window of a rate, r' = r L / U, for a length ``longer`` times the old one."""
-        rate = any(f in ANGULAR for f in derivative(self.symbol).factors)
-        if self.window is None or not rate:
+        if self.window is None or not self.window_is_rate:
             return self
         return replace(self, window=(self.window[0] * longer, self.window[1] * longer))
 

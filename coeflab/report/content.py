@@ -311,7 +311,7 @@ def _checks(study: Study) -> Section:
     if not study.checks:
         return Section("checks", "Checks", ("No checks were made.",))
     text = ("A note or a warning asks for attention; only a failure makes the study fail.",)
-    return Section("checks", "Checks", text, filled(tables.checks(study)))
+    return Section("checks", "Checks", text, filled(tables.checks(study.checks)))
 
 
 def _provenance(study: Study) -> Section:

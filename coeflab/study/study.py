@@ -139,6 +139,11 @@ class Study:
         findings = any(c.severity is Severity.FAIL for c in self.checks)
         return findings or any(c.passed is False for c in self.comparisons) or bool(self.refused)
 
+    @property
+    def warned(self) -> bool:
+        """Whether a finding is a warning."""
+        return any(c.severity is Severity.WARN for c in self.checks)
+
     def with_checks(self, checks: tuple[Check, ...]) -> Study:
         """The study with its findings."""
         return replace(self, checks=checks)

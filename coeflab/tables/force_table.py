@@ -90,6 +90,10 @@ class ForceTable:
         Cells of the grid that computed each row, NaN where blank; None where the table does not say.
     uncertainty : InputUncertainty or None
         Of the inputs, as the campaign declares it; None where it does not.
+    lines : tuple of int
+        Line of every row in its file; empty where there is none.
+    measured_about : (3,) array or None
+        Where the file's moments are about, once they have been moved.
     """
 
     name: str
@@ -113,6 +117,8 @@ class ForceTable:
     notes: tuple[str, ...] = field(default=())
     cells: Array | None = None
     uncertainty: InputUncertainty | None = None
+    lines: tuple[int, ...] = ()
+    measured_about: Array | None = None
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors"):
@@ -122,6 +128,8 @@ class ForceTable:
         if self.cells is not None:
             object.__setattr__(self, "cells", locked(self.cells))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
+        if self.measured_about is not None:
+            object.__setattr__(self, "measured_about", locked(self.measured_about))
 
     def __len__(self) -> int:
         return len(self.speed)
@@ -193,6 +201,7 @@ class ForceTable:
             usable=usable,
             exclusions=tuple(exclusions),
             reference_point=np.asarray(point, dtype=float),
+            measured_about=self.reference_point if self.measured_about is None else self.measured_about,
             notes=(*self.notes, f"moments moved by ({', '.join(f'{s:+.6g}' for s in shift)}) m"),
         )
 

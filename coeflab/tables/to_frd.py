@@ -181,6 +181,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
             InputFile(f"{campaign.name}/{table.file}", digest),
         ),
         notes=tuple(notes),
+        lines=columns.lines,
     )
 
 

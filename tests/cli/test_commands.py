@@ -137,6 +137,21 @@ def test_inspect_and_formats(coeflab: Run) -> None:
     assert json.loads(coeflab("inspect", "suboff_roddy_1", "--json").stdout)["tables"][0]["rows"] == 64
 
 
+def test_strict_turns_a_warning_into_exit_code_1(coeflab: Run, tmp_path: Path) -> None:
+    """A decimal slip in one cell: said by inspect, exit code 0; with --strict 1."""
+    coeflab("new", "study")
+    table = tmp_path / "study" / "campaign" / "drift.csv"
+    table.write_text(table.read_text().replace("11.7982,5.8252", "117.982,5.8252"))
+    done = coeflab("inspect", "study/campaign")
+    assert done.returncode == 0
+    assert "my_campaign/drift.csv line 11" in done.stdout
+    assert "without it" in done.stdout
+    fitted = coeflab("fit", "study/campaign", "--strict", "--json")
+    assert fitted.returncode == 1
+    said = [c for c in json.loads(fitted.stdout)["checks"] if c["severity"] == "warn"]
+    assert [c["subject"] for c in said if c["check"] == "data_gate"] == ["my_campaign/drift.csv line 11"]
+
+
 def test_inspect_of_a_mesh_shows_its_checks(coeflab: Run, tmp_path: Path) -> None:
     """A bar of 2000 x 200 x 100 mm, off its origin: volume, centre in FRD, areas, inertia, and that it is sound."""
     bar = trimesh.creation.box(extents=(2000.0, 200.0, 100.0))

@@ -218,3 +218,14 @@ def test_sharpening_keeps_weights_and_leaves_easy_fits_alone():
     assert np.any(found.coefficients != plain.coefficients)
     easy = fit_linear(design(terms[:2], {"x": x}), y)
     assert sharpened(easy, terms[:2], {"x": x}, y, None) is easy
+
+
+def test_r_squared_is_about_the_mean_only_with_an_intercept():
+    """NIST's NoInt1 (certified 0.999365492298663), and statsmodels, with and without weights."""
+    x, y = np.arange(60.0, 71.0), np.arange(130.0, 141.0)
+    assert fit_linear(x[:, None], y).r_squared == pytest.approx(0.999365492298663, rel=1e-12)
+    rng, errors = np.random.default_rng(3), np.linspace(0.5, 2.0, 11)
+    noisy = y + rng.standard_normal(11)
+    for columns, constant in ((np.stack([x, x**2], 1), False), (np.stack([x, x - 1.0, x**2], 1)[:, :2], True)):
+        weighted = sm.WLS(noisy, np.stack([np.ones(11), x], 1) if constant else columns, errors**-2.0).fit()
+        assert fit_linear(columns, noisy, errors).r_squared == pytest.approx(weighted.rsquared, rel=1e-9)

@@ -13,6 +13,7 @@ from coeflab.fits.results.fitted_model import Extrapolation
 from coeflab.law.coefficient import Status
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.report.tables.nouns import window_text
 from coeflab.tables.force_table import ForceTable
 
 LENGTH, SPEED, DENSITY = 1.6, 2.0, 1000.0
@@ -54,6 +55,16 @@ def test_planted_coefficients_come_back_by_their_names():
     np.testing.assert_allclose([c.value for c in found.coefficients.coefficients[4:]], 2.0 * PLANTED, rtol=1e-9)
     assert found.coefficients.symbols == ("Y0", "Yv", "Yvv", "Yvvv", "N0", "Nv", "Nvv", "Nvvv")
     assert found.settings["area_name"] == "L^2"
+
+
+def test_windows_of_a_rate_are_rates_and_those_of_drift_are_degrees():
+    """Y0' of a sweep over r' has its window in r', though its symbol does not say so."""
+    rate = np.linspace(-0.4, 0.4, 9)
+    turned = fit(sweep({"Y": cubic(rate)}, r=rate), variable="r").coefficients
+    assert [window_text(c) for c in turned.coefficients] == ["-0.400 .. 0.400"] * 4
+    assert [c.with_rates(2.0).window for c in turned.coefficients] == [(-0.8, 0.8)] * 4
+    drifted = fit(sweep({"Y": cubic(DRIFT)}, v=DRIFT), variable="v").coefficients
+    assert [window_text(c) for c in drifted.coefficients] == ["-15.0 .. 20.0 deg"] * 4
 
 
 @pytest.mark.parametrize(("variable", "column"), [("v", "v"), ("beta", "v"), ("alpha", "w"), ("r", "r"), ("dr", "dr")])

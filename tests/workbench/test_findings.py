@@ -12,8 +12,11 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.core.table import Severity
 from coeflab.core.text.toml import read_toml
+from coeflab.fits.results.fit_result import Sweep
+from coeflab.fits.statistics.slopes import Recommendation
 from coeflab.formats.lost import lost_by_all
 from coeflab.law.scaling import Scaling
+from coeflab.study.checks.coverage import replicates
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
 from coeflab.tables.campaign import InputUncertainty
@@ -159,3 +162,22 @@ def test_another_body_still_does(tmp_path: Path, renamed: bool) -> None:
 def test_a_body_of_the_vehicles_name_raises_none(tmp_path: Path) -> None:
     study = of_hull(tmp_path, shipped("geometry") / "suboff_bare_hull", "suboff_roddy_3", "suboff_bare_hull")
     assert alarms(study) == ([], [])
+
+
+def with_replicates(k: int, rng: np.random.Generator, off: float = 0.0) -> Sweep:
+    """Ten settings and k readings at rest, one of them off by so many standard deviations."""
+    x = np.concatenate([np.linspace(-0.2, 0.2, 10), np.zeros(k)])
+    y = -0.03 * x + 1e-4 * rng.standard_normal(len(x))
+    y[-1] += 1e-4 * off
+    labels = tuple(map(str, range(len(x))))
+    empty = Recommendation(None, None, None, None, (), ())
+    return Sweep("Yv", "v", "Y", "odd", "x", x, y, None, labels, (), empty, (), {}, (), False, "t", "c", "b")
+
+
+@pytest.mark.parametrize("k", [2, 6])
+def test_replicates_fail_equally_rarely_whatever_their_number(k: int) -> None:
+    """1 % for pairs and for groups of six, where three standard deviations failed 27 % of them."""
+    rng = np.random.default_rng(k)
+    false = np.mean([bool(replicates(with_replicates(k, rng), 1)) for _ in range(1000)])
+    assert 0.001 <= false <= 0.02
+    assert np.mean([bool(replicates(with_replicates(k, rng, off=10.0), 1)) for _ in range(50)]) > 0.9

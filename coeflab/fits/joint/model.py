@@ -276,7 +276,7 @@ def _several(
         shares, every = slice(row, row + len(rows.y)), slice(column, column + p.width)
         row, column = shares.stop, every.stop
         y = rows.y - p.intercepts @ np.nan_to_num(fit.coefficients[common.stop : every.stop])
-        wholes.append(part_of(fit, shares, every, rows.y))
+        wholes.append(part_of(fit, shares, every, rows.y, p.matrix))
         spreads.append(spread[common])
         models.append(
             FittedModel(
@@ -285,7 +285,9 @@ def _several(
                 form=form,
                 symbols=p.symbols,
                 terms=tuple(t.term for t in p.terms),
-                fit=replace(part_of(fit, shares, common, y), aicc=fit.aicc if len(parts) == 1 else float("nan")),
+                fit=replace(
+                    part_of(fit, shares, common, y, p.matrix), aicc=fit.aicc if len(parts) == 1 else float("nan")
+                ),
                 domain=Domain.of(rows.x),
                 table=", ".join(rows.tables),
                 campaign=rows.campaign,

@@ -1,4 +1,4 @@
-"""Does the form fit, and does one point carry it? Lack of fit, replicates, outliers; rows drawn for a bootstrap."""
+"""Does the form fit, and does one point carry it? Lack of fit, replicates; rows drawn for a bootstrap."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from scipy.special import chdtrc, fdtrc
 
 from coeflab.core.types import Array
 from coeflab.fits.statistics.least_squares import Factorised, Index
-from coeflab.fits.statistics.linear_model import t_probability
 
 
 def levels(x: Array, width: float = 0.02) -> Index:
@@ -111,24 +110,6 @@ def lack_of_fit(f: Factorised, residuals: Array, x: Array, tolerance: float, kno
         return float("nan")
     ratio = ((total - pure) / (freedom - pure_freedom)) / (pure / pure_freedom)
     return float(fdtrc(freedom - pure_freedom, pure_freedom, max(ratio, 0.0)))
-
-
-def studentised(f: Factorised, residuals: Array) -> Array:
-    """Externally studentised residuals, shape (n,); NaN without degrees of freedom."""
-    freedom = f.freedom
-    if freedom < 2:
-        return np.full(len(residuals), np.nan)
-    room = np.where(f.leverage < 1 - 1e-9, 1 - f.leverage, np.nan)
-    total = np.sum(residuals**2)
-    left_out = np.maximum((total - residuals**2 / room) / (freedom - 1), np.finfo(float).tiny)
-    return np.asarray(residuals / np.sqrt(left_out * room))
-
-
-def outliers(f: Factorised, residuals: Array, level: float = 0.05) -> Array:
-    """Points whose studentised residual is improbable after Bonferroni's correction, boolean (n,)."""
-    t = studentised(f, residuals)
-    freedom = max(f.freedom - 1, 1)
-    return np.asarray(np.where(np.isfinite(t), t_probability(np.nan_to_num(t), freedom) * len(t) < level, False))
 
 
 BLOCK = 128

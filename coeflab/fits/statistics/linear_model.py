@@ -33,6 +33,7 @@ from coeflab.fits.statistics.least_squares import Factorised, aicc, factorise, s
 from coeflab.law.terms import Term, design
 
 FULL_LEVERAGE = 1.0 - 1e-9
+CONSTANT = 1e-9  # share of a constant that the columns may leave over
 
 
 def hangs_on_one_point(f: Factorised) -> NDArray[np.bool_]:
@@ -112,6 +113,7 @@ class LinearFit:
     press_rms : float
         Root mean square of `left_out`.
     r_squared : float
+        Uncentred where the form has no intercept.
     aicc : float
     runs_probability : float
         Probability of so few or so many runs of one sign, residuals in the order given; NaN if not computable.
@@ -161,6 +163,19 @@ def runs_probability(residuals: Array) -> float:
     return float(2.0 * ndtr(-distance))
 
 
+def variation(f: Factorised, response: Array) -> float:
+    """Sum of squares that R^2 refers to: about the mean where the columns span a constant, else about zero.
+
+    A form without an intercept competes with zero, not with the mean: about the mean its R^2 may be anything below one
+    (Kvalseth 1985).
+    """
+    root = f.root_weights
+    left = root - f.basis @ (f.basis.T @ root)
+    spans = float(left @ left) <= CONSTANT**2 * float(root @ root)
+    middle = float(np.average(response, weights=root**2)) if spans else 0.0
+    return float(np.sum((root * (response - middle)) ** 2))
+
+
 def fit_linear(
     design: Array, response: Array, errors: Array | None = None, constraint: tuple[Array, Array] | None = None
 ) -> LinearFit:
@@ -207,7 +222,7 @@ def fit_linear(
     open_directions = _open_directions(f, free, np.linalg.norm(design * f.root_weights[:, None], axis=0))
     undetermined = np.any(np.abs(open_directions) > 1e-6, axis=0) if f.null.size else np.zeros(p, dtype=bool)
     coefficients = np.where(undetermined, np.nan, coefficients)
-    total = float(np.sum((f.root_weights * (response - np.average(response, weights=f.root_weights**2))) ** 2))
+    total = variation(f, response)
     remaining = float(np.sum(weighted**2))
     left_out = residuals / room
     variance = remaining / f.freedom if f.freedom > 0 else float("nan")

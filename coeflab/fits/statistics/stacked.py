@@ -23,6 +23,7 @@ from coeflab.fits.statistics.linear_model import (
     runs_probability,
     t_factor,
     t_probability,
+    variation,
 )
 
 OPEN = 1e-7
@@ -264,10 +265,10 @@ def _open_directions(unit: Array, free: Array) -> Array:
     return np.asarray((free @ right[rank:].T).T)
 
 
-def part_of(fit: LinearFit, rows: slice, columns: slice, response: Array) -> LinearFit:
-    """The share of one response in a stacked fit; AICc belongs to the whole and is NaN here."""
+def part_of(fit: LinearFit, rows: slice, columns: slice, response: Array, matrix: Array) -> LinearFit:
+    """The share of one response, with its own design matrix, in a stacked fit; AICc belongs to the whole and is NaN."""
     residuals, left_out = fit.residuals[rows], fit.left_out[rows]
-    total = float(np.sum((response - response.mean()) ** 2))
+    total = variation(factorise(matrix), response)
     coefficients = fit.coefficients[columns]
     touching = fit.open_directions[:, columns]
     return replace(

@@ -17,7 +17,10 @@ from coeflab.core.table import ABSENT, Table, coefficient, number, percent, prob
 from coeflab.fits.results.fit_result import FitResult, Pooling
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.misfit import OutOfSample
+from coeflab.fits.statistics.least_squares import factorise
+from coeflab.fits.statistics.linear_model import variation
 from coeflab.law.symbols import CONTROLS, FLOW_ANGLES
+from coeflab.law.terms import design
 from coeflab.report.figures.variables import domain_in_words
 from coeflab.vehicle.comparison import Compared, ComparedModel, Comparison, Verdict
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -48,7 +51,7 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
     )  # fmt: skip
     notes: tuple[str, ...] = (
         "left out: rms error of every point predicted from the others (PRESS); runs: probability of so few or so many "
-        "runs of one sign by chance; outside: what a reader beyond the domain is to do.",
+        "runs of one sign by chance; R2 of a form without intercept is about zero; outside: what a reader beyond the domain is to do.",
     )
     angles = dict.fromkeys(v for m in models for v in m.domain.variables if v in FLOW_ANGLES)
     notes = (*notes, *(FLOW_ANGLES[v] for v in angles))
@@ -110,7 +113,7 @@ def diagnostics(models: Sequence[FittedModel]) -> Table:
     for m in models:
         f = m.fit
         with_left_out = f.left_out[np.isfinite(f.left_out)]
-        spread = float(np.sum((m.y - m.y.mean()) ** 2))
+        spread = variation(factorise(design(m.terms, m.x)), m.y)
         whole = len(with_left_out) == m.n_points and spread > 0.0
         most = 2.0 * f.rank / m.n_points
         rows.append(

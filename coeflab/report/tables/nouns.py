@@ -10,7 +10,7 @@ import numpy as np
 
 from coeflab.core.table import ABSENT, Table, number, percent, with_u95
 from coeflab.law.coefficient import COVERS
-from coeflab.law.symbols import ANGULAR, COMPONENTS, derivative, primed
+from coeflab.law.symbols import COMPONENTS, primed
 
 if TYPE_CHECKING:
     from coeflab.fits.results.fit_result import FitResult
@@ -34,9 +34,8 @@ def window_text(c: Coefficient) -> str:
     if c.window is None:
         return ABSENT
     low, high = c.window
-    rate = any(f in ANGULAR for f in derivative(c.symbol).factors)
-    unit = "" if rate else " deg"
-    if not rate:
+    unit = "" if c.window_is_rate else " deg"
+    if not c.window_is_rate:
         low, high = math.degrees(low), math.degrees(high)
     return f"{number(low, 3)} .. {number(high, 3)}{unit}"
 

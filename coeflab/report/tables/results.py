@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from coeflab.core.provenance import work
-from coeflab.core.table import ABSENT, Table, coefficient, number, percent, plus_minus, probability, with_u95
+from coeflab.core.table import ABSENT, Check, Table, coefficient, number, percent, plus_minus, probability, with_u95
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.coefficient import COVERS
 from coeflab.law.symbols import primed
@@ -212,12 +212,12 @@ def _signed(sweep: Sweep, x: float) -> str:
     return ("-" if x < 0 else "") + _window(sweep, abs(x))
 
 
-def checks(study: Study) -> Table:
+def checks(found: Sequence[Check]) -> Table:
     """All findings, the grave ones first."""
     order = ["fail", "warn", "note", "pass"]
     rows = tuple(
         (c.severity.value, c.name.replace("_", " "), c.subject, c.statistic, c.rule, c.comment)
-        for c in sorted(study.checks, key=lambda c: order.index(c.severity))
+        for c in sorted(found, key=lambda c: order.index(c.severity))
     )
     headers = ("", "check", "subject", "found", "rule", "meaning")
     return Table("Checks", headers, rows, (), frozenset(range(6)))

@@ -6,20 +6,21 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coeflab.core.table import Check, Severity, plus_minus, with_u95
+from coeflab.core.table import Check, Severity
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.diagnostics import replicate_groups
 from coeflab.fits.statistics.least_squares import Index, factorise, solve
+from coeflab.fits.statistics.linear_model import t_probability
 from coeflab.fits.statistics.slopes import design
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import primed
 from coeflab.study.study import Study
 
-summary = "points, sides, distance of the first angle, sign, wrong points, replicates, copied rows"
+summary = "points, sides, distance of the first angle, sign, replicates"
 citations = ("roddy1990",)
 
 FEW = 7
-REPLICATE_LIMIT = 3.0
+REPLICATE_LEVEL = 0.01
 
 
 def _points(s: Sweep, status: Status) -> Check:
@@ -75,17 +76,26 @@ def _extrapolation(s: Sweep) -> Check | None:
     )
 
 
-def _replicates(s: Sweep) -> list[Check]:
-    """Replicates that differ by more than three standard deviations pooled over the other rows.
+def _repeated(s: Sweep) -> list[Index]:
+    """Groups of rows at one setting of an odd sweep."""
+    size = float(np.max(np.abs(s.x), initial=0.0))
+    return replicate_groups(s.x, 1e-4 * size) if s.parity == "odd" and size > 0.0 else []
+
+
+def replicates(s: Sweep, groups: int) -> list[Check]:
+    """Replicates of which one departs from the mean of its group more than the scatter of the other rows allows.
 
     The rows outside the group are fitted by the full polynomial with even term; their residual spread is the scale, so
     that a bad pair cannot hide in its own scatter.
+
+    Parameters
+    ----------
+    s : Sweep
+    groups : int
+        Groups of replicates that share the level (Bonferroni).
     """
     out = []
-    size = float(np.max(np.abs(s.x), initial=0.0))
-    if s.parity != "odd" or size == 0.0:
-        return []
-    for group in replicate_groups(s.x, 1e-4 * size):
+    for group in _repeated(s):
         rest = np.setdiff1d(np.arange(len(s.x)), group)
         terms = ("1", "x", "x2", "x3")
         if len(rest) < len(terms) + 2:
@@ -94,7 +104,10 @@ def _replicates(s: Sweep) -> list[Check]:
         _, residuals = solve(f, s.y[rest])
         spread = float(np.sqrt(np.sum(residuals**2) / max(f.freedom, 1)))
         gap = float(np.ptp(s.y[group]))
-        if gap > REPLICATE_LIMIT * spread and gap > 1e-9 * float(np.max(np.abs(s.y))):
+        k = len(group)
+        largest = float(np.max(np.abs(s.y[group] - s.y[group].mean()))) * (k / (k - 1.0)) ** 0.5
+        p = float(t_probability(largest / spread, f.freedom)) * (k if k > 2 else 1) if spread else 0.0
+        if p < REPLICATE_LEVEL / groups and gap > 1e-9 * float(np.max(np.abs(s.y))):
             names = ", ".join(s.labels[i] for i in group)
             out.append(
                 Check(
@@ -102,54 +115,10 @@ def _replicates(s: Sweep) -> list[Check]:
                     f"{s.campaign} {primed(s.symbol)}",
                     Severity.WARN,
                     f"points {names} differ by {gap:.3g}, {gap / spread if spread else np.inf:.1f} standard deviations",
-                    f"within {REPLICATE_LIMIT:g} pooled standard deviations",
+                    f"farthest of a group, probability {REPLICATE_LEVEL:g} over {groups} groups",
                     "One of them may be a bad run; all are in the fit.",
                 )
             )
-    return out
-
-
-def _named(s: Sweep, rows: Index) -> str:
-    return f"point{'s' * (len(rows) > 1)} {', '.join(s.labels[i] for i in rows)}"
-
-
-def _robust(s: Sweep) -> list[Check]:
-    """Points that do not fit the others, with the value with and without them, and rows that were pasted."""
-    subject, out = f"{s.campaign} {primed(s.symbol)}", []
-    if len(s.wrong) and s.value is not None:
-        out.append(
-            Check(
-                "outliers",
-                subject,
-                Severity.WARN,
-                f"{_named(s, s.wrong)} left out: {primed(s.symbol)} = {plus_minus(s.value, s.u95)}, "
-                f"with {'it' if len(s.wrong) == 1 else 'them'} {with_u95(s.with_all, s.u95)[0]}",
-                "every point within the scatter of the others about any smooth curve",
-                "Look at this run: a sign, a decimal, a wrong angle. If it is right, run its neighbours.",
-            )
-        )
-    if len(s.repeated):
-        out.append(
-            Check(
-                "replicates",
-                f"{s.table} {s.component} over {s.variable}'",
-                Severity.WARN,
-                f"{_named(s, s.repeated)} repeat{'s' * (len(s.repeated) == 1)} an earlier row exactly",
-                "no two rows alike to the last digit",
-                "A copied row is no new reading; each counts once.",
-            )
-        )
-    if any("mirror" in note for note in s.notes):
-        out.append(
-            Check(
-                "replicates",
-                f"{s.table} {s.component} over {s.variable}'",
-                Severity.WARN,
-                "every row has its exact mirror image",
-                "readings of their own on either side",
-                "A mirrored half is no new reading; U95 is wider by the square root of two.",
-            )
-        )
     return out
 
 
@@ -157,8 +126,9 @@ def check(study: Study) -> Sequence[Check]:
     """Findings on every sweep."""
     out: list[Check] = []
     for f in study.fits:
+        groups = max(sum(len(_repeated(s)) for s in f.sweeps), 1)
         for s in f.sweeps:
             out.append(_points(s, f.coefficients[s.symbol].status))
-            found = [c for c in (_sides(s), _extrapolation(s)) if c is not None] + _replicates(s) + _robust(s)
+            found = [c for c in (_sides(s), _extrapolation(s)) if c is not None] + replicates(s, groups)
             out += [c for c in found if c not in out]
     return out

@@ -1,0 +1,478 @@
+"""Readings that do not belong to their sweep, rows that decide a derivative, and rows that were pasted twice.
+
+A table is cut into sweeps, rows in which one variable alone changes, and every component of every sweep goes through
+`coeflab.fits.statistics.data_gate` in the table's own reference point. One finding a row, whatever is wrong with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.table import Check, Severity, number
+from coeflab.core.types import Array
+from coeflab.core.wording import listed
+from coeflab.fits.rows.sweeps import arm_shift, collect_points, sweep_rows
+from coeflab.fits.slope_at_origin import rest_and_curvature
+from coeflab.fits.statistics import data_gate, origin_slope
+from coeflab.fits.statistics.data_gate import FEWEST, Parity, Screened
+from coeflab.law.symbols import LINEAR, MOMENTS, MOTIONS, PORT_STARBOARD, primed
+from coeflab.law.transforms import incidence
+from coeflab.study.study import Study
+from coeflab.tables.force_table import ForceTable
+
+summary = "every reading predicted from the others of its sweep; rows that decide a derivative; pasted rows"
+citations = ("ittc_uncertainty",)
+
+# Share of clean campaigns in which a reading may fail, and in which a row may fail by all its components together.
+LEVEL, SHARED = 0.02, 0.005
+AHEAD = 0.02  # of the speed
+SAME = 0.006  # rad or primed: settings that count as one, 0.34 degrees
+LARGEST_SWEEP = 200
+SLOPES = {"beta": ("v", "YNK"), "alpha": ("w", "ZM"), "r": ("r", "YNK"), "q": ("q", "ZM"), "p": ("p", "K"),
+          "dr": ("dr", "YNK"), "ds": ("ds", "ZM"), "db": ("db", "ZM")}  # fmt: skip
+LATERAL = ("beta", "v", "r", "p", "dr")
+EVEN = {"beta": "v", "alpha": "w", "r": "r", "q": "q"}
+MOST_LINES, MIRRORED = 12, 2
+ANGLE_OF = {"beta": "asin(v/V)", "alpha": "alpha"}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sweep:
+    """Rows of a table in which one variable changes; ``still``: all others are at rest."""
+
+    variable: str
+    rows: NDArray[np.intp]
+    x: Array
+    still: bool
+    lateral: bool
+
+    def parity(self, component: str) -> Parity:
+        if not self.lateral or self.variable not in LATERAL:
+            return Parity.ANY
+        return Parity.ODD if component in PORT_STARBOARD else Parity.EVEN
+
+
+@dataclass(slots=True)
+class _Row:
+    """What is said of one row."""
+
+    cells: list[str] = field(default_factory=list)
+    components: list[str] = field(default_factory=list)
+    values: list[str] = field(default_factory=list)
+    comments: list[str] = field(default_factory=list)
+
+
+@lru_cache(maxsize=32)
+def _prepared(x: bytes, parity: Parity, variance: bytes | None) -> data_gate.Gate:
+    return data_gate.prepare(np.frombuffer(x), parity, None if variance is None else np.frombuffer(variance))
+
+
+@lru_cache(maxsize=64)
+def _slope(x: bytes, y: bytes, se: bytes | None) -> origin_slope.OriginSlope:
+    return origin_slope.estimate(np.frombuffer(x), np.frombuffer(y), None if se is None else np.frombuffer(se))
+
+
+def _levels(x: Array) -> NDArray[np.intp]:
+    """Labels of settings that agree; sorted neighbours within `SAME` of the first."""
+    order = np.argsort(x, kind="stable")
+    labels, label, start = np.empty(len(x), dtype=np.intp), -1, -np.inf
+    for i in order:
+        if x[i] - start > SAME:
+            label, start = label + 1, x[i]
+        labels[i] = label
+    return labels
+
+
+def _ahead_counts(table: ForceTable) -> bool:
+    """Whether the rows run at their speed U; not so in tables of damping about a state of rest."""
+    total = np.sqrt(np.sum([np.asarray(table.motion[m]) ** 2 for m in LINEAR], axis=0))
+    return bool(np.allclose(total, table.speed, rtol=0.05))
+
+
+def _settings(table: ForceTable) -> dict[str, Array]:
+    """Variables of the rows: angles in radians, rates primed, speed over the largest."""
+    length = table.scaling.length
+    if not _ahead_counts(table):
+        return {m: np.asarray(table.primed_motion(m, length)) for m in MOTIONS}
+    alpha, beta = incidence(*(np.asarray(table.motion[m]) for m in LINEAR))
+    out = {"alpha": alpha, "beta": beta} | {m: table.primed_motion(m, length) for m in "pqr"}
+    out |= {c: np.asarray(a) for c, a in table.controls.items()}
+    return out | {"speed": np.log(table.speed)}
+
+
+def _sweeps(table: ForceTable, kept: NDArray[np.bool_]) -> Iterator[_Sweep]:
+    settings = _settings(table)
+    labels = np.column_stack([_levels(x) for x in settings.values()])
+    names = list(settings)
+    for k, name in enumerate(names):
+        if len(np.unique(labels[kept, k])) < 3:
+            continue
+        others = np.delete(labels, k, axis=1)
+        for group in np.unique(others[kept], axis=0):
+            rows = np.flatnonzero(kept & (others == group).all(1))
+            x = settings[name][rows]
+            x = table.speed[rows] if name == "speed" else np.sin(x) if name in ("alpha", "beta") else x
+            rest = {
+                n: float(np.abs(settings[n][rows]).max(initial=0.0)) <= SAME for n in names if n not in (name, "speed")
+            }
+            lateral = all(still for n, still in rest.items() if n in LATERAL)
+            parts = -(-len(rows) // LARGEST_SWEEP)
+            for p in range(parts):
+                yield _Sweep(name, rows[p::parts], x[p::parts], all(rest.values()), lateral)
+
+
+def _copies(table: ForceTable) -> NDArray[np.bool_]:
+    """Rows that repeat an earlier one to the last digit."""
+    columns = [*table.motion.values(), *table.controls.values(), table.speed, *table.forces.values()]
+    matrix = np.nan_to_num(np.column_stack(columns), nan=1e300)
+    again = np.ones(len(table), bool)
+    again[np.unique(matrix, axis=0, return_index=True)[1]] = False
+    return again
+
+
+def _about_own(table: ForceTable) -> ForceTable:
+    return table if table.measured_about is None else table.about(table.measured_about)
+
+
+@dataclass(slots=True)
+class _Cell:
+    """One reading as its best sweep sees it."""
+
+    sweep: _Sweep
+    at: int
+    seen: Screened
+    parity: Parity
+
+
+def _screened(table: ForceTable, kept: NDArray[np.bool_], limit: float) -> dict[tuple[int, str], _Cell]:
+    """Every reading that a sweep holds, by row and component; of several sweeps the one that predicts it best."""
+    cells: dict[tuple[int, str], _Cell] = {}
+    length = table.scaling.length
+    for sweep in _sweeps(table, kept):
+        for component, usable in table.usable.items():
+            inside = usable[sweep.rows]
+            x = np.ascontiguousarray(sweep.x[inside], dtype=float)
+            if len(x) < FEWEST or len(np.unique(x)) < 3 or not np.any(x):
+                continue
+            rows = sweep.rows[inside]
+            errors = table.errors.get(component)
+            known = errors is not None and bool(np.all(np.isfinite(errors[rows]) & (errors[rows] > 0.0)))
+            variance = table.primed_force(component, length, errors)[rows] ** 2 if known else None
+            parity = sweep.parity(component)
+            gate = _prepared(x.tobytes(), parity, None if variance is None else variance.tobytes())
+            y = table.primed_force(component, length)[rows]
+            if not np.any(y):
+                continue
+            seen = data_gate.screen(gate, y, parity, limit)
+            for at, row in enumerate(rows):
+                best = cells.get((int(row), component))
+                if best is None or seen.scatter[at] < best.seen.scatter[best.at]:
+                    here = _Sweep(sweep.variable, rows, x, sweep.still, sweep.lateral)
+                    cells[int(row), component] = _Cell(here, at, seen, parity)
+    return cells
+
+
+def _estimates(
+    table: ForceTable, tables: Sequence[ForceTable], length: float
+) -> Iterator[tuple[str, str, str, NDArray[np.intp], Array, Array, Array | None, origin_slope.OriginSlope]]:
+    """Slopes at the origin that the table gives: variable, component, symbol, rows, x, y, se, estimate."""
+    for name, (variable, components) in SLOPES.items():
+        if variable not in table.varies:
+            continue
+        rows = sweep_rows(table, variable, tables, length)
+        for component in components:
+            if component not in table.forces:
+                continue
+            x, y, se, _, _ = collect_points(rows, component, length, np.zeros(len(table)))
+            index = rows.rows[table.usable[component][rows.rows]]
+            if len(x) >= FEWEST and np.any(x):
+                yield (
+                    name,
+                    component,
+                    component + variable,
+                    index,
+                    x,
+                    y,
+                    se,
+                    _slope(x.tobytes(), y.tobytes(), None if se is None else se.tobytes()),
+                )
+
+
+def _value(value: float, half: float) -> str:
+    return f"{number(value, 3)} ± {number(half, 2)}"
+
+
+def _where(table: ForceTable, row: int) -> str:
+    return f"{table.name} line {table.lines[row]}" if table.lines else f"{table.name} {table.labels[row]}"
+
+
+def _si(table: ForceTable, component: str, row: int, primed_value: float) -> float:
+    ratio = table.forces[component][row] / table.primed_force(component, table.scaling.length)[row]
+    if not np.isfinite(ratio):
+        scale = np.ones(len(table))
+        ratio = 1.0 / table.primed_force(component, table.scaling.length, scale)[row]
+    return float(primed_value * ratio)
+
+
+def _cell_text(table: ForceTable, component: str, row: int, cell: _Cell) -> str:
+    expected = _si(table, component, row, float(cell.seen.expected[cell.at]))
+    scatter = _si(table, component, row, float(cell.seen.scatter[cell.at]))
+    unit = "N m" if component in MOMENTS else "N"
+    found = number(float(table.forces[component][row]), 4)
+    return f"{component} = {found} {unit}, expected {number(expected, 4)} ± {number(scatter, 2)} {unit}"
+
+
+def _without(x: Array, y: Array, se: Array | None, at: NDArray[np.bool_]) -> origin_slope.OriginSlope:
+    return _slope(x[~at].tobytes(), y[~at].tobytes(), None if se is None else se[~at].tobytes())
+
+
+def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows: dict[int, _Row], limit: float) -> None:
+    """Rows whose components depart together as a wrong setting makes them, and which setting would suit all of them."""
+    sweeps: dict[tuple[str, bytes], dict[str, _Cell]] = {}
+    for (_, component), cell in cells.items():
+        sweeps.setdefault((cell.sweep.variable, cell.sweep.rows.tobytes()), {})[component] = cell
+    for (name, _), by_component in sweeps.items():
+        if len(by_component) < 2:
+            continue
+        first = next(iter(by_component.values())).sweep
+        y = np.array([table.primed_force(c, table.scaling.length)[first.rows] for c in by_component])
+        expected = np.array([c.seen.expected for c in by_component.values()])
+        scatter = np.array([c.seen.scatter for c in by_component.values()])
+        probability = np.array([c.seen.probability for c in by_component.values()])
+        signs = np.array(
+            [{Parity.ODD: -1.0, Parity.EVEN: 1.0, Parity.ANY: 0.0}[k.parity] for k in by_component.values()]
+        )
+        strange = data_gate.strange_settings(first.x, y, scatter, signs)
+        for at, other in strange.items():
+            said = rows.setdefault(int(first.rows[at]), _Row())
+            said.cells.append(f"{_setting(name, first.x[at])} lies by itself")
+            said.components += [c for c in by_component if c not in said.components]
+            if other is not None:
+                partner, mirror = _setting(name, first.x[other]), _setting(name, -first.x[other])
+                said.comments.append(
+                    f"{mirror} instead of {_setting(name, first.x[at])} makes it the image of {partner}."
+                )
+        p = data_gate.wrong_setting(first.x, y - expected, expected, scatter, probability)
+        for at, row in enumerate(first.rows):
+            if not any(cells[int(row), c].sweep.rows is by_component[c].sweep.rows for c in by_component):
+                continue
+            if p[at] < limit and int(row) not in rows:
+                said = rows.setdefault(int(row), _Row())
+                said.components += list(by_component)
+                said.cells += [
+                    _cell_text(table, c, int(row), _Cell(first, at, k.seen, k.parity)) for c, k in by_component.items()
+                ]
+                said.comments.append("No component is off by itself; together they are.")
+            if int(row) in rows and len(rows[int(row)].components) > 1 and at not in strange:
+                suits = data_gate.setting_that_suits(first.x, y[:, at], expected, scatter)
+                if suits is not None:
+                    rows[int(row)].comments.append(
+                        f"{_setting(name, suits)} instead of {_setting(name, first.x[at])} suits all components."
+                    )
+
+
+def _setting(name: str, x: float) -> str:
+    if name in ("alpha", "beta"):
+        return f"{ANGLE_OF[name]} = {np.degrees(np.arcsin(np.clip(x, -1.0, 1.0))):.1f} deg"
+    if name in ("dr", "ds", "db"):
+        return f"{name} {np.degrees(x):.1f} deg"
+    return f"{x:.3g} m/s" if name == "speed" else f"{name}' {x:.3g}"
+
+
+def _slopes(
+    table: ForceTable, tables: Sequence[ForceTable], length: float, again: NDArray[np.bool_], rows: dict[int, _Row]
+) -> None:
+    """Derivatives with and without the rows that fail, and rows that decide a derivative."""
+    for _, component, symbol, index, x, y, se, found in _estimates(table, tables, length):
+        for at, row in enumerate(map(int, index)):
+            if again[row] or not np.isfinite(found.value):
+                continue
+            left_out = not found.used[at] and found.wrong[at] > 0.0
+            decides = (
+                found.status is not origin_slope.Status.WRONG_POINT
+                and len(x) > FEWEST
+                and abs(found.without[at] - found.with_all) > found.u95
+            )
+            failed = row in rows and component in rows[row].components
+            if not (left_out or decides or failed):
+                continue
+            without = _without(x, y, se, np.arange(len(x)) == at)
+            decides = abs(without.value - found.with_all) > found.u95
+            if not (left_out or decides or failed):
+                continue
+            said = rows.setdefault(row, _Row())
+            said.values.append(
+                f"{primed(symbol)} = {number(found.with_all, 3)} with the row, {_value(without.value, without.u95)} without it"
+            )
+            if decides and not failed and not left_out:
+                said.comments.append(f"The row decides {primed(symbol)}: U95 of all rows is {number(found.u95, 2)}.")
+            elif left_out and not failed:
+                said.components.append(component)
+                said.comments.append(f"{primed(symbol)} leaves it out.")
+
+
+def _curvatures(table: ForceTable, cells: dict[tuple[int, str], _Cell], length: float, rows: dict[int, _Row]) -> None:
+    """X0 and Xvv, Xww, Xrr, Xqq with and without the rows whose X fails."""
+    for row, said in rows.items():
+        cell = cells.get((row, "X"))
+        if cell is None or "X" not in said.components or not cell.sweep.still or cell.sweep.variable not in EVEN:
+            continue
+        name, usual = cell.sweep.variable, table.scaling.length
+        x = cell.sweep.x * (length / usual if name in "qr" else 1.0)
+        y = table.primed_force("X", length)[cell.sweep.rows]
+        both = [rest_and_curvature(x[k], y[k]) for k in (np.ones(len(x), bool), np.arange(len(x)) != cell.at)]
+        for symbol, at in ((f"X{EVEN[name] * 2}", 1), ("X0", 0)):
+            if both[0][at] is None:
+                continue
+            said.values.append(
+                f"{primed(symbol)} = {number(both[0][at], 3)} with the row, {number(both[1][at], 3)} without it"
+            )
+
+
+def _as_check(table: ForceTable, row: int, said: _Row, readings: int) -> Check:
+    words = [*said.comments, *([] if said.values else ["No derivative at the origin uses it."])]
+    return Check(
+        "data_gate",
+        _where(table, row),
+        Severity.WARN,
+        "; ".join([*said.cells, *said.values]),
+        f"probability of so far a reading above {LEVEL:g}/{readings}"
+        if said.cells
+        else "no row moves a value by its U95",
+        " ".join([*words, ADVICE if said.cells else INFLUENTIAL]),
+    )
+
+
+ADVICE = "Compare the row with its source; name the cell under uncertain to leave it out."
+INFLUENTIAL = "Repeat the run."
+
+
+def _open_ends(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows: dict[int, _Row]) -> list[Check]:
+    found: dict[int, list[str]] = {}
+    for (row, component), cell in sorted(cells.items()):
+        if cell.seen.open_end[cell.at] and row not in rows:
+            found.setdefault(row, []).append(_cell_text(table, component, row, cell))
+    return [
+        Check("data_gate", _where(table, row), Severity.NOTE, "; ".join(texts), "the last setting of a sweep on one side",
+              "A curve that changes its slope here, as in stall, or a wrong reading: run a setting before it.")
+        for row, texts in found.items()
+    ]  # fmt: skip
+
+
+def _pasted(table: ForceTable, again: NDArray[np.bool_]) -> list[Check]:
+    """Exact copies of rows, and a half that mirrors the other."""
+    out = []
+    if again.any():
+        where = [str(table.lines[i]) if table.lines else table.labels[i] for i in np.flatnonzero(again)]
+        shown = listed(where) if len(where) <= MOST_LINES else f"{', '.join(where[:MOST_LINES])} ..."
+        several = again.sum() > 1 or len(table.forces) > 1
+        out.append(
+            Check("data_gate", table.name, Severity.WARN if several else Severity.NOTE,
+                  f"{int(again.sum())} rows repeat an earlier row to the last digit: line {shown}", "rows differ",
+                  "Copies are no repeats: they narrow intervals without new data. Delete them.")
+        )  # fmt: skip
+    if _is_mirrored(table, again):
+        out.append(
+            Check("data_gate", table.name, Severity.NOTE, "every row has its exact mirror image", "two sides measured",
+                  "One half is the other with signs changed: no new data, and no check by symmetry.")
+        )  # fmt: skip
+    return out
+
+
+def _is_mirrored(table: ForceTable, again: NDArray[np.bool_]) -> bool:
+    columns = dict(table.motion) | dict(table.controls) | dict(table.forces)
+    columns = {n: c for n, c in columns.items() if np.all(np.isfinite(c))}
+    side = [n for n in columns if n in PORT_STARBOARD]
+    matrix = np.column_stack([*columns.values(), table.speed])[~again]
+    sign = np.array([-1.0 if n in PORT_STARBOARD else 1.0 for n in columns] + [1.0])
+    size = np.where(np.abs(matrix).max(0) > 0.0, np.abs(matrix).max(0), 1.0)
+    digits = np.round(matrix / size, 12) + 0.0
+    moved = (
+        np.any(np.column_stack([columns[n] for n in side])[~again] != 0.0, axis=1)
+        if side
+        else np.zeros(len(matrix), bool)
+    )
+    known = {tuple(r) for r in digits}
+    return int(moved.sum()) > MIRRORED and all(tuple(r * sign + 0.0) in known for r in digits[moved])
+
+
+def _astern(table: ForceTable, ahead: NDArray[np.bool_]) -> list[Check]:
+    """Rows that run astern in a table that runs ahead."""
+    if not 0 < np.count_nonzero(~ahead) <= 0.2 * len(table):
+        return []
+    return [
+        Check("data_gate", _where(table, int(i)), Severity.WARN, "the row does not run ahead (u <= 0), the others do", "u > 0",
+              "An angle beyond 90 degrees: a slip of the decimal point?")
+        for i in np.flatnonzero(~ahead)
+    ]  # fmt: skip
+
+
+def _summary(campaign: str, readings: int, missed: int, found: Sequence[Check]) -> Check:
+    grave = sum(c.severity is Severity.WARN for c in found)
+    said = f"{readings - missed} of {readings} readings predicted from their sweep, {grave} warnings"
+    if missed:
+        return Check("data_gate", campaign, Severity.NOTE, said, "every reading in a sweep of at least five",
+                     f"{missed} readings are in no sweep of five in which one variable alone changes: nothing is known of them.")  # fmt: skip
+    severity = Severity.NOTE if grave else Severity.PASS
+    return Check(
+        "data_gate",
+        campaign,
+        severity,
+        said,
+        "every reading in a sweep of at least five",
+        "Each is compared with the others.",
+    )
+
+
+def check(study: Study) -> Sequence[Check]:
+    """One warning per row that does not belong or decides a value, campaign by campaign."""
+    out: list[Check] = []
+    for campaign in dict.fromkeys(t.campaign for t in study.tables):
+        tables = [t for t in study.tables if t.campaign == campaign]
+        out += findings(tables, (study.plan.scaling or tables[0].scaling).length)
+    return out
+
+
+def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
+    """Findings on the tables of one campaign.
+
+    Parameters
+    ----------
+    tables : sequence of ForceTable
+        Of one campaign.
+    length : float
+        Of the primes in which derivatives are given, m.
+    """
+    own = [_about_own(t) for t in tables]
+    shift = arm_shift(tables)
+    turned = [t.about(t.reference_point + np.array([shift, 0.0, 0.0])) for t in tables]
+    readings = max(sum(int(mask.sum()) for t in own for mask in t.usable.values()), 1)
+    out: list[Check] = []
+    missed = 0
+    for table, about in zip(own, turned, strict=True):
+        again = _copies(table)
+        ahead = table.motion["u"] > AHEAD * table.speed if _ahead_counts(table) else np.ones(len(table), dtype=bool)
+        cells = _screened(table, ~again & ahead, LEVEL / readings)
+        missed += sum(
+            int(np.count_nonzero(mask & ~again)) - sum(c == component for _, c in cells)
+            for component, mask in table.usable.items()
+        )
+        rows: dict[int, _Row] = {}
+        for (row, component), cell in cells.items():
+            if cell.seen.wrong[cell.at]:
+                said = rows.setdefault(row, _Row())
+                said.cells.append(_cell_text(table, component, row, cell))
+                said.components.append(component)
+        _shared_errors(table, cells, rows, SHARED / sum(map(len, tables)))
+        _slopes(about, turned, length, again, rows)
+        _curvatures(table, cells, length, rows)
+        out += [_as_check(table, row, said, readings) for row, said in sorted(rows.items())]
+        out += _open_ends(table, cells, rows)
+        out += _pasted(table, again)
+        out += _astern(table, ahead)
+    return (*out, _summary(tables[0].campaign, readings, missed, out))
