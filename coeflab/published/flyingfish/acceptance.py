@@ -74,7 +74,7 @@ def acceptance() -> Acceptance:
             _cold(fish, constants),
             _corrected(fish, constants),
             *carried(fish, flyingfish_file(fish)),
-            _air(fish),
+            air(fish),
         ),
         fish.errata,
         (
@@ -172,7 +172,7 @@ def _marched(fish: FlyingFish, moved: Vehicle) -> ComparedTable:
     )  # fmt: skip
 
 
-def _air(fish: FlyingFish) -> ComparedTable:
+def air(fish: FlyingFish) -> ComparedTable:
     """The printed damping in air against a fit to the table that was made of it."""
     tables = read_tables(PlannedTable(Path(str(shipped("cfd_data") / "flyingfish_air_synthetic")), ()))
     rows = []

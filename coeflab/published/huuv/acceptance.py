@@ -85,6 +85,7 @@ def turned(huuv: Huuv, file: ParameterFile) -> tuple[ComparedTable, ...]:
     return (
         _solved(huuv),
         _through_file(huuv, file),
+        _sides(huuv, file),
         _coriolis(huuv, file),
         _equations(huuv),
         _thrusters(file),
@@ -144,15 +145,30 @@ def _simulated(huuv: Huuv) -> ComparedTable:
     )
 
 
-def _through_file(huuv: Huuv, file: ParameterFile) -> ComparedTable:
-    made = vehicle(file, free=("u", "v", "r"))
-    turns = huuv.accepted
+def _by_file(huuv: Huuv, file: ParameterFile) -> Array:
+    """(n, 6) velocities that the vehicle of the parameter file settles at."""
+    made, turns = vehicle(file, free=("u", "v", "r")), huuv.accepted
     commands = [{"left": float(a), "right": float(b)} for a, b in zip(turns.left, turns.right, strict=True)]
-    found, _ = steady_motions(made, wrenches(made, commands))
+    return steady_motions(made, wrenches(made, commands))[0]
+
+
+def _through_file(huuv: Huuv, file: ParameterFile) -> ComparedTable:
     return ComparedTable(
-        "through_file", "The same from the parameter file huuv.parameters.json", _rows(huuv, found[:, [0, 1, 5]]),
+        "through_file", "The same from the parameter file huuv.parameters.json", _rows(huuv, _by_file(huuv, file)[:, [0, 1, 5]]),
         "equations 1, 5-7, 34-38", ("Tables C_D, C_S and C_n over beta, yaw damping over r, thrusters with a dead zone.",), "steady_turns",
     )  # fmt: skip
+
+
+def _sides(huuv: Huuv, file: ParameterFile) -> ComparedTable:
+    """Sizes alone would not notice a turn to the other side."""
+    turning = huuv.accepted.right > huuv.accepted.left
+    solved = steady_turns(huuv.theta, _wrench(huuv, huuv.accepted)).velocity
+    rows = tuple(
+        Compared(where, "turns to port, v to starboard", "1", float(np.sum(turning)),
+                 float(np.sum(turning & (v > 0.0) & (r < 0.0))), 0.0, Basis.CONSISTENCY)
+        for where, (v, r) in (("equations", solved[:, 1:].T), ("parameter file", _by_file(huuv, file)[:, [1, 5]].T))
+    )  # fmt: skip
+    return ComparedTable("sides", "Which side a larger right thruster turns to", rows, "equation 38, FLU", (SIGNS,))
 
 
 def _coriolis(huuv: Huuv, file: ParameterFile) -> ComparedTable:

@@ -265,10 +265,11 @@ def _cycle(gliders: dict[str, Flown]) -> ComparedTable:
     settled: list[float] = []
     for p in _published("published_speed"):
         run = gliders[p["case"]].run
-        index = next(i for i in range(len(run.ends)) if run.phase_of(i) == _dive(run.glider, p["stage"]))
-        speed, steady = float(run.speed[run.ends[index]]), run.nearest(index)
+        index = next((i for i in range(len(run.ends)) if run.phase_of(i) == _dive(run.glider, p["stage"])), None)
+        speed = None if index is None else float(run.speed[run.ends[index]])
         rows.append(Compared(_case(p), "V at the end", "m/s", float(p["V [m/s]"]), speed, SPEED, Basis.CALIBRATION))
-        if steady is not None:
+        steady = None if index is None else run.nearest(index)
+        if speed is not None and steady is not None:
             settled.append(abs(speed - steady.speed))
     far = max([SETTLED, *settled])  # no finer than that, so that every machine says the same
     return ComparedTable(
@@ -326,13 +327,10 @@ def _gains(gliders: dict[str, Flown]) -> ComparedTable:
     for stage, printed in (("1", 28.0), ("2", 25.58)):
         found = 100.0 * (known["02", stage] / known["01", stage] - 1.0)
         rows.append(Compared(f"stage {stage}", "gain of the printed speeds", "%", printed, found, 0.005, Basis.PRINTED))
-        ours = {
-            c: next(s.speed for s in steady_glides(gliders[c].run.glider, _dive(gliders[c].run.glider, stage)))
-            for c in ("01", "02")
-        }
-        found = 100.0 * (ours["02"] / ours["01"] - 1.0)
+        ours = [steady_glides(g, _dive(g, stage)) for g in (gliders[c].run.glider for c in ("01", "02"))]
+        gain = 100.0 * (ours[1][0].speed / ours[0][0].speed - 1.0) if all(ours) else None
         rows.append(
-            Compared(f"stage {stage}", "gain of our steady speeds", "%", printed, found, GAIN, Basis.CALIBRATION)
+            Compared(f"stage {stage}", "gain of our steady speeds", "%", printed, gain, GAIN, Basis.CALIBRATION)
         )
     return ComparedTable(
         "gains", "Gain in speed, the two printed numbers swapped back", tuple(rows), "Section 5",
