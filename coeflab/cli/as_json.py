@@ -22,7 +22,7 @@ from coeflab.formats.loss import Loss
 from coeflab.law.coefficient import COVERS, Coefficient
 from coeflab.law.symbols import ANGULAR, primed
 from coeflab.motion.manoeuvre import Figure, Simulation
-from coeflab.report.acceptance import Acceptance
+from coeflab.report.acceptance import Acceptance, Held, held, held_of_study
 from coeflab.study.study import Study
 from coeflab.vehicle.inertia import WaterInertia
 
@@ -168,6 +168,11 @@ def finding(c: Check) -> dict[str, str]:
     }  # fmt: skip
 
 
+def numbers(found: Held) -> dict[str, dict[str, int]]:
+    """How many numbers of each basis there are and hold; only the first two bases validate anything."""
+    return {b.value: {"count": count, "hold": good} for b, (good, count) in found.items()}
+
+
 def study(s: Study, files: list[str]) -> dict[str, Any]:
     """A whole study."""
     scalings = {f.campaign: str(f.coefficients.scaling) for f in s.fits}
@@ -176,6 +181,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
         "study": s.plan.name,
         "passed": not s.failed,
         "u95_of_slopes_covers": COVERS,
+        "numbers": numbers(held_of_study(s)),
         "coefficients": [coefficient(c, scalings.get(c.campaign or "", common)) for c in s.coefficients],
         "models": [model(m) for f in s.fits for m in f.models],
         "poolings": [pooling(f.campaign, p) for f in s.fits for p in f.poolings],
@@ -240,7 +246,7 @@ def acceptance(found: Acceptance) -> dict[str, Any]:
         "name": found.name,
         "title": found.title,
         "passed": found.holds,
-        "numbers": {b.value: count for b, count in found.counts.items()},
+        "numbers": numbers(held(found)),
         "tables": {
             t.key: {
                 "title": t.title,

@@ -52,6 +52,7 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False)
 
 def summarise(study: Study) -> None:
     """Comparison, coefficients, fitted models and grave findings."""
+    from coeflab.report.acceptance import headline, held_of_study
     from coeflab.report.tables import formats as format_tables
     from coeflab.report.tables import models as joint_tables
     from coeflab.report.tables import models as model_tables
@@ -85,6 +86,8 @@ def summarise(study: Study) -> None:
     judged = [c.passed for c in study.comparisons if c.passed is not None]
     if judged:
         show.text(f"Verdict: {sum(judged)} of {len(judged)} re-analysed coefficients agree within U95.")
+        for line in headline(held_of_study(study)):
+            show.text(line)
 
 
 def findings(found: Sequence[Check]) -> None:

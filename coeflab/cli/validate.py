@@ -55,12 +55,15 @@ def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
     else:
         show.text(found.title)
         show.text()
+        for line in acceptance_document.headline(found):
+            show.text(line)
+        show.text()
         for table in acceptance_tables.tables(found):
             show.table(table)
         show.table(acceptance_tables.errata(found))
         for line in found.statements:
             show.text(line)
-        for line in (*(f"Parameter file: {note}" for note in found.file_notes), *acceptance_document.headline(found)):
+        for line in (f"Parameter file: {note}" for note in found.file_notes):
             show.text(line)
         bare = [p.name for p in found.parameter_files if not p.measured]
         if bare:

@@ -103,6 +103,7 @@ WORKS: dict[str, str] = {
     "proposal for repairing it, Bayesian Analysis 12, 2017.",
     "hurvich1989": "C. M. Hurvich, C.-L. Tsai, Regression and time series model selection in small samples, "
     "Biometrika 76, 1989.",
+    "ittc_water": "ITTC, Fresh Water and Seawater Properties, recommended procedure 7.5-02-01-03, revision 02, 2011.",
     "ittc_uncertainty": "ITTC, Uncertainty Analysis in CFD, Verification and Validation, recommended procedure 7.5-03-01-01, 2008, "
     "and Uncertainty Analysis for Manoeuvring Predictions based on Captive Manoeuvring Tests, 7.5-02-06-04, 2014.",
     "tj_flyingfish": "Modeling and operating point analysis for aquatic translational motion of a cross-medium vehicle "

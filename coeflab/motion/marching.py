@@ -18,7 +18,7 @@ from coeflab.core.types import Array, brief, locked
 from coeflab.law.force_law import ForceLaw
 from coeflab.law.rigid_body import momentum_quadratics, rigid_body_inertia
 from coeflab.law.symbols import CONTROLS
-from coeflab.motion.dynamics import Dynamics, forms_of_pairs
+from coeflab.motion.dynamics import VELOCITY, Dynamics, forms_of_pairs, rates_of_one
 from coeflab.motion.integrators import fixed_step as plain
 from coeflab.motion.integrators.adaptive import march_adaptive
 from coeflab.motion.integrators.fixed_step import fast_eigenvalues, largest_step
@@ -151,6 +151,32 @@ class Ensemble:
 def alone(vehicle: Vehicle) -> Ensemble:
     """An ensemble of one."""
     return Ensemble(vehicle, vehicle.law.coefficient[None, :])
+
+
+def integrated_forces(vehicle: Vehicle, nu: Array, attitude: Array, wrench: Array) -> Array:
+    """Forces along the free motions behind the rates that the integrators march, (2, n, 6): of arrays, and of plain numbers.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+    nu : (n, 6) array
+        Velocities; those held are not accelerated and have no force.
+    attitude : (n, 4) array
+    wrench : (n, 6) array
+        Of the thrusters.
+    """
+    n, dynamics = len(nu), alone(vehicle).dynamics(STILL)
+    state = np.column_stack([np.zeros((n, 3)), attitude, nu, np.zeros(n)])
+    one = rates_of_one(dynamics)
+    singly = [one(s.tolist(), [0.0, 0.0, 0.0], w.tolist()) for s, w in zip(state, wrench, strict=True)]
+    both = np.array([dynamics.rates(state.T, np.zeros((3, n)), wrench.T).T, singly])[..., VELOCITY]
+    return np.asarray(both @ vehicle.effective_mass.T)
+
+
+def idle(vehicle: Vehicle) -> Vehicle:
+    """The same body without damping, weight and buoyancy: inertia alone, which does no work."""
+    law = replace(vehicle.law, coefficient=np.zeros_like(vehicle.law.coefficient))
+    return replace(vehicle, law=law, hydrostatics=vehicle.hydrostatics.model_copy(update={"gravity": 0.0}))
 
 
 KERNELS = ("auto", "numpy", "compiled")

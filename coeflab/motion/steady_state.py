@@ -256,15 +256,17 @@ def inertia(theta: Array) -> Array:
     return np.array([[m + mx, 0.0, 0.0], [0.0, m + my, myr], [0.0, myr, turning]])
 
 
-def coriolis(theta: Array, velocity: Array) -> Array:
-    """(n, 3, 3) matrices C of the inertia, rigid body and added, skew-symmetric: -C nu are the inertia's forces."""
-    m, mx, my, myr = theta[:4]
+INERTIAL = slice(0, 5)  # of the coefficients: m, mx, my, myr and inertia, whose forces are products of velocities
+
+
+def kirchhoff(theta: Array, velocity: Array) -> Array:
+    """(n, 3) forces of the inertia in steady motion by Kirchhoff's equations, from its kinetic energy alone (Lamb 1932, 124).
+
+    With the momenta (P, Q, H) = M (u, v, r) they are (r Q, -r P, v P - u Q).
+    """
     u, v, r = velocity.T
-    out = np.zeros((len(velocity), 3, 3))
-    out[:, 0, 2] = -(m + my) * v - myr * r
-    out[:, 1, 2] = (m + mx) * u
-    out[:, 2, 0], out[:, 2, 1] = -out[:, 0, 2], -out[:, 1, 2]
-    return out
+    p, q, _ = inertia(theta) @ velocity.T
+    return np.column_stack([r * q, -r * p, v * p - u * q])
 
 
 def features(velocity: Array) -> tuple[Array, Array]:

@@ -93,8 +93,9 @@ def thauv_file(glider: Glider) -> ParameterFile:
         glider.name, glider.title, UNIT, SEA, {}, datum=Datum("cb"), matrix=added,
         mass=MassProperties(THAUV_MASS, THAUV_MASS * float(centre[0]), m.pitch_inertia, centre),
         notes=(
-            "Polar of Table 3, printed. m3 - m1 and the moments of the masses are calibrated on the six published speeds; surge "
-            "added mass, moment of inertia and pitch damping are assumed. Length and speed of the primes are chosen.",
+            "Polar of Table 3, printed. m3 - m1 and the moments of the masses are calibrated on the six published speeds, pitch "
+            "damping on the printed 170 s until a dive is steady; surge added mass and moment of inertia are assumed. Length and "
+            "speed of the primes are chosen.",
             "Only surge, heave and pitch are described: hold v, p and r.",
             "The format holds neither sliding masses nor a buoyancy engine: this is the vehicle at neutral buoyancy with its masses "
             "amidships, which does not glide by itself. `coeflab glide thauv` moves them.",

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from coeflab.core.table import ABSENT, Table
 from coeflab.core.types import brief
+from coeflab.study.study import Study
+from coeflab.study.validation import printed_indices, validations
 
 if TYPE_CHECKING:
     from coeflab.vehicle.parameter_file import ParameterFile
@@ -202,6 +204,42 @@ class Acceptance:
     def counts(self) -> dict[Basis, int]:
         """How many numbers there are of each basis, in the order of `Basis`."""
         return {b: sum(r.basis is b for r in self.numbers) for b in Basis}
+
+
+Held = dict[Basis, tuple[int, int]]
+
+
+def held(acceptance: Acceptance) -> Held:
+    """How many numbers of each basis hold, and how many there are."""
+    rows = acceptance.numbers
+    return {b: (sum(r.holds for r in rows if r.basis is b), count) for b, count in acceptance.counts.items()}
+
+
+def held_of_study(study: Study) -> Held:
+    """The same of a plan: computed against measured coefficients are predicted, published evaluations of its data recomputed.
+
+    The numbers of other bodies have no verdict and do not count.
+    """
+    predicted = [v.within for v in validations(study, study.budgets) if v.within is not None]
+    printed = [c.passed for c in study.comparisons if c.passed is not None]
+    printed += [i.holds for i in printed_indices(study)]
+    found = {Basis.PREDICTED: predicted, Basis.PRINTED: printed}
+    return {b: (sum(found.get(b, ())), len(found.get(b, ()))) for b in Basis}
+
+
+def headline(numbers: Held) -> tuple[str, str]:
+    """How many numbers hold by basis, and how many of them validate anything: two sentences."""
+    every = [sum(pair[k] for pair in numbers.values()) for k in (0, 1)]
+    by_basis = ", ".join(f"{good} of {count} {b}" if count else f"0 {b}" for b, (good, count) in numbers.items())
+    first = f"{every[0]} of {every[1]} numbers within what is allowed: {by_basis}."
+    good, count = (sum(pair[k] for b, pair in numbers.items() if b.validates) for k in (0, 1))
+    if count:
+        second = f"Validation rests on {count} of them, predicted or printed and recomputed, of which {good} hold."
+    else:
+        second = (
+            "Nothing here is validation: no number of the paper is predicted, and none that it prints is recomputed."
+        )
+    return first, second
 
 
 def tables(acceptance: Acceptance) -> tuple[Table, ...]:

@@ -24,6 +24,7 @@ from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import primed
+from coeflab.report.acceptance import headline, held_of_study
 from coeflab.report.document import Document, Section
 from coeflab.report.figures.svg import settings
 from coeflab.report.notation import keeping, users_texts
@@ -185,6 +186,7 @@ def _re_analysis(study: Study) -> list[str]:
     if len(ours) > len(judged):
         rest = listed([_named(c) for c in ours if c.passed is None])
         out.append(f"No verdict could be given for {rest}, which has no U95.")
+    out.append(" ".join(headline(held_of_study(study))))
     out.append(
         "This is a re-analysis: both sides use the same measurements. A pass says that the evaluation reproduces the "
         "published one within its stated uncertainty; it says nothing on whether the measurements are right."

@@ -15,6 +15,71 @@ from coeflab.core.types import brief
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.study.study import Study
+from coeflab.vehicle.derived import INDICES, index_gradient, stability_index
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class PrintedIndex:
+    """A stability index as its source prints it, and made anew of the derivatives that it prints beside.
+
+    Attributes
+    ----------
+    name, reference, parameter_file : str
+        The mass is that of the parameter file.
+    printed, found : float
+    allowed : float
+        What rounding of the printed digits can do, half of the last one of each.
+    """
+
+    name: str
+    reference: str
+    parameter_file: str
+    printed: float
+    found: float
+    allowed: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether rounding explains the difference."""
+        return abs(self.found - self.printed) <= self.allowed
+
+
+def printed_indices(study: Study) -> tuple[PrintedIndex, ...]:
+    """Every index that a re-analysed source prints with all its derivatives, by the mass of its body's parameter file."""
+    out = []
+    for r in study.references:
+        file = next(
+            (
+                p for p in study.parameter_files.values()
+                if p.body == r.body and p.mass is not None and {c.campaign for c in p.coefficients} & set(r.campaigns)
+            ),
+            None,
+        )  # fmt: skip
+        stated = {v.symbol: v for v in (*r.values, *(v for kind in r.literature for v in kind.values))}
+        for index in r.indices:
+            *symbols, sign = INDICES[index.symbol]
+            chosen = [
+                v for s in symbols if (v := stated.get(str(s).removesuffix("'"))) is not None and v.value is not None
+            ]
+            if file is None or file.mass is None or index.value is None or len(chosen) < len(symbols):
+                continue
+            slope, lever, rate, moment_rate = (float(v.value or 0.0) for v in chosen)
+            mass, moment = float(sign) * file.mass.mass_prime, file.mass.mass_moment_prime
+            gradient = np.abs(index_gradient(slope, lever, rate, moment_rate, mass, moment))
+            places = np.array([_half_a_digit(v.printed) for v in chosen])
+            allowed = gradient @ places + gradient[2] * places[2] + _half_a_digit(index.printed)  # m' as Yr'
+            value = stability_index(
+                np.array(slope), np.array(lever), np.array(rate), np.array(moment_rate), mass, moment
+            )
+            out.append(PrintedIndex(index.symbol, r.name, file.name, index.value, float(value), float(allowed)))
+    return tuple(out)
+
+
+def _half_a_digit(printed: str) -> float:
+    """Half of the last digit of a number without exponent."""
+    return 0.5 * 10.0 ** -len(printed.partition(".")[2])
+
 
 NUMERICAL = ("random", "grid")
 REDUCTION = ("model form", "random and model form")

@@ -29,7 +29,7 @@ from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
 from coeflab.vehicle.imperial_units import displaced, gravity, gyration, water
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.second_order import products_once
+from coeflab.vehicle.second_order import products_once, slot
 
 # A product u v over the ideal fluid's; a linear term over it is a speed, m/s.
 SIMILAR = (0.5, 2.0)
@@ -212,7 +212,8 @@ def _asymmetry(matrix: Array) -> list[Check]:
 
 PLANES = (("Y", "N", 1, 5), ("Z", "M", 2, 4))
 SMALLEST = {1: 0.15, 2: 0.05}
-MIRRORED = (("Nv", "Mw"), ("Nuv", "Muw"), ("Yr", "Zq"), ("Yur", "Zuq"))
+OPPOSITE = (("Nv", "Mw"), ("Nuv", "Muw"), ("Nv|v|", "Mw|w|"), ("Yr", "Zq"), ("Yur", "Zuq"), ("Yr|r|", "Zq|q|"))
+EQUAL = (("Yv", "Zw"), ("Yuv", "Zuw"), ("Nr", "Mq"), ("Nur", "Muq"))
 ALIKE = 0.01
 
 
@@ -238,7 +239,7 @@ def damping_findings(p: ParameterFile, signs: str = "") -> list[Check]:
         )
     elif not any(c.severity is Severity.FAIL for c in out):
         out.append(_damping_check("damping", Severity.PASS, f"{len(own)} terms of a motion on itself", "below zero"))
-    return [*out, *_rates(p, own), *_mirrored(p)]
+    return [*out, *_rates(p, own), *_mirrored(p), *_ideal_products(p)]
 
 
 def _damping_check(subject: str, severity: Severity, statistic: str, rule: str, comment: str = "") -> Check:
@@ -301,25 +302,61 @@ def _rates(p: ParameterFile, own: list[_Own]) -> list[Check]:
 
 
 def _mirrored(p: ParameterFile) -> list[Check]:
-    """Yaw and pitch of the same size and sign, which x forward, y starboard, z down turn against each other."""
-    found = []
-    for a, b in MIRRORED:
-        first, second = p.coefficient(a), p.coefficient(b)
-        if first and second and first.value_si and second.value_si and _alike(first.value_si, second.value_si):
-            found.append((f"{a} and {b}", first.value_si, second.value_si))
+    """Yaw and pitch of one size, where x forward, y starboard, z down set what couples the two planes against each other."""
+    opposite, equal = (
+        [_same_size(p, a, b, sign) for a, b in pairs] for pairs, sign in ((OPPOSITE, 1.0), (EQUAL, -1.0))
+    )
     matrix = np.nan_to_num(stated_matrix(p))
     if matrix[1, 5] and _alike(matrix[1, 5], matrix[2, 4]):
-        found.append(("M_A Yr and Zq", matrix[1, 5], matrix[2, 4]))
-    if not found:
+        opposite.append(("M_A Yr and Zq", matrix[1, 5], matrix[2, 4]))
+    out = []
+    for wrong, rule, comment in (
+        (
+            opposite,
+            "of opposite signs",
+            "A body alike in both planes has them opposite with z down (FRD). Were the planes copied from different axes?",
+        ),
+        (equal, "of one sign", "A body alike in both planes has them equal with z down (FRD): a sign is wrong."),
+    ):
+        found = [f for f in wrong if f is not None]
+        if found:
+            pairs, values = (
+                "; ".join(x) for x in zip(*((n, f"{x:.4g} and {y:.4g}") for n, x, y in found), strict=True)
+            )
+            out.append(_damping_check(pairs, Severity.WARN, values, rule, comment))
+    return out
+
+
+def _same_size(p: ParameterFile, a: str, b: str, sign: float) -> tuple[str, float, float] | None:
+    """Both values where the second is ``sign`` times the first."""
+    first, second = p.coefficient(a), p.coefficient(b)
+    if first and second and first.value_si and second.value_si and _alike(first.value_si, sign * second.value_si):
+        return f"{a} and {b}", first.value_si, second.value_si
+    return None
+
+
+def _ideal_products(p: ParameterFile) -> list[Check]:
+    """Stated products of two velocities that have the size of Kirchhoff's for the stated added mass, and the other sign."""
+    stated = np.nan_to_num(stated_matrix(p))
+    ideal = products_once(ideal_quadratics((stated + stated.T) / 2.0))
+    wrong, right = [], 0
+    for t in force_law(p).terms:
+        match slot(t):
+            case ("signed", j, k) if j:  # with u they hold what separates and lifts too
+                theory = float(ideal[COMPONENTS.index(t.component), j, k])
+                right += _alike(t.coefficient, theory, MISTYPED)
+                if _alike(t.coefficient, -theory, MISTYPED):
+                    wrong.append((primed(t.symbol), t.coefficient, theory))
+    if not wrong or not right:  # all of them reversed is a simulator's own convention
         return []
     return [_damping_check(
-        "; ".join(f[0] for f in found), Severity.WARN, "; ".join(f"{x:.4g} and {y:.4g}" for _, x, y in found), "of opposite signs",
-        "A body alike in both planes has them opposite with z down (FRD). Were the planes copied from different axes?",
+        ", ".join(w[0] for w in wrong), Severity.WARN, "; ".join(f"{x:.4g}, by the added mass {y:.4g}" for _, x, y in wrong),
+        "Kirchhoff's equations", "Of the size that the added mass gives, and the other sign: a sign is wrong.",
     )]  # fmt: skip
 
 
-def _alike(a: float, b: float) -> bool:
-    return abs(a - b) <= ALIKE * max(abs(a), abs(b))
+def _alike(a: float, b: float, within: float = ALIKE) -> bool:
+    return abs(a - b) <= within * max(abs(a), abs(b)) and a * b != 0.0
 
 
 SMALL = 1e-4  # of the speed: a slope at zero, by central difference

@@ -19,9 +19,11 @@ BLUEROV = (DATA / "bluerov2_heavy.yml").read_text(encoding="utf-8")
 BLUEROV_M = (DATA / "bluerov2_heavy.m").read_text(encoding="utf-8")
 KNOWN = ["lauv.urdf.xacro", "rexrov.urdf", "tethys_like.sdf", "nps_auv2.m", "bluerov2_heavy.m", "bluerov2_heavy.yml",
          "torpedo_imperial.m"]  # fmt: skip
+# Healey and Lienard print Mvp' with the sign of Yrdot'; by Kirchhoff's equations it is -Yrdot'.
 FORMAT = {"<quadratic_damping>", "<disable_coriolis>"}
 WELL_KNOWN = {"rexrov.urdf": {"M_A Zr and Nw"}, "lauv.urdf.xacro": {"<quadratic_damping>"},
-              "tethys_like.sdf": {"<disable_coriolis>"}}  # fmt: skip
+              "tethys_like.sdf": {"<disable_coriolis>"},
+              "nps_auv2.m": {"Mvp'"}}  # fmt: skip
 
 
 def found(folder: Path, text: str, name: str = "model.txt") -> list[Check]:

@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 from coeflab.core.types import Array
 from coeflab.motion.steady_state import (
     COEFFICIENTS,
-    coriolis,
+    INERTIAL,
     features,
     inertia,
+    kirchhoff,
     run,
     sensitivities,
     steady_turns,
@@ -74,12 +75,11 @@ def test_port_is_the_mirror_of_starboard(u: float, v: float, r: float) -> None:
     assert there == pytest.approx(here * [1.0, -1.0, -1.0], rel=1e-12, abs=1e-12)
 
 
-def test_coriolis_is_skew_and_is_what_the_inertia_does() -> None:
-    bare = THETA * np.isin(COEFFICIENTS, ("m", "mx", "my", "myr", "inertia"))
-    matrix = coriolis(THETA, STATES)
-    assert np.max(np.abs(matrix + np.swapaxes(matrix, 1, 2))) == 0.0
-    forces = features(STATES)[0] @ bare
-    assert np.einsum("nij,nj->ni", -matrix, STATES) == pytest.approx(forces, rel=1e-12, abs=1e-12)
+def test_the_products_that_turn_a_vehicle_follow_from_its_kinetic_energy() -> None:
+    """Of the forces that steady turns are computed with; a copy in a matrix of its own was what a check once looked at."""
+    forces = features(STATES)[0][:, :, INERTIAL] @ THETA[INERTIAL]
+    assert kirchhoff(THETA, STATES) == pytest.approx(forces, rel=1e-12, abs=1e-12)
+    assert np.sum(forces * STATES, axis=1) == pytest.approx(np.zeros(len(STATES)), abs=1e-12)
     assert inertia(THETA) == pytest.approx(inertia(THETA).T)
 
 

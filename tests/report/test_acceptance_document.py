@@ -61,7 +61,7 @@ def test_parts_without_content_are_left_out():
 
 def test_the_verdict_counts_and_names_what_fails():
     assert acceptance_document.verdict(found(2.05)).paragraphs[0] == (
-        "3 of 3 numbers within what is allowed: 0 predicted, 2 printed and recomputed, 1 calibration, 0 consistency."
+        "3 of 3 numbers within what is allowed: 0 predicted, 2 of 2 printed and recomputed, 1 of 1 calibration, 0 consistency."
     )
     failed = acceptance_document.verdict(found(2.5))
     assert failed.paragraphs[0].startswith("2 of 3 numbers within what is allowed: ")

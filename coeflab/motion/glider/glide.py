@@ -157,6 +157,16 @@ class GlideRun:
         found = steady_glides(self.glider, self.phase_of(index))
         return min(found, key=lambda g: abs(g.speed - speed), default=None)
 
+    def settling(self, index: int) -> float | None:
+        """Time from the start of a phase until the speed stays within 1 % of the steady one, s; None where it does not."""
+        steady, last = self.nearest(index), self.ends[index]
+        first = self.ends[index - 1] if index else 0
+        if steady is None:
+            return None
+        apart = np.flatnonzero(np.abs(self.speed[first : last + 1] / steady.speed - 1.0) > SETTLED)
+        row = first + (int(apart[-1]) + 1 if len(apart) else 0)
+        return float(self.time[row] - self.time[first]) if row <= last else None
+
     def settled(self, index: int) -> bool:
         """Whether a phase ends within 1 % of the speed of a steady glide, the engine at rest."""
         steady, row = self.nearest(index), self.ends[index]

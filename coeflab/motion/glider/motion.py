@@ -278,6 +278,38 @@ def rates(body: GliderBody, leg: Leg) -> Rates:
     return of
 
 
+def unexplained_power(body: GliderBody, setting: Setting, states: Array) -> tuple[float, float]:
+    """What `rates` do that no force explains: power, W, and velocity over ground, m/s; zero for the right equations.
+
+    The kinetic energy (v1 P1 + v3 P3 + q H) / 2, with that of weight, buoyancy and their moments, changes by the work of drag
+    and of the pitch moment alone: inertia and lift do none. Over ground the reference point moves by V cos(zeta) and -V sin(zeta).
+
+    Parameters
+    ----------
+    body : GliderBody
+    setting : Setting
+        Held, so that the sliding mass does no work.
+    states : (n, 4) array
+        theta, rad, v1 and v3, m/s, and q, rad/s.
+    """
+    polar, of = body.polar, rates(body, Leg(0.0, 1.0, setting, Setting(0.0, 0.0)))
+    weight, (ahead, below) = setting.net_mass * body.gravity, body.moments(*setting)
+    doubled = body.heave - body.surge if body.holds_munk else 0.0
+    power = drift = 0.0
+    for theta, v1, v3, q in states.tolist():
+        at = [0.0, 0.0, theta, *momentum(body, (v1, v3, q), setting.position, 0.0)]
+        x, depth, turn, p1, p3, h = of(0.0, np.array(at))
+        speed, alpha = math.hypot(v1, v3), math.atan2(v3, v1)
+        stored = v1 * p1 + v3 * p3 + q * h - weight * depth
+        stored += (ahead * math.cos(theta) + below * math.sin(theta)) * turn
+        moment = (polar.moment[0] + polar.moment[1] * alpha) * speed**2 - polar.damping * speed * q - doubled * v1 * v3
+        work = moment * q - (polar.drag[0] + polar.drag[1] * alpha**2) * speed**3
+        power = max(power, abs(stored - work))
+        zeta = theta - alpha
+        drift = max(drift, math.hypot(x - speed * math.cos(zeta), depth + speed * math.sin(zeta)))
+    return power, drift
+
+
 def eigenvalues(body: GliderBody, setting: Setting, speed: float, alpha: float, theta: float) -> Array:
     """(4,) complex eigenvalues, 1/s, of a steady glide under small disturbances of theta and the momenta."""
     of = rates(body, Leg(0.0, 1.0, setting, Setting(0.0, 0.0)))

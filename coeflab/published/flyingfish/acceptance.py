@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
+from coeflab.core.files import shipped
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
+from coeflab.fits import FITS
+from coeflab.law.symbols import COMPONENTS, MOTIONS
+from coeflab.motion.dynamics import from_euler
+from coeflab.motion.marching import idle, integrated_forces
 from coeflab.motion.trim.operating_point import OperatingPoint
+from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.published.flyingfish.figures import figures
 from coeflab.published.flyingfish.model import (
     CONSTANTS,
     DEGREE,
+    ROTORS,
     RPM,
     UNKNOWNS,
     FlyingFish,
@@ -21,6 +30,8 @@ from coeflab.published.flyingfish.model import (
 )
 from coeflab.published.parameter_files import flyingfish_file
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
+from coeflab.tables.importers import PlannedTable, read_tables
+from coeflab.vehicle.parameter_file import ParameterFile
 
 FORCES, MOMENTS = 5e-4, 1.5e-4
 TAUGHT, TOLD = (0, 1, 8, 9), (2, 3, 4, 5, 6, 7)
@@ -28,6 +39,10 @@ LEVEL, ISOLATED = (0, 3, 4), (1, 6, 9)
 CORRECTED = (79.869, -75.109, 0.051, 0.146, 2075.18, 2082.07, 624.00, 250.51)
 DERIVED = {"net_weight": 5e-5, "mass": 5e-5, "buoyancy_moment": 5e-5, "arm_length": 5e-6, "rotor_height": 5e-6}
 UNITS = {"net_weight": "N", "mass": "kg", "buoyancy_moment": "N m", "arm_length": "m", "rotor_height": "m"}
+EQUATION_47, EQUATION_48 = (6.0e-4, 2.5604e-7), (1.81713e-7, 5.1233e-9)
+EQUATION_50 = ((0.0998, 0.1658, 0.0064, 0.0032, 0.0008, 0.0029), (18.2222, 15.8047, 24.7142, 0.0489, 0.1554, 0.1872))
+RPMS, SAME, ROUNDED, AIR = (200.0, 2000.0), 1e-9, 5e-5, 0.005
+MARCHED, FINEST, TURNING, SEED = 1e-9, 1e-10, 100, 20260101  # no finer, so that every machine says the same
 CONVENTIONS = (
     "Reference point: the centre of gravity. Rotors 1 and 2 stand on arms to starboard and port, 3 and 4 ahead and astern.",
     "Tilts beta turn a rotor about its own arm, right-handed about the arm outward: at none the thrust points down, along z. The "
@@ -53,13 +68,13 @@ def acceptance() -> Acceptance:
         "flyingfish",
         "TJ-FlyingFish, four tilting rotors: ten operating points under water",
         (
-            _constants(fish, constants),
-            _residuals(fish, constants),
-            _predicted(fish),
+            *implied(fish, constants),
             nearest,
             _families(fish, constants),
             _cold(fish, constants),
             _corrected(fish, constants),
+            *carried(fish, flyingfish_file(fish)),
+            air(fish),
         ),
         fish.errata,
         (
@@ -72,6 +87,111 @@ def acceptance() -> Acceptance:
         CONVENTIONS,
         (flyingfish_file(fish),),
     )
+
+
+def implied(fish: FlyingFish, constants: Array) -> tuple[ComparedTable, ...]:
+    """What Table 1 implies, what the equations leave at its points, and what four of them predict of the others."""
+    return _constants(fish, constants), _residuals(fish, constants), _predicted(fish)
+
+
+def carried(fish: FlyingFish, file: ParameterFile) -> tuple[ComparedTable, ...]:
+    """The parameter file: its laws against the printed ones, and the rates that integrators march against equations 35-56."""
+    moved = vehicle(file)
+    return _laws(moved), _marched(fish, moved)
+
+
+def _laws(moved: Vehicle) -> ComparedTable:
+    nu = np.concatenate([np.eye(6), 2.0 * np.eye(6)])
+    force = moved.force(nu, np.zeros((12, 3)))
+    rows = [
+        Compared(f"{many * nu[row, k]:g} {unit}", f"{component} of {motion}", "N" if k < 3 else "N m",
+                 -(linear + quadratic * size) * size, float(force[row, k]), SAME, Basis.CONSISTENCY, True)
+        for row, size in enumerate(np.repeat((1.0, 2.0), 6))
+        for k, (component, motion, linear, quadratic) in enumerate(zip(COMPONENTS, MOTIONS, *EQUATION_50, strict=True))
+        for many, unit in ((1.0, "m/s" if k < 3 else "rad/s"),)
+        if nu[row, k]
+    ]  # fmt: skip
+    for rotor in moved.thrusters:
+        for speed in RPMS:
+            torque = 0.0 if rotor.torque_curve is None else rotor.torque_curve.at(speed)
+            thrust = float(rotor.curve.at(speed))
+            found = (
+                ("thrust", "N", EQUATION_47, thrust, ROUNDED * speed),
+                ("torque", "N m", EQUATION_48, torque, SAME),
+            )
+            rows += [
+                Compared(f"{rotor.name}, {speed:g} rpm", name, unit, linear * speed + quadratic * speed**2, float(value), within,
+                         Basis.CONSISTENCY)
+                for name, unit, (linear, quadratic), value, within in found
+            ]  # fmt: skip
+    return ComparedTable(
+        "laws", "Damping and rotors of the parameter file", tuple(rows), "Equations 47, 48 and 50",
+        ("The printed numbers typed a second time: they prove the way into the file, not the model.",
+         "Thrust: half of the one digit that equation 47 prints of its linear factor, 0.0006, is allowed."),
+    )  # fmt: skip
+
+
+def _marched(fish: FlyingFish, moved: Vehicle) -> ComparedTable:
+    """Both planes of every motion of Table 1, upright to 45 deg: weight, buoyancy, rotors, damping and inertia at once."""
+    n, motion = len(fish.motion), fish.motion
+    nu, attitude = np.zeros((n, 6)), np.array([from_euler(roll, pitch, 0.0) for roll, pitch in motion[:, 3:]])
+    nu[:, (0, 2, 5)] = motion[:, :3]
+    orders = [
+        {f"rotor{name}": float(speed[i]) for i, name in enumerate(ROTORS)}
+        | {f"rotor{name}.tilt": float(tilt[i]) for i, name in enumerate(ROTORS)}
+        for tilt, speed in zip(fish.angles, fish.speeds, strict=True)
+    ]
+    constants = np.array([fish.constants[name] for name in CONSTANTS])
+    wanted = steady_residuals(fish.rotors, constants, motion, fish.angles, fish.speeds, lever=-1.0)
+    found = integrated_forces(moved, nu, attitude, np.array([moved.wrench(o) for o in orders]))
+    apart = np.max(np.abs(found - wanted), axis=0)
+    rows = [
+        Compared(
+            f"motion {row + 1}",
+            what,
+            unit,
+            0.0,
+            max(float(np.max(apart[row, part])), FINEST),
+            MARCHED,
+            Basis.CONSISTENCY,
+        )
+        for row in range(n)
+        for what, unit, part in (("force apart", "N", slice(0, 3)), ("moment apart", "N m", slice(3, 6)))
+    ]
+    turning = np.random.default_rng(SEED).normal(size=(TURNING, 6))
+    level, none = np.tile((1.0, 0.0, 0.0, 0.0), (TURNING, 1)), np.zeros((TURNING, 6))
+    power = np.sum(integrated_forces(idle(moved), turning, level, none) * turning, axis=-1)
+    largest = max(float(np.max(np.abs(power))), FINEST)
+    rows.append(
+        Compared(f"{TURNING} random motions", "power of the inertia", "W", 0.0, largest, MARCHED, Basis.CONSISTENCY)
+    )
+    return ComparedTable(
+        "marched", "The rates that are integrated, from the parameter file", tuple(rows), "Table 1, equations 35-40 and 51-56",
+        ("Equation 40 with its corrected sign. Accelerations of the parameter file times its inertia, by both ways that a motion "
+         "is computed, less what the equations leave.",),
+    )  # fmt: skip
+
+
+def air(fish: FlyingFish) -> ComparedTable:
+    """The printed damping in air against a fit to the table that was made of it."""
+    tables = read_tables(PlannedTable(Path(str(shipped("cfd_data") / "flyingfish_air_synthetic")), ()))
+    rows = []
+    for model in FITS.load("linear_quadratic_damping").fit(tables, tables[0].scaling, {}).models:
+        k = COMPONENTS.index(model.response)
+        size, unit, of = (10.0, "m/s", "N") if k < 3 else (6.0, "rad/s", "N m")
+        motion = MOTIONS[k]
+        found = model.named(model.response + motion)[0] * size
+        found += model.named(f"{model.response}{motion}|{motion}|")[0] * size**2
+        stated = -(fish.air[0, k] + fish.air[1, k] * size) * size
+        rows.append(
+            Compared(
+                f"{size:g} {unit}", f"{model.response} of {motion}", of, stated, found, AIR, Basis.CONSISTENCY, True
+            )
+        )
+    return ComparedTable(
+        "air", "Damping in air, from a fit to the synthetic table", tuple(rows), "Equation 49",
+        ("The table was made of the printed numbers and 0.2 % of noise: the fit gives back what went in.",),
+    )  # fmt: skip
 
 
 def _constants(fish: FlyingFish, constants: Array) -> ComparedTable:

@@ -133,6 +133,8 @@ class FlyingFish:
     rotors : Rotors
     constants : dict of str to float
         The calibrated constants as the shipped file states them.
+    air : (2, 6) array
+        Linear and quadratic damping in air, as in water.
     largest_speed : float
         Of a rotor, rpm; chosen, not printed.
     arms : (4, 3) array
@@ -147,6 +149,7 @@ class FlyingFish:
 
     rotors: Rotors
     constants: dict[str, float]
+    air: Array
     largest_speed: float
     arms: Array
     handedness: tuple[Hand, ...]
@@ -156,7 +159,7 @@ class FlyingFish:
     errata: tuple[str, ...] = field(default=())
 
     def __post_init__(self) -> None:
-        for name in ("arms", "motion", "angles", "speeds"):
+        for name in ("air", "arms", "motion", "angles", "speeds"):
             object.__setattr__(self, name, locked(getattr(self, name)))
 
 
@@ -186,6 +189,7 @@ def read_flyingfish(folder: Path | None = None) -> FlyingFish:
         Rotors(*(_numbers(file, f"damping.{k}", 6) for k in ("linear", "quadratic")),
                *(_numbers(file, f"rotor.{k}", 2) for k in ("thrust", "torque"))),
         {name: takes.declared_key(file, f"calibrated.{name}", takes.Pure) for name in CONSTANTS},
+        np.array([_numbers(file, f"damping_air.{k}", 6) for k in ("linear", "quadratic")]),
         takes.declared_key(file, "rotor.largest_speed", Annotated[takes.Pure, takes.ABOVE_ZERO]),
         np.array([_numbers(file, f"thruster[{i}].arm", 3) for i in at]),
         tuple(1 if takes.declared_key(file, f"thruster[{i}].handedness", takes.Pure) > 0 else -1 for i in at),

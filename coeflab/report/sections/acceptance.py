@@ -222,24 +222,12 @@ def verdict(found: Acceptance) -> Section:
 
 
 def headline(found: Acceptance) -> tuple[str, ...]:
-    """How many numbers hold by basis, and how many of them validate anything: two sentences."""
-    numbers, again, counts = found.numbers, found.repeated, found.counts
-    held = sum(r.holds for r in numbers)
-    by_basis = ", ".join(f"{count} {b}" for b, count in counts.items())
-    first = f"{held} of {len(numbers)} numbers within what is allowed: {by_basis}."
+    """How many numbers hold by basis, each once, and how many of them validate anything."""
+    again = found.repeated
+    first, second = acceptance_tables.headline(acceptance_tables.held(found))
     if again:
         first += f" {sum(r.holds for r in again)} of {len(again)} comparisons meet numbers among them another way, and do not count."
-    validating = sum(count for b, count in counts.items() if b.validates)
-    if validating:
-        good = sum(r.holds for r in numbers if r.basis.validates)
-        return (
-            first,
-            f"Validation rests on {validating} of them, predicted or printed and recomputed, of which {good} hold.",
-        )
-    return (
-        first,
-        "Nothing here is validation: no number of the paper is predicted, and none that it prints is recomputed.",
-    )
+    return first, second
 
 
 def overview(found: Acceptance) -> Table:

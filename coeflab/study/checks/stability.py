@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from coeflab.core.table import Check, Severity, plus_minus
 from coeflab.study.study import Study
+from coeflab.study.validation import PrintedIndex, printed_indices
 from coeflab.vehicle.derived import INDICES, sense, stability, without_restoring
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -48,5 +49,16 @@ def _indices(parameters: ParameterFile) -> list[Check]:
 
 
 def check(study: Study) -> Sequence[Check]:
-    """Indices of every parameter file; an unstable vehicle is a finding, not a failure."""
-    return [c for p in study.parameter_files.values() for c in _indices(p)]
+    """Indices of every parameter file; an unstable vehicle is a finding, not a failure. A printed one must come out again."""
+    return [*(c for p in study.parameter_files.values() for c in _indices(p)), *map(_printed, printed_indices(study))]
+
+
+def _printed(i: PrintedIndex) -> Check:
+    return Check(
+        "printed_index", f"{i.reference} {i.name}", Severity.PASS if i.holds else Severity.FAIL,
+        f"{i.name} = {i.found:.6g} from its printed derivatives and m' of {i.parameter_file}, printed {i.printed:.7g}",
+        f"within {i.allowed:.2g}, the rounding of its digits",
+        "Printed derivatives, mass and length belong together."
+        if i.holds
+        else "A derivative, the mass, its density or the length is not that of the source.",
+    )  # fmt: skip

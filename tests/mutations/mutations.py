@@ -1,0 +1,455 @@
+"""The list of mutations: one wrong sign, constant or axis each, and, where none can notice, why."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+
+from coeflab.core.files import shipped
+from coeflab.law import rigid_body
+from coeflab.motion import dynamics, steady_state
+from coeflab.motion.glider import motion as glider_motion
+from coeflab.motion.glider.glider import Glider
+from coeflab.published import parameter_files
+from coeflab.published.flyingfish import model as flyingfish_model
+from coeflab.published.flyingfish.model import FlyingFish
+from coeflab.published.huuv import model as huuv_model
+from tests.mutations.harness import (
+    REMUS,
+    Suboff,
+    Verdicts,
+    edited,
+    exchanged,
+    fish,
+    refusals,
+    steered,
+    validate_flyingfish,
+    validate_huuv,
+    validate_remus,
+    validate_thauv,
+)
+
+TENTH, TWENTIETH, FLIP = 1.1, 1.05, -1.0
+
+
+@dataclass(frozen=True)
+class Mutation:
+    """One mutation.
+
+    Attributes
+    ----------
+    study : str
+        Which validation ought to notice.
+    what : str
+    run : callable
+        The validation with the mutation in it; of SUBOFF it is handed the study.
+    why_not : str
+        Why no compared quantity depends on it; empty where it must be caught.
+    """
+
+    study: str
+    what: str
+    run: Callable[[Suboff], Verdicts]
+    why_not: str = ""
+
+
+def scaled(values: Any, index: Any, factor: float) -> Any:
+    """A copy of an array with one entry times a factor."""
+    out = np.array(values, dtype=float)
+    out[index] *= factor
+    return out
+
+
+def in_place_of(function: Any, old: str, new: str, validate: Callable[[], Verdicts], times: int = 1) -> Verdicts:
+    """A validation while a piece of a law's text is another."""
+    with edited(function, old, new, times):
+        return refusals(validate)
+
+
+# ---- THAUV ---------------------------------------------------------------------------------------------------------
+
+
+def glider(change: Callable[[Glider], Glider], cases: tuple[int, ...] = (0, 1, 2)) -> Callable[[Suboff], Verdicts]:
+    """Some cases changed alike."""
+    return lambda _: refusals(lambda: validate_thauv(change, cases))
+
+
+def mass(**factors: float) -> Callable[[Suboff], Verdicts]:
+    """Some of the masses times a factor."""
+    return glider(lambda g: replace(g, mass=replace(g.mass, **{k: getattr(g.mass, k) * f for k, f in factors.items()})))
+
+
+def polar(**factors: float) -> Callable[[Suboff], Verdicts]:
+    """Some factors of the polar times a factor."""
+    return glider(
+        lambda g: replace(g, polar=replace(g.polar, **{k: getattr(g.polar, k) * f for k, f in factors.items()}))
+    )
+
+
+def glider_law(old: str, new: str) -> Callable[[Suboff], Verdicts]:
+    """Another right-hand side of the glider's equations; one case flies, the others are as they were."""
+    unchanged = lambda g: g  # noqa: E731
+    return lambda _: in_place_of(glider_motion.rates, old, new, lambda: validate_thauv(unchanged, (0,)))
+
+
+THAUV = (
+    ("sign of -m3 v3 q in equation 17", glider_law("-p3 * q - net_mass", "p3 * q - net_mass")),
+    ("sign of m1 v1 q in equation 18, as printed", glider_law("p1 * q + net_mass", "-p1 * q + net_mass")),
+    ("sign of the Munk moment in equation 19", glider_law("p3 * v1 - p1 * v3", "p1 * v3 - p3 * v1")),
+    ("sign of depth", glider_law("v3 * c - v1 * s,", "v1 * s - v3 * c,")),
+    ("sign of the distance over ground", glider_law("v1 * c + v3 * s,", "-v1 * c - v3 * s,")),
+    ("lift along the velocity's normal reversed", glider_law("lift * v3 - drag * v1", "-lift * v3 - drag * v1")),
+    ("J x10", mass(pitch_inertia=10.0)),
+    ("pitch damping x3", polar(pitch_damping=3.0)),
+    ("sign of the moment below (buoyancy arm)", mass(moment_below=FLIP)),
+    ("m3 +5 %", mass(heave=TWENTIETH)),
+    ("angle of Table 3 in radians", glider(lambda g: replace(g, polar=replace(g.polar, angle_unit="rad")))),
+    ("Munk moment already in the polar", glider(lambda g: replace(g, polar=replace(g.polar, contains_munk=True)))),
+    ("g +5 %", glider(lambda g: replace(g, gravity=g.gravity * TWENTIETH))),
+)
+
+
+# ---- TJ-FlyingFish -------------------------------------------------------------------------------------------------
+
+
+def of_fish(change: Callable[[FlyingFish], FlyingFish]) -> Callable[[Suboff], Verdicts]:
+    """The published data changed."""
+    return lambda _: refusals(lambda: validate_flyingfish(change(fish())))
+
+
+def rotors(name: str, index: int, factor: float) -> Callable[[Suboff], Verdicts]:
+    """One factor of damping, thrust or torque."""
+    return of_fish(
+        lambda f: replace(f, rotors=replace(f.rotors, **{name: scaled(getattr(f.rotors, name), index, factor)}))
+    )
+
+
+def fish_law(function: Any, old: str, new: str, times: int = 1) -> Callable[[Suboff], Verdicts]:
+    """Another law of motion under the parameter file, or other equations."""
+    return lambda _: in_place_of(function, old, new, lambda: validate_flyingfish(fish()), times)
+
+
+def handed(f: FlyingFish) -> FlyingFish:
+    """Rotor 1 turns the other way."""
+    first, *others = f.handedness
+    return replace(f, handedness=(-first, *others))
+
+
+def constant(name: str, factor: float) -> Callable[[Suboff], Verdicts]:
+    """One calibrated constant."""
+    return of_fish(lambda f: replace(f, constants=f.constants | {name: f.constants[name] * factor}))
+
+
+RATES, ONE = dynamics.Dynamics.rates, dynamics.rates_of_one
+FLYINGFISH = (
+    ("Yv|v| +5 %", rotors("quadratic", 1, TWENTIETH)),
+    ("Kp|p| x10", rotors("quadratic", 3, 10.0)),
+    ("damping in air x100", of_fish(lambda f: replace(f, air=f.air * 100.0))),
+    ("handedness of rotor 1", of_fish(handed)),
+    ("rotors 1 and 2 exchanged", of_fish(lambda f: replace(f, arms=f.arms[[1, 0, 2, 3]]))),
+    ("thrust factor +5 %", rotors("thrust", 1, TWENTIETH)),
+    ("torque factor +5 %", rotors("torque", 1, TWENTIETH)),
+    ("sign of the buoyancy moment", constant("buoyancy_moment", FLIP)),
+    ("mass +5 %", constant("mass", TWENTIETH)),
+    (
+        "sign of the lever in equation 40",
+        fish_law(flyingfish_model.rotor_wrench, "lever * np.sum(across", "-lever * np.sum(across"),
+    ),
+    (
+        "sign of m u r in equation 52",
+        fish_law(flyingfish_model.steady_residuals, "mass * u * r - weight", "-mass * u * r - weight"),
+    ),
+    (
+        "sign of the restoring roll moment, arrays",
+        fish_law(RATES, "total[3] += ly * gz - lz * gy", "total[3] -= ly * gz - lz * gy"),
+    ),
+    (
+        "sign of the restoring roll moment, single",
+        fish_law(ONE, "total[3] += ly * cz - lz * bz", "total[3] -= ly * cz - lz * bz"),
+    ),
+    ("sign of weight less buoyancy, arrays", fish_law(RATES, "total[k] += self.excess", "total[k] -= self.excess")),
+    ("sign of weight less buoyancy, single", fish_law(ONE, "total[2] += excess * cz", "total[2] -= excess * cz")),
+    (
+        "sign of the Coriolis forces of the mass, m v x r",
+        lambda _: in_place_of(
+            dynamics.rigid_body_quadratics,
+            "-rigid_body_force",
+            "rigid_body_force",
+            lambda: validate_flyingfish(fish()),
+            2,
+        ),
+    ),
+)
+
+
+# ---- HUUV ----------------------------------------------------------------------------------------------------------
+
+
+def of_huuv(**factors: float) -> Callable[[Suboff], Verdicts]:
+    """Constants of the steady turns times a factor."""
+    changed = {k: steered().constants[k] * f for k, f in factors.items()}
+    return lambda _: refusals(lambda: validate_huuv(replace(steered(), constants=dict(steered().constants) | changed)))
+
+
+def huuv_law(function: Any, old: str, new: str, times: int = 1) -> Callable[[Suboff], Verdicts]:
+    """Another law."""
+    return lambda _: in_place_of(function, old, new, lambda: validate_huuv(steered()), times)
+
+
+def reversed_coriolis(_: Suboff) -> Verdicts:
+    """All products of velocities in the equations of the turns: no power is lost."""
+    features, sign = steady_state.features, np.where(np.arange(13) < 5, -1.0, 1.0)
+
+    def reversed_products(velocity: Any) -> Any:
+        force, by = features(velocity)
+        return force * sign, by * sign[:, None]
+
+    with exchanged(features, reversed_products):
+        return refusals(lambda: validate_huuv(steered()))
+
+
+def reversed_added(_: Suboff) -> Verdicts:
+    """Of the added mass, in the rates of the parameter file."""
+    old = rigid_body.ideal_quadratics
+    with exchanged(old, lambda m: -old(m)):
+        return refusals(lambda: validate_huuv(steered()))
+
+
+HUUV = (
+    (
+        "reverse thrust x5",
+        lambda _: refusals(
+            lambda: validate_huuv(replace(steered(), reverse=tuple(5.0 * x for x in steered().reverse)))
+        ),
+    ),
+    ("moments of inertia x10", of_huuv(inertia=10.0)),
+    *((f"{name} +5 %", of_huuv(**{name: TWENTIETH})) for name in ("d0", "d2", "s1", "s3", "n1", "n3", "nrr")),
+    ("thruster arm +5 %", of_huuv(arm=TWENTIETH)),
+    ("sign of the added mass m_y", of_huuv(my=FLIP)),
+    ("sign of the added mass m_x", of_huuv(mx=FLIP)),
+    ("sign of m_yr", of_huuv(myr=FLIP)),
+    ("sign of the Coriolis matrix in the equations", reversed_coriolis),
+    (
+        "sign of (m + m_x) u r",
+        huuv_law(
+            steady_state.features, '(1, ("m", "mx"), -u * r, (-r, none, -u))', '(1, ("m", "mx"), u * r, (r, none, u))'
+        ),
+    ),
+    ("sign of C_A of the parameter file", reversed_added),
+    ("sign of the thrusters' moment", huuv_law(huuv_model.thrust_rates, "arm * (a - b)", "arm * (b - a)")),
+    ("sign of the side force in the parameter file", huuv_law(huuv_model.parameter_file, '-c["s1"]', 'c["s1"]')),
+)
+
+
+# ---- SUBOFF --------------------------------------------------------------------------------------------------------
+
+TOWED = ("suboff_roddy_1", "suboff_roddy_2", "suboff_roddy_3")
+
+
+def suboff(edits: dict[str, list[tuple[str, str]]]) -> Callable[[Suboff], Verdicts]:
+    """The plan on copies of its folders."""
+    return lambda s: refusals(lambda: s.verdicts(s.rerun(edits)))
+
+
+def campaign(name: str, *changes: tuple[str, str]) -> Callable[[Suboff], Verdicts]:
+    """One campaign.toml."""
+    return suboff({f"{name}/campaign.toml": list(changes)})
+
+
+def published(*changes: tuple[str, str]) -> Callable[[Suboff], Verdicts]:
+    """Roddy's printed values."""
+    return suboff({"suboff/published.toml": list(changes)})
+
+
+YR, NR = ('Yr = "0.005251"', 'Yr = "-0.005251"'), ('Nr = "-0.004444"', 'Nr = "0.004444"')
+SUBOFF = (
+    ("reference point of configuration 2 .5 m aft", campaign("suboff_roddy_2", ('["-6.6042 ft"', '["-8.2446 ft"'))),
+    ("reference point of the plan .5 m aft", suboff({"suboff/plan.toml": [('["-6.6042 ft"', '["-8.2446 ft"')]})),
+    ("length of configuration 2 +5 %", campaign("suboff_roddy_2", ('"13.9792 ft"', '"14.6782 ft"'))),
+    ("length of the plan +5 %", suboff({"suboff/plan.toml": [('"13.9792 ft"', '"14.6782 ft"')]})),
+    ("density of the plan +10 %", suboff({"suboff/plan.toml": [('"62.27456 lb/ft^3"', '"68.50202 lb/ft^3"')]})),
+    ("density of the computation +10 %", campaign("suboff_cfd_barehull", ('"998 kg/m^3"', '"1097.8 kg/m^3"'))),
+    ("density of configuration 2 +10 %", campaign("suboff_roddy_2", ('"62.27456 lb/ft^3"', '"68.50202 lb/ft^3"'))),
+    ("speed of the computation +10 %", campaign("suboff_cfd_barehull", ('"2.0 m/s"', '"2.2 m/s"'))),
+    (
+        "Y and Z exchanged in configuration 2",
+        suboff({"suboff_roddy_2/table.csv": [("Y' [-],Z' [-]", "Z' [-],Y' [-]")]}),
+    ),
+    (
+        "sign of the drift angle in configuration 2",
+        campaign("suboff_roddy_2", ("v = -U sin(beta)", "v = +U sin(beta)")),
+    ),
+    ("z up in configuration 1 (sign of Z and N)", campaign("suboff_roddy_1", ('frame = "FRD"', 'frame = "FLU"'))),
+    ("literature Yr' with the other sign", published(YR)),
+    ("literature Nr' with the other sign", published(NR)),
+    ("literature Yr' and Nr' with the other signs", published(YR, NR)),
+    ("literature Mq' with the other sign", published(('Mq = "-0.003702"', 'Mq = "0.003702"'))),
+    ("mass m' +5 %", suboff({"geometry/suboff/body.toml": [("mass_prime = 0.018296", "mass_prime = 0.019211")]})),
+)
+
+
+def flipped_n(s: Suboff) -> Verdicts:
+    """Sign of N in the table of configuration 2."""
+    lines = (shipped("cfd_data") / "suboff_roddy_2" / "table.csv").read_text(encoding="utf-8").splitlines()
+    at = lines[0].split(",").index("N' [-]")
+    changes = []
+    for line in lines[1:]:
+        cells = line.split(",")
+        cells[at] = cells[at][1:] if cells[at].startswith("-") else f"-{cells[at]}" if cells[at] else ""
+        changes.append((line, ",".join(cells)))
+    return refusals(lambda: s.verdicts(s.rerun({"suboff_roddy_2/table.csv": changes})))
+
+
+# ---- REMUS ---------------------------------------------------------------------------------------------------------
+
+
+def remus(*symbols: str) -> Callable[[Suboff], Verdicts]:
+    """Parameters with the other sign."""
+    return lambda _: refusals(lambda: validate_remus(REMUS | {s: -REMUS[s] for s in symbols}))
+
+
+SIGNS = ("Xu|u|", "Yv|v|", "Yuv", "Yur", "Zuq", "Mq|q|", "Muw", "Nuv", "Nr|r|", "Nur", "Xvr", "Npq", "Yvdot", "Nvdot")
+
+
+def heavier_to_turn(_: Suboff) -> Verdicts:
+    """The moment of inertia that the parameter file of TJ-FlyingFish assumes, x10."""
+    with patch.object(parameter_files, "FLYINGFISH_INERTIA", 10.0 * parameter_files.FLYINGFISH_INERTIA):
+        return refusals(lambda: validate_flyingfish(fish()))
+
+
+UNDETECTABLE = (
+    Mutation(
+        "thauv", "rate of the buoyancy engine +5 %",
+        glider(lambda g: replace(g, engine=replace(g.engine, rate=g.engine.rate * TWENTIETH))),
+        "assumed, not printed: it shifts the first half minute of a dive of which 170 s is printed to 10 s",
+    ),
+    Mutation(
+        "flyingfish", "moments of inertia x10", heavier_to_turn,
+        "assumed, not printed: every printed motion is steady, and a force is compared, not an acceleration",
+    ),
+    Mutation(
+        "flyingfish", "largest rotor speed +5 %", of_fish(lambda f: replace(f, largest_speed=f.largest_speed * TWENTIETH)),
+        "chosen, not printed: no printed motion reaches it",
+    ),
+    Mutation(
+        "huuv", "moments of inertia +5 %", of_huuv(inertia=TWENTIETH),
+        "chosen, not printed: the printed turns are steady; only x3 is more than a body of that length can have",
+    ),
+    Mutation(
+        "suboff", "speed of configuration 2 +10 %", campaign("suboff_roddy_2", ('"6.5 kn"', '"7.15 kn"')),
+        "Roddy prints Y' and N': neither slope nor index depends on the speed, and no viscosity is printed beside Re = 14e6",
+    ),
+)  # fmt: skip
+
+
+def mutations() -> tuple[Mutation, ...]:
+    """All of the list, in the order of the table."""
+    named = (("thauv", THAUV), ("flyingfish", FLYINGFISH), ("huuv", HUUV), ("suboff", SUBOFF))
+    out = [Mutation(study, what, run) for study, some in named for what, run in some]
+    out.append(Mutation("suboff", "sign of N in the table of configuration 2", flipped_n))
+    out += [Mutation("remus", f"sign of {s}", remus(s)) for s in SIGNS]
+    return (*out, *UNDETECTABLE)
+
+
+def unchanged(study: str, suboff_study: Suboff | None) -> Verdicts:
+    """A validation as it is."""
+    match study:
+        case "thauv":
+            return validate_thauv(lambda g: g)
+        case "flyingfish":
+            return validate_flyingfish(fish())
+        case "huuv":
+            return validate_huuv(steered())
+        case "remus":
+            return validate_remus(REMUS)
+    assert suboff_study is not None
+    return suboff_study.verdicts()
+
+
+# ---- every constant ------------------------------------------------------------------------------------------------
+
+
+def every_constant(study: str) -> tuple[tuple[str, Callable[[Suboff], Verdicts]], ...]:
+    """Each constant of the shipped laws +5 % and with the other sign, by name."""
+    return tuple(
+        (f"{name} {'+5 %' if factor == TWENTIETH else 'flipped'}", run)
+        for factor in (TWENTIETH, FLIP)
+        for name, run in SWEEPS[study](factor)
+    )
+
+
+def _fish_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Verdicts]]]:
+    for name, size in (("linear", 6), ("quadratic", 6), ("thrust", 2), ("torque", 2)):
+        yield from ((f"{name}[{k}]", rotors(name, k, factor)) for k in range(size) if getattr(fish().rotors, name)[k])
+    yield from ((name, constant(name, factor)) for name in fish().constants)
+    for name, value in (("air", fish().air), ("arms", fish().arms)):
+        for at in np.argwhere(value).tolist():
+            yield (
+                f"{name}{at}",
+                of_fish(lambda f, n=name, a=tuple(at): replace(f, **{n: scaled(getattr(f, n), a, factor)})),
+            )  # type: ignore[misc]
+
+
+def _huuv_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Verdicts]]]:
+    yield from ((name, of_huuv(**{name: factor})) for name, value in steered().constants.items() if value)
+    for k, name in enumerate(("reverse intercept", "reverse slope")):
+        changed = replace(steered(), reverse=tuple(scaled(steered().reverse, k, factor).tolist()))
+        yield name, lambda _, h=changed: refusals(lambda: validate_huuv(h))  # type: ignore[misc]
+    changed = replace(steered(), dead_zone=steered().dead_zone * factor)
+    yield "dead zone", lambda _: refusals(lambda: validate_huuv(changed))
+    for name, value in steered().chosen.items():
+        chosen = replace(steered(), chosen=dict(steered().chosen) | {name: value * factor})
+        yield name, lambda _, h=chosen: refusals(lambda: validate_huuv(h))  # type: ignore[misc]
+
+
+def _glider_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Verdicts]]]:
+    for case in range(3):
+        for name in ("K_L0", "K_L", "K_D0", "K_D", "K_M0", "K_M"):
+            yield (
+                f"{name} of case 0{case + 1}",
+                lambda _, n=name, c=case: refusals(  # type: ignore[misc]
+                    lambda: validate_thauv(
+                        lambda g: replace(g, polar=replace(g.polar, **{n: getattr(g.polar, n) * factor})), (c,)
+                    )
+                ),
+            )
+    yield "pitch_damping", polar(pitch_damping=factor)
+    yield from (
+        (name, mass(**{name: factor})) for name in ("surge", "heave", "pitch_inertia", "moment_ahead", "moment_below")
+    )
+    yield "gravity", glider(lambda g: replace(g, gravity=g.gravity * factor))
+    yield "engine.ahead", glider(lambda g: replace(g, engine=replace(g.engine, ahead=g.engine.ahead * factor)))
+    yield (
+        "sliding_mass.mass",
+        glider(lambda g: replace(g, sliding_mass=replace(g.sliding_mass, mass=g.sliding_mass.mass * factor))),
+    )
+    yield (
+        "net masses of the phases",
+        glider(lambda g: replace(g, phases=tuple(replace(p, net_mass=p.net_mass * factor) for p in g.phases))),
+    )
+
+
+def _printed_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Verdicts]]]:
+    """Roddy's values, those of each configuration and kind."""
+    path = shipped("cfd_data") / "suboff" / "published.toml"
+    for line in path.read_text(encoding="utf-8").splitlines()[LITERATURE:]:
+        for symbol, printed in re.findall(r'(\w+) = "(-?[\d.]+)"', line) if line.startswith("values") else ():
+            changed = repr(round(float(printed) * factor, 9))
+            yield f"{symbol} = {printed}", published((f'{symbol} = "{printed}"', f'{symbol} = "{changed}"'))
+
+
+def _remus_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Verdicts]]]:
+    """Signs alone: no published motion of REMUS is in this repository."""
+    yield from ((s, remus(s)) for s in REMUS) if factor == FLIP else ()
+
+
+LITERATURE = 42  # lines of published.toml before Roddy's own values
+SWEEPS = {
+    "flyingfish": _fish_constants, "huuv": _huuv_constants, "thauv": _glider_constants, "suboff": _printed_constants,
+    "remus": _remus_constants,
+}  # fmt: skip
