@@ -1,8 +1,8 @@
 """Coverage of `coeflab.fits.statistics.origin_slope` on simulated campaigns whose slope is known.
 
-``python tests/coverage/slope_campaigns.py WORK [ROUNDS]`` runs 20 rounds of 50 campaigns per cell (family, noise,
-design), each round with settings of its own; a round that is already in WORK is not run again. It then writes
-``slope_table.csv`` beside this file. Seeds are (2026, design, round).
+``python tests/coverage/slope_campaigns.py WORK [ROUNDS]`` runs 50 rounds of 20 campaigns per cell (family, noise,
+design), each round with settings of its own; a round that is already in WORK is not run again. After each round it
+writes ``slope_table.csv`` beside this file, with the campaigns so far. Seeds are (2026, design, round).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from coeflab.fits.statistics.origin_slope import estimate_many, prepare
 
 NOISE = (0.03, 0.01, 0.001, 0.0001, 0.00001)
 DESIGNS = ("even", "uneven", "one-sided", "replicated")
-ROUNDS, CAMPAIGNS, STUDIED = 20, 50, 1
+ROUNDS, CAMPAIGNS, STUDIED = 50, 20, 1
 TABLE = Path(__file__).with_name("slope_table.csv")
 Curve = Callable[[Array], Array]
 
@@ -200,18 +200,19 @@ def table(rounds: dict[str, list[Array]]) -> list[dict[str, object]]:
 
 
 def main(work: Path, count: int) -> None:
-    """Run what is missing, write the table."""
+    """Run what is missing, write the table after each round."""
     work.mkdir(parents=True, exist_ok=True)
-    for number, design in product(range(count), DESIGNS):
-        path = work / f"{design}_{number}.npy"
-        if not path.exists():
-            done = run_round(design, number, CAMPAIGNS, STUDIED, tuple(FAMILIES))
-            np.save(work / "part.npy", done)
-            (work / "part.npy").rename(path)
-    rounds = {d: [np.load(work / f"{d}_{i}.npy") for i in range(count)] for d in DESIGNS}
-    rows = table(rounds)
-    lines = [",".join(rows[0]), *(",".join(str(v) for v in row.values()) for row in rows)]
-    TABLE.write_text("\n".join(lines) + "\n")
+    rounds: dict[str, list[Array]] = {d: [] for d in DESIGNS}
+    for number in range(count):
+        for design in DESIGNS:
+            path = work / f"{design}_{number}.npy"
+            if not path.exists():
+                np.save(work / "part.npy", run_round(design, number, CAMPAIGNS, STUDIED, tuple(FAMILIES)))
+                (work / "part.npy").rename(path)
+            rounds[design].append(np.load(path))
+        rows = table(rounds)
+        lines = [",".join(rows[0]), *(",".join(str(v) for v in row.values()) for row in rows)]
+        TABLE.write_text("\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":
