@@ -27,6 +27,7 @@ class Status(StrEnum):
     NOT_DETERMINED = "not_determined"
     STATED = "stated"
     FORM_ASSUMED = "form_assumed"
+    FORM_REJECTED = "form_rejected"
 
     @property
     def advice(self) -> str:
@@ -39,7 +40,10 @@ class Status(StrEnum):
             "is given. Run more angles, some on the other side.",
             Status.NOT_DETERMINED: "The data, or the derivatives that a change of reference point needs, leave it open.",
             Status.STATED: "Taken from the literature with the uncertainty stated there.",
-            Status.FORM_ASSUMED: "U95 holds for the form that was asked for; what another form would give is not in it.",
+            Status.FORM_ASSUMED: "U95 holds the scatter and what the residuals show that the form leaves out. A misfit of "
+            "the size of the noise does not show.",
+            Status.FORM_REJECTED: "The residuals show that the form is wrong, and another would move the value by more than "
+            "half of it: no U95. Add the missing term or fit a narrower range.",
         }[self]
 
 
@@ -52,9 +56,10 @@ class Parts:
     random : float or None
         Scatter of the points: median member interval, HC2 with Bell-McCaffrey degrees of freedom.
     model_form : float or None
-        2 a / sqrt(3), a the distance of the farthest member estimator from the value; a lone member is compared with
-        the families dropped for their width.
+        Slopes: 2 a / sqrt(3), a the distance of the farthest member estimator from the value; a lone member is compared
+        with the families dropped for their width.
         Each family has its own window, so the choice of window is in here.
+        Fixed forms: what a remainder that the residuals show would move.
     window : float or None
         Reserved for a separately assessed window part.
     input : float or None

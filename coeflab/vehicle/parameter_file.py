@@ -50,7 +50,7 @@ VERSIONS = {
     "1.1": "Fitted tables and force laws (models).",
     "1.2": "Added mass and the potential part of every coefficient; damping about a state of rest; centre of gravity and "
     "inertia matrix; what the half-widths of models hold; the status form_assumed.",
-    "1.3": "Buoyancy, gravity, thrusters and the limits of control surfaces.",
+    "1.3": "Buoyancy, gravity, thrusters and the limits of control surfaces; the status form_rejected.",
 }
 _MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)
 FIRST_VERSION, SCHEMA_VERSION = next(iter(VERSIONS)), next(reversed(VERSIONS))

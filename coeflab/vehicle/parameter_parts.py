@@ -121,10 +121,20 @@ class ParameterCoefficient(Strict):
     value_si: Annotated[Finite | None, told("the value at the density and speed of `conditions`", "see unit_si")]
     unit_si: Annotated[str, told("SI unit of `value_si`, for example N/(m/s)")]
     status: Annotated[
-        Literal["ok", "no_table", "too_few_points", "single_estimator", "not_determined", "stated", "form_assumed"],
+        Literal[
+            "ok",
+            "no_table",
+            "too_few_points",
+            "single_estimator",
+            "not_determined",
+            "stated",
+            "form_assumed",
+            "form_rejected",
+        ],  # fmt: skip
         told(
             "ok: fitted with U95; single_estimator: fitted, its model-form error unknown; form_assumed (since 1.2): U95 holds "
-            "for the form that was asked for; stated: from the literature; no_table, too_few_points, not_determined: no value"
+            "the scatter and what the residuals show that the form leaves out; form_rejected (since 1.3): the residuals show "
+            "that the form is wrong, no U95; stated: from the literature; no_table, too_few_points, not_determined: no value"
         ),
     ]
     origin: Annotated[Literal["fit", "literature", "none"], told("where the value comes from")]

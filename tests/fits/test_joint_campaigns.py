@@ -149,15 +149,17 @@ def test_a_named_intercept_is_one_for_all_campaigns() -> None:
 @pytest.mark.slow
 def test_intervals_cover_over_two_campaigns_with_noise_and_points_of_their_own() -> None:
     """500 seeded pairs of campaigns, the noise of the second six times that of the first."""
-    inside = np.zeros(len(TRUTH))
+    inside, by_scatter = np.zeros((2, len(TRUTH)))
     for seed in range(500):
         result = fitted(pair(seed), terms=NAMES)
         for i, (symbol, true) in enumerate(TRUTH.items()):
-            u95 = result.coefficients[symbol].u95
-            assert u95 is not None
-            inside[i] += abs(value(result, symbol) - true) <= u95
+            c = result.coefficients[symbol]
+            assert c.u95 is not None
+            assert c.parts.random is not None
+            inside[i] += abs(value(result, symbol) - true) <= c.u95
+            by_scatter[i] += abs(value(result, symbol) - true) <= c.parts.random
     assert np.all(inside / 500 >= 0.93), inside
-    assert np.all(inside / 500 <= 0.98), inside
+    assert np.all((by_scatter / 500 >= 0.92) & (by_scatter / 500 <= 0.98)), by_scatter
 
 
 # Across planes
