@@ -130,7 +130,7 @@ class ParameterCoefficient(Strict):
             "stated",
             "form_assumed",
             "form_rejected",
-        ],  # fmt: skip
+        ],
         told(
             "ok: fitted with U95; single_estimator: fitted, its model-form error unknown; form_assumed (since 1.2): U95 holds "
             "the scatter and what the residuals show that the form leaves out; form_rejected (since 1.3): the residuals show "

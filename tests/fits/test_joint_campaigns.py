@@ -111,6 +111,17 @@ def test_planted_coefficients_come_back_about_the_point_of_the_first_campaign() 
     assert {c.campaign for c in result.coefficients.coefficients} == {"a, b"}
 
 
+def test_a_term_that_both_campaigns_have_and_the_law_lacks_is_in_u95() -> None:
+    result = fitted(pair(1, 1e-5, 6e-5), terms="Yv Yr Nv Nv|v| Nr")
+    assert "most likely a term v |v|" in said(result, "Y")
+    assert "The residuals are not random" not in said(result, "N")
+    c = result.coefficients["Yv"]
+    assert c.parts.random is not None
+    assert c.parts.model_form is not None
+    assert c.parts.model_form > 3.0 * c.parts.random
+    assert abs(value(result, "Yv") - TRUTH["Yv"]) <= np.hypot(c.parts.random, c.parts.model_form)
+
+
 def test_without_noise_the_law_and_the_own_intercepts_are_exact_wherever_the_moments_were_read() -> None:
     result = fitted(pair(1, 0.0, 0.0), terms=NAMES)
     for symbol, true in TRUTH.items():

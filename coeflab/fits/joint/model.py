@@ -19,7 +19,7 @@ from coeflab.core.wording import finite
 from coeflab.fits.joint.rows import Component, Constraint, constraint_of, linked
 from coeflab.fits.results.fit_result import CampaignShare, Pooling
 from coeflab.fits.results.fitted_model import Domain, FittedModel, in_words
-from coeflab.fits.results.misfit import UNLIKELY, OutOfSample, chance, errors_of
+from coeflab.fits.results.misfit import ROUNDING, UNLIKELY, OutOfSample, chance, errors_of
 from coeflab.fits.rows.regression import model_of
 from coeflab.fits.statistics.groups import UNTOLD, poolability, predict_left_out, thirds
 from coeflab.fits.statistics.least_squares import Index
@@ -304,9 +304,9 @@ def _several(
                 y=y,
                 labels=rows.labels,
                 set_aside=None if p.own else rows.set_aside,
-                remainder=judged(
-                    missing[common, common], none, likeliest, fit.coefficients[common], fit.half_width[common]
-                ),
+                remainder=None
+                if np.max(np.abs(fit.residuals[shares])) <= ROUNDING * float(np.max(np.abs(y), initial=0.0))
+                else judged(missing[common, common], none, likeliest, fit.coefficients[common], fit.half_width[common]),
                 statements=tuple(s for s in said if any(name in s.replace(",", " ").split() for name in p.symbols)),
             )
         )

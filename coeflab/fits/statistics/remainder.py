@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from itertools import combinations, product
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from coeflab.core.types import Array, brief, locked
@@ -23,10 +24,10 @@ from coeflab.fits.statistics.groups import constrained_space, unit_columns
 from coeflab.fits.statistics.least_squares import BLOCK, factorise
 from coeflab.law.terms import Term
 
-NONE = 2.0  # odds of no remainder against all others together
-SMOOTH, ROUGH = 0.5, 0.25  # odds of the sums of all powers, and of all functions, against single ones together
-HIGHER, OTHER_PARITY, OFFSET = 0.5, 0.25, 0.5
-BENDS = (0.3, 0.6)  # of the largest |x|
+NONE = 3.0  # odds of no remainder against all others together
+SMOOTH, ROUGH, ANY = 0.5, 0.5, 0.25  # odds of sums against single ones: powers and all of the parity of the form, all
+HIGHER, OTHER_PARITY, OFFSET, BENT = 0.5, 0.25, 0.5, 0.4
+BENDS = (0.2, 0.35, 0.5, 0.65, 0.8)  # of the largest |x|
 BEYOND, TOTAL = 2, 3  # powers above those of the form, total degree of products of two variables
 SIZES = 10.0 ** np.arange(-1.5, 6.01, 0.25)
 VISIBLE, ROUNDING, LEAST = 1e-4, 1e-20, 1e-12
@@ -35,10 +36,14 @@ UNLIKELY, MANY_TIMES, SHARE = 0.02, 3.0, 0.5  # of a right form; of the scatter;
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """A function that the form lacks: a term, or where ``bend`` is positive the part of it beyond that share of max|x|."""
+    """A function that the form lacks: a term, or where ``bend`` is positive the part of it beyond that share of max|x|.
+
+    ``alike``: of the parity of the form, which may be odd or even in all variables together.
+    """
 
     term: Term
     odds: float
+    alike: bool
     bend: float = 0.0
 
     def __str__(self) -> str:
@@ -76,7 +81,7 @@ class Remainder:
     covariance: Array
     none: float
     likeliest: str
-    rejected: Array
+    rejected: NDArray[np.bool_]
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "covariance", locked(self.covariance))
@@ -104,7 +109,7 @@ def missing(terms: Sequence[Term], variables: Sequence[str]) -> tuple[Missing, .
     variables : sequence of str
         Over which it lies; those of its terms where it has any.
     """
-    own = [{v: 0 for v in variables} for _ in terms]
+    own = [dict.fromkeys(variables, 0) for _ in terms]
     for powers, term in zip(own, terms, strict=True):
         for v, n, _ in term.factors:
             powers[v] = powers.get(v, 0) + n
@@ -112,25 +117,25 @@ def missing(terms: Sequence[Term], variables: Sequence[str]) -> tuple[Missing, .
     top = {v: max(p.get(v, 0) for p in own) for v in used}
     parities = {sum(t.odd_in(v) for v in used) % 2 for t in terms if t.factors} or {0, 1}
 
-    def powers(v: str, n: int) -> tuple[Term, Term]:
+    def both(v: str, n: int) -> tuple[Term, Term]:
         lower = ((v, n - 1, False),) if n > 1 else ()
         return Term(((v, n, False),)), Term((*lower, (v, 1, True)))
 
-    def odds(term: Term, excess: int) -> float:
-        parity = 1.0 if sum(term.odd_in(v) for v in used) % 2 in parities else OTHER_PARITY
-        return parity * HIGHER ** max(excess - 1, 0)
+    def made(term: Term, excess: int, share: float = 1.0, bend: float = 0.0) -> Missing:
+        alike = sum(term.odd_in(v) for v in used) % 2 in parities
+        return Missing(term, share * (1.0 if alike else OTHER_PARITY) * HIGHER ** max(excess - 1, 0), alike, bend)
 
-    out = [Missing(Term(), OFFSET * odds(Term(), 0))]
+    out = [made(Term(), 0, OFFSET)]
     for v in used:
         for n in range(1, top[v] + BEYOND + 1):
-            out += [Missing(t, odds(t, n - top[v])) for t in powers(v, n)]
-        out += [Missing(t, odds(t, 1), bend) for bend in BENDS for t in powers(v, 1)]
+            out += [made(t, n - top[v]) for t in both(v, n)]
+        out += [made(t, 1, BENT, bend) for bend in BENDS for t in both(v, 1)]
     degree = max(TOTAL, max(top.values(), default=0) + 1)
     for a, b in combinations(used, 2):
         for i, j in product(range(1, degree), repeat=2):
             if i + j <= degree:
-                each = (Term((*p.factors, *q.factors)) for p in powers(a, i) for q in powers(b, j))
-                out += [Missing(t, odds(t, max(i - top[a], j - top[b]))) for t in each]
+                each = (Term((*p.factors, *q.factors)) for p in both(a, i) for q in both(b, j))
+                out += [made(t, max(i - top[a], j - top[b])) for t in each]
     return tuple(out)
 
 
@@ -216,8 +221,10 @@ def _of_block(
     keep = np.flatnonzero(np.diag(gram) > (VISIBLE * size) ** 2)
     if freedom < 2 or not len(keep) or total <= 0.0:
         return nothing
-    odds = np.array([functions[k].odds for k in keep])
-    smooth = np.array([not functions[k].bend for k in keep])
+    kept = [functions[int(k)] for k in keep]
+    odds = np.array([g.odds for g in kept])
+    alike = np.array([g.alike for g in kept])
+    smooth = alike & np.array([not g.bend for g in kept])
     gram, moment, moves = gram[np.ix_(keep, keep)], moment[keep], back @ inside[:, keep]
     # One function alone: the ratio of its square to the noise is its restricted likelihood's largest size plus one.
     level = np.diag(gram)
@@ -232,21 +239,21 @@ def _of_block(
     spreads = moves * np.sqrt(left / freedom * share / level)
     parts = [np.zeros((p, p))]
     parts += [np.outer(a, a) + np.outer(b, b) for a, b in zip(shifts.T, spreads.T, strict=True)]
-    for chosen, weight in ((smooth, SMOOTH * odds[smooth].sum()), (np.ones(len(keep), dtype=bool), ROUGH * odds.sum())):
+    for chosen, weight in ((smooth, SMOOTH), (alike, ROUGH), (np.ones(len(keep), dtype=bool), ANY)):
         if chosen.sum() > 1:
-            gain, part = _sum(
+            more, part = _sum(
                 gram[np.ix_(chosen, chosen)], moment[chosen], moves[:, chosen], odds[chosen], freedom, total
             )
-            gains.append(gain)
-            prior.append(weight)
+            gains.append(more)
+            prior.append(weight * odds.sum())
             parts.append(part)
     # Only what a likelihood gains counts: a function without evidence has no weight.
-    gain, most = np.array(gains), max(gains)
+    gain, most = np.array(gains), float(np.max(gains))
     shares = np.array(prior) * (np.exp(gain - most) - np.where(gain != 0.0, np.exp(-most), 0.0))
     shares[1:] = np.where(gain[1:] > 0.0, shares[1:], 0.0)
     shares /= shares.sum()
     covariance = float(stdtrit(freedom, 0.975)) ** 2 * np.einsum("k,kij->ij", shares, np.array(parts))
-    likeliest = str(functions[keep[int(np.argmax(shares[1 : len(keep) + 1]))]]) if shares[0] < 0.5 else ""
+    likeliest = str(kept[int(np.argmax(shares[1 : len(kept) + 1]))]) if shares[0] < 0.5 else ""
     return covariance, float(shares[0]), likeliest
 
 

@@ -256,14 +256,32 @@ def weak(
     sides: tuple[list[Array], list[Array]] = ([], [])
     stretch: list[NDArray[np.int64]] = []
     for s in series:
-        middles = centres(s, half)
+        middles, noise = centres(s, half), row_noise(s)
         for part, out in zip(_halves(s), sides, strict=True):
             values, momentum, nu = _sides(part, vehicle, component, terms)
+            values = _unbiased(part, vehicle, component, terms, values, noise)
             time, fine = refined(part.time, np.column_stack([values, nu, momentum]), half)
             kept, moved = Windows(time, middles, half).averages(*np.split(fine, [values.shape[1]], axis=1))
             out.append(_joined(kept, moved[:, -1], moved[:, :-1], terms))
         stretch.append(stretches(middles, half))
     return products(np.vstack(sides[0]), np.vstack(sides[1]), _numbered(stretch))
+
+
+def row_noise(s: MotionSeries) -> Array:
+    """(6,) standard deviation of the white noise on every velocity, from fourth differences, which motions hardly have."""
+    return np.asarray(np.sqrt(np.mean(np.diff(s.velocity, 4, axis=0) ** 2, axis=0) / 70.0))
+
+
+def _unbiased(
+    s: MotionSeries, vehicle: Vehicle, component: str, terms: Sequence[Candidate], values: Array, noise: Array
+) -> Array:
+    """Values without what noise adds to squares on average: half its variance times the second derivative."""
+    out = values.copy()
+    for k in np.flatnonzero(noise > 0.0):
+        step = np.where(np.arange(len(noise)) == k, noise[k], 0.0)
+        up, down = (_sides(replace(s, velocity=s.velocity + e), vehicle, component, terms)[0] for e in (step, -step))
+        out -= 0.5 * (up + down - 2.0 * values)
+    return out
 
 
 def differenced(

@@ -63,7 +63,7 @@ class IdentifiedTerm:
     value : float or None
         Primed by the file's scaling; None where the motions give none.
     low, high : float or None
-        See `HOW`; None where there are too few stretches.
+        See `HOW`; None where there are too few stretches, or another term does as well in its place.
     frequency : float or None
         Share of the resamples whose sparse fit keeps the term; None where it was not among those fitted.
     file_value, file_u95 : float or None

@@ -253,8 +253,8 @@ def _result(
         return _term(candidate, Outcome.NOT_NEEDED, "", file, frequency=frequency)
     scale = 1.0 / candidate.per_prime
     value, low, high = (float(a[at]) * scale for a in (found.coefficients, found.low, found.high))
-    known = bool(np.isfinite(low))
     swaps = [primed(usable[k].symbol) for k in others[at]]
+    known = bool(np.isfinite(low)) and not swaps
     outcome = Outcome.EXCHANGEABLE if swaps else Outcome.IDENTIFIED
     return _term(
         candidate, outcome, together_in_words(swaps) if swaps else "", file, value=value, frequency=frequency,
