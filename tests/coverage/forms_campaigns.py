@@ -85,7 +85,9 @@ def truths() -> list[Truth]:
     return out
 
 
-def cell(truth: Truth, missing: str, share: float, noise: float, campaigns: int, seed: Sequence[int]) -> dict[str, object]:
+def cell(
+    truth: Truth, missing: str, share: float, noise: float, campaigns: int, seed: Sequence[int]
+) -> dict[str, object]:
     """One row of the table."""
     rng = np.random.default_rng(list(seed))
     force, b, n = truth.force, np.array(truth.b), len(truth.force)

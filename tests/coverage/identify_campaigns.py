@@ -29,7 +29,7 @@ from coeflab.motion.vehicle import vehicle
 from coeflab.report.tables.motion import motion_csv
 from tests.motion.test_identify import FILE, RUNS, TRUE
 
-SEEDS, CHOSEN = 20, 6
+SEEDS, CHOSEN = 10, 4
 HALF = 1.124  # s, three quarters of L/V
 TERMS = {"X": "X0 Xvv Xvr Xdrdr", "Y": "Yv Yr Yv|v| Ydr", "N": "Nv Nr N|v|r Ndr"}
 BODY = vehicle(FILE, free=("u", "v", "r"))
@@ -59,7 +59,9 @@ def clean() -> list[MotionSeries]:
     with TemporaryDirectory() as folder:
         for name, options in RUNS:
             file = Path(folder) / f"{name}.csv"
-            file.write_bytes(motion_csv(simulate(FILE, name, options, {"record": 0.02}, free=("u", "v", "r")).trajectory))
+            file.write_bytes(
+                motion_csv(simulate(FILE, name, options, {"record": 0.02}, free=("u", "v", "r")).trajectory)
+            )
             out.append(read_series(file, BODY))
     return out
 
@@ -100,7 +102,9 @@ def campaign(series: Sequence[MotionSeries], kind: Kind, component: str, seed: i
         kept = identify(p, scaled_optimizer("stlsq"), seed=1, resamples=40).kept
         swaps = exchangeable(p, kept)
     values, half = p.solved(kept), half_widths(p, kept)
-    off: Array = np.array([v / terms[k].per_prime - TRUE.get(terms[k].symbol, 0.0) for v, k in zip(values, kept, strict=True)])
+    off: Array = np.array(
+        [v / terms[k].per_prime - TRUE.get(terms[k].symbol, 0.0) for v, k in zip(values, kept, strict=True)]
+    )
     inside = np.abs(off) <= half / np.array([terms[k].per_prime for k in kept])
     alone = [not swaps.get(k) for k in kept]
     return [bool(i) for i, a in zip(inside, alone, strict=True) if a], len(alone) - sum(alone)
@@ -118,10 +122,7 @@ def row(series: Sequence[MotionSeries], kind: Kind, seeds: int) -> dict[str, obj
 
 def main(seeds: int) -> None:
     series = clean()
-    rows = []
-    for kind in KINDS:
-        rows.append(row(series, kind, seeds))
-        print(rows[-1], flush=True)
+    rows = [row(series, kind, seeds) for kind in KINDS]
     with TABLE.open("w", newline="") as out:
         writer = csv.DictWriter(out, HEADER, lineterminator="\n")
         writer.writeheader()

@@ -63,7 +63,7 @@ def test_the_planted_columns_are_kept(seed: int) -> None:
 
 
 def test_the_seed_alone_decides() -> None:
-    p = summed(*halves(0.1))
+    p = summed(*halves(0.4))
     one, same, other = (identify(p, scaled_optimizer("stlsq"), seed=s, resamples=40) for s in (5, 5, 6))
     assert np.array_equal(one.frequency, same.frequency)
     assert not np.array_equal(one.frequency, other.frequency)

@@ -211,6 +211,13 @@ class FittedModel:
         out = np.sqrt(self.fit.half_width**2 + form**2 + sum(s**2 for s in self.shared.values()))
         return np.asarray(out if self.remainder is None else np.where(self.remainder.rejected, np.nan, out))
 
+    @property
+    def rejected(self) -> tuple[str, ...]:
+        """Symbols that have a value and, as their form is wrong, no half-width."""
+        if self.remainder is None:
+            return ()
+        return tuple(s for s, r in zip(self.symbols, self.remainder.rejected, strict=True) if r)
+
     def worth(self, i: int, unknown: Status = Status.NOT_DETERMINED) -> tuple[float | None, Status, Parts]:
         """U95 of a coefficient without shared errors, its status (``unknown`` without a value), and what makes U95 up."""
         value, scatter = float(self.fit.coefficients[i]), float(self.fit.half_width[i])
@@ -218,11 +225,11 @@ class FittedModel:
             return None, unknown, Parts()
         if not np.isfinite(scatter):
             return None, Status.SINGLE_ESTIMATOR, Parts()
-        form = 0.0 if self.remainder is None else float(self.remainder.half_width[i])
+        form = None if self.remainder is None else float(self.remainder.half_width[i])
         parts = Parts(random=scatter, model_form=form)
         if self.remainder is not None and self.remainder.rejected[i]:
             return None, Status.FORM_REJECTED, parts
-        return float(np.hypot(scatter, form)), Status.FORM_ASSUMED, parts
+        return float(np.hypot(scatter, form or 0.0)), Status.FORM_ASSUMED, parts
 
     def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Values, 95 % half-widths of the mean, and whether each point lies inside the domain.

@@ -63,7 +63,7 @@ def residuals_in_words(model: FittedModel, way_out: str = "") -> tuple[str, ...]
 def _remainder_in_words(model: FittedModel, found: Remainder) -> str:
     right = "below 0.001" if found.none < 1e-3 else f"{found.none:.2g}"
     said = f"The residuals are not random: the form misses something, most likely {found.likeliest} (a right form: {right})."
-    without = [s for s, r in zip(model.symbols, found.rejected, strict=True) if r]
+    without = model.rejected
     if not without:
         return f"{said} U95 holds what that may move."
     have = "has" if len(without) == 1 else "have"

@@ -165,6 +165,7 @@ def filled(time: Array, centres: Array, half: float) -> NDArray[np.bool_]:
 # Half-widths of a window: neighbours overlap in three quarters, for their weights fade to both ends; what lies within two
 # windows is taken as one stretch.
 APART, STRETCH = 0.5, 4.0
+SHARES, MORE, TELLING = 8.0, 1.25, 3e-3
 NOISE = 0.5  # share of a motion's power: with less of it told twice alike, noise is most of what is seen
 
 
@@ -267,9 +268,31 @@ def weak(
     return products(np.vstack(sides[0]), np.vstack(sides[1]), _numbered(stretch))
 
 
-def row_noise(s: MotionSeries) -> Array:
-    """(6,) standard deviation of the white noise on every velocity, from fourth differences, which motions hardly have."""
-    return np.asarray(np.sqrt(np.mean(np.diff(s.velocity, 4, axis=0) ** 2, axis=0) / 70.0))
+def row_noise(s: MotionSeries, apart: int = 1) -> Array:
+    """(6,) standard deviation of the noise on every velocity, from fourth differences, which motions hardly have.
+
+    Parameters
+    ----------
+    s : MotionSeries
+    apart : int
+        Rows between those of a difference: noise that neighbours share shows where this is more than its memory.
+    """
+    rows = len(s.time) - 4 * apart
+    parts = [c * s.velocity[k * apart : k * apart + rows] for k, c in enumerate((1.0, -4.0, 6.0, -4.0, 1.0))]
+    return np.asarray(np.sqrt(np.mean(np.square(sum(parts)), axis=0) / 70.0))
+
+
+def correlated(s: MotionSeries, half: float) -> tuple[str, ...]:
+    """Motions whose noise neighbouring rows share, so that even and odd rows are no instruments for each other.
+
+    An eighth of half a window apart it is clearly more than between neighbours, and more than 0.3 % of the motion.
+    """
+    apart = round(half / SHARES / float(np.median(np.diff(s.time))))
+    if apart < 2 or len(s.time) < 8 * apart:
+        return ()
+    far, size = row_noise(s, apart), np.sqrt(np.mean(np.square(s.velocity), axis=0))
+    found = (far > MORE * row_noise(s)) & (far > TELLING * size)
+    return tuple(m for m, shared in zip(MOTIONS, found, strict=True) if shared)
 
 
 def _unbiased(

@@ -22,10 +22,12 @@ if TYPE_CHECKING:
 
 SCATTER_ONLY = ("Without a form part: U95 is the scatter of the points about that one form alone.",)
 DEFINED = (
-    "U95: 95 % half-width, from the scatter of the points (random), the spread between the member estimators (form) and "
-    "what enters from outside, declared inputs and grid (input).",
+    "U95: 95 % half-width, from the scatter of the points (random), the spread between the member estimators or what the "
+    "residuals show that a fixed form leaves out (form), and what enters from outside, declared inputs and grid (input).",
 )
 ROUNDING = 1e-12
+REJECTED_STATUS = "form_rejected"
+REJECTED = REJECTED_STATUS.replace("_", " ")
 
 
 def window_text(c: Coefficient) -> str:
@@ -46,7 +48,7 @@ def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, pri
         (
             primed(c.symbol),
             coefficient(c.value) if c.value is not None else c.status.replace("_", " "),
-            coefficient(c.u95),
+            REJECTED if c.status == REJECTED_STATUS else coefficient(c.u95),
             percent(c.u95, c.value),
             percent(c.parts.random, c.value),
             percent(c.parts.model_form, c.value),
@@ -67,7 +69,7 @@ def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, pri
 
 def terms(model: FittedModel) -> Table:
     """Every coefficient with its interval; what the data leave open is said below, not printed as a number."""
-    rows = []
+    rows, rejected = [], model.rejected
     for symbol, term, value, half in zip(
         model.symbols, model.terms, model.fit.coefficients, model.half_width, strict=True
     ):
@@ -77,7 +79,7 @@ def terms(model: FittedModel) -> Table:
                 symbol,
                 str(term),
                 number(float(value), 5) if known else "not determined",
-                number(float(half), 3) if known else ABSENT,
+                REJECTED if symbol in rejected else number(float(half), 3) if known else ABSENT,
                 percent(float(half), float(value)) if known else ABSENT,
             )
         )

@@ -76,7 +76,7 @@ def side_by_side(study: Study) -> Table:
                     primed(symbol),
                     c.campaign or ABSENT,
                     coefficient(c.value) if c.value is not None else c.status.replace("_", " "),
-                    coefficient(c.u95),
+                    noun_tables.REJECTED if c.status == noun_tables.REJECTED_STATUS else coefficient(c.u95),
                     percent(c.parts.random, c.value),
                     percent(c.parts.model_form, c.value),
                     *(coefficient(published.get(k)) if k in published else ABSENT for k in columns),
@@ -104,7 +104,8 @@ def by_campaign(study: Study) -> Table:
             if c is None or c.value is None:
                 cells.append("no table" if c is None else c.status.replace("_", " "))
             else:
-                cells.append(coefficient(c.value) + (f" +- {coefficient(c.u95)}" if c.u95 is not None else ""))
+                without = f", {c.status.replace('_', ' ')}" if c.status == noun_tables.REJECTED_STATUS else ""
+                cells.append(coefficient(c.value) + (without if c.u95 is None else f" +- {coefficient(c.u95)}"))
         rows.append((primed(symbol), *cells))
     bodies = {f.campaign: f.body for f in study.fits}
     notes = tuple(f"{c}: {bodies[c]}" for c in campaigns)
