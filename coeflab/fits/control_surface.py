@@ -26,13 +26,14 @@ import numpy as np
 from coeflab.core.errors import InputError
 from coeflab.core.options import measured, one_of, parse_options
 from coeflab.core.types import Array
+from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.misfit import residuals_in_words
 from coeflab.fits.rows.regression import Area, Rows, collect, model_of
 from coeflab.fits.rows.sweeps import AREAS, PRIMES, area_of, area_settings, only_moving
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.terms import Term, design
 from coeflab.tables.force_table import ForceTable
@@ -106,6 +107,16 @@ def _over_both(rows: Rows, powers: Sequence[int], chosen: Options, form: str) ->
     return model_of(rows, terms, symbols, form, constraint=constraint)
 
 
+def _shares(powers: Sequence[int], model: FittedModel, chosen: Options) -> Array:
+    """How much of each coefficient of the effective angle every term over delta and alpha has, shape (terms, powers)."""
+    out = np.zeros((len(model.terms), len(powers)))
+    for k, n in enumerate(powers):
+        for term, share in _expanded(n, chosen.surface, _sign(chosen)).items():
+            if term in model.terms:
+                out[model.terms.index(term), k] = share
+    return out
+
+
 def _over_effective(rows: Rows, powers: Sequence[int], chosen: Options, form: str) -> FittedModel:
     """The law as the paper writes it: a listing over the effective angle, whose domain stays delta and alpha."""
     used = replace(rows, x={EFFECTIVE: rows.x[chosen.surface] + _sign(chosen) * rows.x["alpha"], **rows.x})
@@ -163,6 +174,8 @@ def _fitted(rows: Rows, area: Area, chosen: Options) -> tuple[FittedModel, Fitte
     listing = _over_effective(rows, powers, chosen, form)
     model = _over_both(rows, powers, chosen, f"{form}, over {chosen.surface} and alpha")
     listing = replace(listing, domain=model.domain)
+    if listing.remainder is not None:
+        model = replace(model, remainder=listing.remainder.over(_shares(powers, model, chosen)))
     said = [_told(rows, listing, chosen)] if rows.response != "C_D" else []
     if rows.response == "C_L":
         said.insert(0, _lifts(listing))
@@ -180,24 +193,23 @@ def _coefficient(model: FittedModel, area: Area, scaling: Scaling, surface: str,
         return None
     symbol, sign = DERIVATIVES[model.response]
     k = area.area / scaling.length**2
-    value, half = model.named(f"{model.response}1")
-    known, sure = bool(np.isfinite(value)), bool(np.isfinite(half))
-    u95 = float(half * k) if sure else None
-    status = Status.FORM_ASSUMED if sure else Status.SINGLE_ESTIMATOR if known else Status.TOO_FEW_POINTS
+    i = model.symbols.index(f"{model.response}1")
+    u95, status, parts = model.worth(i, Status.TOO_FEW_POINTS)
+    value = finite(float(model.fit.coefficients[i]))
     return Coefficient(
         symbol=symbol.replace("ds", surface),
-        value=float(sign * value * k) if known else None,
+        value=value,
         u95=u95,
         status=status,
         body=model.body,
-        parts=Parts(random=u95),
+        parts=parts,
         origin="fit",
         table=model.table,
         campaign=model.campaign,
         estimator=f"{model.response}1, {model.form}",
         n_points=model.n_points,
         citation=citation,
-    )
+    ).scaled(sign * k, "1")
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:

@@ -24,7 +24,7 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.misfit import residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOMENTS, MOTIONS, derivative
 from coeflab.law.terms import Term
@@ -136,25 +136,19 @@ def _fitted(rows: Rows, axis: str, chosen: Options) -> FittedModel:
 def _coefficients(model: FittedModel, axis: str, citation: str) -> tuple[list[Coefficient], Array]:
     """Dimensional coefficients of one axis with the covariance of their standard uncertainties (U95 / 2)^2."""
     index = [i for i, t in enumerate(model.terms) if t.factors]
-    half = model.fit.half_width[index]
-    covariance = model.fit.correlation[np.ix_(index, index)] * np.outer(half, half) / 4.0
-    np.fill_diagonal(covariance, half**2 / 4.0)
+    covariance = model.covariance[np.ix_(index, index)]
     low, high = float(model.domain.low[0]), float(model.domain.high[0])
     out = []
-    for i, u95 in zip(index, half, strict=True):
-        value = float(model.fit.coefficients[i])
-        sure = bool(np.isfinite(u95))
-        status = (
-            Status.FORM_ASSUMED if sure else Status.SINGLE_ESTIMATOR if np.isfinite(value) else Status.TOO_FEW_POINTS
-        )
+    for i in index:
+        u95, status, parts = model.worth(i, Status.TOO_FEW_POINTS)
         out.append(
             Coefficient(
                 symbol=model.symbols[i],
-                value=finite(value),
-                u95=float(u95) if sure else None,
+                value=finite(float(model.fit.coefficients[i])),
+                u95=u95,
                 status=status,
                 body=model.body,
-                parts=Parts(random=float(u95) if sure else None),
+                parts=parts,
                 origin="fit",
                 unit=derivative(model.symbols[i]).unit,
                 table=model.table,
@@ -194,8 +188,8 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     -------
     FitResult
         One model per axis in N or N m over m/s or rad/s, and the coefficients primed by ``scaling`` at the density and
-        speed of the campaign (``coefficients.to_si(conditions)`` gives back the numbers of the models). Their U95 is
-        the scatter of the points; whether the form is right is seen from the runs test and the left-out error.
+        speed of the campaign (``coefficients.to_si(conditions)`` gives back the numbers of the models). Their U95 holds
+        the scatter of the points and what their residuals show that the form leaves out.
 
     Raises
     ------

@@ -3,7 +3,8 @@
 Of several campaigns each has its own intercepts and its own scatter; its rows are moved to the point of the first.
 
 Term sets: Gertler & Hagen (1967), Feldman (1979). HC2: MacKinnon & White (1985), degrees of freedom: Bell & McCaffrey
-(2002). Valid inside the convex hull of the data; U95 holds the scatter of the points about the chosen form only.
+(2002). Valid inside the convex hull of the data; U95 holds the scatter of the points about the chosen form, and what
+their residuals show that it leaves out.
 
 Which terms of a manoeuvring model are fitted: those that were named, and those of a set that the tables hold.
 """
@@ -27,7 +28,7 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.misfit import next_terms_in_words, residuals_in_words
 from coeflab.fits.rows.secant import secant
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.terms import SETS, NamedTerm, canonical, read_equation, read_term, read_terms, split_equations
@@ -147,7 +148,6 @@ summary = (
 citations = ("gertler1967", "feldman1979", "mackinnon1985", "bell2002", "chow1960", "tipton2015")
 joins_campaigns = True
 
-FORM_ASSUMED = "The error of the form itself is not in U95."
 MORE_TERMS = "Add terms of a higher power or of two motions, or fit a narrower range."
 UNWEIGHTED = (
     "Rows weigh alike: their stated standard errors are noise of one run, not the error of the model. weights = yes "
@@ -225,28 +225,32 @@ def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
     }  # fmt: skip
     out = []
     for i, symbol in enumerate(model.symbols):
-        value, half = float(model.fit.coefficients[i]), float(model.fit.half_width[i])
-        if not np.isfinite(value):
-            out.append(Coefficient(symbol, None, None, Status.NOT_DETERMINED, **shared))
+        value = finite(float(model.fit.coefficients[i]))
+        u95, status, parts = model.worth(i)
+        if value is None:
+            out.append(Coefficient(symbol, None, None, status, **shared))
             continue
-        u95 = finite(half)
-        status = Status.FORM_ASSUMED if u95 is not None else Status.SINGLE_ESTIMATOR
         at_rest = not np.any(model.terms[i].evaluate(model.x))
         own = {"n_points": 0, "estimator": f"from the equations alone, no motion of {symbol} in its rows"}
         out.append(
-            Coefficient(symbol, value, u95, status, parts=Parts(random=u95),
+            Coefficient(symbol, value, u95, status, parts=parts,
                         window=None if at_rest else _window(model, i), **(shared | (own if at_rest else {})))
         )  # fmt: skip
     return out
 
 
-def _covariance(spread: Array, coefficients: Sequence[Coefficient]) -> Array:
-    """(U95/2)^2 on the diagonal, correlations of the sandwich beside it; NaN where there is no U95."""
+def _covariance(spread: Array, models: Sequence[FittedModel], coefficients: Sequence[Coefficient]) -> Array:
+    """(U95/2)^2 on the diagonal, beside it the sandwich and, inside a component, the form; NaN where there is no U95."""
     size = np.linalg.norm(spread, axis=1)
     unit = spread / np.where(size > 0.0, size, 1.0)[:, None]
-    u = np.array([np.nan if c.u95 is None else c.u95 / 2.0 for c in coefficients])
-    out = (unit @ unit.T) * np.outer(u, u)
-    out[np.diag_indices(len(u))] = u**2
+    scatter = np.array([np.nan if c.u95 is None or c.parts.random is None else c.parts.random for c in coefficients])
+    out = (unit @ unit.T) * np.outer(scatter, scatter) / 4.0
+    out[np.diag_indices(len(scatter))] = scatter**2 / 4.0
+    at = 0
+    for m in models:
+        block = slice(at, at + len(m.symbols))
+        out[block, block] += 0.0 if m.remainder is None else m.remainder.covariance / 4.0
+        at = block.stop
     return np.asarray(out)
 
 
@@ -312,7 +316,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         body=body,
         coefficients=CoefficientSet(
             every,
-            _covariance(np.vstack([joint.spread, np.zeros((len(open_ones), n_runs))]), every),
+            _covariance(np.vstack([joint.spread, np.zeros((len(open_ones), n_runs))]), finished, every),
             scaling,
             first.reference_point,
             first.datum,
@@ -360,7 +364,6 @@ def _finished(model: FittedModel, first: Sequence[str], more: Sequence[str], idl
         *model.statements,
         *_with_secants(model),
         *more,
-        FORM_ASSUMED,
     ]
     if absent:
         said.insert(0, f"Not determined, as the tables do not hold their motion: {', '.join(absent)}.")

@@ -18,7 +18,7 @@ from coeflab.fits.results.misfit import residuals_in_words
 from coeflab.fits.rows.regression import ANGLES, Area, collect, model_of
 from coeflab.fits.rows.sweeps import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
 from coeflab.fits.statistics.linear_model import sharpened
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, primed
 from coeflab.law.terms import Term, power_terms
@@ -100,30 +100,26 @@ def _coefficients(
         low, high = float(np.arcsin(max(low, -1.0))), float(np.arcsin(min(high, 1.0)))
     out = []
     for i in keep:
-        value, half = float(model.fit.coefficients[i]), float(model.fit.half_width[i])
-        u95 = finite(half)
-        status = Status.SINGLE_ESTIMATOR if u95 is None else Status.FORM_ASSUMED
+        u95, status, parts = model.worth(i, Status.TOO_FEW_POINTS)
         out.append(
             Coefficient(
                 symbol=model.symbols[i].removesuffix("'"),
-                value=finite(value),
+                value=finite(float(model.fit.coefficients[i])),
                 u95=u95,
-                status=status if np.isfinite(value) else Status.TOO_FEW_POINTS,
+                status=status,
                 body=model.body,
-                parts=Parts(random=u95),
+                parts=parts,
                 origin="fit",
                 table=model.table,
                 campaign=model.campaign,
-                estimator=f"{model.form}; model form not assessed",
+                estimator=model.form,
                 window=(low, high),
                 window_over=chosen.variable,
                 n_points=model.n_points,
                 citation=citation,
             )
         )
-    standard = model.fit.half_width[keep] / 2.0
-    covariance = model.fit.correlation[np.ix_(keep, keep)] * np.outer(standard, standard)
-    return out, covariance
+    return out, model.covariance[np.ix_(keep, keep)]
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:

@@ -21,13 +21,14 @@ from coeflab.core.limits import REPLICATES
 from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, one_of, parse_options, words
 from coeflab.core.types import Array
+from coeflab.core.wording import finite
 from coeflab.fits.joint.rows import JointRows, joint_rows, measured, moving
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.results.misfit import every_third_point, residuals_in_words
 from coeflab.fits.rows.regression import model_of
 from coeflab.fits.statistics.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins
-from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.coefficient import Coefficient, CoefficientSet
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.terms import Term, design, symmetric
@@ -148,13 +149,11 @@ def _alike(matrix: Array, y: Array, component: str, terms: Sequence[Term], inter
 
 def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
     out = []
-    for symbol, value, half in zip(model.symbols, model.fit.coefficients, model.fit.half_width, strict=True):
-        known, sure = bool(np.isfinite(value)), bool(np.isfinite(half))
-        status = Status.FORM_ASSUMED if known and sure else Status.SINGLE_ESTIMATOR if known else Status.NOT_DETERMINED
-        u95 = float(half) if known and sure else None
+    for i, symbol in enumerate(model.symbols):
+        u95, status, parts = model.worth(i)
         out.append(
             Coefficient(
-                symbol, float(value) if known else None, u95, status, model.body, parts=Parts(random=u95),
+                symbol, finite(float(model.fit.coefficients[i])), u95, status, model.body, parts=parts,
                 origin="fit", table=model.table, campaign=model.campaign, n_points=model.n_points, citation=citation,
                 estimator=f"{model.form}, refit of the chosen terms {' + '.join(model.symbols)}; U95 ignores the choice",
             )
@@ -163,15 +162,15 @@ def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
 
 
 def _covariance(models: Sequence[FittedModel], coefficients: Sequence[Coefficient]) -> Array:
-    """(U95/2)^2 with the correlations inside each model; nothing between models, whose terms were chosen apart."""
-    u = np.array([np.nan if c.u95 is None else c.u95 / 2.0 for c in coefficients])
-    correlation, at = np.eye(len(u)), 0
+    """That of each model; nothing between models, whose terms were chosen apart."""
+    out, at = np.zeros((len(coefficients), len(coefficients))), 0
     for m in models:
         block = slice(at, at + len(m.symbols))
-        correlation[block, block] = m.fit.correlation
+        out[block, block] = m.covariance
         at = block.stop
-    correlation[np.diag_indices(len(u))] = 1.0
-    return np.asarray(correlation * np.outer(u, u))
+    void = np.isnan(np.diag(out))
+    out[void, :] = out[:, void] = np.nan
+    return out
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:

@@ -31,6 +31,7 @@ class Status(StrEnum):
     NOT_DETERMINED = "not_determined"
     STATED = "stated"
     FORM_ASSUMED = "form_assumed"
+    FORM_REJECTED = "form_rejected"
 
     @property
     def advice(self) -> str:
@@ -45,7 +46,10 @@ class Status(StrEnum):
             "is given. Run more angles, some on the other side.",
             Status.NOT_DETERMINED: "The data, or the derivatives that a change of reference point needs, leave it open.",
             Status.STATED: "Taken from the literature with the uncertainty stated there.",
-            Status.FORM_ASSUMED: "U95 holds for the form that was asked for; what another form would give is not in it.",
+            Status.FORM_ASSUMED: "U95 holds the scatter and what the residuals show that the form leaves out. A misfit of "
+            "the size of the noise does not show.",
+            Status.FORM_REJECTED: "The residuals show that the form is wrong, and another would move the value by more than "
+            "half of it: no U95. Add the missing term or fit a narrower range.",
         }[self]
 
 
@@ -60,7 +64,8 @@ class Parts:
         Scatter of the points: of a slope at the origin what the noise of single readings does through the fixed
         mixture; of other fits HC2 with Bell-McCaffrey degrees of freedom.
     model_form : float or None
-        What the unknown form of the curve adds: the rest of U95, in quadrature.
+        Slopes at the origin: what the unknown form of the curve adds, the rest of U95 in quadrature.
+        Fixed forms: what a remainder that the residuals show would move.
     window : float or None
         Reserved for a separately assessed window part.
     input : float or None
@@ -127,10 +132,11 @@ class Coefficient:
     u95: Annotated[NotNegative | None, Told("95 % half-width of the value; null where it is not known", "1")]
     status: Annotated[
         Status,
-        Choice(tuple(Status), Status),
+        Choice(tuple(s for s in Status if s is not Status.SIGN_OPEN), Status),
         Told(
             "ok: fitted with U95; single_estimator: fitted, its model-form error unknown; form_assumed (since 1.2): U95 holds "
-            "for the form that was asked for; stated: from the literature; no_table, too_few_points, not_determined: no value"
+            "the scatter and what the residuals show that the form leaves out; form_rejected (since 1.4): the residuals show "
+            "that the form is wrong, no U95; stated: from the literature; no_table, too_few_points, not_determined: no value"
         ),
     ]
     body: str = ""

@@ -264,6 +264,8 @@ def _coefficients(study: Study) -> Section:
     single = any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients)
     if single:
         text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
+    if any(c.status is Status.FORM_REJECTED for c in study.coefficients):
+        text += (f"Form rejected: {Status.FORM_REJECTED.advice}",)
     return Section("coefficients", "Coefficients", text, filled(tables.coefficients(study)))
 
 

@@ -210,7 +210,7 @@ def record(model: FittedModel, area: ModelArea | None = None) -> ParameterModel:
                 )
                 for s, t, c, h in zip(model.symbols, model.terms, model.fit.coefficients, model.half_width, strict=True)
             ),
-            "holds": ("random", *model.shared),
+            "holds": ("random", *(("model form",) if model.remainder is not None else ()), *model.shared),
             "covariance": tuple(tuple(finite(x) for x in row) for row in model.covariance),
             "domain": ModelDomain(
                 low=tuple(map(float, model.domain.low)),

@@ -49,7 +49,8 @@ VERSIONS = {
     "1.2": "Added mass and the potential part of every coefficient; damping about a state of rest; centre of gravity and "
     "inertia matrix; what the half-widths of models hold; the status form_assumed.",
     "1.3": "Buoyancy, gravity, thrusters and the limits of control surfaces.",
-    "1.4": "The measured points behind the law, how far the law is from them, and the range in which it holds.",
+    "1.4": "The measured points behind the law, how far the law is from them, and the range in which it holds; the status "
+    "form_rejected.",
 }
 NARROWER = 1e-3  # of a range: less is what a campaign is run at
 _MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)

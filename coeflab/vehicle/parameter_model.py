@@ -84,7 +84,9 @@ class ParameterModel(Strict):
     holds: Annotated[
         tuple[Name, ...],
         Told(
-            "what half widths and covariance hold: the scatter, the grid, declared inputs; never the form", since="1.2"
+            "what half widths and covariance hold: the scatter, what it shows that the form leaves out (model form, since "
+            "1.4), the grid, declared inputs",
+            since="1.2",
         ),
     ] = ("random",)
     contains_potential: Annotated[

@@ -191,16 +191,28 @@ def test_coefficients_carry_scatter_window_and_covariance() -> None:
     result = bare_hull()
     u95 = np.array([c.u95 for c in result.coefficients.coefficients], dtype=float)
     covariance = result.coefficients.covariance
-    assert np.diag(covariance) == pytest.approx((u95 / 2.0) ** 2, rel=1e-12)
-    assert np.linalg.eigvalsh(covariance / np.outer(u95, u95)).min() > -1e-12
+    assert np.diag(covariance) == pytest.approx((u95 / 2.0) ** 2, rel=1e-12, nan_ok=True)
+    known = np.isfinite(u95)
+    assert np.linalg.eigvalsh((covariance / np.outer(u95, u95))[np.ix_(known, known)]).min() > -1e-12
     c = coefficient(result, "Yr")
-    assert (c.origin, c.status, c.parts.random, c.n_points) == ("fit", Status.FORM_ASSUMED, c.u95, 13)
+    parts = (c.parts.random or 0.0, c.parts.model_form or 0.0)
+    assert (c.origin, c.status, c.u95, c.n_points) == ("fit", Status.FORM_ASSUMED, pytest.approx(np.hypot(*parts)), 13)
     assert c.window == pytest.approx((0.0, 0.3 * 4.26086 / 2.0), rel=1e-4)
     assert "Yr|r|" in c.estimator
-    inner = model(result, "Y").fit.correlation[1, 3]
     names = [k.symbol for k in result.coefficients.coefficients]
     i, j = names.index("Yv"), names.index("Yvvv")
-    assert covariance[i, j] / np.sqrt(covariance[i, i] * covariance[j, j]) == pytest.approx(inner, rel=1e-9)
+    assert covariance[i, j] == pytest.approx(model(result, "Y").covariance[1, 3], rel=1e-9)
+
+
+def test_a_cubic_that_the_terms_lack_is_named_and_rejects_what_it_would_move_most() -> None:
+    """The yawing moment of the bare hull has a v^3, which `bare_hull` does not ask for."""
+    result = bare_hull()
+    assert any("most likely a term v^3" in s and "rejected for Nv|v|" in s for s in model(result, "N").statements)
+    rejected, slope = coefficient(result, "Nv|v|"), coefficient(result, "Nv")
+    assert (rejected.status, rejected.u95) == (Status.FORM_REJECTED, None)
+    assert slope.u95 is not None
+    assert slope.parts.random is not None
+    assert slope.u95 > 2.0 * slope.parts.random
 
 
 def test_standard_errors_are_weights_only_when_asked() -> None:
@@ -474,7 +486,7 @@ def test_intervals_cover_in_93_to_97_percent_of_synthetic_campaigns() -> None:
     grid_v, grid_r = (g.ravel() for g in np.meshgrid(np.linspace(-0.2, 0.2, 5), np.linspace(-0.5, 0.5, 4)))
     runs = [(sweep, 0 * sweep), (0 * arm, arm), (grid_v, grid_r)]
     terms = {s: read_term(s, "").term for s in truth}
-    rng, inside = np.random.default_rng(7), np.zeros(len(truth))
+    rng, inside, by_scatter = np.random.default_rng(7), np.zeros(len(truth)), np.zeros(len(truth))
     for _ in range(CAMPAIGNS):
         used = []
         for (v, r), sigma in zip(runs, (2e-4, 3e-4, 1.5e-4), strict=True):
@@ -483,8 +495,9 @@ def test_intervals_cover_in_93_to_97_percent_of_synthetic_campaigns() -> None:
         m = fitted(tuple(used), terms=list(truth)).models[0]
         found = [m.named(s) for s in truth]
         inside += [abs(value - b) <= half for (value, half), b in zip(found, truth.values(), strict=True)]
+        by_scatter += np.abs(m.fit.coefficients - list(truth.values())) <= m.fit.half_width
     assert np.all(inside / CAMPAIGNS >= 0.93), inside
-    assert np.all(inside / CAMPAIGNS <= 0.97), inside
+    assert np.all((by_scatter / CAMPAIGNS >= 0.92) & (by_scatter / CAMPAIGNS <= 0.97)), by_scatter
 
 
 @pytest.mark.slow

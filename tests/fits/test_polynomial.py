@@ -124,19 +124,21 @@ def test_random_intervals_cover_the_truth_as_often_as_they_say(parity):
     assert np.all((share >= 0.93) & (share <= 0.97)), share
 
 
-def test_u95_and_covariance_are_those_of_the_scatter_alone():
+def test_u95_and_covariance_hold_scatter_and_form():
     y = cubic(DRIFT) + 1e-4 * np.random.default_rng(4).standard_normal(15)
     found = fit(sweep({"Y": y, "N": y[::-1]}, v=DRIFT), variable="v")
     set_ = found.coefficients
-    for c, half in zip(set_.coefficients, np.concatenate([m.fit.half_width for m in found.models]), strict=True):
-        assert c.u95 == pytest.approx(half)
-        assert c.parts.random == c.u95
-        assert c.parts.model_form is None
-        assert "model form not assessed" in c.estimator
+    scatter = np.concatenate([m.fit.half_width for m in found.models])
+    form = np.concatenate([m.remainder.half_width for m in found.models])
+    assert form.max() > 0.0
+    for c, random, model_form in zip(set_.coefficients, scatter, form, strict=True):
+        assert c.u95 == pytest.approx(np.hypot(random, model_form))
+        assert (c.parts.random, c.parts.model_form) == (random, model_form)
     np.testing.assert_allclose(np.diag(set_.covariance), [(c.u95 / 2.0) ** 2 for c in set_.coefficients], rtol=1e-12)
-    correlation = found.models[0].fit.correlation
-    size = np.sqrt(np.diag(set_.covariance))[:4]
-    np.testing.assert_allclose(set_.covariance[:4, :4] / np.outer(size, size), correlation, rtol=1e-9)
+    expected = (
+        found.models[0].fit.correlation * np.outer(scatter[:4], scatter[:4]) + found.models[0].remainder.covariance
+    )
+    np.testing.assert_allclose(set_.covariance[:4, :4], expected / 4.0, rtol=1e-9)
     assert not np.any(set_.covariance[:4, 4:])
 
 

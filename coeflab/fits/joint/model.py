@@ -19,11 +19,12 @@ from coeflab.core.wording import finite
 from coeflab.fits.joint.rows import Component, Constraint, constraint_of, linked
 from coeflab.fits.results.fit_result import CampaignShare, Pooling
 from coeflab.fits.results.fitted_model import Domain, FittedModel, in_words
-from coeflab.fits.results.misfit import UNLIKELY, OutOfSample, chance, errors_of
+from coeflab.fits.results.misfit import ROUNDING, UNLIKELY, OutOfSample, chance, errors_of
 from coeflab.fits.rows.regression import model_of
 from coeflab.fits.statistics.groups import UNTOLD, poolability, predict_left_out, thirds
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
+from coeflab.fits.statistics.remainder import Block, judged, left_out
 from coeflab.fits.statistics.stacked import fit_stacked, freed, influence, part_of, scatter, spread_by_run, stack
 from coeflab.law.terms import Equation
 
@@ -270,8 +271,17 @@ def _several(
     # Equations make some coefficients multiples of each other; that is no collinearity of the rows.
     by_rows = np.where(np.abs(fit.correlation) > 1.0 - 1e-9, 0.0, fit.correlation)
     said = in_words(replace(fit, correlation=by_rows), tuple(s for p in parts for s in p.every_symbol))
-    models, wholes, spreads, row, column = [], [], [], 0, 0
-    for p in parts:
+    models, wholes, spreads = [], [], []
+    cuts = list(accumulate((len(p.data.run) for p in parts), initial=0))
+    design, noise = stack([p.matrix for p in parts], [p.data.rows.y for p in parts], [p.errors for p in parts])
+    blocks = [
+        Block(slice(*cut), tuple(t.term for t in p.terms), p.data.rows.x)
+        for cut, p in zip(pairwise(cuts), parts, strict=True)
+    ]
+    missing, found = left_out(design, fit.residuals, noise, constraint if len(constraint[1]) else None, blocks)
+    none = min(n for n, _ in found)
+    row, column = 0, 0
+    for p, (_, likeliest) in zip(parts, found, strict=True):
         rows, common = p.data.rows, slice(column, column + len(p.terms))
         shares, every = slice(row, row + len(rows.y)), slice(column, column + p.width)
         row, column = shares.stop, every.stop
@@ -296,6 +306,9 @@ def _several(
                 y=y,
                 labels=rows.labels,
                 set_aside=None if p.own else rows.set_aside,
+                remainder=None
+                if np.max(np.abs(fit.residuals[shares])) <= ROUNDING * float(np.max(np.abs(y), initial=0.0))
+                else judged(missing[common, common], none, likeliest, fit.coefficients[common], fit.half_width[common]),
                 statements=tuple(s for s in said if any(name in s.replace(",", " ").split() for name in p.symbols)),
             )
         )

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from coeflab.core.table import html_by
 from coeflab.core.types import Array, brief, locked, locked_columns
 from coeflab.fits.statistics.linear_model import LinearFit
+from coeflab.fits.statistics.remainder import Remainder
+from coeflab.law.coefficient import Parts, Status
 from coeflab.law.domain import half_spaces, inside
 from coeflab.law.terms import Term, design
 from coeflab.tables.force_table import ForceTable
@@ -152,6 +154,8 @@ class FittedModel:
         What may act and is in no half-width, in words; filled in by the budget.
     set_aside : SetAside or None
         Printed rows that are rejected or doubtful.
+    remainder : Remainder or None
+        What the residuals say of the form; None where it was not asked.
     """
 
     response: str
@@ -172,6 +176,7 @@ class FittedModel:
     shared: Mapping[str, Array] = field(default_factory=dict)
     not_assessed: tuple[str, ...] = ()
     set_aside: SetAside | None = None
+    remainder: Remainder | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "x", locked_columns(self.x))
@@ -185,18 +190,46 @@ class FittedModel:
 
     @property
     def covariance(self) -> Array:
-        """(p, p), of standard uncertainties, half-width / 2: scatter by its correlation, every shared error in full."""
+        """(p, p), of standard uncertainties, half-width / 2: scatter by its correlation, form and shared errors in full.
+
+        NaN where there is no half-width.
+        """
         standard = self.fit.half_width / 2.0
         out = self.fit.correlation * np.outer(standard, standard)
         np.fill_diagonal(out, standard**2)
+        if self.remainder is not None:
+            out = out + self.remainder.covariance / 4.0
+            out[self.remainder.rejected, :] = out[:, self.remainder.rejected] = np.nan
         for shift in self.shared.values():
             out = out + np.outer(shift, shift) / 4.0
         return np.asarray((out + out.T) / 2.0)
 
     @property
     def half_width(self) -> Array:
-        """(p,) 95 % half-widths of the coefficients, scatter and shared errors; NaN where there is none."""
-        return np.asarray(np.sqrt(self.fit.half_width**2 + sum(s**2 for s in self.shared.values())))
+        """(p,) 95 % half-widths of the coefficients, scatter, form and shared errors; NaN where there is none."""
+        form = np.zeros(len(self.terms)) if self.remainder is None else self.remainder.half_width
+        out = np.sqrt(self.fit.half_width**2 + form**2 + sum(s**2 for s in self.shared.values()))
+        return np.asarray(out if self.remainder is None else np.where(self.remainder.rejected, np.nan, out))
+
+    @property
+    def rejected(self) -> tuple[str, ...]:
+        """Symbols that have a value and, as their form is wrong, no half-width."""
+        if self.remainder is None:
+            return ()
+        return tuple(s for s, r in zip(self.symbols, self.remainder.rejected, strict=True) if r)
+
+    def worth(self, i: int, unknown: Status = Status.NOT_DETERMINED) -> tuple[float | None, Status, Parts]:
+        """U95 of a coefficient without shared errors, its status (``unknown`` without a value), and what makes U95 up."""
+        value, scatter = float(self.fit.coefficients[i]), float(self.fit.half_width[i])
+        if not np.isfinite(value):
+            return None, unknown, Parts()
+        if not np.isfinite(scatter):
+            return None, Status.SINGLE_ESTIMATOR, Parts()
+        form = None if self.remainder is None else float(self.remainder.half_width[i])
+        parts = Parts(random=scatter, model_form=form)
+        if self.remainder is not None and self.remainder.rejected[i]:
+            return None, Status.FORM_REJECTED, parts
+        return float(np.hypot(scatter, form or 0.0)), Status.FORM_ASSUMED, parts
 
     def evaluate(self, columns: Mapping[str, Array]) -> tuple[Array, Array, NDArray[np.bool_]]:
         """Values, 95 % half-widths of the mean, and whether each point lies inside the domain.
@@ -212,7 +245,7 @@ class FittedModel:
         rows = design(self.terms, columns)
         known = np.isfinite(self.fit.coefficients)
         values = np.where(np.any(rows[:, ~known] != 0.0, axis=1), np.nan, rows[:, known] @ self.fit.coefficients[known])
-        bare = known & ~np.isfinite(self.fit.half_width)
+        bare = known & ~np.isfinite(self.half_width)
         joint = np.nan_to_num(self.covariance)
         spread = 2.0 * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", rows, joint, rows), 0.0))
         sure = np.isfinite(values) & ~np.any(rows[:, bare] != 0.0, axis=1)

@@ -14,6 +14,7 @@ from coeflab.core.types import Array
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.statistics.groups import predict_left_out, thirds
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability
+from coeflab.fits.statistics.remainder import Remainder
 from coeflab.law.symbols import MOTIONS
 from coeflab.law.terms import Term, canonical, design
 
@@ -27,7 +28,9 @@ def chance(probability: float) -> str:
 
 
 def residuals_in_words(model: FittedModel, way_out: str = "") -> tuple[str, ...]:
-    """A warning where the signs of the residuals, in the order of the rows, are not random (Wald & Wolfowitz 1940).
+    """What the residuals say against the form: a remainder that they show, else signs that are not random.
+
+    Signs are taken in the order of the rows (Wald & Wolfowitz 1940).
 
     Parameters
     ----------
@@ -38,9 +41,12 @@ def residuals_in_words(model: FittedModel, way_out: str = "") -> tuple[str, ...]
     Returns
     -------
     tuple of str
-        Empty where the runs test is not below 0.01, or where the residuals are rounding.
+        Empty where there is probably no remainder and the runs test is not below 0.01, or where the residuals are
+        rounding.
     """
     fit = model.fit
+    if model.remainder is not None and model.remainder.likeliest:
+        return (f"{_remainder_in_words(model, model.remainder)} {way_out}".rstrip(),)
     exact = fit.rms <= ROUNDING * float(np.max(np.abs(model.y), initial=0.0))
     if exact or not fit.runs_probability < UNLIKELY:
         return ()
@@ -52,6 +58,16 @@ def residuals_in_words(model: FittedModel, way_out: str = "") -> tuple[str, ...]
         return (f"{found}: they change sign more often than by chance, and the intervals cannot be trusted.",)
     said = f"{found}: the form misses something, and the intervals cannot be trusted."
     return (f"{said} {way_out}".rstrip(),)
+
+
+def _remainder_in_words(model: FittedModel, found: Remainder) -> str:
+    right = "below 0.001" if found.none < 1e-3 else f"{found.none:.2g}"
+    said = f"The residuals are not random: the form misses something, most likely {found.likeliest} (a right form: {right})."
+    without = model.rejected
+    if not without:
+        return f"{said} U95 holds what that may move."
+    have = "has" if len(without) == 1 else "have"
+    return f"{said} It is rejected for {', '.join(without)}, which {have} no U95; that of the others holds what it may move."
 
 
 def _own_powers(model: FittedModel, variable: str) -> list[tuple[int, bool]]:

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief
 from coeflab.fits.results.fitted_model import Domain, Extrapolation, FittedModel, SetAside, in_words, joined, readmitted
-from coeflab.fits.statistics.linear_model import fit_linear
+from coeflab.fits.results.misfit import ROUNDING
+from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
+from coeflab.fits.statistics.remainder import Block, Remainder, judged, left_out
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS
 from coeflab.law.terms import Term, design
 from coeflab.law.transforms import incidence, wind_forces
@@ -216,7 +218,8 @@ def model_of(
             advice="Leave these terms out, or add runs in which their motion occurs.",
         )  # fmt: skip
     try:
-        fit = fit_linear(matrix, rows.y, rows.errors if weighted else None, constraint)
+        errors = rows.errors if weighted else None
+        fit = fit_linear(matrix, rows.y, errors, constraint)
     except ValueError as why:
         raise InputError(str(why), "a constraint that some coefficients can meet", column=form) from None
     return FittedModel(
@@ -236,4 +239,20 @@ def model_of(
         statements=in_words(fit, symbols),
         post_selection=post_selection,
         set_aside=rows.set_aside,
+        remainder=_remainder(fit, matrix, rows, terms, errors, constraint),
     )
+
+
+def _remainder(
+    fit: LinearFit,
+    matrix: Array,
+    rows: Rows,
+    terms: tuple[Term, ...],
+    errors: Array | None,
+    constraint: tuple[Array, Array] | None,
+) -> Remainder | None:
+    """What the form leaves out; None where the residuals are rounding."""
+    if fit.rms <= ROUNDING * float(np.max(np.abs(rows.y), initial=0.0)):
+        return None
+    covariance, found = left_out(matrix, fit.residuals, errors, constraint, (Block(slice(None), terms, rows.x),))
+    return judged(covariance, *found[0], fit.coefficients, fit.half_width)

@@ -1,4 +1,4 @@
-"""Budgets of fitted models: scatter, grid and declared inputs; the form is given, and what another would say is open.
+"""Budgets of fitted models: scatter, what it shows that the form leaves out, grid and declared inputs.
 
 How the uncertain inputs of a campaign move fitted models: the whole fit, repeated on moved tables.
 
@@ -322,7 +322,8 @@ def with_model_budgets(
         lacking = _lacking(model, _component(model), model.domain.variables, tables, effects, numbers)
         if _computed(model, tables) and not grid:
             lacking = ("grid", *lacking)
-        models.append(replace(model, shared=shifts | grid, not_assessed=(FORM, *lacking)))
+        form = () if model.remainder is not None else (FORM,)
+        models.append(replace(model, shared=shifts | grid, not_assessed=(*form, *lacking)))
     found = tuple(
         _budget(c, _model_of(c, fit), tables, effects, at + i)
         for i, c in enumerate(fit.coefficients.coefficients)
@@ -429,7 +430,7 @@ def _budget(
             if np.isfinite(g) and g != 0.0
         )
     total = None if effects is None else effects.propagated(number)
-    fitted = {"random": c.parts.random or c.u95, FORM: None}
+    fitted = {"random": c.parts.random or c.u95, FORM: c.parts.model_form}
     if place is None:
         return budget_of(c, component, tables, fitted, inputs, total, ())
     model, i = place

@@ -164,6 +164,7 @@ def filled(time: Array, centres: Array, half: float) -> NDArray[np.bool_]:
 # Half-widths of a window: neighbours overlap in three quarters, for their weights fade to both ends; what lies within two
 # windows is taken as one stretch.
 APART, STRETCH = 0.5, 4.0
+SHARES, MORE, TELLING = 8.0, 1.25, 3e-3
 NOISE = 0.5  # share of a motion's power: with less of it told twice alike, noise is most of what is seen
 
 
@@ -255,14 +256,54 @@ def weak(
     sides: tuple[list[Array], list[Array]] = ([], [])
     stretch: list[NDArray[np.int64]] = []
     for s in series:
-        middles = centres(s, half)
+        middles, noise = centres(s, half), row_noise(s)
         for part, out in zip(_halves(s), sides, strict=True):
             values, momentum, nu = _sides(part, vehicle, component, terms)
+            values = _unbiased(part, vehicle, component, terms, values, noise)
             time, fine = refined(part.time, np.column_stack([values, nu, momentum]), half)
             kept, moved = Windows(time, middles, half).averages(*np.split(fine, [values.shape[1]], axis=1))
             out.append(_joined(kept, moved[:, -1], moved[:, :-1], terms))
         stretch.append(stretches(middles, half))
     return products(np.vstack(sides[0]), np.vstack(sides[1]), _numbered(stretch))
+
+
+def row_noise(s: MotionSeries, apart: int = 1) -> Array:
+    """(6,) standard deviation of the noise on every velocity, from fourth differences, which motions hardly have.
+
+    Parameters
+    ----------
+    s : MotionSeries
+    apart : int
+        Rows between those of a difference: noise that neighbours share shows where this is more than its memory.
+    """
+    rows = len(s.time) - 4 * apart
+    parts = [c * s.velocity[k * apart : k * apart + rows] for k, c in enumerate((1.0, -4.0, 6.0, -4.0, 1.0))]
+    return np.asarray(np.sqrt(np.mean(np.square(sum(parts)), axis=0) / 70.0))
+
+
+def correlated(s: MotionSeries, half: float) -> tuple[str, ...]:
+    """Motions whose noise neighbouring rows share, so that even and odd rows are no instruments for each other.
+
+    An eighth of half a window apart it is clearly more than between neighbours, and more than 0.3 % of the motion.
+    """
+    apart = round(half / SHARES / float(np.median(np.diff(s.time))))
+    if apart < 2 or len(s.time) < 8 * apart:
+        return ()
+    far, size = row_noise(s, apart), np.sqrt(np.mean(np.square(s.velocity), axis=0))
+    found = (far > MORE * row_noise(s)) & (far > TELLING * size)
+    return tuple(m for m, shared in zip(MOTIONS, found, strict=True) if shared)
+
+
+def _unbiased(
+    s: MotionSeries, vehicle: Vehicle, component: str, terms: Sequence[Candidate], values: Array, noise: Array
+) -> Array:
+    """Values without what noise adds to squares on average: half its variance times the second derivative."""
+    out = values.copy()
+    for k in np.flatnonzero(noise > 0.0):
+        step = np.where(np.arange(len(noise)) == k, noise[k], 0.0)
+        up, down = (_sides(replace(s, velocity=s.velocity + e), vehicle, component, terms)[0] for e in (step, -step))
+        out -= 0.5 * (up + down - 2.0 * values)
+    return out
 
 
 def differenced(

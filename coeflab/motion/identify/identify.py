@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,7 @@ from coeflab.motion.identify.force_balance import (
     Candidate,
     candidate_terms,
     centres,
+    correlated,
     differenced,
     excited,
     known,
@@ -152,6 +153,7 @@ def _identified(
     o: Options,
 ) -> Identified:  # fmt: skip
     share = excited(series, half)
+    shared = tuple(dict.fromkeys(m for s in series for m in correlated(s, half)))
     fit_added = o.added_mass == "fit" or not np.any(body.added)
     library = candidate_terms(
         parameters, moving, o.terms, symmetric=o.symmetric == "yes", accelerations=fit_added,
@@ -165,12 +167,22 @@ def _identified(
             continue
         balance = (weak if o.form == "weak" else differenced)(series, body, c, mine, half)
         some, balanced = _component(c, mine, balance, share, parameters, body.water, o)
-        terms += some
+        terms += [replace(t, low=None, high=None) for t in some] if shared else some
         balances.append(balanced)
     return Identified(
         parameters.name, tuple(s.file for s in series), f"{o.form} form", half, o.seed, o.resamples, tuple(terms),
-        tuple(balances), _statements(series, body, moving, share, library, half, o),
+        tuple(balances), (*_shared(shared), *_statements(series, body, moving, share, library, half, o)),
     )  # fmt: skip
+
+
+def _shared(motions: Sequence[str]) -> tuple[str, ...]:
+    """Why there are no intervals, where neighbouring rows share their noise."""
+    if not motions:
+        return ()
+    return (
+        f"No intervals: neighbouring rows share the noise of {', '.join(motions)}, as a filter leaves it. Even and odd rows are "
+        "then no instruments for each other, and the values are biased. Use unfiltered rows, or thin them.",
+    )
 
 
 def _component(
@@ -253,8 +265,8 @@ def _result(
         return _term(candidate, Outcome.NOT_NEEDED, "", file, frequency=frequency)
     scale = 1.0 / candidate.per_prime
     value, low, high = (float(a[at]) * scale for a in (found.coefficients, found.low, found.high))
-    known = bool(np.isfinite(low))
     swaps = [primed(usable[k].symbol) for k in others[at]]
+    known = bool(np.isfinite(low)) and not swaps
     outcome = Outcome.EXCHANGEABLE if swaps else Outcome.IDENTIFIED
     return _term(
         candidate, outcome, together_in_words(swaps) if swaps else "", file, value=value, frequency=frequency,

@@ -37,7 +37,7 @@ def identified_figure(found: Identified, anchor: str) -> Figure:
     title = f"{found.name}: identified from motions, and the parameter file"
     caption = (
         "Left: each value over the size of the file's, or of the identified one where the file has none, so that the file's "
-        "stands at +1 or −1. Bars: 2.5 to 97.5 percentile of the resamples, which is scatter alone, and U95 of the file. "
+        "stands at +1 or −1. Bars: 95 % intervals of the identification, which hold scatter alone, and U95 of the file. "
         "Values beyond the frame have an arrow. Right: share of the resamples whose sparse fit keeps the term; n: not "
         "identifiable."
     )

@@ -149,8 +149,9 @@ def band_in_words(model: FittedModel) -> str:
     """What the band holds and what not."""
     if not np.any(np.isfinite(model.half_width)):
         return "No band, as there is no covariance."
-    held = ", ".join(("the scatter of the points", *model.shared))
-    text = f"Shaded: 95 % band of the mean from {held}; the error of the form is not in it."
+    form = ("what they show that the form leaves out",) if model.remainder is not None else ()
+    held = ", ".join(("the scatter of the points", *form, *model.shared))
+    text = f"Shaded: 95 % band of the mean from {held}."
     return f"{text} It is too narrow, as the terms were chosen on the same points." if model.post_selection else text
 
 

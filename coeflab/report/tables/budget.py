@@ -87,20 +87,22 @@ def _unit(name: str) -> str:
 def shared(model: FittedModel) -> Table:
     """What the half-widths of a fitted model hold beside the scatter; no rows where nothing."""
     names = tuple(model.shared)
+    forms = [0.0] * len(model.terms) if model.remainder is None else model.remainder.half_width
     rows = tuple(
         (
             symbol,
             coefficient(float(value)),
             coefficient(float(whole)),
             coefficient(float(scatter)),
+            coefficient(float(form)),
             *(coefficient(abs(float(model.shared[n][i]))) for n in names),
         )
-        for i, (symbol, value, whole, scatter) in enumerate(
-            zip(model.symbols, model.fit.coefficients, model.half_width, model.fit.half_width, strict=True)
+        for i, (symbol, value, whole, scatter, form) in enumerate(
+            zip(model.symbols, model.fit.coefficients, model.half_width, model.fit.half_width, forms, strict=True)
         )
         if names
     )
-    headers = ("", "value", "95 %", "random", *names)
+    headers = ("", "value", "95 %", "random", "form", *names)
     notes = (f"Not assessed: {'; '.join(model.not_assessed) or 'nothing known'}.",)
     return Table(f"{model.response} of {model.campaign}: parts of the half-widths", headers, rows, notes)
 

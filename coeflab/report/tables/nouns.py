@@ -23,10 +23,11 @@ if TYPE_CHECKING:
 
 SCATTER_ONLY = ("Without a form part: U95 is the scatter of the points about that one form alone.",)
 DEFINED = (
-    f"U95 of a slope at the origin: 95 % half-width; covers {COVERS}. random: scatter of the points; form: the rest; "
-    "input: what enters from outside, declared inputs and grid.",
+    f"U95 of a slope at the origin: 95 % half-width; covers {COVERS}. random: scatter of the points; form: the rest, and of a "
+    "fixed form what the residuals show that it leaves out; input: what enters from outside, declared inputs and grid.",
 )
 ROUNDING = 1e-12
+REJECTED = "form rejected"
 
 
 def window_text(c: Coefficient) -> str:
@@ -40,12 +41,21 @@ def window_text(c: Coefficient) -> str:
     return f"{number(low, 3)} .. {number(high, 3)}{unit}"
 
 
+def with_status(c: Coefficient) -> tuple[str, str]:
+    """Value and U95, or the status that says why one of them is none."""
+    if c.value is None:
+        return c.status.replace("_", " "), ABSENT
+    return (
+        (with_u95(c.value, None)[0], REJECTED) if c.status == REJECTED.replace(" ", "_") else with_u95(c.value, c.u95)
+    )
+
+
 def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, primed") -> Table:
     """Coefficients with their uncertainty and how they were made."""
     rows = [
         (
             primed(c.symbol),
-            *(with_u95(c.value, c.u95) if c.value is not None else (c.status.replace("_", " "), ABSENT)),
+            *with_status(c),
             percent(c.u95, c.value),
             percent(c.parts.random, c.value),
             percent(c.parts.model_form, c.value),
@@ -64,14 +74,18 @@ def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, pri
     return Table(title, headers, tuple(rows), notes, frozenset({0, 7, 9, 10}))
 
 
-def _with_half(value: float, half: float) -> tuple[str, str]:
+def _with_half(value: float, half: float, rejected: bool, known: bool) -> tuple[str, str]:
     """In any unit: five digits where no half-width says how many."""
+    if not known:
+        return "not determined", ABSENT
+    if rejected:
+        return number(value, 5), REJECTED
     return with_u95(value, half) if math.isfinite(half) and half > 0.0 else (number(value, 5), number(half, 3))
 
 
 def terms(model: FittedModel) -> Table:
     """Every coefficient with its interval; what the data leave open is said below, not printed as a number."""
-    rows = []
+    rows, rejected = [], model.rejected
     for symbol, term, value, half in zip(
         model.symbols, model.terms, model.fit.coefficients, model.half_width, strict=True
     ):
@@ -80,7 +94,7 @@ def terms(model: FittedModel) -> Table:
             (
                 symbol,
                 str(term),
-                *(_with_half(float(value), float(half)) if known else ("not determined", ABSENT)),
+                *_with_half(float(value), float(half), symbol in rejected, known),
                 percent(float(half), float(value)) if known else ABSENT,
             )
         )

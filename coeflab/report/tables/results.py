@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Check, Table, coefficient, number, percent, plus_minus, probability, with_u95
 from coeflab.fits.results.fit_result import FitResult, Sweep
-from coeflab.law.coefficient import COVERS
+from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.study.study import Study
@@ -97,7 +97,7 @@ def side_by_side(study: Study) -> Table:
                 (
                     primed(symbol),
                     c.campaign or ABSENT,
-                    *(with_u95(c.value, c.u95) if c.value is not None else (c.status.replace("_", " "), ABSENT)),
+                    *noun_tables.with_status(c),
                     percent(c.parts.random, c.value),
                     percent(c.parts.model_form, c.value),
                     *(coefficient(published.get(k)) if k in published else ABSENT for k in columns),
@@ -125,7 +125,8 @@ def by_campaign(study: Study) -> Table:
             if c is None or c.value is None:
                 cells.append("no table" if c is None else c.status.replace("_", " "))
             else:
-                cells.append(plus_minus(c.value, c.u95))
+                without = ", form rejected" if c.status is Status.FORM_REJECTED else ""
+                cells.append(plus_minus(c.value, c.u95) + without)
         rows.append((primed(symbol), *cells))
     bodies = {f.campaign: f.body for f in study.fits}
     notes = tuple(f"{c}: {bodies[c]}" for c in campaigns)
