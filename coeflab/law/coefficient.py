@@ -53,6 +53,9 @@ class Status(StrEnum):
         }[self]
 
 
+IN_FILES = tuple(s for s in Status if s is not Status.SIGN_OPEN)  # there the interval says it
+
+
 @stored()
 @dataclass(frozen=True, slots=True)
 class Parts:
@@ -132,7 +135,7 @@ class Coefficient:
     u95: Annotated[NotNegative | None, Told("95 % half-width of the value; null where it is not known", "1")]
     status: Annotated[
         Status,
-        Choice(tuple(s for s in Status if s is not Status.SIGN_OPEN), Status),
+        Choice(IN_FILES, Status),
         Told(
             "ok: fitted with U95; single_estimator: fitted, its model-form error unknown; form_assumed (since 1.2): U95 holds "
             "the scatter and what the residuals show that the form leaves out; form_rejected (since 1.4): the residuals show "
