@@ -65,7 +65,7 @@ def _literature(
             )
         if reference.reference_point is not None and not np.allclose(reference.reference_point, point, atol=1e-9):
             raise ScalingMismatchError(
-                f"{name} is about {tuple(reference.reference_point)}, the parameter file about {tuple(point)}: "
+                f"{name} is about {tuple(reference.reference_point.tolist())}, the parameter file about {tuple(point.tolist())}: "
                 "literature values are taken only about their own point."
             )
         for kind in reference.literature:

@@ -330,7 +330,7 @@ class Suboff:
 
     def _run(self, plan: Any) -> Study:
         """Fits of tables that are as before, and the added mass of the hulls, are those of the study."""
-        fitted, hulls_of = workbench._fitted, workbench.hulls_of
+        fitted, hulls_of = vars(workbench)["_fitted"], vars(workbench)["hulls_of"]
         known = {t.name: t for t in self.study.tables}
 
         def same(table: Any) -> bool:
@@ -375,5 +375,5 @@ def validate_remus(values: dict[str, float]) -> Verdicts:
     scaling, at = Scaling(1.33, "overall length"), Conditions(1030.0, 1.5)
     coefficients = {s: (v / scaling.unit(s, at.density, at.speed), "motion") for s, v in values.items()}
     mass = StatedMass(30.48, 0.0, 3.45, np.array([0.0, 0.0, 0.0196]), np.diag([0.177, 3.45, 3.45]))
-    stated = Stated("remus", "remus", scaling, at, coefficients, mass=mass)  # type: ignore[arg-type]
+    stated = Stated("remus", "remus", scaling, at, coefficients, mass=mass)
     return Verdicts({}, of_checks(plausibility(stated_file(stated, [], ("prestero2001",)))))

@@ -224,7 +224,7 @@ HUUV = (
     (
         "reverse thrust x5",
         lambda _: refusals(
-            lambda: validate_huuv(replace(steered(), reverse=tuple(5.0 * x for x in steered().reverse)))
+            lambda: validate_huuv(replace(steered(), reverse=(5.0 * steered().reverse[0], 5.0 * steered().reverse[1])))
         ),
     ),
     ("moments of inertia x10", of_huuv(inertia=10.0)),
@@ -392,19 +392,19 @@ def _fish_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Ver
             yield (
                 f"{name}{at}",
                 of_fish(lambda f, n=name, a=tuple(at): replace(f, **{n: scaled(getattr(f, n), a, factor)})),
-            )  # type: ignore[misc]
+            )
 
 
 def _huuv_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Verdicts]]]:
     yield from ((name, of_huuv(**{name: factor})) for name, value in steered().constants.items() if value)
     for k, name in enumerate(("reverse intercept", "reverse slope")):
         changed = replace(steered(), reverse=tuple(scaled(steered().reverse, k, factor).tolist()))
-        yield name, lambda _, h=changed: refusals(lambda: validate_huuv(h))  # type: ignore[misc]
+        yield name, lambda _, h=changed: refusals(lambda: validate_huuv(h))
     changed = replace(steered(), dead_zone=steered().dead_zone * factor)
     yield "dead zone", lambda _: refusals(lambda: validate_huuv(changed))
     for name, value in steered().chosen.items():
         chosen = replace(steered(), chosen=dict(steered().chosen) | {name: value * factor})
-        yield name, lambda _, h=chosen: refusals(lambda: validate_huuv(h))  # type: ignore[misc]
+        yield name, lambda _, h=chosen: refusals(lambda: validate_huuv(h))
 
 
 def _glider_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Verdicts]]]:
@@ -412,7 +412,7 @@ def _glider_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], V
         for name in ("K_L0", "K_L", "K_D0", "K_D", "K_M0", "K_M"):
             yield (
                 f"{name} of case 0{case + 1}",
-                lambda _, n=name, c=case: refusals(  # type: ignore[misc]
+                lambda _, n=name, c=case: refusals(
                     lambda: validate_thauv(
                         lambda g: replace(g, polar=replace(g.polar, **{n: getattr(g.polar, n) * factor})), (c,)
                     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -45,7 +46,9 @@ def base(study: Suboff):
 
 
 @pytest.mark.parametrize("name", STUDIES)
-def test_every_mutation_is_noticed_or_moves_nothing_that_is_compared(name: str, study: Suboff, base) -> None:
+def test_every_mutation_is_noticed_or_moves_nothing_that_is_compared(
+    name: str, study: Suboff, base: Callable[[str], Verdicts]
+) -> None:
     """And the table of docs/validation.md says so: `python -m tests.mutations.table` writes it anew."""
     outcomes = {m: compare(base(name), m.run(study)) for m in mutations() if m.study == name}
     assert [m.what for m, o in outcomes.items() if not o.by and not m.why_not] == []
@@ -60,7 +63,7 @@ def test_few_mutations_go_unnoticed() -> None:
 
 
 @pytest.mark.parametrize("name", STUDIES)
-def test_unchanged_everything_holds(name: str, base) -> None:
+def test_unchanged_everything_holds(name: str, base: Callable[[str], Verdicts]) -> None:
     found: Verdicts = base(name)
     assert found.rows or found.checks
     assert [key for key, row in found.rows.items() if not row.holds] == []
@@ -77,7 +80,7 @@ def test_flipped_literature_never_makes_a_stable_suboff(signs: tuple[tuple[str, 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", STUDIES)
-def test_every_constant_of_a_shipped_law(name: str, study: Suboff, base) -> None:
+def test_every_constant_of_a_shipped_law(name: str, study: Suboff, base: Callable[[str], Verdicts]) -> None:
     outcomes: dict[str, Outcome] = {what: compare(base(name), run(study)) for what, run in every_constant(name)}
     assert {what for what, o in outcomes.items() if not o.by} == OPEN[name]
     assert all(outcomes[what].share < 1.0 for what in OPEN[name])
@@ -94,7 +97,7 @@ def test_a_law_is_as_it_was_after_a_mutation() -> None:
 def test_an_outcome_names_what_fails() -> None:
     as_it_is = unchanged("huuv", None)
     assert compare(as_it_is, as_it_is) == Outcome((), "", 0.0)
-    found = compare(as_it_is, of_huuv(d0=1.05)(None))  # type: ignore[arg-type]
+    found = compare(as_it_is, of_huuv(d0=1.05)(None))
     assert (found.by, found.caught[0]) == ("fails", "Steady turns by root finding: 0, 60 %, u")
     assert found.share > 1.0
     assert validate_huuv.__module__ == "tests.mutations.harness"
