@@ -7,22 +7,60 @@ import csv
 import numpy as np
 import pytest
 
-from tests.coverage.slope_campaigns import DESIGNS, FAMILIES, NOISE, TABLE, run_round
+from tests.coverage.slope_campaigns import DESIGNS, FAMILIES, NOISE, POLYNOMIAL, STUDY, TABLE, run_round
 
-SMOKE = ("v|v| + v3", "tanh", "onset", "offset", "asymmetric")
+SMOKE = ("v|v| + v3", "opposed signs", "tanh", "onset", "even part")
+# What the table does not reach, by name: cells below 90 %; noise (%) at which the median U95 is more than 3 times that
+# of the true form (polynomials) or more than that of the earlier study (tanh, onset), by family and design.
+BELOW_90 = {
+    ("even part", "one-sided", "1"),
+    ("even part", "uneven", "3"),
+    ("opposed signs", "one-sided", "3"),
+    ("opposed signs", "uneven", "3"),
+}
+WIDE = {
+    ("linear", "even"): "3",
+    ("linear", "uneven"): "3 1",
+    ("linear", "one-sided"): "3 1",
+    ("linear", "replicated"): "3",
+    ("cubic", "even"): "3 1",
+    ("cubic", "uneven"): "3 1 0.1",
+    ("cubic", "one-sided"): "3 1 0.1",
+    ("cubic", "replicated"): "3 1",
+    ("v|v|", "even"): "1",
+    ("v|v|", "uneven"): "1",
+    ("v|v|", "one-sided"): "1 0.1",
+    ("v|v|", "replicated"): "1",
+    ("small slope", "uneven"): "0.01",
+    ("small slope", "replicated"): "0.01",
+    ("opposed signs", "even"): "1",
+    ("opposed signs", "uneven"): "1",
+    ("opposed signs", "one-sided"): "1",
+    ("opposed signs", "replicated"): "1 0.1",
+    ("tanh", "even"): "3 1 0.1",
+    ("tanh", "one-sided"): "0.1",
+    ("tanh", "replicated"): "3 1",
+    ("onset", "even"): "3",
+    ("onset", "one-sided"): "0.1",
+}
+
+
+@pytest.fixture(scope="module")
+def rows() -> list[dict[str, str]]:
+    with TABLE.open() as lines:
+        return list(csv.DictReader(lines))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("design", DESIGNS)
 def test_few_campaigns_cover_in_nine_of_ten(design: str) -> None:
-    cells = run_round(design, 1000, 12, 0, SMOKE)
+    cells = run_round(design, 1000, 8, 0, SMOKE)
     assert np.isfinite(cells[..., 1]).all()
-    assert cells[..., 0].mean() > 0.9
+    assert cells[..., 0].mean() > 0.93
+    assert cells[..., 0].mean((1, 2)).min() > 0.85
 
 
-def test_the_committed_table_is_whole_and_covers_94_percent_over_all() -> None:
-    with TABLE.open() as lines:
-        rows = list(csv.DictReader(lines))
+def test_the_committed_table_is_whole_and_covers_94_percent_over_all(rows: list[dict[str, str]]) -> None:
     assert len(rows) == len(FAMILIES) * len(DESIGNS) * len(NOISE)
     assert len(FAMILIES) >= 12
     assert {r["no value"] for r in rows} == {"0"}
@@ -30,3 +68,23 @@ def test_the_committed_table_is_whole_and_covers_94_percent_over_all() -> None:
     assert cover.mean() >= 94.0
     assert all((c < 90.0) == (r["remark"] == "below 90") for c, r in zip(cover, rows))
     assert all((c > 99.0) == (r["remark"] == "conservative") for c, r in zip(cover, rows))
+
+
+def test_every_cell_covers_90_percent_but_for_those_named(rows: list[dict[str, str]]) -> None:
+    below = {(r["family"], r["design"], r["noise %"]) for r in rows if float(r["cover %"]) < 90.0}
+    assert below == BELOW_90
+
+
+@pytest.mark.parametrize(
+    ("families", "column", "bound"),
+    [(POLYNOMIAL, "median U95 / true form", 3.0), (STUDY, "median U95 / study p = 0", 1.0)],
+    ids=["true form", "study"],
+)
+def test_the_interval_is_short_but_for_the_noise_named(
+    rows: list[dict[str, str]], families: tuple[str, ...], column: str, bound: float
+) -> None:
+    wide: dict[tuple[str, str], list[str]] = {}
+    for r in rows:
+        if r["family"] in families and r[column] and float(r[column]) > bound:
+            wide.setdefault((r["family"], r["design"]), []).append(r["noise %"])
+    assert {k: " ".join(v) for k, v in wide.items()} == {k: v for k, v in WIDE.items() if k[0] in families}
