@@ -401,7 +401,7 @@ def test_a_plan_may_hold_tables_and_joint_fits_of_the_same_campaigns(write_campa
     file = a.parent / "plan.toml"
     file.write_text(
         '[study]\nname = "x"\n'
-        f'[[table]]\ncampaign = "{a.name}"\n[table.options.slope_at_origin]\nreplicates = 100\n'
+        f'[[table]]\ncampaign = "{a.name}"\n[table.options.slope_at_origin]\nlargest_angle = 20.0\n'
         f'[[joint]]\ncampaigns = ["{a.name}", "{b.name}"]\n[joint.options]\nterms = ["Yv", "Nv"]\n',
         encoding="utf-8",
     )
