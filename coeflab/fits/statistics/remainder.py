@@ -24,7 +24,7 @@ from coeflab.fits.statistics.groups import constrained_space, unit_columns
 from coeflab.fits.statistics.least_squares import BLOCK, factorise
 from coeflab.law.terms import Term
 
-NONE = 3.0  # odds of no remainder against all others together
+NONE = 6.0  # odds of no remainder against all others together
 SMOOTH, ROUGH, ANY = 0.5, 0.5, 0.25  # odds of sums against single ones: powers and all of the parity of the form, all
 HIGHER, OTHER_PARITY, OFFSET, BENT = 0.5, 0.25, 0.5, 0.4
 BENDS = (0.2, 0.35, 0.5, 0.65, 0.8)  # of the largest |x|

@@ -38,7 +38,7 @@ RESOLVED = 1e-3
 CLEARLY = 2.0
 FOLDS = 5
 FEWEST_STRETCHES = 8
-ALL_LEFT_OUT, MOST = 3.0, 500.0  # odds of the chosen columns against one more; largest gain in log likelihood
+ALL_LEFT_OUT, MOST = 1.0, 500.0  # odds of the chosen columns against one more; largest gain in log likelihood
 ROUNDING = 1e-12
 
 
