@@ -42,7 +42,7 @@ DRIFT, CAMPAIGN, PLAN = "campaign/drift.csv", "campaign/campaign.toml", "plan.to
         (CAMPAIGN, "speed = 2.0", "speed = 0.0", ["conditions.speed", "above zero"]),
         (CAMPAIGN, "contains_inertia = false\n", "", []),
         (PLAN, 'campaign = "campaign"', 'campaign = "nowhere"', ["plan.toml", "nowhere", "table[0].campaign"]),
-        (PLAN, 'fits = ["slope_at_origin"]', 'fits = ["slope_at_orgin"]', ["did you mean slope_at_origin"]),
+        (PLAN, 'fits = ["slope_at_origin", "tied_law"]', 'fits = ["slope_at_orgin"]', ["did you mean slope_at_origin"]),
         (PLAN, 'name = "my_study"', 'name = "../up"', ["study.name", "it names files"]),
         (PLAN, "length = 1.60", "lenght = 1.60", ["scaling.length"]),
     ],

@@ -406,6 +406,6 @@ def test_a_plan_may_hold_tables_and_joint_fits_of_the_same_campaigns(write_campa
         encoding="utf-8",
     )
     study = run(read_plan(file))
-    assert [f.campaign for f in study.fits] == [a.name, f"{a.name}, {b.name}"]
+    assert [f.campaign for f in study.fits] == [a.name, a.name, f"{a.name}, {b.name}"]
     assert [t.campaign for t in study.tables] == [a.name, b.name]
-    assert study.fits[1].fit == "manoeuvring_model"
+    assert [f.fit for f in study.fits] == ["slope_at_origin", "tied_law", "manoeuvring_model"]
