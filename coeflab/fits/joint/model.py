@@ -285,7 +285,9 @@ def _several(
                 form=form,
                 symbols=p.symbols,
                 terms=tuple(t.term for t in p.terms),
-                fit=replace(part_of(fit, shares, common, y, p.matrix), aicc=fit.aicc if len(parts) == 1 else float("nan")),
+                fit=replace(
+                    part_of(fit, shares, common, y, p.matrix), aicc=fit.aicc if len(parts) == 1 else float("nan")
+                ),
                 domain=Domain.of(rows.x),
                 table=", ".join(rows.tables),
                 campaign=rows.campaign,
