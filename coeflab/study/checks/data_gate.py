@@ -212,11 +212,8 @@ def _where(table: ForceTable, row: int) -> str:
 
 
 def _si(table: ForceTable, component: str, row: int, primed_value: float) -> float:
-    ratio = table.forces[component][row] / table.primed_force(component, table.scaling.length)[row]
-    if not np.isfinite(ratio):
-        scale = np.ones(len(table))
-        ratio = 1.0 / table.primed_force(component, table.scaling.length, scale)[row]
-    return float(primed_value * ratio)
+    unit = 1.0 / table.primed_force(component, table.scaling.length, np.ones(len(table)))[row]
+    return float(primed_value * unit)
 
 
 def _cell_text(table: ForceTable, component: str, row: int, cell: _Cell) -> str:
