@@ -27,20 +27,10 @@ sys.path.insert(0, str(ROOT))
 
 from coeflab.formats.xdyn import write as xdyn  # noqa: E402
 from coeflab.motion.dynamics import rates_of_one  # noqa: E402
-from coeflab.motion.manoeuvre import (  # noqa: E402
-    Manoeuvre,
-    Phase,
-)
-from coeflab.motion.marching import (  # noqa: E402
-    Ensemble,
-    alone,
-    march,
-)
+from coeflab.motion.manoeuvre import Manoeuvre, Phase  # noqa: E402
+from coeflab.motion.marching import Ensemble, alone, march  # noqa: E402
 from coeflab.motion.simulators import rigid_body  # noqa: E402
-from coeflab.motion.vehicle import (  # noqa: E402
-    Vehicle,
-    vehicle,
-)
+from coeflab.motion.vehicle import Vehicle, vehicle  # noqa: E402
 from tests.consumers.lxdyn_environment import PYTHON  # noqa: E402
 from tests.formats.massed import torpedo  # noqa: E402
 

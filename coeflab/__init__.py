@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
     from coeflab.workbench import rendered, run
 
+
 __version__ = VERSION
 _HOMES = {
     "core.errors": ("AxesError", "CoeflabError", "InputError", "ScalingMismatchError", "UnitsError"),

@@ -10,7 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from coeflab.cli.schema import KINDS, schema
+from coeflab.cli.schema import KINDS
+from coeflab.cli.schema import schema
 
 HEAD = """# Files that people write
 

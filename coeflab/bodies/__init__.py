@@ -1,1 +1,3 @@
 """Bodies: shapes, meshes, readers, simplification, added mass."""
+
+from __future__ import annotations

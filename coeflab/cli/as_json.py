@@ -17,8 +17,7 @@ from coeflab.core.table import Check
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, Pooling, Sweep
 from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.formats.export import Export
-from coeflab.formats.loss import Loss
+from coeflab.formats.export import Export, Loss
 from coeflab.law.coefficient import COVERS, Coefficient
 from coeflab.law.symbols import ANGULAR, primed
 from coeflab.motion.manoeuvre import Figure, Simulation

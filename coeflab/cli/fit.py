@@ -159,7 +159,7 @@ def _draw(study: Study, symbols: list[str], file: Path) -> None:
     from coeflab.core.files import write_atomically
     from coeflab.report.figures.estimator import estimator_figure
     from coeflab.report.figures.model import distinct, model_figures
-    from coeflab.report.figures.sheet import sheet
+    from coeflab.report.figures.svg import sheet
     from coeflab.report.figures.sweep import sweep_figure
 
     rows: list[tuple[Figure, ...]] = []
@@ -189,12 +189,12 @@ def _diagnose(study: Study) -> None:
 
 
 def _print(study: Study, symbols: list[str], count: int) -> None:
-    from coeflab.cli.carry_out import findings
-    from coeflab.report.tables import budget as budget_tables
+    from coeflab.cli.run import findings
     from coeflab.report.tables import models as joint_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import results as tables
+    from coeflab.report.tables import uncertainty as budget_tables
 
     show.sentence(tables.headline(study, symbols))
     show.text()

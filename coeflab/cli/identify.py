@@ -10,7 +10,7 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.motion.identify.identified import Identified
+    from coeflab.motion.identify.identification import Identified
 
 
 EXAMPLE = "coeflab identify zigzag.csv turning_circle.csv --params vehicle.parameters.json"
@@ -110,7 +110,7 @@ def _write(found: Identified, folder: Path) -> list[Path]:
 
     from coeflab.core.files import write_all
     from coeflab.report.figures.identified import identified_figure
-    from coeflab.report.figures.sheet import sheet
+    from coeflab.report.figures.svg import sheet
     from coeflab.report.tables.motion import terms_csv
 
     content = {

@@ -13,6 +13,7 @@ from coeflab.core.errors import InputError
 if TYPE_CHECKING:
     from coeflab.tables.force_table import ForceTable
 
+
 EXAMPLE = "coeflab inspect suboff_cfd_barehull"
 
 
@@ -65,7 +66,7 @@ def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: b
 
 def _tables(table: str, json: bool, strict: bool) -> None:
     from coeflab.cli.as_json import finding
-    from coeflab.cli.carry_out import findings
+    from coeflab.cli.run import findings
     from coeflab.core.files import located
     from coeflab.core.table import Severity
     from coeflab.study.checks import data_gate

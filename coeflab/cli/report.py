@@ -24,7 +24,7 @@ def command(
 
     Nothing is written unless everything could be rendered. Equal inputs give equal files, byte for byte.
     """
-    from coeflab.cli.carry_out import REPORTS
+    from coeflab.cli.run import REPORTS
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
     from coeflab.published.documents import only, report_of, studied, written

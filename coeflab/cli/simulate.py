@@ -121,7 +121,7 @@ def _write(made: Simulation, folder: Path, to: str) -> list[Path]:
     from coeflab.core.errors import InputError
     from coeflab.core.files import write_all
     from coeflab.report.figures.motion import motion_figures
-    from coeflab.report.figures.sheet import sheet
+    from coeflab.report.figures.svg import sheet
     from coeflab.report.tables.motion import motion_csv, motion_parquet
 
     name = made.manoeuvre.name

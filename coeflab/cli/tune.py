@@ -28,7 +28,7 @@ def command(
     writes the tuned parameter file with its provenance, the motions before and after, and a figure. Exit code 1 when the
     fit did not come to an end.
     """
-    from coeflab.cli.carry_out import REPORTS
+    from coeflab.cli.run import REPORTS
     from coeflab.motion.tune.plan import read_tuning_plan
     from coeflab.report.tables import motion as tuning_tables
     from coeflab.workbench.tune import tune, write

@@ -10,7 +10,7 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
-    from coeflab.motion.uncertainty.carried import Carried
+    from coeflab.motion.uncertainty.uncertainty import Carried
 
 
 EXAMPLE = "coeflab uncertainty reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag --sobol"
@@ -51,8 +51,7 @@ def command(
     """
     from coeflab.cli.fit import further
     from coeflab.cli.simulate import current_of, listed
-    from coeflab.motion.uncertainty.carried import Question
-    from coeflab.motion.uncertainty.uncertainty import uncertainty
+    from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
     from coeflab.vehicle.parameter_file import read_parameter_file
 
     if help_options:
@@ -98,7 +97,7 @@ def _print(made: Carried, written: list[Path]) -> None:
 
 def _write(made: Carried, folder: Path) -> list[Path]:
     from coeflab.core.files import write_all
-    from coeflab.report.figures.sheet import sheet
+    from coeflab.report.figures.svg import sheet
     from coeflab.report.figures.uncertainty import uncertainty_figures
     from coeflab.report.tables.uncertainty import members_csv
 

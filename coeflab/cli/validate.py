@@ -23,7 +23,7 @@ def command(
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Hold shipped tables against published derivatives, or reproduce a published vehicle; write what comes out."""
-    from coeflab.cli.carry_out import REPORTS, carry_out
+    from coeflab.cli.run import REPORTS, carry_out
     from coeflab.published import validation
     from coeflab.report.acceptance import Acceptance
 

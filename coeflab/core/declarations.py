@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
     from pydantic_core import CoreSchema, ErrorDetails
 
+
 Kind = TypeVar("Kind")
 Loc = tuple[str | int, ...]
 Expected = Callable[[Any], str]

@@ -28,8 +28,7 @@ from coeflab.core.options import measured, one_of, parse_options
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.results.misfit import residuals_in_words
+from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
 from coeflab.fits.rows.regression import Area, Rows, collect, model_of
 from coeflab.fits.rows.sweeps import AREAS, PRIMES, area_of, area_settings, only_moving
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability

@@ -21,8 +21,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.types import Array, brief
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import Domain, FittedModel
-from coeflab.fits.results.misfit import residuals_in_words
+from coeflab.fits.results.fitted_model import Domain, FittedModel, residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of, variable
 from coeflab.fits.rows.sweeps import only_moving, without_blanks
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability

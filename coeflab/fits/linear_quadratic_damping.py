@@ -21,8 +21,7 @@ from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.types import Array
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.results.misfit import residuals_in_words
+from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
 from coeflab.fits.rows.regression import Rows, model_of
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling

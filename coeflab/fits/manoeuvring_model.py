@@ -25,9 +25,8 @@ from coeflab.core.wording import finite
 from coeflab.fits.joint.model import joint_models
 from coeflab.fits.joint.rows import Component, about_one_point, differences, joint_name, joint_rows, measured, moving
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.results.misfit import next_terms_in_words, residuals_in_words
-from coeflab.fits.rows.secant import secant
+from coeflab.fits.results.fitted_model import FittedModel, next_terms_in_words, residuals_in_words
+from coeflab.fits.rows.sweeps import secant
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS

@@ -13,8 +13,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words
-from coeflab.fits.results.misfit import residuals_in_words
+from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
 from coeflab.fits.rows.regression import ANGLES, Area, collect, model_of
 from coeflab.fits.rows.sweeps import AREAS, PRIMES, allowed, area_of, area_settings, named_response, only_moving
 from coeflab.fits.statistics.linear_model import sharpened

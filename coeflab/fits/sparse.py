@@ -24,8 +24,7 @@ from coeflab.core.types import Array
 from coeflab.core.wording import finite
 from coeflab.fits.joint.rows import JointRows, joint_rows, measured, moving
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.results.misfit import every_third_point, residuals_in_words
+from coeflab.fits.results.fitted_model import FittedModel, every_third_point, residuals_in_words
 from coeflab.fits.rows.regression import model_of
 from coeflab.fits.statistics.sparse_selection import Optimizer, Selection, describe, library, scaled, select, twins
 from coeflab.law.coefficient import Coefficient, CoefficientSet

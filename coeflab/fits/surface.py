@@ -16,8 +16,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words
-from coeflab.fits.results.misfit import residuals_in_words
+from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
 from coeflab.fits.rows.regression import MOMENT_COEFFICIENTS, Area, Rows, collect, model_of
 from coeflab.fits.rows.sweeps import (
     AREAS,

@@ -1,1 +1,3 @@
 """The vocabulary of forces: symbols, terms, scaling, coefficients, added mass, transforms."""
+
+from __future__ import annotations

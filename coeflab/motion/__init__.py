@@ -1,1 +1,3 @@
 """Motions: equations, integrators, manoeuvres, trim, identification, ensembles."""
+
+from __future__ import annotations

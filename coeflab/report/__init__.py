@@ -1,1 +1,3 @@
 """One document for terminal, HTML, PDF and notebook."""
+
+from __future__ import annotations

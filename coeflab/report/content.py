@@ -25,18 +25,13 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import primed
 from coeflab.report.acceptance import headline, held_of_study
-from coeflab.report.document import Document, Section
+from coeflab.report.document import Document, Section, digest_of, reproduction
 from coeflab.report.figures.svg import settings
 from coeflab.report.notation import keeping, users_texts
-from coeflab.report.reproduction import digest_of, reproduction
-from coeflab.report.sections.added_mass import added_mass_sections
-from coeflab.report.sections.body import body_sections
-from coeflab.report.sections.budget import budget_sections
-from coeflab.report.sections.campaign import anchor, campaign_section, filled, quality_sections
+from coeflab.report.sections.body import added_mass_sections, body_sections
+from coeflab.report.sections.campaign import anchor, budget_sections, campaign_section, filled, quality_sections
 from coeflab.report.sections.conventions import conventions_section
-from coeflab.report.sections.export import export_sections
-from coeflab.report.sections.manoeuvre import manoeuvre_sections
-from coeflab.report.sections.stability import in_words, stability_sections
+from coeflab.report.sections.parameter_file import export_sections, in_words, manoeuvre_sections, stability_sections
 from coeflab.report.tables import formats as format_tables
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables

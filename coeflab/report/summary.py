@@ -8,14 +8,13 @@ from coeflab.core.table import ABSENT, Table, number, plus_minus
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.report import content
 from coeflab.report.acceptance import Acceptance
-from coeflab.report.document import Document, Figure, Section
+from coeflab.report.document import Document, Figure, Section, digest_of
 from coeflab.report.figures.estimator import estimator_figure
 from coeflab.report.figures.model import model_figures
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.notation import keeping, users_texts
-from coeflab.report.reproduction import digest_of
 from coeflab.report.sections import acceptance as acceptance_document
-from coeflab.report.sections.stability import in_words
+from coeflab.report.sections.parameter_file import in_words
 from coeflab.report.tables import results as tables
 from coeflab.report.tables.models import quality
 from coeflab.study.study import Study

@@ -1,1 +1,3 @@
 """A plan, the study it becomes, and what stands out in it."""
+
+from __future__ import annotations

@@ -1,1 +1,3 @@
 """Force tables and the campaigns that they come from."""
+
+from __future__ import annotations

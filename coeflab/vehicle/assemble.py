@@ -34,13 +34,7 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.vehicle.force_law import full_force, points_of, spoken
 from coeflab.vehicle.law_at_points import caps, held_ranges, measured_tables, with_scatter
 from coeflab.vehicle.parameter_file import CoveredRange, ParameterFile, ParameterPoint, Provenance
-from coeflab.vehicle.parameter_model import (
-    ModelArea,
-    ModelDomain,
-    ModelTerm,
-    ModelVariable,
-    ParameterModel,
-)
+from coeflab.vehicle.parameter_model import ModelArea, ModelDomain, ModelTerm, ModelVariable, ParameterModel
 from coeflab.vehicle.parameter_parts import ParameterCovariance, added_mass_record
 from coeflab.vehicle.reference import Reference
 

@@ -8,9 +8,7 @@ from coeflab.core.errors import InputError, PluginError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.wording import PREFIX, file_stem
 from coeflab.formats import EXPORTERS, InertialExporter, SimulatorExporter
-from coeflab.formats.export import Export, PlannedExport, Refused
-from coeflab.formats.loss import loss_of
-from coeflab.formats.lost import Kind, Lost, lost_by_all
+from coeflab.formats.export import Export, Kind, Lost, PlannedExport, Refused, loss_of, lost_by_all
 from coeflab.report.tables.formats import as_text, in_short
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import MEASURED, converted, water_inertia, with_accelerations

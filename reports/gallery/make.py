@@ -15,7 +15,7 @@ from coeflab.published.documents import report_of, studied, written
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.document import Figure
 from coeflab.report.figures.estimator import estimator_figure
-from coeflab.report.figures.sheet import plain
+from coeflab.report.figures.svg import plain
 from coeflab.report.formats.pdf import page_pictures
 from coeflab.report.sections import acceptance as acceptance_document
 from coeflab.study.study import Study

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.mesh.mesh import enclosed, facet_deficit
-from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.mesh.structured_surface import box_surface
+from coeflab.bodies.mesh.meshing import box_surface, meshed
 from coeflab.bodies.shape import Cylinder, Ellipsoid, Form, Part, Parts
 from tests.bodies.test_mesh_family import rod
 

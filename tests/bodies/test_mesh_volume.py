@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from coeflab.bodies.added_mass.panel import STRONGEST, volume_gap
 from coeflab.bodies.body import Body
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
-from coeflab.bodies.mesh.family import STRONGEST, volume_gap
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.shape import Ellipsoid, Part, Parts, Shape

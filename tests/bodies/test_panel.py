@@ -11,8 +11,7 @@ from coeflab.bodies.added_mass import panel
 from coeflab.bodies.body import Body
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.mesh.structured_surface import box_surface
+from coeflab.bodies.mesh.meshing import box_surface, meshed
 from coeflab.bodies.panels.influence import slivers
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, Shape
 from coeflab.core.errors import InputError

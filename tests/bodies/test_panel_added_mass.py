@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
-from coeflab.bodies.mesh.structured_surface import box_surface, revolved, rings
+from coeflab.bodies.mesh.meshing import box_surface, revolved, rings
 from coeflab.bodies.panels import added_mass as kernel
 from coeflab.bodies.panels.added_mass import memory_needed, panel_added_mass
 from coeflab.core.types import Array

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.mesh.mesh import mesh_integrals
-from coeflab.bodies.mesh.structured_surface import box_surface
+from coeflab.bodies.mesh.meshing import box_surface
 from coeflab.bodies.panels.influence import (
     bisected,
     panels_of,

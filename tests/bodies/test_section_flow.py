@@ -16,7 +16,7 @@ from coeflab.bodies.closed_forms import (
     section_integrals,
     turned,
 )
-from coeflab.bodies.strips.flow import divided, section_matrices
+from coeflab.bodies.strips import divided, section_matrices
 
 PI = np.pi
 

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass, section_integrals
-from coeflab.bodies.strips.strips import contours, ellipsoid_correction, joints, stations, strips
+from coeflab.bodies.strips import contours, ellipsoid_correction, joints, stations, strips
 from coeflab.law.added_mass import definiteness
 
 PI = np.pi
@@ -143,7 +143,7 @@ def test_box_and_its_couplings() -> None:
 def test_a_bar_is_the_same_by_boundary_elements(monkeypatch: pytest.MonkeyPatch) -> None:
     vertices, faces = arrays(box((4.0, 1.0, 0.4), (1.5, 0.2, -0.3)))
     table = strips(vertices, faces, 16)
-    monkeypatch.setattr("coeflab.bodies.strips.strips.as_rectangle", lambda *_: None)
+    monkeypatch.setattr("coeflab.bodies.strips.as_rectangle", lambda *_: None)
     found = strips(vertices, faces, 16)
     assert found.others == found.count
     assert found.matrix == pytest.approx(table.matrix, rel=2e-3, abs=1e-4)

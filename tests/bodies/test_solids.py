@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.mesh.mesh import mesh_integrals
+from coeflab.bodies.mesh.meshing import box_surface
 from coeflab.bodies.mesh.solids import divided, solid, surface
-from coeflab.bodies.mesh.structured_surface import box_surface
 
 
 def longest(vertices: np.ndarray, faces: np.ndarray) -> float:

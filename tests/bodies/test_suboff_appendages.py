@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.readers.groves import (
-    HALF_THICKNESS,  # fmt: skip
-    SAIL_JOINTS,  # fmt: skip
-    TIP,  # fmt: skip
-    TRAILING_EDGE,  # fmt: skip
-    plane,  # fmt: skip
+    HALF_THICKNESS,
+    SAIL_JOINTS,
+    TIP,
+    TRAILING_EDGE,
+    plane,
     profile,
-    sail,  # fmt: skip
-    sail_half_thickness,  # fmt: skip
-    sail_sections,  # fmt: skip
+    sail,
+    sail_half_thickness,
+    sail_sections,
 )
 
 

@@ -7,7 +7,7 @@ import pytest
 import typer
 
 from coeflab import workbench
-from coeflab.cli.carry_out import carry_out
+from coeflab.cli.run import carry_out
 from coeflab.study.study import Plan
 from coeflab.tables.importers import PlannedTable
 

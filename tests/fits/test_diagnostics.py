@@ -9,11 +9,7 @@ from scipy import stats
 from statsmodels.stats.outliers_influence import OLSInfluence
 
 from coeflab.core.types import Array
-from coeflab.fits.statistics.diagnostics import (
-    lack_of_fit,
-    levels,
-    replicate_groups,
-)
+from coeflab.fits.statistics.diagnostics import lack_of_fit, levels, replicate_groups
 from coeflab.fits.statistics.least_squares import Factorised, aicc, factorise, solve
 
 THREE_TIMES_TWO = np.array([1.0, 1.0, 2.0, 2.0, 3.0, 3.0])

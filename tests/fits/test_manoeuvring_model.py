@@ -14,9 +14,8 @@ from hypothesis import strategies as st
 from coeflab.core.errors import InputError
 from coeflab.fits import FITS
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.results.misfit import every_third_point
-from coeflab.fits.rows.secant import explain, secant
+from coeflab.fits.results.fitted_model import FittedModel, every_third_point
+from coeflab.fits.rows.sweeps import explain, secant
 from coeflab.fits.statistics.stacked import freed
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.terms import SETS, Equation, Term, canonical, read_equation, read_term, read_terms, symmetric

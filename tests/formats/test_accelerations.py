@@ -12,16 +12,15 @@ import pytest
 from coeflab.core.text.xml import parse_xml
 from coeflab.core.text.yaml import parse_yaml
 from coeflab.formats import EXPORTERS, InertialExporter
-from coeflab.formats.export import Export
+from coeflab.formats.export import LOSSLESS, Export
 from coeflab.formats.gazebo.law import read_gz_link
-from coeflab.formats.loss import LOSSLESS
 from coeflab.formats.uuv_simulator.law import read_fossen_link
 from coeflab.formats.xdyn.law import xdyn_body
 from coeflab.law.added_mass import moved
 from coeflab.law.rigid_body import parallel_axis, rigid_body_force, rigid_body_inertia
 from coeflab.motion.manoeuvre import UPRIGHT
 from coeflab.motion.vehicle import vehicle
-from coeflab.report.sections import export as export_section
+from coeflab.report.sections import parameter_file as export_section
 from coeflab.report.tables.formats import forces, in_short
 from coeflab.study.study import Study
 from coeflab.vehicle.inertia import with_accelerations

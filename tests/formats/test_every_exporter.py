@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from coeflab.formats import EXPORTERS, SimulatorExporter
-from coeflab.formats.loss import covered_grid
+from coeflab.formats.export import covered_grid
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -10,8 +10,7 @@ import pytest
 
 from coeflab.core.errors import InputError
 from coeflab.formats import EXPORTERS, SimulatorExporter
-from coeflab.formats.loss import covered_grid
-from coeflab.formats.lost import Kind, missing_mass, missing_water
+from coeflab.formats.export import Kind, covered_grid, missing_mass, missing_water
 from coeflab.motion.vehicle import vehicle
 from coeflab.published.huuv.model import parameter_file as huuv_file
 from coeflab.published.huuv.model import read_huuv

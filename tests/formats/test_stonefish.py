@@ -12,9 +12,9 @@ import trimesh
 from coeflab.bodies.mesh.mesh import mesh_integrals
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import parse_xml
-from coeflab.formats.loss import covered_grid
+from coeflab.formats.export import covered_grid
 from coeflab.formats.stonefish import write as exporter
-from coeflab.formats.stonefish.law import StonefishLink, added, ellipsoid_mesh, met_at_speed, raw_drag, weighed
+from coeflab.formats.stonefish.write import StonefishLink, added, ellipsoid_mesh, met_at_speed, raw_drag, weighed
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.motion.identify.identified import Identified, Outcome, Verdict
+from coeflab.motion.identify.identification import Identified, Outcome, Verdict
 from coeflab.motion.identify.identify import identify_from
 from coeflab.motion.simulation import simulate
 from coeflab.report.figures.identified import identified_figure

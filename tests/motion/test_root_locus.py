@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.motion.root_locus import root_locus, roots_at
+from coeflab.motion.steady_state import root_locus, roots_at
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.derived import stability_index
 from tests.motion.vehicles import DENSITY, INERTIA, LENGTH, MASS, SPEED, STABLE, UNSTABLE, made

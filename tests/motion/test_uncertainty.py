@@ -14,8 +14,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError, OutputError
-from coeflab.motion.uncertainty.carried import Carried, Question
-from coeflab.motion.uncertainty.uncertainty import uncertainty
+from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertainty
 from coeflab.report.tables.uncertainty import members_csv, ranking
 from tests.formats.massed import VALUES, with_mass
 from tests.motion.uncertain import uncertain_torpedo, with_uncertainty

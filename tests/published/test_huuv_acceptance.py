@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from coeflab.motion.tune.tuning import OPEN
-from coeflab.published.huuv.acceptance import acceptance
-from coeflab.published.huuv.fit import BASE, FREE, hidden, start_of, tuned, turning_problem
+from coeflab.published.huuv.acceptance import BASE, FREE, acceptance, hidden, start_of, tuned, turning_problem
 from coeflab.published.huuv.model import read_huuv
 from coeflab.report.acceptance import Acceptance
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from coeflab.report.figures.svg import COLOURS
-from coeflab.report.sections.budget import tornado_figure
-from coeflab.report.tables import budget as budget_tables
+from coeflab.report.sections.campaign import tornado_figure
+from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.validation import validation
 from coeflab.tables.campaign import InputUncertainty
 from coeflab.vehicle.derived import centre_of_pressure

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from coeflab.core.wording import Verbatim
-from coeflab.report import lettering
+from coeflab.report import notation as lettering
 from coeflab.report.content import document
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.formats import html as page

@@ -14,7 +14,7 @@ from coeflab.core.table import Severity
 from coeflab.core.text.toml import read_toml
 from coeflab.fits.results.fit_result import Sweep
 from coeflab.fits.statistics.slopes import Recommendation
-from coeflab.formats.lost import lost_by_all
+from coeflab.formats.export import lost_by_all
 from coeflab.law.scaling import Scaling
 from coeflab.study.checks.coverage import replicates
 from coeflab.study.plan import read_plan

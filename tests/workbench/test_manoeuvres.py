@@ -12,7 +12,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.motion.manoeuvre import PlannedManoeuvre
 from coeflab.motion.simulation import manoeuvres_of
-from coeflab.report.sections.manoeuvre import manoeuvre_sections
+from coeflab.report.sections.parameter_file import manoeuvre_sections
 from coeflab.study.plan import read_plan
 from coeflab.workbench.exports import exports_of
 from tests.motion.vehicles import UNSTABLE, made, rudder_covered

@@ -1,1 +1,3 @@
 """Added mass by panels on the surface."""
+
+from __future__ import annotations

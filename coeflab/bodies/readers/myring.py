@@ -13,8 +13,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from coeflab.bodies.body import Body, Configuration
-from coeflab.bodies.body_file import ShapedBodyFile
+from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
 from coeflab.bodies.closed_forms import graded_nodes
 from coeflab.bodies.shape import Revolution, within_reach
 from coeflab.core.declarations import Angle, Declaration, Length, Pure, declared

@@ -9,8 +9,7 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from coeflab.bodies.body import Body, Configuration
-from coeflab.bodies.body_file import ShapedBodyFile
+from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
 from coeflab.bodies.mesh.source import MeshKeys
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, StandIn
 from coeflab.core import declarations as takes

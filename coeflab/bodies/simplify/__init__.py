@@ -1,1 +1,3 @@
 """A mesh as simple parts."""
+
+from __future__ import annotations

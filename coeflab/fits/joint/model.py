@@ -18,8 +18,16 @@ from coeflab.core.types import Array, brief
 from coeflab.core.wording import finite
 from coeflab.fits.joint.rows import Component, Constraint, constraint_of, linked
 from coeflab.fits.results.fit_result import CampaignShare, Pooling
-from coeflab.fits.results.fitted_model import Domain, FittedModel, in_words
-from coeflab.fits.results.misfit import ROUNDING, UNLIKELY, OutOfSample, chance, errors_of
+from coeflab.fits.results.fitted_model import (
+    ROUNDING,
+    UNLIKELY,
+    Domain,
+    FittedModel,
+    OutOfSample,
+    chance,
+    errors_of,
+    in_words,
+)
 from coeflab.fits.rows.regression import model_of
 from coeflab.fits.statistics.groups import UNTOLD, poolability, predict_left_out, thirds
 from coeflab.fits.statistics.least_squares import Index

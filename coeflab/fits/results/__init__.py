@@ -1,1 +1,3 @@
 """What fits return."""
+
+from __future__ import annotations

@@ -12,8 +12,7 @@ import numpy as np
 
 from coeflab.core.table import html_by, plus_minus
 from coeflab.core.types import Array, brief, locked
-from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.results.misfit import UNLIKELY, OutOfSample, chance
+from coeflab.fits.results.fitted_model import UNLIKELY, FittedModel, OutOfSample, chance
 from coeflab.fits.statistics.groups import Poolability
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.origin_slope import estimate, next_points

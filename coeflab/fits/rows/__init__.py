@@ -1,1 +1,3 @@
 """From tables to the rows of a regression."""
+
+from __future__ import annotations

@@ -10,8 +10,16 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief
-from coeflab.fits.results.fitted_model import Domain, Extrapolation, FittedModel, SetAside, in_words, joined, readmitted
-from coeflab.fits.results.misfit import ROUNDING
+from coeflab.fits.results.fitted_model import (
+    ROUNDING,
+    Domain,
+    Extrapolation,
+    FittedModel,
+    SetAside,
+    in_words,
+    joined,
+    readmitted,
+)
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
 from coeflab.fits.statistics.remainder import Block, Remainder, judged, left_out
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS

@@ -1,1 +1,3 @@
 """Regression and resampling: arrays in, arrays out."""
+
+from __future__ import annotations

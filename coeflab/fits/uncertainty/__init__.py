@@ -1,1 +1,3 @@
 """Budgets, grid convergence and propagation."""
+
+from __future__ import annotations

@@ -1,1 +1,3 @@
 """Coefficients and tables as CSV."""
+
+from __future__ import annotations

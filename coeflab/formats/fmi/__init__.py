@@ -1,1 +1,3 @@
 """FMI 2.0 co-simulation units."""
+
+from __future__ import annotations

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.text.xml import sayable
 from coeflab.core.wording import identifier, one_line
+from coeflab.formats.export import missing_mass, missing_water
 from coeflab.formats.exported_law import (
     not_written,
     number,
@@ -30,7 +31,6 @@ from coeflab.formats.exported_law import (
     written_changes,
     written_terms,
 )
-from coeflab.formats.lost import missing_mass, missing_water
 from coeflab.law.force_law import ForceLaw, ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.law.terms import Factor, Term

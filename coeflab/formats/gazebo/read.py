@@ -21,9 +21,8 @@ from coeflab.formats import NoDensityError
 from coeflab.formats.gazebo.law import DENSITIES, FORCES, VELOCITIES, GzLink, read_gz_link
 from coeflab.formats.stated_file import LinkModel, link_file
 from coeflab.law.rigid_body import ideal_quadratics
-from coeflab.vehicle.imperial_units import displaced, gravity, imperial, no_mass, water
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.plausibility import Written, munk_twice
+from coeflab.vehicle.plausibility import Written, displaced, gravity, imperial, munk_twice, no_mass, water
 from coeflab.vehicle.second_order import FLU, SecondOrder
 
 

@@ -15,10 +15,9 @@ import numpy as np
 from coeflab.core.text.xml import parse_xml, serialised
 from coeflab.core.types import Array
 from coeflab.core.wording import identifier, one_line
+from coeflab.formats.export import missing_mass, missing_water, unheld
 from coeflab.formats.exported_law import Afloat, afloat, exported_law, number
 from coeflab.formats.gazebo.law import FLUID_TAGS, FORCES, RESISTANCE, SYSTEM, VELOCITIES, read_gz_link
-from coeflab.formats.loss import unheld
-from coeflab.formats.lost import missing_mass, missing_water
 from coeflab.vehicle.inertia import central_inertia, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU, SecondOrder, slot

@@ -1,1 +1,3 @@
 """HoloOcean."""
+
+from __future__ import annotations

@@ -1,1 +1,3 @@
 """The Marine Systems Simulator (MSS)."""
+
+from __future__ import annotations

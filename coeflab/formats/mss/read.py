@@ -29,9 +29,8 @@ from coeflab.formats.stated_file import MODEL_ORIGIN, Law, Stated, matrix_doubts
 from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.rigid_body import MassProperties, ideal_quadratics
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.vehicle.imperial_units import SLUGS, gravity, gyration, no_mass, water, weight
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.plausibility import Written, munk_twice
+from coeflab.vehicle.plausibility import SLUGS, Written, gravity, gyration, munk_twice, no_mass, water, weight
 
 summary = "MSS .m files with plain assignments: primed or SI derivatives, slug and foot units told by rho or g"
 citations = ("sname1950", "fossen2011", "mss")

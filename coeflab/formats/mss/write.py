@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.arithmetic import evaluate
 from coeflab.core.wording import identifier, matlab, one_line
+from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
     expression,
     not_written,
@@ -24,7 +25,6 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
-from coeflab.formats.lost import missing_water
 from coeflab.formats.mss.m_file import assignments
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative

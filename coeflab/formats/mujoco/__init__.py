@@ -1,1 +1,3 @@
 """MuJoCo."""
+
+from __future__ import annotations

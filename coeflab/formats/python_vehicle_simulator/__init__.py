@@ -1,1 +1,3 @@
 """Fossen's Python Vehicle Simulator."""
+
+from __future__ import annotations

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.wording import identifier, one_line, python
+from coeflab.formats.export import missing_mass, missing_water
 from coeflab.formats.exported_law import (
     expression,
     not_written,
@@ -24,7 +25,6 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
-from coeflab.formats.lost import missing_mass, missing_water
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.symbols import COMPONENTS, CONTROLS, MOTIONS, derivative
 from coeflab.vehicle.inertia import centre_of_gravity

@@ -1,1 +1,3 @@
 """Stonefish."""
+
+from __future__ import annotations

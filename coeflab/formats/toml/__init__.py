@@ -1,1 +1,3 @@
 """Coefficients and tables as TOML."""
+
+from __future__ import annotations

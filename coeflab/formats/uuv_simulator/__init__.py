@@ -1,1 +1,3 @@
 """uuv_simulator and DAVE."""
+
+from __future__ import annotations

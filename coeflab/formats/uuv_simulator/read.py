@@ -14,9 +14,8 @@ from coeflab.core.text.xml import numbers, once, read_xml
 from coeflab.formats.stated_file import LinkModel, link_file
 from coeflab.formats.uuv_simulator.law import PLUGIN_DENSITY, SPACE, FossenLink, Xacro, read_fossen_link
 from coeflab.law.rigid_body import ideal_quadratics, momentum_quadratics
-from coeflab.vehicle.imperial_units import displaced, gravity, no_mass, water
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.plausibility import Written, munk_twice
+from coeflab.vehicle.plausibility import Written, displaced, gravity, munk_twice, no_mass, water
 from coeflab.vehicle.second_order import SURGE, SecondOrder
 
 summary = "uuv_simulator and DAVE: URDF or xacro with hydrodynamic_model fossen"

@@ -1,1 +1,3 @@
 """xdyn and lxdyn."""
+
+from __future__ import annotations

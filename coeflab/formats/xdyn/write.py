@@ -16,6 +16,7 @@ from coeflab.core.text.yaml import parse_yaml
 from coeflab.core.types import Array
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.core.wording import identifier, one_line
+from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
     expression,
     not_written,
@@ -24,7 +25,6 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
-from coeflab.formats.lost import missing_water
 from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, HERE, RIGID, xdyn_body
 from coeflab.law.added_mass import definiteness, moved
 from coeflab.law.force_law import ForceTerm

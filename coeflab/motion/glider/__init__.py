@@ -1,1 +1,3 @@
 """Gliders in the vertical plane."""
+
+from __future__ import annotations

@@ -1,1 +1,3 @@
 """Coefficients from time series of motions."""
+
+from __future__ import annotations

@@ -31,13 +31,18 @@ from coeflab.motion.identify.force_balance import (
 from coeflab.motion.identify.identification import (
     ALONG,
     FEWEST_STRETCHES,
+    HOW,
+    Balanced,
     Found,
+    Identified,
+    IdentifiedTerm,
+    Outcome,
     Products,
     exchangeable,
     identify,
     multiples,
+    together_in_words,
 )
-from coeflab.motion.identify.identified import HOW, Balanced, Identified, IdentifiedTerm, Outcome, together_in_words
 from coeflab.motion.identify.series import ANGLES, MotionSeries, read_series
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED, WaterInertia

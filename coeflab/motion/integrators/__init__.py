@@ -1,1 +1,3 @@
 """Marches through a manoeuvre."""
+
+from __future__ import annotations

@@ -12,7 +12,7 @@ import numpy as np
 
 from coeflab.core.types import Array, brief
 from coeflab.motion.dynamics import Dynamics, rates_of_one
-from coeflab.motion.orders import (
+from coeflab.motion.manoeuvre import (
     NEAR,
     NOT_FINITE,
     STEP_TOO_SMALL,

@@ -17,7 +17,7 @@ from coeflab.law.rigid_body import axes_in_earth, kinematics, weighed
 from coeflab.law.transforms import along_body
 from coeflab.motion.dynamics import FIRST, FLAT, Dynamics
 from coeflab.motion.integrators.fixed_step import SECANTS
-from coeflab.motion.orders import NEAR, NOT_FINITE, TOO_FAST, Marching, Orders, blank
+from coeflab.motion.manoeuvre import NEAR, NOT_FINITE, TOO_FAST, Marching, Orders, blank
 
 # Few arrays, because every call counts the references of each: the source column of each variable; its prime, low and high;
 # powers of V; rows of the pool and component of each term; whether incidence is needed; coefficients.

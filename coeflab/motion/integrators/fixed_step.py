@@ -15,7 +15,17 @@ from numpy.typing import NDArray
 from coeflab.core.types import Array
 from coeflab.law.force_law import Ints
 from coeflab.motion.dynamics import Dynamics
-from coeflab.motion.orders import NEAR, NOT_FINITE, TOO_FAST, Marching, Orders, blank, ramp, reach_time, watched_value
+from coeflab.motion.manoeuvre import (
+    NEAR,
+    NOT_FINITE,
+    TOO_FAST,
+    Marching,
+    Orders,
+    blank,
+    ramp,
+    reach_time,
+    watched_value,
+)
 
 SECANTS = 8
 

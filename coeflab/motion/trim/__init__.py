@@ -1,1 +1,3 @@
 """Steady motions and operating points."""
+
+from __future__ import annotations

@@ -1,1 +1,3 @@
 """Parameters tuned to measured motions."""
+
+from __future__ import annotations

@@ -1,1 +1,3 @@
 """Uncertainty carried through manoeuvres."""
+
+from __future__ import annotations

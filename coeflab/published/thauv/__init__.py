@@ -1,1 +1,3 @@
 """THAUV, a twin-hull glider."""
+
+from __future__ import annotations

@@ -1,1 +1,3 @@
 """Results as drawings."""
+
+from __future__ import annotations

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 
 from coeflab.core.table import coefficient, plus_minus
-from coeflab.motion.identify.identified import Identified, IdentifiedTerm, Outcome
+from coeflab.motion.identify.identification import Identified, IdentifiedTerm, Outcome
 from coeflab.report.document import Figure, Panel
 from coeflab.report.figures.panel import tick_texts, ticks
 from coeflab.report.figures.series import numbers, points

@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from coeflab.core.types import Array
-from coeflab.motion.uncertainty.carried import Carried, Importance, Spread
+from coeflab.motion.uncertainty.uncertainty import Carried, Importance, Spread
 from coeflab.report.document import Figure, Series
 from coeflab.report.figures.panel import BOTTOM, WIDTH, drawing, legend, panel, tick_texts, ticks
 from coeflab.report.figures.series import numbers, points

@@ -14,8 +14,7 @@ from matplotlib.axes import Axes
 
 from coeflab.core.table import number
 from coeflab.core.types import Array
-from coeflab.fits.results.fitted_model import Extrapolation, FittedModel
-from coeflab.fits.results.misfit import chance
+from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, chance
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, primed
 from coeflab.report.figures.svg import COLOURS, power_of_ten, superscript
 

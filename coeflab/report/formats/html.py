@@ -20,8 +20,7 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from coeflab.report.document import Axis, Document, Figure, Layer, Panel, Scene, Series
-from coeflab.report.lettering import cell_html, html, label, unit_html, unit_label
-from coeflab.report.notation import keeping
+from coeflab.report.notation import cell_html, html, keeping, label, unit_html, unit_label
 from coeflab.report.printable import shortened, visible
 
 STEPS = 65535

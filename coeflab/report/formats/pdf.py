@@ -13,7 +13,7 @@ from coeflab.core.errors import OutputError
 from coeflab.core.table import Table
 from coeflab.core.version import VERSION
 from coeflab.report.document import Document, Figure, Section
-from coeflab.report.figures.sheet import plain, size_of
+from coeflab.report.figures.svg import plain, size_of
 from coeflab.report.notation import Raised, Run, cell_runs, keeping, kept, runs, unit_runs
 from coeflab.report.printable import breakable, glyphs, shortened
 

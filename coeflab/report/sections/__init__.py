@@ -1,1 +1,3 @@
 """Sections of a report, one subject a file."""
+
+from __future__ import annotations

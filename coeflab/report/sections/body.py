@@ -5,6 +5,8 @@ The outline of a body from the side and from above, with its centre of buoyancy 
 A body in space: its parts or its skin, its centres of buoyancy and gravity, and where the force of a drift acts.
 
 Where buoyancy, weight and the force of a drift act on a body, and why such a point is not known.
+
+Added mass in a report: the bodies, every method side by side, and what is booked as potential in the coefficients.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.mesh.solids import Surface
 from coeflab.bodies.shape import Parts, Shape
+from coeflab.bodies.triangulation import RULE, Triangulation
 from coeflab.core.types import Array, brief
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.report.document import Axis, Figure, Layer, Scene, Section
@@ -28,6 +31,9 @@ from coeflab.report.figures.body_scene import COLOUR_OF, POOR, form_name, is_poo
 from coeflab.report.figures.svg import COLOURS, POINTS, settings, svg_text
 from coeflab.report.notation import as_users_wrote
 from coeflab.report.sections.campaign import filled
+from coeflab.report.tables import added_mass as tables
+from coeflab.report.tables import formats as loss_tables
+from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.added_mass import particulars
 from coeflab.study.study import Study
 from coeflab.vehicle.derived import CENTRES, Derived, centre_of_pressure
@@ -325,3 +331,48 @@ def drawn_body(study: Study, body: Body, files: tuple[str, ...], anchor: str) ->
     else:
         drawn = hull_figure(body, f"{anchor}-outline")
     return replace(drawn, scene=hull_scene(body.name, shape, *hull_marks(study, body, files)))
+
+
+def added_mass_sections(study: Study) -> tuple[Section, ...]:
+    """One section, or none where no parameter file has a hull."""
+    if not study.hulls:
+        return ()
+    first: dict[str, Triangulation] = {}
+    users: dict[str, list[str]] = {}
+    for name, found in study.hulls.items():
+        first.setdefault(found.body.name, found)
+        users.setdefault(found.body.name, []).append(name)
+    text = (
+        "Added mass in unbounded fluid by every method that applies, about the body's reference point. Potential theory is "
+        "not tuned to a measurement: where one stands beside it, the gap is shown.",
+        f"Recommended by this rule: {RULE}.",
+        "A force measured in steady motion holds an ideal fluid's part, an entry of -C_A(nu) nu such as the Munk moment in "
+        "Nv' and Mw'. It is booked apart, so that a simulator that adds C_A(nu) itself is given the viscous part alone.",
+    )
+    bodies = tuple(
+        _body(study, found, tuple(users[name]), f"hull-{i}") for i, (name, found) in enumerate(first.items())
+    )
+    files = tuple(
+        Section(
+            f"potential-{i}",
+            f"Potential and viscous parts, {name}",
+            tables=filled(loss_tables.parts(study.parameter_files[name])),
+        )
+        for i, name in enumerate(study.hulls)
+    )
+    return (Section("added-mass", "Added mass", text, subsections=(*bodies, *files)),)
+
+
+def _body(study: Study, found: Triangulation, files: tuple[str, ...], anchor: str) -> Section:
+    return Section(
+        anchor,
+        found.body.title or found.body.name,
+        tables=filled(
+            tables.particulars(found.body),
+            tables.derivatives(found),
+            tables.primes(found),
+            noun_tables.matrix(found.recommended),
+            tables.symmetry(found),
+        ),
+        figures=(drawn_body(study, found.body, files, anchor),),
+    )

@@ -14,8 +14,7 @@ from typing import Any
 
 from coeflab.core.stored import FIRST_VERSION
 from coeflab.core.table import ABSENT, Check, Table, coefficient, number, with_u95
-from coeflab.formats.loss import LOSSLESS, Apart, Loss
-from coeflab.formats.lost import Kind
+from coeflab.formats.export import LOSSLESS, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.vehicle.force_law import points_of

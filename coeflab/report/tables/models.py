@@ -15,8 +15,7 @@ import numpy as np
 
 from coeflab.core.table import ABSENT, Table, coefficient, number, percent, probability, with_u95
 from coeflab.fits.results.fit_result import FitResult, Pooling
-from coeflab.fits.results.fitted_model import FittedModel
-from coeflab.fits.results.misfit import OutOfSample
+from coeflab.fits.results.fitted_model import FittedModel, OutOfSample
 from coeflab.fits.statistics.least_squares import factorise
 from coeflab.fits.statistics.linear_model import variation
 from coeflab.law.symbols import CONTROLS, FLOW_ANGLES

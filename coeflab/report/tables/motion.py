@@ -21,7 +21,7 @@ from coeflab.law.symbols import CONTROLS
 from coeflab.motion.glider.glide import GlideRun, SteadyGlide
 from coeflab.motion.glider.glider import Glider
 from coeflab.motion.glider.motion import shallowest
-from coeflab.motion.identify.identified import Identified, IdentifiedTerm
+from coeflab.motion.identify.identification import Identified, IdentifiedTerm
 from coeflab.motion.manoeuvre import Figure
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.tune.tuning import STATUSES, Tuning, largest_correlations

@@ -8,7 +8,7 @@ from coeflab.core.table import Check, Severity
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.results.fitted_model import FittedModel
 from coeflab.fits.rows.regression import Rows, model_of
-from coeflab.fits.rows.secant import explain
+from coeflab.fits.rows.sweeps import explain
 from coeflab.law.symbols import primed
 from coeflab.law.terms import parse_suffix
 from coeflab.study.study import Study

@@ -1,6 +1,10 @@
 """Stability of straight motion with controls fixed: indices with U95, roots against speed, critical speed.
 
 Eigenvalues of small motions against speed: real parts above, imaginary parts below where there are any.
+
+Simulated manoeuvres in a report: figures with status, track and histories as far as the file determines them.
+
+Exports in a report: what every target makes of a parameter file, and what it loses.
 """
 
 from __future__ import annotations
@@ -15,12 +19,17 @@ from coeflab.core.errors import CoeflabError
 from coeflab.core.table import ABSENT, Table, number, plus_minus
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
-from coeflab.motion.root_locus import RootLocus, root_locus
+from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Loss, Refused
+from coeflab.motion.manoeuvre import Simulation
+from coeflab.motion.steady_state import RootLocus, root_locus
 from coeflab.report.document import Figure, Section, Series
+from coeflab.report.figures.motion import motion_figures
 from coeflab.report.figures.panel import BOTTOM, GAP, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, tagged
 from coeflab.report.figures.svg import COLOURS, settings, svg_text
+from coeflab.report.tables import formats as loss_tables
 from coeflab.report.tables.added_mass import mass_table
+from coeflab.report.tables.motion import figure_table
 from coeflab.study.study import Study
 from coeflab.vehicle.derived import FAST, INDICES, Derived, by_mass, sense, stability
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -215,3 +224,106 @@ def _pairs(values: NDArray[np.complex128]) -> str:
         elif v.imag == 0.0:
             out.append(number(v.real, 3))
     return "; ".join(out)
+
+
+SIMULATED = (
+    "Each manoeuvre is computed from a parameter file of this study alone. A figure that leans on motions which no data cover says "
+    "so, and one that no coefficient of the file decides has no value.",
+)
+
+
+def manoeuvre_sections(study: Study) -> tuple[Section, ...]:
+    """One section, or none where the plan asks for no manoeuvre."""
+    if not study.manoeuvres:
+        return ()
+    each = tuple(_manoeuvre(made, f"manoeuvre-{i}") for i, made in enumerate(study.manoeuvres))
+    return (Section("manoeuvres", "Simulated manoeuvres", SIMULATED, subsections=each),)
+
+
+def _manoeuvre(made: Simulation, anchor: str) -> Section:
+    name = made.manoeuvre.name.replace("_", " ")
+    title = f"{name[:1].upper()}{name[1:]} of {made.vehicle.name}"
+    text = [f"Assumed and found: {'; '.join(made.statements)}."]
+    if made.undetermined:
+        text.append(f"Nothing is drawn, as the file determines nothing of this motion. {made.undetermined}")
+    if made.trajectory.why:
+        text.append(f"The motion could not be computed to its end: {made.trajectory.why}")
+    length = made.vehicle.length
+    return Section(
+        anchor,
+        title,
+        tuple(text),
+        (figure_table(made.figures, title, length),),
+        motion_figures(made.trajectory.until(made.determined), anchor, length, title),
+    )
+
+
+EXPORTED = (
+    "The files were read again and evaluated by the target's own force law, written from its source, beside the force law of the "
+    "parameter file; so are the accelerations that this force and the added mass in those files give. A difference is what a "
+    "simulation with that target has wrong, if the parameter file is right.",
+    "Where a target adds -C_A(nu) nu itself, first-order derivatives are given to it less their potential part, so that nothing "
+    "counts twice.",
+)
+
+
+def export_sections(study: Study) -> tuple[Section, ...]:
+    """One section, or none where the plan asks for no export."""
+    if not study.exports and not study.refused:
+        return ()
+    each = tuple(
+        Section(f"export-{i}", f"{made.parameters} for {made.target}", tables=_tables(made.target, made.loss))
+        for i, made in enumerate(study.exports)
+        if made.loss is not None
+    )
+    refused = tuple(f"Refused, and not written: {_sentence(r)}" for r in study.refused)
+    return (Section("exports", "Exports", (*EXPORTED, *refused), (summary(study),), subsections=each),)
+
+
+def _tables(target: str, loss: Loss) -> tuple[Table, ...]:
+    points = loss_tables.at_points(loss.at_points, f"Force law of {target}", controls=False)
+    return (loss_tables.forces(loss), *((points,) if points.rows else ()))
+
+
+def _sentence(refused: Refused) -> str:
+    why = refused.why
+    return f"{refused.parameters} for {refused.target}. Found {why.found}; expected {why.expected}."
+
+
+def summary(study: Study) -> Table:
+    """One row an export, those that were refused last."""
+    rows = tuple(
+        (made.parameters, made.target, _verdict(made), _worst(made), _accelerations(made), _place(made))
+        for made in study.exports
+    )
+    rows += tuple((r.parameters, r.target, "refused", ABSENT, ABSENT, "none") for r in study.refused)
+    headers = ("parameter file", "target", "loss", "worst of largest", "accelerations", "files")
+    notes = (
+        "worst of largest: largest difference of a force component or an acceleration over its largest value, both over the states that the loss of "
+        f"each export names: what campaigns cover, and primes to {ASSUMED:g} either way of a motion that none covers",
+    )
+    return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4, 5}))
+
+
+def _accelerations(made: Export) -> str:
+    return ABSENT if made.loss is None else made.loss.water.used
+
+
+def _verdict(made: Export) -> str:
+    if made.loss is None:
+        return "none: tables of the file's own values"
+    if made.lossless:
+        return "none"
+    return f"accepted: {loss_tables.counted(made.loss) or 'force or acceleration differs'}"
+
+
+def _worst(made: Export) -> str:
+    if made.loss is None:
+        return ABSENT
+    name, worst = made.loss.furthest
+    return f"{loss_tables.percent(worst)} ({name})" if worst > LOSSLESS else loss_tables.percent(worst)
+
+
+def _place(made: Export) -> str:
+    names = ", ".join(sorted(made.files))
+    return f"{made.folder}/: {names}" if made.folder else names

@@ -1,1 +1,0 @@
-"""Added mass of slender bodies by sections."""
