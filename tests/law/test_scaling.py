@@ -176,9 +176,8 @@ NO_PRIMES = {
         1,
         "recognises r2 = rho L^2 / 2 of a foreign file in the units of that file, slug and foot too",
     ),
-    "formats/stonefish/law.py": (2, "form drag of Stonefish, on the panels of its mesh"),
-    "formats/holoocean/law.py": (2, "dynamic pressure of HoloOcean's drag law, on its own area"),
-    "formats/holoocean/write.py": (1, "dynamic pressure of HoloOcean's drag law, on its own area"),
+    "formats/stonefish/write.py": (2, "form drag of Stonefish, on the panels of its mesh"),
+    "formats/holoocean/write.py": (3, "dynamic pressure of HoloOcean's drag law, on its own area"),
 }
 
 
