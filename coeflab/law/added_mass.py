@@ -25,25 +25,9 @@ from coeflab.core.types import Array, brief, locked
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
-from coeflab.law.transforms import velocity_transfer
+from coeflab.law.transforms import moved, turned, velocity_transfer
 
 ROUNDING = 1e-9
-
-
-def turned(matrix: Array, rotation: Array) -> Array:
-    """The (6, 6) matrix in outer axes; ``rotation`` (3, 3) takes components along the part's axes to the outer ones."""
-    both = np.kron(np.eye(2), rotation)
-    return np.asarray(both @ matrix @ both.T)
-
-
-def moved(matrix: Array, shift: Array) -> Array:
-    """The (6, 6) matrix about a point ``shift`` (3,) away from the old one, same axes.
-
-    Kinetic energy does not depend on the point: M_new = H^T M_old H, with H the velocity at the old point from that at
-    the new one (Fossen 2011, section 7.5.4).
-    """
-    back = velocity_transfer(-shift)
-    return np.asarray(back.T @ matrix @ back)
 
 
 def composed(matrices: Sequence[Array], rotations: Sequence[Array], centres: Sequence[Array], point: Array) -> Array:

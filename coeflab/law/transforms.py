@@ -1,4 +1,4 @@
-"""Moving the reference point and turning the axes of 6-vectors and 6 x 6 derivative matrices.
+"""Moving the reference point, of forces and of added mass, and turning the axes.
 
 Order of components: u v w p q r and X Y Z K M N. Source: Fossen (2011), section 7.5 (the transformation H).
 
@@ -142,3 +142,19 @@ def snapped(turn: Array, within: float) -> Array:
         yaw, roll = float(np.arctan2(-turn[0, 1], turn[1, 1])), 0.0
     near = [RIGHT * round(a / RIGHT) if abs(a - RIGHT * round(a / RIGHT)) <= within else a for a in (roll, pitch, yaw)]
     return rotation(*near)
+
+
+def moved(matrix: Array, shift: Array) -> Array:
+    """The (6, 6) matrix about a point ``shift`` (3,) away from the old one, same axes.
+
+    Kinetic energy does not depend on the point: M_new = H^T M_old H, with H the velocity at the old point from that at
+    the new one (Fossen 2011, section 7.5.4).
+    """
+    back = velocity_transfer(-shift)
+    return np.asarray(back.T @ matrix @ back)
+
+
+def turned(matrix: Array, rotation: Array) -> Array:
+    """The (6, 6) matrix in outer axes; ``rotation`` (3, 3) takes components along the part's axes to the outer ones."""
+    both = np.kron(np.eye(2), rotation)
+    return np.asarray(both @ matrix @ both.T)

@@ -8,7 +8,7 @@ import trimesh
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.triangulation import SIGNS, asymmetries, vanishing
-from coeflab.law.added_mass import moved
+from coeflab.law.transforms import moved
 
 
 def test_a_mirror_turns_velocities_as_polar_and_rates_as_axial_vectors() -> None:

@@ -10,7 +10,7 @@ from coeflab.bodies.mesh.meshing import box_surface, revolved, rings
 from coeflab.bodies.panels import added_mass as kernel
 from coeflab.bodies.panels.added_mass import memory_needed, panel_added_mass
 from coeflab.core.types import Array
-from coeflab.law.added_mass import moved, turned
+from coeflab.law.transforms import moved, turned
 
 ORIGIN = np.zeros(3)
 

@@ -15,7 +15,7 @@ from coeflab.bodies.closed_forms import (
     plate_added_mass,
     plate_coefficient,
 )
-from coeflab.law.added_mass import moved
+from coeflab.law.transforms import moved
 
 RHO = 1000.0
 

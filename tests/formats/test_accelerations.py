@@ -16,8 +16,8 @@ from coeflab.formats.export import LOSSLESS, Export
 from coeflab.formats.gazebo.law import read_gz_link
 from coeflab.formats.uuv_simulator.law import read_fossen_link
 from coeflab.formats.xdyn.law import xdyn_body
-from coeflab.law.added_mass import moved
 from coeflab.law.rigid_body import parallel_axis, rigid_body_force, rigid_body_inertia
+from coeflab.law.transforms import moved
 from coeflab.motion.manoeuvre import UPRIGHT
 from coeflab.motion.vehicle import vehicle
 from coeflab.report.sections import parameter_file as export_section

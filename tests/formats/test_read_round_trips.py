@@ -11,10 +11,9 @@ import pytest
 
 from coeflab.formats import EXPORTERS, PARAMETER_IMPORTERS
 from coeflab.formats.xdyn import write as xdyn
-from coeflab.law.added_mass import moved
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import derivative
-from coeflab.law.transforms import derivative_transfer
+from coeflab.law.transforms import derivative_transfer, moved
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import centre_of_gravity, water_inertia

@@ -14,7 +14,7 @@ from coeflab.formats.export import Kind
 from coeflab.formats.xdyn import read as importer
 from coeflab.formats.xdyn import write as xdyn
 from coeflab.formats.xdyn.law import xdyn_body
-from coeflab.law.added_mass import moved
+from coeflab.law.transforms import moved
 from coeflab.study.study import Study
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import water_inertia

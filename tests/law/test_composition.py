@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
-from coeflab.law.added_mass import composed, definiteness, moved, turned
+from coeflab.law.added_mass import composed, definiteness
+from coeflab.law.transforms import moved, turned
 
 RNG = np.random.default_rng(4)
 ROOT = RNG.normal(size=(6, 6))

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.law.added_mass import moved
 from coeflab.law.rigid_body import ideal_force, ideal_quadratics
-from coeflab.law.transforms import force_transfer, skew, velocity_transfer
+from coeflab.law.transforms import force_transfer, moved, skew, velocity_transfer
 
 RNG = np.random.default_rng(8)
 ROOT = RNG.normal(size=(6, 6))

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.law.added_mass import moved
 from coeflab.law.rigid_body import about_another, ideal_force, inertia_doubt, parallel_axis, rigid_body_inertia
-from coeflab.law.transforms import velocity_transfer
+from coeflab.law.transforms import moved, velocity_transfer
 from tests.rigid_motion import motion, rotation
 
 MASS, CENTRE = 7.0, np.array([0.1, -0.05, 0.2])

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.panels.influence import panels_of
 from coeflab.core.types import Array, brief
-from coeflab.law.added_mass import moved
+from coeflab.law.transforms import moved
 
 TOLERANCE = 5e-7
 MOST_STEPS = 200

@@ -36,8 +36,7 @@ from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import covered_grid, missing_mass, unheld
 from coeflab.formats.exported_law import held_when_straight, number
 from coeflab.formats.mujoco.law import ellipsoid_of_masses
-from coeflab.law.added_mass import moved
-from coeflab.law.transforms import force_transfer, velocity_transfer
+from coeflab.law.transforms import force_transfer, moved, velocity_transfer
 from coeflab.vehicle.force_law import force_law
 from coeflab.vehicle.inertia import central_inertia, centre_of_gravity, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile

@@ -18,11 +18,10 @@ from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_mass, missing_water, unheld
 from coeflab.formats.exported_law import ExportedLaw, common_changes, exported_law, number
 from coeflab.formats.uuv_simulator.law import MATRICES, read_fossen_link
-from coeflab.law.added_mass import moved
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.symbols import COMPONENTS
-from coeflab.law.transforms import derivative_transfer, force_transfer, velocity_transfer
+from coeflab.law.transforms import derivative_transfer, force_transfer, moved, velocity_transfer
 from coeflab.vehicle.inertia import central_inertia, centre_of_gravity, water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import FLU, ROUNDING, SURGE, products_once, slot

@@ -30,12 +30,12 @@ from coeflab.core.wording import one_line
 from coeflab.formats.exported_law import sname
 from coeflab.formats.stated_file import Law, Stated, matrix_doubts, stated_file
 from coeflab.formats.xdyn.law import Manoeuvring, XdynBody, settled, xdyn_body
-from coeflab.law.added_mass import definiteness, moved
+from coeflab.law.added_mass import definiteness
 from coeflab.law.rigid_body import MassProperties, about_another, ideal_quadratics, inertia_doubt
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivative
 from coeflab.law.terms import parse_suffix
-from coeflab.law.transforms import force_transfer
+from coeflab.law.transforms import force_transfer, moved
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import gravity
 

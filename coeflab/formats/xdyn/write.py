@@ -26,11 +26,11 @@ from coeflab.formats.exported_law import (
     written_terms,
 )
 from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, HERE, RIGID, xdyn_body
-from coeflab.law.added_mass import definiteness, moved
+from coeflab.law.added_mass import definiteness
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import about_another, rigid_body_inertia
 from coeflab.law.symbols import COMPONENTS, MOTIONS
-from coeflab.law.transforms import force_transfer, velocity_transfer
+from coeflab.law.transforms import force_transfer, moved, velocity_transfer
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
 
