@@ -5,12 +5,13 @@ Nouns that show themselves in a line.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import fields
 from enum import Enum
+from functools import wraps
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +27,39 @@ def locked(values: ArrayLike, dtype: type = float) -> NDArray[Any]:
 def locked_columns(columns: Mapping[str, ArrayLike], dtype: type = float) -> Mapping[str, NDArray[Any]]:
     """A read-only mapping of read-only copies."""
     return MappingProxyType({name: locked(values, dtype) for name, values in columns.items()})
+
+
+Given = ParamSpec("Given")
+Made = TypeVar("Made")
+
+
+def remembered(many: int) -> Callable[[Callable[Given, Made]], Callable[Given, Made]]:
+    """Keep the last results of a pure function of arrays and plain values, by the bytes of the arrays.
+
+    Parameters
+    ----------
+    many : int
+        How many results are kept.
+    """
+
+    def decorated(function: Callable[Given, Made]) -> Callable[Given, Made]:
+        known: dict[Any, Made] = {}
+
+        @wraps(function)
+        def called(*args: Given.args, **more: Given.kwargs) -> Made:
+            given = (
+                (a.shape, a.dtype.str, a.tobytes()) if isinstance(a, np.ndarray) else a for a in (*args, *more.values())
+            )
+            key = (*given, *more)
+            if key not in known:
+                while len(known) >= many:
+                    del known[next(iter(known))]
+                known[key] = function(*args, **more)
+            return known[key]
+
+        return called
+
+    return decorated
 
 
 Noun = TypeVar("Noun")

@@ -18,7 +18,7 @@ from itertools import product
 import numpy as np
 from scipy import special
 
-from coeflab.core.types import Array
+from coeflab.core.types import Array, remembered
 from coeflab.fits.statistics.least_squares import Index
 
 SIZES = (1.0, 3.0, 1e1, 3e1, 1e2, 3e2, 1e3, 3e3, 1e4, 3e4, 1e5)
@@ -119,6 +119,7 @@ def _curve(name: str, parity: Parity, t: Array) -> Array:
     return np.asarray(_shape(name, u[:, None], u[None, :]) * part)
 
 
+@remembered(32)
 def prepare(x: Array, parity: Parity, variance: Array | None = None) -> Gate:
     """Factorise all members.
 

@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 from scipy import special
 
-from coeflab.core.types import Array
+from coeflab.core.types import Array, remembered
 from coeflab.fits.statistics.least_squares import Index
 
 # Sizes in units of the noise; pairs and products with them are prior odds.
@@ -231,6 +231,7 @@ def _specifications(t: Array, even: bool, settings: Index, stated: bool) -> list
     return out
 
 
+@remembered(12)  # the components of a sweep share their settings
 def prepare(
     x: Array, variance: Array | None = None, *, symmetric: bool = False, settings: Array | None = None
 ) -> Design:
@@ -476,6 +477,7 @@ def _copies(rows: Array) -> tuple[Array, bool]:
     return again, len(off) > 2 and all((-float(r[0]), -float(r[1])) in seen for r in off)
 
 
+@remembered(24)
 def estimate(
     x: Array, y: Array, se: Array | None = None, *, symmetric: bool = False, groups: Array | None = None
 ) -> OriginSlope:
@@ -528,11 +530,9 @@ def estimate(
                 {}, None, y[kept], np.zeros(0),
             )  # fmt: skip
         design = prepare(
-            x[kept],
-            None if variance is None else variance[kept],
-            symmetric=symmetric,
+            x[kept], None if variance is None else variance[kept], symmetric=symmetric,
             settings=None if groups is None else np.asarray(groups)[kept],
-        )
+        )  # fmt: skip
         many = estimate_many(design, y[kept], stated)
         wrong[kept], without[kept] = many.wrong[0], many.without[0]
         worst = int(kept[np.argmax(many.wrong[0])])

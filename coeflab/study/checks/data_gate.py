@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,16 +64,6 @@ class _Row:
     components: list[str] = field(default_factory=list)
     values: list[str] = field(default_factory=list)
     comments: list[str] = field(default_factory=list)
-
-
-@lru_cache(maxsize=32)
-def _prepared(x: bytes, parity: Parity, variance: bytes | None) -> data_gate.Gate:
-    return data_gate.prepare(np.frombuffer(x), parity, None if variance is None else np.frombuffer(variance))
-
-
-@lru_cache(maxsize=64)
-def _slope(x: bytes, y: bytes, se: bytes | None) -> origin_slope.OriginSlope:
-    return origin_slope.estimate(np.frombuffer(x), np.frombuffer(y), None if se is None else np.frombuffer(se))
 
 
 def _levels(x: Array) -> NDArray[np.intp]:
@@ -164,7 +153,7 @@ def _screened(table: ForceTable, kept: NDArray[np.bool_], limit: float) -> dict[
             known = errors is not None and bool(np.all(np.isfinite(errors[rows]) & (errors[rows] > 0.0)))
             variance = table.primed_force(component, length, errors)[rows] ** 2 if known else None
             parity = sweep.parity(component)
-            gate = _prepared(x.tobytes(), parity, None if variance is None else variance.tobytes())
+            gate = data_gate.prepare(x, parity, variance)
             y = table.primed_force(component, length)[rows]
             if not np.any(y):
                 continue
@@ -199,7 +188,7 @@ def _estimates(
                     x,
                     y,
                     se,
-                    _slope(x.tobytes(), y.tobytes(), None if se is None else se.tobytes()),
+                    origin_slope.estimate(x, y, se),
                 )
 
 
@@ -225,7 +214,7 @@ def _cell_text(table: ForceTable, component: str, row: int, cell: _Cell) -> str:
 
 
 def _without(x: Array, y: Array, se: Array | None, at: NDArray[np.bool_]) -> origin_slope.OriginSlope:
-    return _slope(x[~at].tobytes(), y[~at].tobytes(), None if se is None else se[~at].tobytes())
+    return origin_slope.estimate(x[~at], y[~at], None if se is None else se[~at])
 
 
 def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows: dict[int, _Row], limit: float) -> None:
