@@ -177,8 +177,8 @@ def test_pasted_rows_and_a_mirrored_half_are_said() -> None:
 
 def test_a_row_that_decides_a_derivative_is_warned_of() -> None:
     """One setting near zero, all others beyond nine degrees, where the curve has flattened."""
-    v = np.sin(np.radians([-12.0, -11.0, -10.0, -9.0, -2.0, 9.0, 10.0, 11.0, 12.0]))
-    y = -0.0056 * np.tanh(v / 0.1) + 5e-8 * np.random.default_rng(4).standard_normal(len(v))
+    v = np.sin(np.radians([-12.0, -11.0, -10.0, -9.0, -1.0, 9.0, 10.0, 11.0, 12.0]))
+    y = -0.0056 * np.tanh(v / 0.05) + 5e-8 * np.random.default_rng(4).standard_normal(len(v))
     found = [c for c in warnings((table_of(v, {"Y": y}),)) if "decides Yv'" in c.comment]
     assert [c.subject for c in found] == ["my_campaign/drift.csv line 7"]
     assert "without it" in found[0].statistic

@@ -50,6 +50,7 @@ WRONG, REMOVE = 0.005, 0.1
 # Smallest noise (of the largest force), leverage that is rounding, members kept for the quantiles.
 ROUNDING, WEIGHTLESS, KEPT = 3e-8, 1e-10, 256
 DECAY, ORDERS, STATED_FREEDOM, FEWEST, MOST_LIKELY = 0.8, 16, 2.0, 5, 100
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 TABLE = np.sin(0.5 * np.pi * np.linspace(-1.0, 1.0, 2001)[1:-1])
 
 
@@ -185,9 +186,8 @@ def _remainder(name: str, odd: bool, a: Array, b: Array) -> Array:
     """Covariance (len a, len b) of a remainder, one at |t| = 1."""
     u, sides = np.multiply.outer(a, b), np.multiply.outer(np.sign(a), np.sign(b))
     if name == "fractions":  # every power from 1.5 to 4 alike
-        nodes, weights = np.polynomial.legendre.leggauss(8)
-        left, right = (np.abs(t)[:, None] ** (2.75 + 1.25 * nodes) for t in (a, b))
-        return np.asarray(sides * ((0.5 * weights * left) @ right.T))
+        left, right = (np.abs(t)[:, None] ** (2.75 + 1.25 * NODES) for t in (a, b))
+        return np.asarray(sides * ((0.5 * WEIGHTS * left) @ right.T))
     if name in ("series", "powers"):
         sign, first, step = (sides, 2, 1) if name == "powers" else (1.0, 3, 2 if odd else 1)
         terms = {k: DECAY**k for k in range(first, ORDERS, step)}
