@@ -88,3 +88,14 @@ def test_the_interval_is_short_but_for_the_noise_named(
         if r["family"] in families and r[column] and float(r[column]) > bound:
             wide.setdefault((r["family"], r["design"]), []).append(r["noise %"])
     assert {k: " ".join(v) for k, v in wide.items()} == {k: v for k, v in WIDE.items() if k[0] in families}
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/slope_at_origin.md"])
+def test_what_people_read_is_what_the_table_says(rows: list[dict[str, str]], page: str) -> None:
+    text = (TABLE.parents[2] / page).read_text()
+    campaigns = np.array([int(r["campaigns"]) for r in rows])
+    cover = np.array([float(r["cover %"]) for r in rows])
+    assert f"{campaigns.sum():,} " in text
+    assert f"{campaigns @ cover / campaigns.sum():.1f} %" in text
+    assert len(BELOW_90) == 4
+    assert "our of 320 cells" in text or "4 of 320 cells" in text
