@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -34,9 +34,7 @@ ODD = {"v": "YNK", "w": "ZM", "r": "YNK", "q": "ZM", "p": "K", "dr": "YNK", "ds"
 EVEN = {"v": "X", "w": "X", "r": "X", "q": "X"}
 ANGLE_CAPS = (10.0, 12.0, 18.0)
 RATE_CAPS = (0.5, 0.75, 1.0)
-NEAR_REST = 0.02  # of the largest setting: nearer rows say nothing of a curvature
 NODES = 41  # of the recommended curve, odd: one is at rest
-NO_FLOOR = 1e-6  # relative standard error, so small that only the ratios of the rows count
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,58 +48,6 @@ class Options:
     """
 
     largest_angle: float = bounded(90.0, 1.0, 90.0)
-
-
-def _by_row(slope: OriginSlope, term: int) -> Array:
-    """How much each used reading moves a polynomial term of the mixture (0 at rest, 1 slope), at the present weights."""
-    design, weights = slope.design, slope.weights
-    if design is None:
-        return np.zeros(0)
-    out, start = np.zeros(len(design.x)), 0
-    for m in design.members:
-        own = weights[start : start + m.log_prior.size].reshape(m.log_prior.shape)
-        start += m.log_prior.size
-        out += np.einsum("jk,jkp,jpn,jnr->r", own, m.inverse[:, :, term], m.columns, m.root, optimize=True)
-    return out / (design.largest if term else 1.0)
-
-
-def _determined(
-    slope: OriginSlope, target: str, middle: float | None, rest: tuple[float, float]
-) -> tuple[float | None, float | None, Array]:
-    """Value, U95 and what each used reading moves the value by.
-
-    ``middle`` is the median stated standard error, ``rest`` the curve at zero with its half-width.
-    """
-    if slope.design is None:
-        return None, None, np.zeros(int(slope.used.sum()))
-    if target == "x":
-        return slope.value, slope.u95, _by_row(slope, 1)
-    at_rest, half = rest
-    moved = _by_row(slope, 0)
-    if target == "1":
-        return at_rest, half, moved
-    x, y = slope.design.x, slope.y
-    kept = np.flatnonzero(np.abs(x) > NEAR_REST * slope.design.largest)
-    floor = middle or NO_FLOOR * float(np.abs(y - at_rest).max())
-    error = floor * np.sqrt(slope.design.variance[kept]) / np.abs(x[kept])
-    bent = origin_slope.estimate(x[kept], (y[kept] - at_rest) / x[kept], error)
-    if bent.design is None:
-        return None, None, np.zeros(len(x))
-    out, kept = np.zeros(len(x)), kept[bent.used]
-    out[kept] = _by_row(bent, 1) / x[kept]
-    felt = float(out.sum())
-    return bent.value, float(np.hypot(bent.u95, felt * half)), out - felt * moved
-
-
-def rest_and_curvature(x: Array, y: Array) -> tuple[float | None, float | None]:
-    """The force at rest and the curvature there of a sweep (n,), all rows used; None where a row is too few."""
-    origin = origin_slope.estimate(x, y)
-    if origin.design is None:
-        return None, None
-    origin = _of_all_rows(origin, x, y, None)
-    mean, half = origin_slope.curve(origin, np.zeros(1))
-    at_rest = float(mean[0]), float(half[0])
-    return at_rest[0], _determined(origin, "x2", None, at_rest)[0]
 
 
 def _sweep(
@@ -137,7 +83,7 @@ def _sweep(
         fitted, curve = mean[: len(x)], np.stack([over, mean[len(x) :], halves[len(x) :]])
         at_rest = (float(curve[1, NODES // 2]), float(curve[2, NODES // 2]))
     middle = None if se is None or not np.any(se > 0.0) else float(np.median(se[se > 0.0]))
-    value, u95, moved = _determined(origin, target, middle, at_rest)
+    value, u95, moved = slopes.determined(origin, target, middle, at_rest)
     by_row = np.zeros(len(x))
     by_row[origin.used] = moved
     random = None
@@ -145,9 +91,9 @@ def _sweep(
         random = min(2.0 * origin.noise * float(np.linalg.norm(moved * np.sqrt(origin.design.variance))), u95)
     with_all = value
     if parity == "even" and np.any(np.isfinite(origin.without) & np.logical_not(origin.used)):
-        everything = _of_all_rows(origin, x, y, se)
+        everything = slopes.of_all_rows(origin, x, y, se)
         mean, half = origin_slope.curve(everything, np.zeros(1))
-        with_all, _, _ = _determined(everything, target, middle, (float(mean[0]), float(half[0])))
+        with_all, _, _ = slopes.determined(everything, target, middle, (float(mean[0]), float(half[0])))
     elif parity == "odd" and origin.design is not None:
         with_all = origin.with_all
     reach = float(np.max(np.abs(x), initial=0.0))
@@ -196,13 +142,6 @@ def _sweep(
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces else "",
     )
     return made, origin
-
-
-def _of_all_rows(slope: OriginSlope, x: Array, y: Array, se: Array | None) -> OriginSlope:
-    """The model with every row, wrong or not, as far as `_determined` and `curve` ask for it."""
-    design = origin_slope.prepare(x, None if se is None else se**2 / float(np.median(se)) ** 2)
-    weights = origin_slope.estimate_many(design, y, deletions=False).weights[0]
-    return replace(slope, design=design, y=y, weights=weights)
 
 
 def _moved(shift: float) -> dict[str, str]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from coeflab.core.table import ABSENT, Table, number, plus_minus
 from coeflab.fits.results.fit_result import Sweep
+from coeflab.law.coefficient import COVERS
 from coeflab.report import content
 from coeflab.report.acceptance import Acceptance
 from coeflab.report.document import Document, Figure, Section, digest_of
@@ -62,7 +63,8 @@ def acceptance_summary(found: Acceptance, whole: Document) -> Document:
 
 def _first(verdict: Section, stability: list[str]) -> Section:
     """The first paragraphs and the last, and what is unstable, in the place of one."""
-    kept = (*verdict.paragraphs[: MOST_PARAGRAPHS - bool(stability)], *stability, verdict.paragraphs[-1])
+    said = verdict.paragraphs[1:]  # the first holds the values of the table below
+    kept = (*said[: MOST_PARAGRAPHS - 1 - bool(stability)], *stability, said[-1]) if said else verdict.paragraphs
     return replace(verdict, paragraphs=tuple(dict.fromkeys(kept)))
 
 
@@ -73,7 +75,7 @@ def _coefficients(study: Study) -> tuple[Section, ...]:
         wanted = quality(models) if models else tables.coefficients(study)
     if not wanted.rows:
         return ()
-    return (Section("coefficients", "Coefficients with U95", tables=(_cut(wanted),)),)
+    return (Section("coefficients", "Coefficients with U95", (f"U95 covers {COVERS}.",), tables=(_cut(wanted),)),)
 
 
 def _with_centres(table: Table, study: Study) -> Table:

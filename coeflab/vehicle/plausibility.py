@@ -27,7 +27,7 @@ from coeflab.core.types import Array, brief
 from coeflab.law.added_mass import ROUNDING, definiteness
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import ideal_quadratics
-from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative, primed
+from coeflab.law.symbols import COMPONENTS, LINEAR, MOTIONS, derivative, primed
 from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -333,7 +333,7 @@ class _Own:
 def damping_findings(p: ParameterFile, signs: str = "") -> list[Check]:
     """Signs, rates and axes; at least one finding about the signs, with what the file's format says of them."""
     own = _own_terms(p)
-    out = _signs(own, signs)
+    out = _signs(own, signs, p)
     if not own:
         out.append(
             _damping_check(
@@ -360,9 +360,23 @@ def _own_terms(p: ParameterFile) -> list[_Own]:
     return out
 
 
-def _signs(own: list[_Own], signs: str) -> list[Check]:
+def _outweighs(driving: _Own, own: list[_Own], p: ParameterFile) -> bool:
+    """Whether the force drives somewhere: of a law that says where it holds there, else whatever the other terms are."""
+    names = (f"asin({driving.motion}/U)", f"{driving.motion}'")
+    held = [h for h in p.law_holds if h.component == driving.term.component and h.variable in names]
+    if not held:
+        return True
+    speed, largest = p.conditions.speed, max(abs(b) for h in held for b in (h.low, h.high))
+    unit = speed if driving.motion in LINEAR else speed / p.scaling.length
+    motion = np.linspace(0.05, 1.0, 20) * (np.sin(largest) if driving.motion in "vw" else largest) * unit
+    mine = [o.term for o in own if o.odd and o.term.component == driving.term.component]
+    force = sum(t.coefficient * speed**t.speed_power * motion**t.term.degree for t in mine)
+    return bool(np.any(force > 0.0))
+
+
+def _signs(own: list[_Own], signs: str, p: ParameterFile) -> list[Check]:
     out = []
-    drives = [o for o in own if o.odd and o.term.coefficient > 0.0]
+    drives = [o for o in own if o.odd and o.term.coefficient > 0.0 and _outweighs(o, own, p)]
     if drives:
         it = "It drives the motion that it" if len(drives) == 1 else "They drive the motions that they"
         out.append(_damping_check(", ".join(primed(o.term.symbol) for o in drives), Severity.FAIL,

@@ -126,9 +126,9 @@ def test_what_is_counted_before_it_is_parsed(tmp_path: Path) -> None:
     path.write_text(".".join("a" * (limits.TOML_NAMES_IN_A_KEY + 1)) + " = 1")
     refused("dotted key", what=lambda: read_toml(path))
     path.write_text(".".join("a" * limits.TOML_NAMES_IN_A_KEY) + " = 1")
-    assert read_toml(path).has("a")
+    assert "a" in read_toml(path).content
     path.write_text("a = [" + ", ".join(["1.5"] * 10_000) + "]")
-    assert len(read_toml(path).raw("a")) == 10_000
+    assert len(read_toml(path).content["a"]) == 10_000
     refused("JSON, at most 150 levels", what=lambda: parse_json("[" * 151 + "]" * 151))
     assert parse_json('["' + "[" * 200 + '"]') == ["[" * 200]
     refused("2001 keys in one object", what=lambda: parse_json(json.dumps(dict.fromkeys(map(str, range(2001)), 0))))

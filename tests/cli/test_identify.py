@@ -62,7 +62,7 @@ def test_from_simulate_to_identify(coeflab: Run, params: Path, tmp_path: Path) -
     again = coeflab(*asked)
     assert again.returncode == 0
     assert "identified from zigzag.csv, turning_circle.csv" in again.stdout
-    assert "scatter alone" in again.stdout
+    assert "jackknife" in again.stdout
     assert before == {n: (tmp_path / "out" / n).read_bytes() for n in FILES}
 
 

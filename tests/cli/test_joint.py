@@ -69,7 +69,8 @@ def test_a_plan_with_a_joint_fit_writes_its_report_and_parameter_file(coeflab: R
         encoding="utf-8",
     )
     done = coeflab("run", "plan.toml")
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 1, done.stderr  # v|v| alone misses points: the check says so, everything is written
+    assert "law at points" in done.stdout
     assert "Campaigns of the joint fit" in done.stdout
     report = (tmp_path / "reports" / "hull" / "report.html").read_text(encoding="utf-8")
     assert "Jointly: suboff_roddy_3, suboff_cfd_barehull" in report

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from coeflab.core.files import shipped
-from coeflab.core.table import Check, Severity, plus_minus, with_u95
+from coeflab.core.table import Check, Severity
 from coeflab.fits import FITS, slope_at_origin
 from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.fits.statistics import slopes
 from coeflab.fits.statistics.origin_slope import estimate, estimate_many
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.coefficient import Status
@@ -131,7 +132,7 @@ def test_the_shares_of_rows_are_those_of_the_mixture() -> None:
     x = np.sin(np.radians(np.linspace(-16.0, 14.0, 16)))
     y = -1e-3 + 2e-3 * x + 0.02 * x**2 + 1e-4 * np.random.default_rng(2).standard_normal(16)
     here = estimate(x, y)
-    rest, slope = (slope_at_origin._by_row(here, term) for term in (0, 1))
+    rest, slope = (slopes.by_row(here, term) for term in (0, 1))
     assert here.design is not None
     assert [rest.sum(), rest @ x, slope.sum(), slope @ x] == pytest.approx([1.0, 0.0, 0.0, 1.0], abs=1e-8)
     assert slope @ y == pytest.approx(estimate_many(here.design, y, deletions=False).mean[0], rel=1e-9)
@@ -249,7 +250,8 @@ def test_planted_rotary_derivatives_come_back_about_another_point() -> None:
     k = dx / length
     assert found["Nv"].value == pytest.approx(-0.0138 + k * 0.0065, rel=1e-6)
     assert found["Yr"].value == pytest.approx(0.0007 + k * 0.0065, rel=1e-6)
-    assert found["Nr"].value == pytest.approx(-0.0009 - k * (-0.0138 + 0.0007) + k**2 * -0.0065, rel=1e-6)
+    rounding = 3e-8 * 0.0138  # of the largest part that is moved
+    assert found["Nr"].value == pytest.approx(-0.0009 - k * (-0.0138 + 0.0007) + k**2 * -0.0065, abs=rounding)
 
 
 ANGLES = [-18.0, -15.0, -12.0, -9.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 9.0, 12.0, 15.0, 18.0]
@@ -272,21 +274,19 @@ def warnings(study: Study) -> list[Check]:
     return [c for c in coverage.check(study) if c.severity is Severity.WARN]
 
 
-def test_a_wrong_point_is_a_warning_with_the_value_with_it_and_without_it() -> None:
+def test_a_wrong_point_is_left_out_and_the_value_with_it_is_kept() -> None:
+    """The gate for data makes the warning of it: tests/workbench/test_data_gate.py."""
     clean, wrong = swept(ANGLES), swept(ANGLES, {9: 3.0})
-    assert not warnings(clean)
     before, after = (s.fits[0].sweep("Yv") for s in (clean, wrong))
     assert list(after.wrong) == [9]
     assert after.value == pytest.approx(before.value, abs=before.u95)
-    (found,) = warnings(wrong)
     assert after.u95 is not None
-    assert abs(after.with_all - after.value) > 3.0 * after.u95
-    for text in ("point tow 9 left out", plus_minus(after.value, after.u95), with_u95(after.with_all, after.u95)[0]):
-        assert text in found.statistic
+    assert after.with_all is not None
+    assert abs(after.with_all - after.value) > after.u95
     assert "without point tow 9" in wrong.fits[0].coefficients["Yv"].estimator
 
 
-def test_pasted_rows_are_a_warning_and_no_gain() -> None:
+def test_pasted_rows_are_no_gain() -> None:
     once, pasted = swept(ANGLES), swept(ANGLES)
     (table,) = once.tables
     again = np.tile(np.arange(len(ANGLES)), 3)
@@ -298,7 +298,6 @@ def test_pasted_rows_are_a_warning_and_no_gain() -> None:
     pasted = replace(pasted, fits=(slope_at_origin.fit([table], LENGTH, {}),), tables=(table,))
     a, b = (s.fits[0].coefficients["Yv"] for s in (once, pasted))
     assert (b.u95, b.n_points) == (pytest.approx(a.u95), len(ANGLES))
-    assert ["repeat an earlier row" in c.statistic for c in warnings(pasted)].count(True) == 1
 
 
 @pytest.mark.parametrize("one_sided", [False, True])

@@ -72,6 +72,4 @@ def slopes_alone(parameters: ParameterFile) -> ParameterFile:
     rows = [parameters.covariance.symbols.index(n) for n in names]
     covariance = {"symbols": names, "matrix": [[parameters.covariance.matrix[i][j] for j in rows] for i in rows]}
     content = parameters.model_dump(exclude={"measured", "law_holds", "law_at_points"})
-    return ParameterFile.model_validate(
-        {**content, "coefficients": [c.model_dump() for c in kept], "covariance": covariance}
-    )
+    return ParameterFile.model_validate({**content, "coefficients": kept, "covariance": covariance})

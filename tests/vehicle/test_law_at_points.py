@@ -34,7 +34,7 @@ def whole() -> ParameterFile:
 
 def changed(p: ParameterFile, symbol: str, factor: float, *, stated_anew: bool = True) -> ParameterFile:
     each = [
-        c.model_copy(update={"value": factor * c.value, "value_si": factor * c.value_si}) if c.symbol == symbol else c
+        replace(c, value=factor * c.value, value_si=factor * c.value_si) if c.symbol == symbol else c
         for c in p.coefficients
     ]
     out = p.model_copy(update={"coefficients": tuple(each)})

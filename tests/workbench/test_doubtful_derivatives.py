@@ -63,9 +63,8 @@ def test_the_shipped_files_raise_no_doubt(suboff: Study) -> None:
         ("suboff_fully_appended", "Mwdot", "warn"),
         ("suboff_fully_appended", "Zqdot", "warn"),
         ("suboff_fully_appended", "Mqdot", "fail"),
-        ("suboff_bare_hull", "Yr", "warn"),
+        # Not of the bare hull: Yr and Nv. Its Yv' is known to 81 %, and within that either sign is on the body.
         ("suboff_bare_hull", "Nr", "fail"),
-        ("suboff_bare_hull", "Nv", "warn"),
         ("suboff_bare_hull", "Nvdot", "warn"),
         ("suboff_bare_hull", "Nrdot", "fail"),
     ],
@@ -210,7 +209,7 @@ def test_the_lever_of_the_centre_of_gravity_counts(
     assert one(suboff, about_the_nose(0.0)) == []
     found = {c.subject.split()[-1]: c for c in one(suboff, about_the_nose(1.0)) if c.name == "viscous_centre"}
     assert set(found) == {"Yr'", "Nr'"}
-    assert "(contains_inertia = true), Nr' = -0.006" in found["Nr'"].comment
+    assert "(contains_inertia = true), Nr' = -0.00583" in found["Nr'"].comment
 
 
 def test_without_a_slope_the_mass_alone_decides(suboff: Study) -> None:

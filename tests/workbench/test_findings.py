@@ -13,7 +13,6 @@ from coeflab.core.files import shipped
 from coeflab.core.table import Severity
 from coeflab.core.text.toml import read_toml
 from coeflab.fits.results.fit_result import Sweep
-from coeflab.fits.statistics.slopes import Recommendation
 from coeflab.formats.export import lost_by_all
 from coeflab.law.scaling import Scaling
 from coeflab.study.checks.coverage import replicates
@@ -170,8 +169,11 @@ def with_replicates(k: int, rng: np.random.Generator, off: float = 0.0) -> Sweep
     y = -0.03 * x + 1e-4 * rng.standard_normal(len(x))
     y[-1] += 1e-4 * off
     labels = tuple(map(str, range(len(x))))
-    empty = Recommendation(None, None, None, None, (), ())
-    return Sweep("Yv", "v", "Y", "odd", "x", x, y, None, labels, (), empty, (), {}, (), False, "t", "c", "b")
+    of_rows = np.zeros(len(x))
+    return Sweep(
+        "Yv", "v", "Y", "odd", "x", x, y, None, labels, (), None, None, None, "", (), np.ones(len(x), bool),
+        np.zeros(0, int), None, of_rows, of_rows, (0.0, 0.0), of_rows, (), (), False, "t", "c", "b",
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("k", [2, 6])

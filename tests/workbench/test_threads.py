@@ -23,7 +23,7 @@ PLAN = """
 name = "threads"
 [[table]]
 campaign = "{campaign}"
-fits = ["slope_at_origin"]
+fits = ["slope_at_origin", "tied_law"]
 [[parameter_file]]
 name = "hull"
 body = "suboff_bare_hull"

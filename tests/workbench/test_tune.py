@@ -110,7 +110,7 @@ def test_the_written_file_says_what_moved_and_why(plan: Write, tmp_path: Path) -
     for file in (path, tmp_path / "turns.csv", HUUV / "huuv.parameters.json"):
         assert inputs[file.name] == hashlib.sha256(file.read_bytes()).hexdigest()
     notes = " ".join(p.provenance.notes)
-    assert "intercept: from -2.33800 to -2.00000" in notes
+    assert "intercept: from -2.33800 to -2.00 +- " in notes
     assert "at thruster left ahead c0, thruster right ahead c0" in notes
     side = next(m for m in p.models if m.response == "C_S")
     half = tuned.tuning.parameter("C_S beta").u95

@@ -1,19 +1,26 @@
 """What analysts would have said: forms of a force curve near the origin, each by plain least squares in growing windows.
 
 They show how far single forms disagree; none of them is recommended. That is `coeflab.fits.statistics.origin_slope`.
+
+The even coefficients of that model, the force at rest and the curvature there, and how much each reading moves them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from coeflab.core.types import Array, brief
+from coeflab.fits.statistics import origin_slope
 from coeflab.fits.statistics.diagnostics import lack_of_fit, levels
 from coeflab.fits.statistics.least_squares import Index, aicc, factorise, solve
 from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
+from coeflab.fits.statistics.origin_slope import OriginSlope
+
+NEAR_REST = 0.02  # of the largest setting: nearer rows say nothing of a curvature
+NO_FLOOR = 1e-6  # relative standard error, so small that only the ratios of the rows count
 
 TERMS: dict[str, Callable[[Array], Array]] = {
     "1": np.ones_like,
@@ -139,3 +146,62 @@ def windows(x: Array, largest: float) -> list[tuple[float, Index]]:
         rows = np.flatnonzero(level <= k)
         out.append((float(size[rows].max()), rows))
     return out
+
+
+def by_row(slope: OriginSlope, term: int) -> Array:
+    """How much each used reading moves a polynomial term of the mixture (0 at rest, 1 slope), at the present weights."""
+    design, weights = slope.design, slope.weights
+    if design is None:
+        return np.zeros(0)
+    out, start = np.zeros(len(design.x)), 0
+    for m in design.members:
+        own = weights[start : start + m.log_prior.size].reshape(m.log_prior.shape)
+        start += m.log_prior.size
+        out += np.einsum("jk,jkp,jpn,jnr->r", own, m.inverse[:, :, term], m.columns, m.root, optimize=True)
+    return out / (design.largest if term else 1.0)
+
+
+def determined(
+    slope: OriginSlope, target: str, middle: float | None, rest: tuple[float, float]
+) -> tuple[float | None, float | None, Array]:
+    """Value, U95 and what each used reading moves the value by.
+
+    ``middle`` is the median stated standard error, ``rest`` the curve at zero with its half-width.
+    """
+    if slope.design is None:
+        return None, None, np.zeros(int(slope.used.sum()))
+    if target == "x":
+        return slope.value, slope.u95, by_row(slope, 1)
+    at_rest, half = rest
+    moved = by_row(slope, 0)
+    if target == "1":
+        return at_rest, half, moved
+    x, y = slope.design.x, slope.y
+    kept = np.flatnonzero(np.abs(x) > NEAR_REST * slope.design.largest)
+    floor = middle or NO_FLOOR * float(np.abs(y - at_rest).max())
+    error = floor * np.sqrt(slope.design.variance[kept]) / np.abs(x[kept])
+    bent = origin_slope.estimate(x[kept], (y[kept] - at_rest) / x[kept], error)
+    if bent.design is None:
+        return None, None, np.zeros(len(x))
+    out, kept = np.zeros(len(x)), kept[bent.used]
+    out[kept] = by_row(bent, 1) / x[kept]
+    felt = float(out.sum())
+    return bent.value, float(np.hypot(bent.u95, felt * half)), out - felt * moved
+
+
+def of_all_rows(slope: OriginSlope, x: Array, y: Array, se: Array | None) -> OriginSlope:
+    """The model with every row, wrong or not, as far as `determined` and `curve` ask for it."""
+    design = origin_slope.prepare(x, None if se is None else se**2 / float(np.median(se)) ** 2)
+    weights = origin_slope.estimate_many(design, y, deletions=False).weights[0]
+    return replace(slope, design=design, y=y, weights=weights)
+
+
+def rest_and_curvature(x: Array, y: Array) -> tuple[float | None, float | None]:
+    """The force at rest and the curvature there of a sweep (n,), all rows used; None where a row is too few."""
+    origin = origin_slope.estimate(x, y)
+    if origin.design is None:
+        return None, None
+    origin = of_all_rows(origin, x, y, None)
+    mean, half = origin_slope.curve(origin, np.zeros(1))
+    at_rest = float(mean[0]), float(half[0])
+    return at_rest[0], determined(origin, "x2", None, at_rest)[0]

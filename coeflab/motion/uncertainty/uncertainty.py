@@ -197,7 +197,16 @@ def _reasons_carried(statuses: Sequence[str], found: NDArray[np.bool_]) -> str:
 
 
 def shares(indices: SobolIndices, groups: Sequence[tuple[str, ...]], sources: Sequence[str]) -> tuple[Share, ...]:
-    """Shares of groups, largest first-order index first."""
+    """Shares of groups, largest first-order index first.
+
+    Parameters
+    ----------
+    indices : SobolIndices
+    groups : sequence of tuple of str
+        Names of the inputs of each group.
+    sources : sequence of str
+        Where each group comes from.
+    """
     made = [
         Share(
             g, source, float(indices.first[k]), float(indices.total[k]),

@@ -16,9 +16,9 @@ from coeflab.core.table import Check, Severity, number
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.fits.rows.sweeps import arm_shift, collect_points, sweep_rows
-from coeflab.fits.slope_at_origin import rest_and_curvature
 from coeflab.fits.statistics import data_gate, origin_slope
 from coeflab.fits.statistics.data_gate import FEWEST, Parity, Screened
+from coeflab.fits.statistics.slopes import rest_and_curvature
 from coeflab.law.symbols import LINEAR, MOMENTS, MOTIONS, PORT_STARBOARD, primed
 from coeflab.law.transforms import incidence
 from coeflab.study.study import Study
