@@ -55,7 +55,7 @@ def acceptance_summary(found: Acceptance, whole: Document) -> Document:
     """
     first = acceptance_document.verdict(found)
     figures = (*acceptance_document.figures(found)[:1], *first.figures)
-    sections = (replace(first, paragraphs=first.paragraphs[:MOST_PARAGRAPHS], figures=()), *_drawn(figures))
+    sections = (replace(first, paragraphs=first.paragraphs[: MOST_PARAGRAPHS - 1], figures=()), *_drawn(figures))
     return replace(
         whole, subtitle="Summary on one page; the whole report holds every number", sections=sections, works=()
     )
