@@ -247,7 +247,9 @@ def _core_schema(cls: Any, _source: Any, handler: Any) -> Any:
 
 def _json_schema(cls: Any, schema: Any, handler: Any) -> Any:
     out = handler(schema)
-    handler.resolve_ref_schema(out).update(title=cls.__name__, description=cls.__doc__.splitlines()[0])
+    content = handler.resolve_ref_schema(out)
+    content.update(title=cls.__name__, description=cls.__doc__.splitlines()[0])
+    content["additionalProperties"] = False  # which pydantic before 2.11 does not say of a typed dict
     return out
 
 
