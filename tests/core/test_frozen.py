@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
-from coeflab.core.types import locked, locked_columns
+from coeflab.core.types import locked, locked_columns, remembered
 from coeflab.law.added_mass import AddedMass
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.study.study import Study
@@ -129,3 +130,20 @@ def test_a_force_table_is_a_data_frame_for_notebooks(suboff) -> None:
     assert frame.shape == (64, 6 + 1 + 6)
     assert frame.loc["1", "Z [N]"] == table.forces["Z"][0]
     assert frame["Z [N]"].isna().sum() == (~table.usable["Z"]).sum() > 0
+
+
+def test_the_last_results_are_remembered_by_the_bytes_of_arrays() -> None:
+    calls: list[float] = []
+
+    @remembered(2)
+    def total(x: NDArray[np.float64], factor: float = 1.0) -> float:
+        calls.append(factor)
+        return factor * float(x.sum())
+
+    x = np.array([1.0, 2.0])
+    assert [total(x), total(x.copy()), total(x, 2.0), total(x, factor=2.0)] == [3.0, 3.0, 6.0, 6.0]
+    assert calls == [1.0, 2.0, 2.0]
+    x[0] = 5.0
+    assert total(x) == 7.0
+    assert total(np.array([1.0, 2.0]), 1.0) == 3.0
+    assert len(calls) == 5

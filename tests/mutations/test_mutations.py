@@ -33,6 +33,8 @@ OPEN = {
     },
     "remus": set(),
 }  # fmt: skip
+# They move by more than U95, from one side of the published slope to the other, and stay within it.
+ACROSS = {"Zds = -0.005603 +5 %", "Kv = -0.000584 +5 %"}
 
 
 @pytest.fixture(scope="module")
@@ -83,8 +85,7 @@ def test_flipped_literature_never_makes_a_stable_suboff(signs: tuple[tuple[str, 
 def test_every_constant_of_a_shipped_law(name: str, study: Suboff, base: Callable[[str], Verdicts]) -> None:
     outcomes: dict[str, Outcome] = {what: compare(base(name), run(study)) for what, run in every_constant(name)}
     assert {what for what, o in outcomes.items() if not o.by} == OPEN[name]
-    # From one side of what is allowed to the other is twice that.
-    assert all(outcomes[what].share < 2.0 for what in OPEN[name])
+    assert {what for what in OPEN[name] if outcomes[what].share >= 1.0} == (ACROSS if name == "suboff" else set())
     assert 4 * len(OPEN[name]) <= len(outcomes) + 2
 
 

@@ -81,6 +81,25 @@ def test_damping_that_drives(symbol: str) -> None:
     assert found(parameters({symbol: -1e-3}, HULL)) == {}
 
 
+@pytest.mark.parametrize(
+    ("symbol", "factor", "fails"), [("Yv|v|'", 1.0, False), ("Yv|v|'", 100.0, True), ("Yv'", -1.0, True)]
+)
+def test_a_law_that_says_where_it_holds_is_judged_by_its_whole_force(
+    suboff: Study, symbol: str, factor: float, fails: bool
+) -> None:
+    """Of the computed hull Yv|v|' alone is above zero; with Yv' and Yvvv' the side force damps over all of its drift."""
+    file = suboff.parameter_files["suboff_bare_hull_cfd"]
+    changed = tuple(
+        replace(c, value=factor * c.value, value_si=factor * c.value_si)
+        if c.symbol == symbol and c.value is not None and c.value_si is not None
+        else c
+        for c in file.coefficients
+    )
+    assert any(c.symbol == symbol and (c.value or 0.0) * factor > 0.0 for c in file.coefficients)
+    driving = [n for n in found(file.model_copy(update={"coefficients": changed})) if symbol in n.split(", ")]
+    assert bool(driving) == fails
+
+
 def test_what_is_no_damping_has_any_sign() -> None:
     assert found(parameters({"Yr": 5e-3, "Nv": 1e-3, "Mw": 1e-2, "Kv": 1e-3, "Zq": 1e-3, "Yv": -0.03}, HULL)) == {}
     assert "damping" in found(parameters({"Nv": -1e-2}, HULL), Severity.WARN)

@@ -63,7 +63,6 @@ def test_the_shipped_files_raise_no_doubt(suboff: Study) -> None:
         ("suboff_fully_appended", "Mwdot", "warn"),
         ("suboff_fully_appended", "Zqdot", "warn"),
         ("suboff_fully_appended", "Mqdot", "fail"),
-        # Not of the bare hull: Yr and Nv. Its Yv' is known to 81 %, and within that either sign is on the body.
         ("suboff_bare_hull", "Nr", "fail"),
         ("suboff_bare_hull", "Nvdot", "warn"),
         ("suboff_bare_hull", "Nrdot", "fail"),
@@ -78,6 +77,20 @@ def test_a_flipped_sign_is_found(suboff: Study, name: str, symbol: str, severity
     assert severity in [c.severity.value for c in found if f"{symbol}'" in c.subject]
     if symbol in ("Yr", "Zq", "Nv", "Mw"):
         assert f"with the other sign, {symbol}' = {stated.value:.4g}" in " ".join(c.comment for c in found)
+
+
+@pytest.mark.parametrize("symbol", ["Yr", "Nv"])
+def test_what_a_wide_slope_leaves_open_is_not_doubted(suboff: Study, symbol: str) -> None:
+    """Yv' of the bare hull is known to 81 %: within that the force of either sign acts on the body. A narrow one tells."""
+    file = suboff.parameter_files["suboff_bare_hull"]
+    stated, slope = file.coefficient(symbol), file.coefficient("Yv")
+    assert stated is not None
+    assert stated.value is not None
+    assert slope is not None
+    assert slope.value is not None
+    assert slope.u95 is not None
+    assert slope.u95 > 0.8 * abs(slope.value)
+    assert one(suboff, changed(file, **{symbol: -stated.value})) == []
 
 
 @pytest.mark.parametrize("symbol", ["Yv", "Zw"])
