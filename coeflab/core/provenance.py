@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Annotated
 
 from coeflab.core.declarations import Declaration, Text, Words, one_of
-from coeflab.core.stored import Told, Within, stored
+from coeflab.core.stored import Means, Within, stored
 
 TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic")
 BODY_KINDS = (*TABLE_KINDS, "computed")
@@ -54,8 +54,8 @@ class InputFile:
     sha256 : str
     """
 
-    name: Annotated[str, Told("file name")]
-    sha256: Annotated[str, Within((("pattern", "^[0-9a-f]{64}$"),)), Told("of its bytes, hexadecimal")]
+    name: Annotated[str, Means("file name")]
+    sha256: Annotated[str, Within((("pattern", "^[0-9a-f]{64}$"),)), Means("of its bytes, hexadecimal")]
 
 
 def sha256_of(path: Path) -> str:

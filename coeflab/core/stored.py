@@ -24,7 +24,7 @@ Noun = TypeVar("Noun")
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class Means:
     """What a field means, to stand in its ``Annotated``; the schema and its page show it.
 
     Attributes
@@ -219,7 +219,7 @@ def _defaults(cls: Any) -> dict[str, Any]:
 
 
 def _since(metadata: Any) -> str:
-    return next((m.since for m in metadata if isinstance(m, Told) and m.since), FIRST_VERSION)
+    return next((m.since for m in metadata if isinstance(m, Means) and m.since), FIRST_VERSION)
 
 
 def _core_schema(cls: Any, _source: Any, handler: Any) -> Any:

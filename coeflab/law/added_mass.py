@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
-from coeflab.core.stored import Name, Positive, Square6, Told, Words, stored
+from coeflab.core.stored import Means, Name, Positive, Square6, Words, stored
 from coeflab.core.table import html_by
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.rigid_body import ideal_quadratics
@@ -97,8 +97,8 @@ def definiteness(matrix: Array) -> Definiteness:
 class OtherMethod(NamedTuple):
     """The same matrix by another method, to be compared with."""
 
-    method: Annotated[Name, Told("name of the method")]
-    matrix: Annotated[Square6, Told("as that of `added_mass`", "kg, kg m, kg m^2")]
+    method: Annotated[Name, Means("name of the method")]
+    matrix: Annotated[Square6, Means("as that of `added_mass`", "kg, kg m, kg m^2")]
 
 
 @stored("body method density matrix others? statements?")
@@ -131,19 +131,19 @@ class AddedMass:
 
     matrix: Annotated[
         Square6,
-        Told(
+        Means(
             "rows X Y Z K M N, columns of the accelerations du dv dw dp dq dr; symmetric, positive", "kg, kg m, kg m^2"
         ),
     ]
     reference_point: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
     datum: Datum = field(default_factory=lambda: Datum("reference point"))
-    body: Annotated[Words, Told("whose shape it was computed from")] = ""
-    method: Annotated[Name, Told("how; stated where it was read from somebody's model")] = ""
-    statements: Annotated[tuple[str, ...], Told("assumptions and limits of the method, in words")] = ()
+    body: Annotated[Words, Means("whose shape it was computed from")] = ""
+    method: Annotated[Name, Means("how; stated where it was read from somebody's model")] = ""
+    statements: Annotated[tuple[str, ...], Means("assumptions and limits of the method, in words")] = ()
     error: NDArray[np.float64] | None = None
     rough: bool = False
-    density: Annotated[Positive, Told("density of the water that the matrix holds for", "kg/m^3")] = np.nan
-    others: Annotated[tuple[OtherMethod, ...], Told("the same by other methods, to be compared with")] = ()
+    density: Annotated[Positive, Means("density of the water that the matrix holds for", "kg/m^3")] = np.nan
+    others: Annotated[tuple[OtherMethod, ...], Means("the same by other methods, to be compared with")] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", locked(self.matrix))

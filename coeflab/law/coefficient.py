@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
-from coeflab.core.stored import Choice, Count, Finite, NotNegative, Told, stored
+from coeflab.core.stored import Choice, Count, Finite, Means, NotNegative, stored
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative
@@ -76,11 +76,11 @@ class Parts:
         error of a computation with a grid study; in a term tied to a slope, that of the slope.
     """
 
-    random: Annotated[NotNegative | None, Told("scatter of the points", "1")] = None
-    model_form: Annotated[NotNegative | None, Told("what other forms of the curve would give", "1")] = None
-    window: Annotated[NotNegative | None, Told("choice of the window, where it is assessed by itself", "1")] = None
+    random: Annotated[NotNegative | None, Means("scatter of the points", "1")] = None
+    model_form: Annotated[NotNegative | None, Means("what other forms of the curve would give", "1")] = None
+    window: Annotated[NotNegative | None, Means("choice of the window, where it is assessed by itself", "1")] = None
     input: Annotated[
-        NotNegative | None, Told("declared uncertainty of angle, speed, calibration and length; grid error", "1")
+        NotNegative | None, Means("declared uncertainty of angle, speed, calibration and length; grid error", "1")
     ] = None
 
 
@@ -129,46 +129,48 @@ class Coefficient:
     """
 
     symbol: Annotated[
-        str, Told("SNAME symbol with prime, for example Yv'; |v| is an absolute value, Nrdot' an acceleration")
+        str, Means("SNAME symbol with prime, for example Yv'; |v| is an absolute value, Nrdot' an acceleration")
     ]
-    value: Annotated[Finite | None, Told("total, potential part included; null where the status gives none", "1")]
-    u95: Annotated[NotNegative | None, Told("95 % half-width of the value; null where it is not known", "1")]
+    value: Annotated[Finite | None, Means("total, potential part included; null where the status gives none", "1")]
+    u95: Annotated[NotNegative | None, Means("95 % half-width of the value; null where it is not known", "1")]
     status: Annotated[
         Status,
         Choice(IN_FILES, Status),
-        Told(
+        Means(
             "ok: fitted with U95; single_estimator: fitted, its model-form error unknown; form_assumed (since 1.2): U95 holds "
             "the scatter and what the residuals show that the form leaves out; form_rejected (since 1.4): the residuals show "
             "that the form is wrong, no U95; stated: from the literature; no_table, too_few_points, not_determined: no value"
         ),
     ]
     body: str = ""
-    parts: Annotated[Parts, Told("what makes up U95")] = Parts()
-    origin: Annotated[str, Choice(("fit", "literature", "none")), Told("where the value comes from")] = "none"
-    unit: Annotated[str, Choice(("1",)), Told("1: nondimensional by the prime system of `scaling`")] = "1"
-    table: Annotated[str | None, Told("file of the table that it was fitted to")] = None
-    campaign: Annotated[str | None, Told("campaign of that table")] = None
-    estimator: Annotated[str, Told("how the value was made, in words")] = ""
+    parts: Annotated[Parts, Means("what makes up U95")] = Parts()
+    origin: Annotated[str, Choice(("fit", "literature", "none")), Means("where the value comes from")] = "none"
+    unit: Annotated[str, Choice(("1",)), Means("1: nondimensional by the prime system of `scaling`")] = "1"
+    table: Annotated[str | None, Means("file of the table that it was fitted to")] = None
+    campaign: Annotated[str | None, Means("campaign of that table")] = None
+    estimator: Annotated[str, Means("how the value was made, in words")] = ""
     window: Annotated[
         tuple[Finite, Finite] | None,
-        Told("range of the motion that was used: angles in radians, rates as r' = r L/U", "rad or 1"),
+        Means("range of the motion that was used: angles in radians, rates as r' = r L/U", "rad or 1"),
     ] = None
     window_over: str = ""
-    n_points: Annotated[Count, Told("points in that range")] = 0
-    citation: Annotated[str, Told("keys of works, separated by commas")] = ""
+    n_points: Annotated[Count, Means("points in that range")] = 0
+    citation: Annotated[str, Means("keys of works, separated by commas")] = ""
     law: Annotated[
         Literal["motion", "rest"],
-        Told(
+        Means(
             "motion: the force goes with 1/2 rho U^(2-n) for n motion variables; rest: value_si times the velocities "
             "whatever U is, damping about a state of rest",
             since="1.2",
         ),
     ] = "motion"
-    value_si: Annotated[Finite | None, Told("the value at the density and speed of `conditions`", "see unit_si")] = None
-    unit_si: Annotated[str, Told("SI unit of `value_si`, for example N/(m/s)")] = ""
+    value_si: Annotated[Finite | None, Means("the value at the density and speed of `conditions`", "see unit_si")] = (
+        None
+    )
+    unit_si: Annotated[str, Means("SI unit of `value_si`, for example N/(m/s)")] = ""
     potential: Annotated[
         Finite | None,
-        Told("part of the value that -C_A(nu) nu gives, by `added_mass`; the rest is viscous", "1", since="1.2"),
+        Means("part of the value that -C_A(nu) nu gives, by `added_mass`; the rest is viscous", "1", since="1.2"),
     ] = None
 
     def refuse(self) -> None:

@@ -20,7 +20,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from coeflab.core.stored import Finite, Positive, Square3, Told, Vector, stored
+from coeflab.core.stored import Finite, Means, Positive, Square3, Vector, stored
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.scaling import Scaling
 from coeflab.law.transforms import skew
@@ -77,18 +77,18 @@ class MassProperties:
         m' = m / (1/2 rho L^3) and x_G' m', where they are known.
     """
 
-    mass: Annotated[Positive, Told("mass m of the body", "kg")]
-    mass_moment: Annotated[Finite, Told("x_G m, positive forward", "kg m")]
-    inertia: Annotated[Positive | None, Told("transverse, Iy = Iz", "kg m^2")] = None
+    mass: Annotated[Positive, Means("mass m of the body", "kg")]
+    mass_moment: Annotated[Finite, Means("x_G m, positive forward", "kg m")]
+    inertia: Annotated[Positive | None, Means("transverse, Iy = Iz", "kg m^2")] = None
     centre: Annotated[
-        Vector | None, Told("centre of gravity from the reference point, x y z, FRD", "m", since="1.2")
+        Vector | None, Means("centre of gravity from the reference point, x y z, FRD", "m", since="1.2")
     ] = None
     inertia_matrix: Annotated[
         Square3 | None,
-        Told("about the reference point, FRD; products with their sign in the matrix", "kg m^2", since="1.2"),
+        Means("about the reference point, FRD; products with their sign in the matrix", "kg m^2", since="1.2"),
     ] = None
-    mass_prime: Annotated[Positive, Told("m / (1/2 rho L^3)", "1")] = math.nan
-    mass_moment_prime: Annotated[Finite, Told("x_G m / (1/2 rho L^4)", "1")] = math.nan
+    mass_prime: Annotated[Positive, Means("m / (1/2 rho L^3)", "1")] = math.nan
+    mass_moment_prime: Annotated[Finite, Means("x_G m / (1/2 rho L^4)", "1")] = math.nan
 
     def __post_init__(self) -> None:
         for name in ("mass", "mass_moment", "mass_prime", "mass_moment_prime"):

@@ -10,7 +10,7 @@ import numpy as np
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, ScalingMismatchError
 from coeflab.core.limits import positive_number
-from coeflab.core.stored import Told
+from coeflab.core.stored import Means
 from coeflab.core.types import Array
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROLS, LINEAR, derivative
 
@@ -46,9 +46,9 @@ class Conditions(takes.Declaration):
     """
 
     __stored__: ClassVar = ("density", "speed", "viscosity?")
-    density: Annotated[takes.Density, takes.ABOVE_ZERO, Told("density rho of the water", "kg/m^3")]
-    speed: Annotated[takes.Speed, takes.ABOVE_ZERO, Told("speed U at the reference point", "m/s")]
-    viscosity: Annotated[Annotated[takes.Viscosity, takes.ABOVE_ZERO] | None, Told("kinematic", "m^2/s")] = None
+    density: Annotated[takes.Density, takes.ABOVE_ZERO, Means("density rho of the water", "kg/m^3")]
+    speed: Annotated[takes.Speed, takes.ABOVE_ZERO, Means("speed U at the reference point", "m/s")]
+    viscosity: Annotated[Annotated[takes.Viscosity, takes.ABOVE_ZERO] | None, Means("kinematic", "m^2/s")] = None
     reynolds: Annotated[takes.Pure, takes.ABOVE_ZERO] | None = None
 
     def __post_init__(self) -> None:
@@ -77,8 +77,8 @@ class Scaling(takes.Declaration):
     """
 
     __stored__: ClassVar = ("length", "length_name")
-    length: Annotated[takes.Length, takes.ABOVE_ZERO, Told("length L of the primes", "m")]
-    length_name: Annotated[takes.Text, Told("which length it is, for example LBP or LOA")]
+    length: Annotated[takes.Length, takes.ABOVE_ZERO, Means("length L of the primes", "m")]
+    length_name: Annotated[takes.Text, Means("which length it is, for example LBP or LOA")]
 
     def __post_init__(self) -> None:
         if expected := positive_number(self.length):

@@ -22,7 +22,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.stored import Name, Told, Within, stored
+from coeflab.core.stored import Means, Name, Within, stored
 from coeflab.core.types import Array, brief
 from coeflab.law.symbols import COMPONENTS, LONGEST, PORT_STARBOARD, read_factors
 
@@ -31,9 +31,9 @@ from coeflab.law.symbols import COMPONENTS, LONGEST, PORT_STARBOARD, read_factor
 class Factor(NamedTuple):
     """A power of a variable."""
 
-    variable: Annotated[Name, Told("one of `variables`")]
-    power: Annotated[int, Within((("ge", 1), ("le", 40))), Told("exponent")]
-    absolute: Annotated[bool, Told("true: |variable|^power")] = False
+    variable: Annotated[Name, Means("one of `variables`")]
+    power: Annotated[int, Within((("ge", 1), ("le", 40))), Means("exponent")]
+    absolute: Annotated[bool, Means("true: |variable|^power")] = False
 
 
 @brief

@@ -40,7 +40,7 @@ def studied(study: str, progress: Progress = lambda _: None) -> Study | Acceptan
     study : str
         A plan.toml, a folder with one, or the name of a shipped validation.
     progress : callable, optional
-        Told in words what happens.
+        Means in words what happens.
 
     Raises
     ------

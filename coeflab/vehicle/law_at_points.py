@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from coeflab.core.stored import Finite, Name, NotNegative, Told
+from coeflab.core.stored import Finite, Means, Name, NotNegative
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.rows.sweeps import NEAR_ZERO
@@ -34,35 +34,35 @@ Force = Callable[[Array, Array], Array]  # velocities (n, 6), controls (n, 3) ->
 class MeasuredMotion(Strict):
     """One velocity, rate or control of every row."""
 
-    name: Annotated[Moved, Told("u v w p q r dr ds db")]
-    values: Annotated[tuple[Finite, ...], Told("about the file's reference point", "m/s, rad/s, rad")]
+    name: Annotated[Moved, Means("u v w p q r dr ds db")]
+    values: Annotated[tuple[Finite, ...], Means("about the file's reference point", "m/s, rad/s, rad")]
 
 
 class MeasuredForce(Strict):
     """One measured force component of every row."""
 
-    component: Annotated[Component, Told("X Y Z K M N")]
+    component: Annotated[Component, Means("X Y Z K M N")]
     values: Annotated[
-        tuple[Finite | None, ...], Told("at the density of `conditions`; null where no fit used the row", "N or N m")
+        tuple[Finite | None, ...], Means("at the density of `conditions`; null where no fit used the row", "N or N m")
     ]
     at_rest: Annotated[
         tuple[Finite, ...],
-        Told(
+        Means(
             "force of the set-up at no angle and no rate, by row; no part of the law, taken off the values", "N or N m"
         ),
     ]
-    scatter: Annotated[NotNegative | None, Told("of repeated runs about the law; null where none repeats", "N or N m")]
-    small: Annotated[bool, Told("below 1 % of the largest force or moment of its table: not judged")] = False
+    scatter: Annotated[NotNegative | None, Means("of repeated runs about the law; null where none repeats", "N or N m")]
+    small: Annotated[bool, Means("below 1 % of the largest force or moment of its table: not judged")] = False
 
 
 class MeasuredTable(Strict):
     """The points of one table that the coefficients were fitted to."""
 
-    table: Annotated[str, Told("file of the table")]
-    campaign: Annotated[str, Told("campaign of the table")]
-    labels: Annotated[tuple[str, ...], Told("run or point number of every row")]
-    motion: Annotated[tuple[MeasuredMotion, ...], Told("what moves; all else is zero")]
-    forces: Annotated[tuple[MeasuredForce, ...], Told("what was measured and fitted")]
+    table: Annotated[str, Means("file of the table")]
+    campaign: Annotated[str, Means("campaign of the table")]
+    labels: Annotated[tuple[str, ...], Means("run or point number of every row")]
+    motion: Annotated[tuple[MeasuredMotion, ...], Means("what moves; all else is zero")]
+    forces: Annotated[tuple[MeasuredForce, ...], Means("what was measured and fitted")]
 
     @model_validator(mode="after")
     def _as_long(self) -> MeasuredTable:
@@ -96,29 +96,29 @@ class MeasuredTable(Strict):
 class HeldRange(Strict):
     """Range of a motion variable in which the law of one component meets its points."""
 
-    component: Annotated[Component, Told("X Y Z K M N")]
-    variable: Annotated[Name, Told("as in `covered`")]
-    low: Annotated[Finite, Told("lowest value", "see unit")]
-    high: Annotated[Finite, Told("highest value", "see unit")]
-    unit: Annotated[Literal["rad", "1"], Told("of low and high")]
-    campaign: Annotated[str, Told("which campaign's points")]
+    component: Annotated[Component, Means("X Y Z K M N")]
+    variable: Annotated[Name, Means("as in `covered`")]
+    low: Annotated[Finite, Means("lowest value", "see unit")]
+    high: Annotated[Finite, Means("highest value", "see unit")]
+    unit: Annotated[Literal["rad", "1"], Means("of low and high")]
+    campaign: Annotated[str, Means("which campaign's points")]
 
 
 class LawAtPoints(Strict):
     """How far the law of one component is from the points of one table."""
 
-    component: Annotated[Component, Told("X Y Z K M N")]
-    table: Annotated[str, Told("file of the table")]
-    n_points: Annotated[int, Field(ge=0), Told("points of the table that a fit used")]
-    largest: Annotated[NotNegative, Told("largest measured force", "N or N m")]
-    allowed: Annotated[NotNegative, Told("3 scatter + 5 % of the largest", "N or N m")]
-    worst: Annotated[NotNegative, Told("largest miss where the law is said to hold", "N or N m")]
-    worst_at: Annotated[str, Told("point of the largest miss, and its motion")]
-    rms: Annotated[NotNegative, Told("root mean square miss where the law is said to hold", "N or N m")]
-    missed: Annotated[tuple[str, ...], Told("points missed by more than allowed where the law is said to hold")] = ()
-    beyond: Annotated[tuple[str, ...], Told("points outside of where the law is said to hold")] = ()
-    worst_beyond: Annotated[NotNegative, Told("largest miss of those", "N or N m")] = 0.0
-    small: Annotated[bool, Told("not judged: below 1 % of the largest force or moment of the table")] = False
+    component: Annotated[Component, Means("X Y Z K M N")]
+    table: Annotated[str, Means("file of the table")]
+    n_points: Annotated[int, Field(ge=0), Means("points of the table that a fit used")]
+    largest: Annotated[NotNegative, Means("largest measured force", "N or N m")]
+    allowed: Annotated[NotNegative, Means("3 scatter + 5 % of the largest", "N or N m")]
+    worst: Annotated[NotNegative, Means("largest miss where the law is said to hold", "N or N m")]
+    worst_at: Annotated[str, Means("point of the largest miss, and its motion")]
+    rms: Annotated[NotNegative, Means("root mean square miss where the law is said to hold", "N or N m")]
+    missed: Annotated[tuple[str, ...], Means("points missed by more than allowed where the law is said to hold")] = ()
+    beyond: Annotated[tuple[str, ...], Means("points outside of where the law is said to hold")] = ()
+    worst_beyond: Annotated[NotNegative, Means("largest miss of those", "N or N m")] = 0.0
+    small: Annotated[bool, Means("not judged: below 1 % of the largest force or moment of the table")] = False
 
     @property
     def share(self) -> float:

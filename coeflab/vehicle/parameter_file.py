@@ -24,7 +24,7 @@ from coeflab.core.axes import Datum
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile
-from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Name, Told, Words, stored_fields
+from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, Words, stored_fields
 from coeflab.core.table import html_by
 from coeflab.core.text.json import parse_json
 from coeflab.core.text.toml import read_text
@@ -127,14 +127,14 @@ SCHEMA_FILE = Path(__file__).with_name("parameter_file.schema.json")
 class ParameterPoint(Strict):
     """Point that moments, rates and mass moments refer to."""
 
-    point: Annotated[tuple[Finite, Finite, Finite], Told("x y z from the datum, in `axes`", "m")]
+    point: Annotated[tuple[Finite, Finite, Finite], Means("x y z from the datum, in `axes`", "m")]
     datum: Annotated[
         Words,
-        Told(
+        Means(
             "id of the point of the body that points are measured from, for example nose, cg or midship; compared letter by letter"
         ),
     ]
-    axes: Annotated[Literal["FRD"], Told("x forward, y starboard, z down")] = "FRD"
+    axes: Annotated[Literal["FRD"], Means("x forward, y starboard, z down")] = "FRD"
 
     @property
     def origin(self) -> Datum:
@@ -145,59 +145,59 @@ class ParameterPoint(Strict):
 class CoveredRange(Strict):
     """Range of a motion variable that a campaign covers."""
 
-    variable: Annotated[Name, Told("asin(v/U) and asin(w/U) as angles; r' = r L/U and other primes; dr ds db")]
-    low: Annotated[Finite, Told("lowest value", "see unit")]
-    high: Annotated[Finite, Told("highest value", "see unit")]
-    unit: Annotated[Literal["rad", "1"], Told("of low and high")]
-    campaign: Annotated[str, Told("which campaign covers it")]
+    variable: Annotated[Name, Means("asin(v/U) and asin(w/U) as angles; r' = r L/U and other primes; dr ds db")]
+    low: Annotated[Finite, Means("lowest value", "see unit")]
+    high: Annotated[Finite, Means("highest value", "see unit")]
+    unit: Annotated[Literal["rad", "1"], Means("of low and high")]
+    campaign: Annotated[str, Means("which campaign covers it")]
 
 
 class Provenance(Strict):
     """Where it all comes from."""
 
-    coeflab_version: Annotated[str, Told("release that wrote the file")]
-    study: Annotated[str, Told("name of the study, or of the model file that was read")]
-    inputs: Annotated[tuple[InputFile, ...], Told("every file that went in")]
-    citations: Annotated[tuple[str, ...], Told("keys of the works that methods and values rest on")]
-    notes: Annotated[tuple[str, ...], Told("what a reader has to know, in words")] = ()
+    coeflab_version: Annotated[str, Means("release that wrote the file")]
+    study: Annotated[str, Means("name of the study, or of the model file that was read")]
+    inputs: Annotated[tuple[InputFile, ...], Means("every file that went in")]
+    citations: Annotated[tuple[str, ...], Means("keys of the works that methods and values rest on")]
+    notes: Annotated[tuple[str, ...], Means("what a reader has to know, in words")] = ()
 
 
 class ParameterFile(Strict):
     """Hydrodynamic coefficients of one body with uncertainty and provenance."""
 
-    schema_version: Annotated[str, Field(pattern=r"^1\.\d+$"), Told("version of this schema that the file follows")] = (
-        SCHEMA_VERSION
-    )
-    name: Annotated[Words, Told("name of the set of coefficients; exports are named after it")]
-    body: Annotated[Words, Told("the vehicle, and in which configuration")]
-    scaling: Annotated[Scaling, AsStored(Scaling), Told("the prime system: Y' = Y / (1/2 rho U^2 L^2), N' with L^3")]
-    reference_point: Annotated[ParameterPoint, Told("where all moments and velocities are taken")]
-    conditions: Annotated[Conditions, AsStored(Conditions), Told("density and speed of the dimensional values")]
-    mass: Annotated[MassProperties | None, Told("mass properties; null where they are not known")]
-    coefficients: Annotated[tuple[Coefficient, ...], Told("one entry a symbol, none twice")]
-    covariance: Annotated[ParameterCovariance, Told("of the coefficients, as far as it is known")]
-    covered: Annotated[tuple[CoveredRange, ...], Told("motions that the tables behind the coefficients cover")]
-    models: Annotated[tuple[ParameterModel, ...], Told("fitted tables and force laws", since="1.1")] = ()
+    schema_version: Annotated[
+        str, Field(pattern=r"^1\.\d+$"), Means("version of this schema that the file follows")
+    ] = SCHEMA_VERSION
+    name: Annotated[Words, Means("name of the set of coefficients; exports are named after it")]
+    body: Annotated[Words, Means("the vehicle, and in which configuration")]
+    scaling: Annotated[Scaling, AsStored(Scaling), Means("the prime system: Y' = Y / (1/2 rho U^2 L^2), N' with L^3")]
+    reference_point: Annotated[ParameterPoint, Means("where all moments and velocities are taken")]
+    conditions: Annotated[Conditions, AsStored(Conditions), Means("density and speed of the dimensional values")]
+    mass: Annotated[MassProperties | None, Means("mass properties; null where they are not known")]
+    coefficients: Annotated[tuple[Coefficient, ...], Means("one entry a symbol, none twice")]
+    covariance: Annotated[ParameterCovariance, Means("of the coefficients, as far as it is known")]
+    covered: Annotated[tuple[CoveredRange, ...], Means("motions that the tables behind the coefficients cover")]
+    models: Annotated[tuple[ParameterModel, ...], Means("fitted tables and force laws", since="1.1")] = ()
     added_mass: Annotated[
-        AddedMass | None, Told("added mass in unbounded fluid; null where it is not known", since="1.2")
+        AddedMass | None, Means("added mass in unbounded fluid; null where it is not known", since="1.2")
     ] = None
     hydrostatics: Annotated[
         ParameterHydrostatics | None,
-        Told("buoyancy and gravity; null: neutrally buoyant, centres together", since="1.3"),
+        Means("buoyancy and gravity; null: neutrally buoyant, centres together", since="1.3"),
     ] = None
-    thrusters: Annotated[tuple[ParameterThruster, ...], Told("thrusters, none twice", since="1.3")] = ()
-    surfaces: Annotated[tuple[ParameterSurface, ...], Told("limits of control surfaces, none twice", since="1.3")] = ()
+    thrusters: Annotated[tuple[ParameterThruster, ...], Means("thrusters, none twice", since="1.3")] = ()
+    surfaces: Annotated[tuple[ParameterSurface, ...], Means("limits of control surfaces, none twice", since="1.3")] = ()
     measured: Annotated[
-        tuple[MeasuredTable, ...], Told("points that the coefficients were fitted to", since="1.4")
+        tuple[MeasuredTable, ...], Means("points that the coefficients were fitted to", since="1.4")
     ] = ()
     law_holds: Annotated[
         tuple[HeldRange, ...],
-        Told("motions over which the law meets its points; may be less than `covered`", since="1.4"),
+        Means("motions over which the law meets its points; may be less than `covered`", since="1.4"),
     ] = ()
     law_at_points: Annotated[
-        tuple[LawAtPoints, ...], Told("how far the law is from its points, by component and table", since="1.4")
+        tuple[LawAtPoints, ...], Means("how far the law is from its points, by component and table", since="1.4")
     ] = ()
-    provenance: Annotated[Provenance, Told("where it all comes from")]
+    provenance: Annotated[Provenance, Means("where it all comes from")]
 
     @property
     def offered(self) -> tuple[CoveredRange, ...]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.stored import Finite, Name, NotNegative, Positive, Told
+from coeflab.core.stored import Finite, Means, Name, NotNegative, Positive
 from coeflab.core.types import Array
 from coeflab.fits.results.fitted_model import Extrapolation
 from coeflab.law.domain import clamped, inside, taper_weight
@@ -24,66 +24,66 @@ ANGLE_OF = {"alpha": "w", "beta": "v"}
 class ModelVariable(Strict):
     """A variable of a fitted model."""
 
-    name: Annotated[Name, Told("alpha beta u v w p q r dr ds db")]
-    unit: Annotated[Literal["rad", "1", "m/s", "rad/s"], Told("1: v/U for velocities, r L/U for rates")]
+    name: Annotated[Name, Means("alpha beta u v w p q r dr ds db")]
+    unit: Annotated[Literal["rad", "1", "m/s", "rad/s"], Means("1: v/U for velocities, r L/U for rates")]
 
 
 class ModelTerm(Strict):
     """A product of powers with its coefficient; null where the data do not determine it."""
 
-    symbol: Annotated[Name, Told("name of the coefficient")]
-    factors: Annotated[tuple[Factor, ...], Told("their product multiplies the value; empty for the constant")]
-    value: Annotated[Finite | None, Told("coefficient of the term", "of the response over that of the factors")]
-    half_width_95: Annotated[NotNegative | None, Told("95 % half-width of the value", "as the value")]
+    symbol: Annotated[Name, Means("name of the coefficient")]
+    factors: Annotated[tuple[Factor, ...], Means("their product multiplies the value; empty for the constant")]
+    value: Annotated[Finite | None, Means("coefficient of the term", "of the response over that of the factors")]
+    half_width_95: Annotated[NotNegative | None, Means("95 % half-width of the value", "as the value")]
 
 
 class ModelDomain(Strict):
     """Where the model may be read, in the order of `variables`."""
 
-    low: Annotated[tuple[Finite, ...], Told("lowest value of each variable", "of the variable")]
-    high: Annotated[tuple[Finite, ...], Told("highest value of each variable", "of the variable")]
+    low: Annotated[tuple[Finite, ...], Means("lowest value of each variable", "of the variable")]
+    high: Annotated[tuple[Finite, ...], Means("highest value of each variable", "of the variable")]
     half_spaces: Annotated[
-        tuple[tuple[Finite, ...], ...], Told("rows [a, b] with a.x + b <= 0 inside the convex hull of the data")
+        tuple[tuple[Finite, ...], ...], Means("rows [a, b] with a.x + b <= 0 inside the convex hull of the data")
     ]
     extrapolation: Annotated[
         Literal["refuse", "clamp", "taper"],
-        Told("outside: no value; that of the nearest point of the hull; a blend into that"),
+        Means("outside: no value; that of the nearest point of the hull; a blend into that"),
     ]
 
 
 class ModelArea(Strict):
     """What the coefficient is divided by beside 1/2 rho V^2; moments also by the length of `scaling`."""
 
-    value: Annotated[Positive, Told("the area", "m^2")]
-    name: Annotated[Name, Told("what area it is, for example frontal, or L^2")]
+    value: Annotated[Positive, Means("the area", "m^2")]
+    name: Annotated[Name, Means("what area it is, for example frontal, or L^2")]
 
 
 class ParameterModel(Strict):
     """One response as a linear combination of terms."""
 
-    response: Annotated[Name, Told("force component or coefficient, for example Y' or C_D")]
-    unit: Annotated[Name, Told("of the response; 1: nondimensional")]
-    form: Annotated[str, Told("family of the form, in words")]
-    variables: Annotated[tuple[ModelVariable, ...], Field(min_length=1), Told("what the response depends on")]
-    terms: Annotated[tuple[ModelTerm, ...], Field(min_length=1), Told("the response is their sum")]
+    response: Annotated[Name, Means("force component or coefficient, for example Y' or C_D")]
+    unit: Annotated[Name, Means("of the response; 1: nondimensional")]
+    form: Annotated[str, Means("family of the form, in words")]
+    variables: Annotated[tuple[ModelVariable, ...], Field(min_length=1), Means("what the response depends on")]
+    terms: Annotated[tuple[ModelTerm, ...], Field(min_length=1), Means("the response is their sum")]
     covariance: Annotated[
         tuple[tuple[Finite | None, ...], ...],
-        Told("of standard uncertainties (half_width_95 / 2) of the terms; null where not determined", "of the values"),
+        Means("of standard uncertainties (half_width_95 / 2) of the terms; null where not determined", "of the values"),
     ]
-    domain: Annotated[ModelDomain, Told("where it may be read")]
-    n_points: Annotated[int, Field(ge=0), Told("points that it was fitted to")]
-    rms: Annotated[NotNegative, Told("root mean square of the residuals", "of the response")]
+    domain: Annotated[ModelDomain, Means("where it may be read")]
+    n_points: Annotated[int, Field(ge=0), Means("points that it was fitted to")]
+    rms: Annotated[NotNegative, Means("root mean square of the residuals", "of the response")]
     press_rms: Annotated[
-        NotNegative | None, Told("root mean square of every point predicted from the others", "of the response")
+        NotNegative | None, Means("root mean square of every point predicted from the others", "of the response")
     ]
-    table: Annotated[str, Told("file of the table")]
-    campaign: Annotated[str, Told("campaign of the table")]
-    post_selection: Annotated[bool, Told("true: terms chosen on the same data, intervals too narrow")] = False
-    statements: Annotated[tuple[str, ...], Told("assumptions and limits, in words")] = ()
-    area: Annotated[ModelArea | None, Told("of a coefficient by an area; null where there is none")] = None
+    table: Annotated[str, Means("file of the table")]
+    campaign: Annotated[str, Means("campaign of the table")]
+    post_selection: Annotated[bool, Means("true: terms chosen on the same data, intervals too narrow")] = False
+    statements: Annotated[tuple[str, ...], Means("assumptions and limits, in words")] = ()
+    area: Annotated[ModelArea | None, Means("of a coefficient by an area; null where there is none")] = None
     holds: Annotated[
         tuple[Name, ...],
-        Told(
+        Means(
             "what half widths and covariance hold: the scatter, what it shows that the form leaves out (model form, since "
             "1.4), the grid, declared inputs",
             since="1.2",
@@ -91,7 +91,7 @@ class ParameterModel(Strict):
     ] = ("random",)
     contains_potential: Annotated[
         bool,
-        Told(
+        Means(
             "true: the values are whole forces, as measured; false: -C_A(nu) nu of `added_mass` comes on top",
             since="1.3",
         ),

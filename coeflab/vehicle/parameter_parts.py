@@ -15,7 +15,7 @@ from pydantic_core import CoreSchema
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.axes import Datum
 from coeflab.core.errors import ScalingMismatchError, shown
-from coeflab.core.stored import Finite, Name, Positive, Told, Words, fail_fast
+from coeflab.core.stored import Finite, Means, Name, Positive, Words, fail_fast
 from coeflab.core.types import brief
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.law.added_mass import AddedMass, OtherMethod
@@ -40,8 +40,8 @@ class Strict(BaseModel):
 class ParameterCovariance(Strict):
     """Covariance of standard uncertainties (U95 / 2), primed; rows of coefficients without U95 are null."""
 
-    symbols: Annotated[tuple[str, ...], Told("coefficients in the order of rows and columns")]
-    matrix: Annotated[tuple[tuple[Finite | None, ...], ...], Told("symmetric; the variance is (u95 / 2)^2", "1")]
+    symbols: Annotated[tuple[str, ...], Means("coefficients in the order of rows and columns")]
+    matrix: Annotated[tuple[tuple[Finite | None, ...], ...], Means("symmetric; the variance is (u95 / 2)^2", "1")]
 
     @model_validator(mode="after")
     def _square(self) -> ParameterCovariance:
@@ -116,20 +116,20 @@ FALL = 1e-9
 class ParameterHydrostatics(Strict):
     """Buoyancy and gravity."""
 
-    volume: Annotated[Positive, Told("displaced volume; the buoyancy is rho g V", "m^3")]
-    centre_of_buoyancy: Annotated[Triple, Told("from the reference point, x y z, FRD", "m")]
-    gravity: Annotated[Positive, Told("g", "m/s^2")] = STANDARD_GRAVITY
+    volume: Annotated[Positive, Means("displaced volume; the buoyancy is rho g V", "m^3")]
+    centre_of_buoyancy: Annotated[Triple, Means("from the reference point, x y z, FRD", "m")]
+    gravity: Annotated[Positive, Means("g", "m/s^2")] = STANDARD_GRAVITY
 
 
 class CurveSegment(Strict):
     """A polynomial between two commands."""
 
-    low: Annotated[Finite, Told("lowest command", "of the command")]
-    high: Annotated[Finite, Told("highest command", "of the command")]
+    low: Annotated[Finite, Means("lowest command", "of the command")]
+    high: Annotated[Finite, Means("highest command", "of the command")]
     coefficients: Annotated[
         tuple[Finite, ...],
         Field(min_length=1, max_length=12),
-        Told("c0 c1 c2 ..: the sum of c_k command^k", "N or N m"),
+        Means("c0 c1 c2 ..: the sum of c_k command^k", "N or N m"),
     ]
 
     def at(self, command: float) -> float:
@@ -146,9 +146,9 @@ class CurveSegment(Strict):
 class ParameterCurve(Strict):
     """Thrust or torque over the command; zero between segments, which is a dead zone."""
 
-    command: Annotated[Name, Told("what is commanded, for example speed or duty")]
-    unit: Annotated[Name, Told("of the command, for example rpm, % or 1")]
-    segments: Annotated[tuple[CurveSegment, ...], Field(min_length=1), Told("in rising order, none over another")]
+    command: Annotated[Name, Means("what is commanded, for example speed or duty")]
+    unit: Annotated[Name, Means("of the command, for example rpm, % or 1")]
+    segments: Annotated[tuple[CurveSegment, ...], Field(min_length=1), Means("in rising order, none over another")]
 
     @model_validator(mode="after")
     def _apart(self) -> ParameterCurve:
@@ -191,19 +191,19 @@ class ParameterCurve(Strict):
 class ParameterThruster(Strict):
     """A thruster, fixed or tilting."""
 
-    name: Annotated[Words, Told("for commands: `name` and `name.tilt`")]
-    position: Annotated[Triple, Told("from the reference point, x y z, FRD", "m")]
-    direction: Annotated[Triple, Told("of positive thrust at no tilt, of length one, FRD", "1")]
-    curve: Annotated[ParameterCurve, Told("thrust over the command; must not fall", "N")]
-    torque_curve: Annotated[ParameterCurve | None, Told("torque of the water on the rotor, positive", "N m")] = None
+    name: Annotated[Words, Means("for commands: `name` and `name.tilt`")]
+    position: Annotated[Triple, Means("from the reference point, x y z, FRD", "m")]
+    direction: Annotated[Triple, Means("of positive thrust at no tilt, of length one, FRD", "1")]
+    curve: Annotated[ParameterCurve, Means("thrust over the command; must not fall", "N")]
+    torque_curve: Annotated[ParameterCurve | None, Means("torque of the water on the rotor, positive", "N m")] = None
     handedness: Annotated[
-        Literal[-1, 1], Told("reaction torque on the vehicle: handedness times torque, about `direction`")
+        Literal[-1, 1], Means("reaction torque on the vehicle: handedness times torque, about `direction`")
     ] = 1
     tilt_axis: Annotated[
-        Triple | None, Told("axis that the direction turns about, right-handed, of length one; null: fixed", "1")
+        Triple | None, Means("axis that the direction turns about, right-handed, of length one; null: fixed", "1")
     ] = None
-    tilt_low: Annotated[Finite, Told("lowest tilt", "rad")] = 0.0
-    tilt_high: Annotated[Finite, Told("highest tilt", "rad")] = 0.0
+    tilt_low: Annotated[Finite, Means("lowest tilt", "rad")] = 0.0
+    tilt_high: Annotated[Finite, Means("highest tilt", "rad")] = 0.0
 
     @model_validator(mode="after")
     def _consistent(self) -> ParameterThruster:
@@ -221,6 +221,6 @@ class ParameterThruster(Strict):
 class ParameterSurface(Strict):
     """Limits of a control surface; its forces are the derivatives by ``dr``, ``ds`` or ``db``."""
 
-    control: Annotated[Control, Told("dr rudder, ds stern planes, db bow planes")]
-    limit: Annotated[Positive, Told("largest angle either way", "rad")]
-    rate: Annotated[Positive | None, Told("rate of the angle; null: at once", "rad/s")] = None
+    control: Annotated[Control, Means("dr rudder, ds stern planes, db bow planes")]
+    limit: Annotated[Positive, Means("largest angle either way", "rad")]
+    rate: Annotated[Positive | None, Means("rate of the angle; null: at once", "rad/s")] = None

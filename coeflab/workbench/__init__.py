@@ -76,7 +76,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     ----------
     plan : Plan
     progress : callable, optional
-        Told in words what happens.
+        Means in words what happens.
 
     Returns
     -------
