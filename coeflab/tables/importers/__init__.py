@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
@@ -15,6 +15,7 @@ from coeflab.core.text.delimited import read_cells
 from coeflab.core.types import brief
 from coeflab.tables.campaign import FILE, Campaign, InputUncertainty, read_campaign
 from coeflab.tables.force_table import ForceTable
+from coeflab.tables.raw_table import RawTable, Run
 
 
 def with_declarations(
@@ -66,29 +67,34 @@ def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTab
 
 @runtime_checkable
 class Importer(Plugin, Protocol):
-    """Reads the tables of a campaign into SI and FRD."""
+    """Reads one format: whole tables (`raw`), single runs that are collected into a table (`run`), or campaigns (`read`).
+
+    Attributes
+    ----------
+    reads : str
+        What it reads, as lists of formats name it.
+    raw : callable or None
+        ``raw(path, options)``: the table as the file has it.
+    run : callable or None
+        ``run(path, options)``: one condition with its history.
+    read : callable or None
+        ``read(campaign, only, options)``: tables in SI and FRD, where a format says everything itself; by default `raw`
+        or the collected runs, turned by the campaign's ``[columns]``.
+    """
+
+    reads: str = ""
+    raw: Callable[[Path, Mapping[str, Any]], RawTable] | None = None
+    run: Callable[[Path, Mapping[str, Any]], Run] | None = None
+    read: Callable[[Campaign, str | None, Mapping[str, Any]], tuple[ForceTable, ...]] | None = None
 
     def recognises(self, path: Path) -> bool:
         """Whether the file or folder is one that it reads, by its content; at most one importer knows a path.
 
+        Reads at most the first 64 KiB of a file, and lists a folder at most once; never raises for unreadable ones.
+
         Parameters
         ----------
         path : Path
-        """
-        ...
-
-    def read(
-        self, campaign: Campaign, only: str | None = None, options: Mapping[str, Any] | None = None
-    ) -> tuple[ForceTable, ...]:
-        """Tables in SI and FRD.
-
-        Parameters
-        ----------
-        campaign : Campaign
-        only : str, optional
-            File name of the one table that is wanted.
-        options : mapping, optional
-            Of the plugin's `Options`.
         """
         ...
 
@@ -109,7 +115,15 @@ def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
         )
     campaign = read_campaign(declaration)
     with IMPORTERS.guarded(campaign.importer):
-        read = IMPORTERS.load(campaign.importer).read(campaign, planned.only)
+        importer = IMPORTERS.load(campaign.importer)
+        if importer.read is None:
+            raise InputError(
+                f"the importer {campaign.importer}",
+                "one that reads campaigns",
+                file=declaration,
+                column="campaign.importer",
+            )
+        read = importer.read(campaign, planned.only, {})
     return declared(read, campaign)
 
 

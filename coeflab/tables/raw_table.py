@@ -1,0 +1,175 @@
+"""A table as its file has it, before anybody said what its columns mean; and one run of a solver or a carriage."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.types import Array, brief, locked
+
+
+@dataclass(frozen=True, slots=True)
+class Stated:
+    """Something that a file states itself, with its place.
+
+    Attributes
+    ----------
+    value : str, float, bool or tuple of float
+        As campaign.toml would hold it: SI numbers, or a text.
+    place : str
+        File and line, such as ``constant/transportProperties:21``.
+    """
+
+    value: str | float | bool | tuple[float, ...]
+    place: str
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class RawColumn:
+    """One column as the file has it.
+
+    Attributes
+    ----------
+    name : str
+        As the file writes it, without its unit.
+    unit : str
+        As the file writes it; empty where it states none.
+    values : (n,) array
+        Numbers, in the file's unit; NaN where a cell is blank, is written NaN or is text.
+    texts : tuple of str
+        Cells as written; empty where every cell is a number or blank.
+    means : str
+        Plain name that the format itself fixes (``Y``, ``se_Y``, ``N``, ``r``, ``beta``, ``U``, ``cells``, ``time``);
+        empty where a person has to say it.
+    """
+
+    name: str
+    unit: str
+    values: Array
+    texts: tuple[str, ...] = ()
+    means: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", locked(self.values))
+
+    @property
+    def is_text(self) -> bool:
+        """Whether a cell is neither a number nor blank."""
+        return bool(self.texts)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class RawTable:
+    """Columns of equal length, not yet in SI, FRD or anybody's names.
+
+    Attributes
+    ----------
+    path : Path
+        File or folder that it was read from.
+    columns : tuple of RawColumn
+    header_line : int
+        Line of the column names in the file; 0 where it has none.
+    lines : (n,) integer array
+        Line of every row; empty where rows have none.
+    row_labels : tuple of str
+        Names of the rows (runs, points); empty where they have none.
+    files : tuple of Path
+        Every file that was read.
+    dialect : mapping of str to str
+        What was recognised: ``delimiter``, ``decimal mark``, ``encoding``, ``sheet``, ``version`` ..., as people read it.
+    stated : mapping of str to Stated
+        What the files say of keys of campaign.toml: ``axes.frame``, ``axes.reference_point``, ``conditions.speed``,
+        ``conditions.density``, ``scaling.length``, ``table.contains_inertia``, ``source.how_obtained`` ...
+    remarks : tuple of str
+        What was left out or mended, one sentence each, with file and line.
+    """
+
+    path: Path
+    columns: tuple[RawColumn, ...]
+    header_line: int = 0
+    lines: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
+    row_labels: tuple[str, ...] = ()
+    files: tuple[Path, ...] = ()
+    dialect: Mapping[str, str] = field(default_factory=dict)
+    stated: Mapping[str, Stated] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "lines", locked(self.lines, np.int64))
+        for name in ("dialect", "stated"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+
+    def __len__(self) -> int:
+        return len(self.columns[0].values) if self.columns else 0
+
+    def column(self, name: str) -> RawColumn:
+        """The first column of that name.
+
+        Raises
+        ------
+        KeyError
+            No column has it.
+        """
+        for column in self.columns:
+            if column.name == name:
+                return column
+        raise KeyError(name)
+
+    def meaning(self, means: str) -> RawColumn | None:
+        """The column whose format fixes that plain name, or None."""
+        return next((c for c in self.columns if c.means == means), None)
+
+
+class Ended(StrEnum):
+    """How a run ended, as its files show it."""
+
+    WHOLE = "whole"
+    CRASHED = "crashed"
+    DIVERGED = "diverged"
+    EMPTY = "empty"
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Run:
+    """One steady condition: how its forces came about, and what its files say of the condition.
+
+    Attributes
+    ----------
+    path : Path
+        Folder of the case, or file of the monitor.
+    name : str
+        As the list of runs shows it.
+    history : RawTable
+        One row an iteration or a time, in order and without overlap: a column that means ``time`` or ``iteration``, and
+        the whole forces and moments (columns that mean X Y Z K M N **in the solver's axes**), in N and N m if the unit
+        says so, or as coefficients (unit ``-``).
+    conditions : mapping of str to Stated
+        ``alpha``, ``beta`` (rad), ``U`` (m/s), ``u`` ``v`` ``w`` (m/s), ``p`` ``q`` ``r`` (rad/s), ``dr`` ``ds`` ``db`` (rad),
+        ``cells``, ``y_plus`` ... as far as the files state them, in the solver's axes; never guessed.
+    patches : mapping of str to RawTable
+        History of each patch, group or force share (``hull``, ``sail``, ``pressure``, ``viscous``), where there is one.
+    ended : Ended
+    why : str
+        What shows it, with file and line; empty for a whole run.
+    """
+
+    path: Path
+    name: str
+    history: RawTable
+    conditions: Mapping[str, Stated] = field(default_factory=dict)
+    patches: Mapping[str, RawTable] = field(default_factory=dict)
+    ended: Ended = Ended.WHOLE
+    why: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("conditions", "patches"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
