@@ -102,6 +102,27 @@ class TowedInertia(takes.Declaration):
     inertia: Annotated[tuple[float, ...], takes.numbers(3, "inertia", "three numbers [x, y, z] of inertia")]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarMotionKeys(takes.Declaration):
+    """What stands between the water and the records of oscillating runs.
+
+    Attributes
+    ----------
+    filter : mapping
+        What the recording did to each channel: ``forces`` or single ones of X Y Z K M N, and ``motion`` where the records hold it.
+        "none", "Butterworth 4, 5 Hz", "zero-phase Butterworth 4, 5 Hz", "delay 0.01 s" or "lag 3 deg" (positive: late).
+    restoring : tuple of 2 floats
+        [roll, pitch]: moments of weight and buoyancy per radian in the recorded K and M, positive upright, N m; [0, 0] for a
+        computation without gravity.
+    """
+
+    filter: Annotated[Mapping[str, Any], takes.TABLE]
+    restoring: (
+        Annotated[tuple[float, ...], takes.numbers(2, "moment", "two numbers [roll, pitch] of moments per radian")]
+        | None
+    ) = None
+
+
 @brief
 @dataclass(frozen=True, slots=True)
 class TableDeclaration(takes.Declaration):
@@ -256,6 +277,8 @@ class CampaignFile(takes.Declaration):
         Mass properties of the model, where tables contain its inertia.
     uncertainty : table
         95 % half-widths of errors that all points share; absent where not assessed, which is not zero.
+    planar_motion : table
+        Filters and restoring moments of oscillating runs.
     table : array of tables
         One for each file.
     """
@@ -267,6 +290,7 @@ class CampaignFile(takes.Declaration):
     source: TableSource
     inertia: Annotated[TowedInertia | None, takes.OrEmpty()] = None
     uncertainty: Annotated[InputUncertainty | None, takes.OrEmpty()] = None
+    planar_motion: PlanarMotionKeys | None = None
     table: tuple[TableDeclaration, ...] = ()
 
     def check(self) -> None:
@@ -298,6 +322,7 @@ class Campaign:
     source: Source
     tables: tuple[TableDeclaration, ...]
     uncertainty: InputUncertainty | None = None
+    planar_motion: PlanarMotionKeys | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "signs", MappingProxyType(dict(self.signs)))
@@ -337,4 +362,5 @@ def read_campaign(path: Path) -> Campaign:
         source=Source(*(getattr(source, f.name) for f in fields(Source))),
         tables=file.table,
         uncertainty=file.uncertainty,
+        planar_motion=file.planar_motion,
     )
