@@ -31,6 +31,7 @@ from coeflab.fits.statistics.harmonics import (
     CUBIC,
     QUADRATIC,
     SAME,
+    AtZero,
     RunScatter,
     at_zero_amplitude,
 )

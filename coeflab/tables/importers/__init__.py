@@ -73,6 +73,8 @@ class Importer(Plugin, Protocol):
     ----------
     reads : str
         What it reads, as lists of formats name it.
+    fit : str
+        The fit that its tables are for.
     raw : callable or None
         ``raw(path, options)``: the table as the file has it.
     run : callable or None
@@ -83,6 +85,7 @@ class Importer(Plugin, Protocol):
     """
 
     reads: str = ""
+    fit: str = "slope_at_origin"
     raw: Callable[[Path, Mapping[str, Any]], RawTable] | None = None
     run: Callable[[Path, Mapping[str, Any]], Run] | None = None
     read: Callable[[Campaign, str | None, Mapping[str, Any]], tuple[ForceTable, ...]] | None = None
@@ -102,10 +105,21 @@ class Importer(Plugin, Protocol):
 IMPORTERS = Registry("coeflab.importers", "importer", Importer, __name__)  # type: ignore[type-abstract]
 
 
+def _declaration(path: Path) -> Path:
+    return path / FILE if path.is_dir() else path if path.suffix == ".toml" else path.parent / FILE
+
+
+def suited_fit(path: Path) -> str:
+    """The fit that the tables of a campaign are for, as its importer says; the usual one where none can be asked."""
+    declaration = _declaration(path)
+    name = read_campaign(declaration).importer if declaration.exists() else "csv"
+    return IMPORTERS.load(name).fit if name in IMPORTERS.names() else Importer.fit
+
+
 def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
     """The tables of a planned campaign: a folder, its campaign.toml, or one CSV beside it."""
     path = planned.campaign
-    declaration = path / FILE if path.is_dir() else path if path.suffix == ".toml" else path.parent / FILE
+    declaration = _declaration(path)
     if not declaration.exists():
         raise InputError(
             f"no {FILE} in {declaration.parent}",

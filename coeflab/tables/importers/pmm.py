@@ -23,7 +23,7 @@ from coeflab.core.types import Array
 from coeflab.core.units import factor
 from coeflab.law.symbols import ANGULAR, COMPONENTS, FORCES, LINEAR, MOMENTS
 from coeflab.tables.campaign import Campaign, TableDeclaration, TowedInertia
-from coeflab.tables.force_table import Exclusion, ForceTable
+from coeflab.tables.force_table import ForceTable
 from coeflab.tables.planar_motion import (
     DISPLACEMENTS,
     VARIABLES,
@@ -54,7 +54,7 @@ NUMBERS = {
     "alpha": "angle", "start": "time", **{DISPLACEMENTS[m]: DIMENSIONS[DISPLACEMENTS[m]] for m in VARIABLES},
 }  # fmt: skip
 TEXTS = ("run", "file", "motion", "in_air")
-MEAN = "mean of an oscillating run, whose series the fit planar_motion reads"
+MEANS = "rows are means of oscillating runs, which no steady fit uses; planar_motion reads them over time"
 HEAD = 4096
 
 
@@ -122,7 +122,8 @@ def _table(campaign: Campaign, table: TableDeclaration) -> PlanarMotionTable:
     means = {c: m for c, m in means.items() if np.any(np.isfinite(m))}
     folder = campaign.path.parent
     files = dict.fromkeys(s.file for r in runs for s in (r.record, r.in_air) if s is not None)
-    notes = [] if campaign.axes.name == "FRD" else [f"axes turned from {campaign.axes.name} to FRD"]
+    notes = [MEANS]
+    notes += [] if campaign.axes.name == "FRD" else [f"axes turned from {campaign.axes.name} to FRD"]
     notes += [f"filter of {c}: {f.text}" for c, f in filters.items() if f.text != "none"]
     return PlanarMotionTable(
         name=f"{campaign.name}/{table.file}",
@@ -135,7 +136,7 @@ def _table(campaign: Campaign, table: TableDeclaration) -> PlanarMotionTable:
         forces=means,
         errors={},
         usable={c: np.zeros(len(runs), dtype=bool) for c in means},
-        exclusions=tuple(Exclusion(i, r.line, "", MEAN) for i, r in enumerate(runs)),
+        exclusions=(),
         labels=tuple(r.label for r in runs),
         reference_point=campaign.reference_point,
         datum=campaign.datum,
