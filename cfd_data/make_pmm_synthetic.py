@@ -186,7 +186,7 @@ speed = "{SPEED} m/s"
 density = "{DENSITY:g} kg/m^3"
 
 [source]
-citation = "coeflab, synthetic runs of a planar motion mechanism, 2026"
+citation = "pmm_synthetic"
 place = "cfd_data/make_pmm_synthetic.py, seed {SEED}"
 kind = "synthetic"
 how_obtained = "{HOW}"

@@ -122,6 +122,8 @@ WORKS: dict[str, str] = {
     "prediction, Technometrics 16, 1974.",
     "huuv_synthetic": "coeflab, Synthetic table of a vehicle like the HUUV, made for this project from stated coefficients by "
     "cfd_data/make_synthetic_huuv.py, 2026; neither measured nor computed by CFD.",
+    "pmm_synthetic": "coeflab, Synthetic runs of a planar motion mechanism and steady tables of the same law, made for this project by "
+    "cfd_data/make_pmm_synthetic.py, 2026; neither measured nor computed by CFD.",
     "roache1998": "P. J. Roache, Verification and Validation in Computational Science and Engineering, Hermosa, 1998.",
     "celik2008": "I. B. Celik, U. Ghia, P. J. Roache, C. J. Freitas, H. Coleman, P. E. Raad, Procedure for Estimation and "
     "Reporting of Uncertainty Due to Discretization in CFD Applications, J. Fluids Engineering 130, 078001, 2008.",

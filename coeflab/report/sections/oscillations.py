@@ -23,8 +23,8 @@ from coeflab.report.figures.svg import COLOURS, power_of_ten, settings, svg_text
 from coeflab.report.tables import oscillations as tables
 from coeflab.study.study import Study
 
-TALL = 240.0
-UNDER_LEGEND = TALL - 4.0 - 2 * 12.2 - 8.0
+TALL = 252.0
+UNDER_LEGEND = TALL - 4.0 - 3 * 12.2 - 8.0
 TEXT = (
     "Each run is regressed on its mean and harmonics. The part in phase with the velocity is damping, that with the acceleration "
     "added mass, both after the filter, the model's inertia and its restoring moments were taken out as declared.",
@@ -181,11 +181,11 @@ def _over_amplitude(o: Oscillation, at: AtZero, each: list[tuple[float, float]],
                 0.0,
                 (at.value - at.half_width) * factor,
                 (at.value + at.half_width) * factor,
-                color=COLOURS["b"],
+                color=COLOURS["d"],
                 linewidth=2.0,
                 zorder=2.8,
             )
-            look = {"linestyle": "none", "marker": "D", "markersize": 4.2, "color": COLOURS["b"]}
+            look = {"linestyle": "none", "marker": "D", "markersize": 4.2, "color": COLOURS["d"]}
             handles += tagged(axes.plot([0.0], [at.value * factor], zorder=2.9, label="zero amplitude", **look), "zero")
             told = [plus_minus(at.value, finite(at.half_width))]
             series.append(points("zero", "zero amplitude", np.zeros(1), np.array([at.value]), told))
