@@ -79,6 +79,10 @@ def _motion(run: PlanarMotionRun, record: TimeSeries, gain: Filter, orders: int)
         if run.amplitude is None or run.phase is None:
             raise run.fail("no motion", "columns of the motion, or amplitude and phase")
         velocity[axis, 1] = run.amplitude * omega * np.exp(1j * (run.phase + omega * start))
+        if run.motion in ("yaw", "pitch") and not run.drift and not run.attack:
+            # The carriage keeps its speed, and the slope of a pure path is the angle.
+            angle = run.amplitude * np.sin(GRID + run.phase + omega * start)
+            velocity[0] = regress(GRID, run.speed / np.cos(angle)[:, None], orders).phasors[0]
     else:
         omega = _frequency(run, record, orders)
         _from_columns(run, record, gain, omega, velocity)

@@ -4,8 +4,8 @@ The standard error of a harmonic comes from blocks of one cycle (whole number no
 what a cycle by itself would have given, so that noise which stays correlated within a cycle counts in full (cluster-robust
 variance, Liang & Zeger 1986; batch means). Its Student factor has one degree of freedom less than there are cycles.
 
-Describing functions: a force c x|x| under x = a cos has the fundamental 8/(3 pi) c a |a| cos, c x^3 has 3/4 c a^3 cos (Krylov &
-Bogoliubov; Newman, Marine Hydrodynamics, 1977, uses the former for viscous damping).
+Describing functions: a force c x|x| under x = a cos has the fundamental 8/(3 pi) c a |a| cos, c x^3 has 3/4 c a^3 cos: the equivalent
+linear damping of ITTC 7.5-02-07-04.5 (2011).
 """
 
 from __future__ import annotations
