@@ -7,10 +7,10 @@ F = F0 + F_s s + F_s|s| s|s| + F_sdot sdot, the fundamental of F is
     in quadrature:       -omega s_a F_sdot
 
 (Gertler 1959, the planar motion mechanism; ITTC 7.5-02-06-02, captive model tests; equivalent linear damping as in ITTC
-7.5-02-07-04.5). What is recorded is
-the filter's gain times the fluid's force less the model's inertia, M_RB nudot + C_RB(nu) nu about the reference point, less
-weight and buoyancy: each is taken out before the forces are primed. A steady derivative is the limit at zero frequency;
-values here are those of the runs' own frequencies unless an interval of w' is named over which they go as a + b w'^2.
+7.5-02-07-04.5). What is recorded is the filter's gain times the fluid's force less the model's inertia, M_RB nudot + C_RB(nu) nu
+about the reference point, less weight and buoyancy: each is taken out before the forces are primed. A steady derivative is
+the limit at zero frequency; values here are those of the runs' own frequencies unless an interval of w' is named over which
+they go as a + b w'^2.
 """
 
 from __future__ import annotations
