@@ -250,7 +250,7 @@ sha256 = "{hashlib.sha256(out["pmm_synthetic_steady/table.csv"]).hexdigest()}"
 contains_inertia = false                       # the fluid's force alone
 """,
     )  # fmt: skip
-    out["pmm_synthetic/plan.toml"] = b"""# SYNTHETIC: oscillating runs beside steady ones of the same law.
+    out["pmm_synthetic/beside_steady.toml"] = b"""# SYNTHETIC: oscillating runs beside steady ones of the same law.
 [study]
 name = "pmm_synthetic"
 title = "Synthetic planar motion mechanism beside steady tests"

@@ -49,6 +49,7 @@ citations = ("gertler1959", "ittc_captive", "ittc_roll_decay", "liang_zeger1986"
 reads_series = True
 
 SAME_SPEED = 0.02
+FEWEST = 3  # runs that carry an extrapolation to rest
 LEAST_WEIGHT = 0.05  # of a form that is not rejected
 FORMS = {"{0}|{0}|": "{0}|{0}|", "{0}^3": "{0}{0}{0}"}
 
@@ -222,7 +223,9 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     for table in series_of:
         _refuse_mixed(table)
         for (motion, component), rows in _grouped(table, scaling, chosen).items():
-            _refuse_interval(rows, chosen.steady_below, motion, table)
+            if _starved(rows, chosen.steady_below):
+                coefficients += _too_few(f"{component}{VARIABLES[motion]}", motion, chosen.steady_below, table)
+                continue
             o = _oscillation(motion, component, rows, chosen.steady_below)
             if o is None:
                 continue
@@ -230,7 +233,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
                 raise InputError(f"two lists of {motion} runs", "one list of the runs of a motion", file=table.name)
             found[o.symbol] = o
             coefficients += _coefficients(o, table)
-    if not found:
+    if not found and not coefficients:
         raise InputError(
             "no run without a mean drift", "runs of one motion about straight ahead", file=series_of[0].name
         )
@@ -255,16 +258,21 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     )
 
 
-def _refuse_interval(
-    rows: list[tuple[OscillatedForce, tuple[float, float], int]], below: float, motion: str, table: PlanarMotionTable
-) -> None:
-    """Refuse an extrapolation that the runs inside its interval do not carry."""
+def _starved(rows: list[tuple[OscillatedForce, tuple[float, float], int]], below: float) -> bool:
+    """Whether the runs inside an interval of w' do not carry an extrapolation to rest: three of two frequencies do."""
     inside = [f.frequency for f, _, _ in rows if f.used and f.frequency <= below * (1.0 + SAME)]
-    if below and (len(inside) < 3 or max(inside) <= min(inside) * (1.0 + SAME)):
-        raise InputError(
-            f"{len(inside)} {motion} runs up to w' = {below:g}", "three and more, of two frequencies", file=table.name,
-            column="planar_motion.steady_below", advice="Name a larger interval, or 0 for no extrapolation.",
-        )  # fmt: skip
+    return bool(below) and (len(inside) < FEWEST or max(inside) <= min(inside) * (1.0 + SAME))
+
+
+def _too_few(symbol: str, motion: str, below: float, table: PlanarMotionTable) -> list[Coefficient]:
+    how = f"PMM, {motion}: needs {FEWEST} runs of two frequencies up to w' = {below:g}"
+    return [
+        Coefficient(
+            s, None, None, Status.TOO_FEW_POINTS, table.body, origin="fit", table=table.name, campaign=table.campaign,
+            estimator=how, citation=table.source.citation,
+        )
+        for s in (symbol, f"{symbol}dot")
+    ]  # fmt: skip
 
 
 def _taken_out(table: PlanarMotionTable) -> dict[str, str]:

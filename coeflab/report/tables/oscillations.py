@@ -36,7 +36,8 @@ def headline(fit: FitResult) -> str:
     names = [s for o in fit.oscillations for s in (o.symbol, f"{o.symbol}dot")]
     own = [fit.coefficients[s] for s in names if s[0] == {"v": "Y", "w": "Z", "p": "K", "q": "M", "r": "N"}[s[1]]]
     each = ", ".join(f"{primed(c.symbol)} = {plus_minus(c.value, c.u95)}" for c in own)
-    return f"{each} (U95; zero amplitude where runs of two and more amplitudes are; at the frequencies of the runs)."
+    at = "taken to zero frequency" if any(o.interval for o in fit.oscillations) else "at the frequencies of the runs"
+    return f"{each} (U95; zero amplitude where runs of two and more amplitudes are; {at})."
 
 
 def explained(fit: FitResult, others: Sequence[FitResult] = ()) -> Table:
