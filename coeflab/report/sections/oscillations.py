@@ -90,9 +90,7 @@ def oscillation_figures(o: Oscillation, anchor: str) -> tuple[Figure, ...]:
     )
 
 
-def _framed(
-    figure: Drawing, y: Array, across: tuple[float, float], names: tuple[str, str]
-) -> tuple[Axes, float]:
+def _framed(figure: Drawing, y: Array, across: tuple[float, float], names: tuple[str, str]) -> tuple[Axes, float]:
     factor, power = power_of_ten(float(np.nanmax(np.abs(y), initial=0.0)))
     up = limits(y * factor, 0.08) or (-1.0, 1.0)
     axes = panel(
