@@ -111,6 +111,7 @@ def _tables(table: str, json: bool, strict: bool, rows: int) -> None:
 
 def _print(read: Sequence[ForceTable], rows: int) -> None:
     from coeflab.core.provenance import work
+    from coeflab.report.tables import data_quality
     from coeflab.report.tables import results as tables
 
     for t in read:
@@ -122,3 +123,5 @@ def _print(read: Sequence[ForceTable], rows: int) -> None:
         for note in t.notes:
             show.text(f"  {note}")
         show.text()
+    for quality in data_quality.of_tables(read):
+        show.table(quality)
