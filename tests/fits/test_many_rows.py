@@ -27,7 +27,7 @@ def test_the_slope_of_many_rows_is_the_true_one_and_narrow(n: int, noise: float)
 
 
 def test_means_of_a_strip_are_means_of_the_curve_too() -> None:
-    """A strip of v|v| is not v|v| at its mean: without the nodes the slope of a curve without noise is 2 % off."""
+    """A strip of v|v| is not v|v| at its mean: without the nodes the slope of this curve is 0.5 % off."""
     x = np.linspace(-0.3, 0.3, 2001)
     few = condensed_rows(x, force(x))
     assert few is not None
