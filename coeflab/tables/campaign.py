@@ -22,6 +22,7 @@ from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief, locked
 from coeflab.core.wording import Verbatim
 from coeflab.law.scaling import Conditions, Scaling
+from coeflab.tables.column_map import ColumnMap, Entry
 
 # Beyond these an input is a mistyped unit (per cent for a share, degrees for radians) or no measurement.
 LARGEST_RELATIVE = 0.5
@@ -256,6 +257,10 @@ class CampaignFile(takes.Declaration):
         Mass properties of the model, where tables contain its inertia.
     uncertainty : table
         95 % half-widths of errors that all points share; absent where not assessed, which is not zero.
+    importer : table
+        Options of the importer, such as sheet of excel; ``coeflab formats`` lists them.
+    columns : table
+        What each column of the files is, by its name there: "Y [N]", "-beta [deg]", label, ignore; docs/data_in.md.
     table : array of tables
         One for each file.
     """
@@ -267,6 +272,8 @@ class CampaignFile(takes.Declaration):
     source: TableSource
     inertia: Annotated[TowedInertia | None, takes.OrEmpty()] = None
     uncertainty: Annotated[InputUncertainty | None, takes.OrEmpty()] = None
+    importer: Annotated[dict[str, Any], takes.TABLE] = field(default_factory=dict)
+    columns: dict[str, Entry] = field(default_factory=dict)
     table: tuple[TableDeclaration, ...] = ()
 
     def check(self) -> None:
@@ -280,7 +287,7 @@ class CampaignFile(takes.Declaration):
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Campaign:
-    """A folder of tables from one test or one set of computations."""
+    """A folder of tables from one test or one set of computations; ``options`` are those of its importer."""
 
     path: Path
     name: str
@@ -298,9 +305,12 @@ class Campaign:
     source: Source
     tables: tuple[TableDeclaration, ...]
     uncertainty: InputUncertainty | None = None
+    columns: Mapping[str, ColumnMap] = field(default_factory=dict)
+    options: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "signs", MappingProxyType(dict(self.signs)))
+        for name in ("signs", "columns", "options"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
 
 
@@ -337,4 +347,6 @@ def read_campaign(path: Path) -> Campaign:
         source=Source(*(getattr(source, f.name) for f in fields(Source))),
         tables=file.table,
         uncertainty=file.uncertainty,
+        columns=file.columns,
+        options=file.importer,
     )

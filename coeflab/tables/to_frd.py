@@ -5,7 +5,7 @@ Columns of a table in SI but in its own axes: what every importer makes of its f
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import angle_sign
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_force
@@ -50,6 +50,8 @@ class Columns:
         For every row the plain names of columns whose digits are doubtful in the source.
     row_labels : tuple of str
         One short name per row.
+    files : tuple of Path
+        What was read, where ``file`` is a folder.
     """
 
     file: Path
@@ -65,6 +67,7 @@ class Columns:
     labels: Mapping[str, list[str]]
     doubtful: tuple[frozenset[str], ...]
     row_labels: tuple[str, ...] = field(default=())
+    files: tuple[Path, ...] = ()
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -93,19 +96,24 @@ class Columns:
         Raises
         ------
         InputError
-            By line and column.
+            By line and column; of every column the first cell.
         """
+        if complaints := list(self._complaints()):
+            raise together(complaints)
+
+    def _complaints(self) -> Iterator[InputError]:
         if not self.forces:
-            raise self.fail("no force column", "at least one of X Y Z K M N")
+            yield self.fail("no force column", "at least one of X Y Z K M N")
         if (row := _first(~(self.speed > 0.0))) is not None:
             found = "a blank cell" if np.isnan(self.speed[row]) else f"a speed of {self.speed[row]:g} m/s"
-            raise self.fail(found, "a speed above zero", row=row, name="U")
+            yield self.fail(found, "a speed above zero", row=row, name="U")
         for name, values in self.settings.items():
             if (row := _first(np.isnan(values))) is not None:
-                raise self.fail("a blank cell", "a number", row=row, name=name)
+                yield self.fail("a blank cell", "a number", row=row, name=name)
+                continue
             if name in self.velocity or (row := _first(np.abs(values) > np.pi)) is None:
                 continue
-            raise self.fail(
+            yield self.fail(
                 f"an angle of {values[row]:.4g} rad",
                 "an angle within half a turn",
                 row=row,
@@ -114,11 +122,12 @@ class Columns:
             )
         for name, values in self.errors.items():
             if name not in self.forces:
-                raise self.fail(f"se_{name} without {name}", f"a column {name}", name=f"se_{name}")
+                yield self.fail(f"se_{name} without {name}", f"a column {name}", name=f"se_{name}")
+                continue
             unused = np.isnan(self.forces[name]) & np.isnan(values)
             if (row := _first(~(values > 0.0) & ~unused)) is not None:
                 found = "a blank cell" if np.isnan(values[row]) else f"{values[row]:g}"
-                raise self.fail(found, "a standard error above zero", row=row, name=f"se_{name}")
+                yield self.fail(found, "a standard error above zero", row=row, name=f"se_{name}")
 
 
 def _first(where: NDArray[np.bool_]) -> int | None:
@@ -139,7 +148,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         A cell that cannot be, or something that campaign.toml leaves open or contradicts.
     """
     columns.check()
-    digest = sha256_of(columns.file)
+    digest = sha256_of(columns.file, columns.files)
     if table.sha256 and table.sha256 != digest:
         raise InputError(
             f"sha256 {digest[:12]}...", f"{table.sha256[:12]}... as campaign.toml declares", file=columns.file,
