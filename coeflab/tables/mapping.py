@@ -114,7 +114,7 @@ def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True
         if said.name == "ignore":
             continue
         try:
-            out.append(_with_unit(raw, column, said))
+            out.append(with_unit(raw, column, said))
         except InputError as why:
             complaints.append(why)
     names = {name for column in raw.columns for name in (column.name, *known_as(column))}
@@ -149,8 +149,14 @@ def _unmapped(raw: RawTable, column: RawColumn) -> InputError:
     )  # fmt: skip
 
 
-def _with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
-    """The column with the unit that the mapping gives, else the file's own; both have to agree."""
+def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
+    """The column with the unit that the mapping gives, else the file's own.
+
+    Raises
+    ------
+    InputError
+        No unit, an impossible one, or two that do not agree; no number in the column.
+    """
     sign = -1.0 if said.negative else 1.0
     if said.name == "cells" and (bad := np.flatnonzero(column.values <= 0.0)).size:
         raise fault(raw, f"{column.values[bad[0]]:g} cells", "a count above zero", column, row=int(bad[0]))
