@@ -287,8 +287,9 @@ def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
 
 def _written(out: Path, table: ForceTable, settings: Mapping[str, Setting]) -> None:
     """What was written, what was taken without a question, and the next command."""
-    quiet = ("confirmed", "from ")
-    taken = [f"{k} = {s.value} ({s.origin})" for k, s in settings.items() if not s.origin.startswith(quiet)]
+    from coeflab.tables.imported import CONFIRMED
+
+    taken = [f"{k} = {s.value} ({s.origin})" for k, s in settings.items() if not s.origin.startswith(CONFIRMED)]
     _listed("Taken as it stands", taken)
     excluded = f", {len(table.exclusions)} cells excluded" if table.exclusions else ""
     show.text(f"Written: {out / 'table.csv'} ({len(table)} rows{excluded}), campaign.toml, mapping.toml")

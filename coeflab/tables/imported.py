@@ -33,6 +33,7 @@ from coeflab.tables.raw_table import RawColumn, RawTable
 
 TABLE = "table.csv"
 SAVED = "mapping.toml"
+CONFIRMED = ("confirmed", "from ")
 SECTIONS = ("campaign", "axes", "scaling", "conditions", "source", "inertia", "uncertainty", "table")
 PLACES = ("FRAME", "POINT", "NAME", "SOURCE", "KIND", "SIGN")
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
@@ -447,7 +448,7 @@ def contents(
     }
     for key, one in settings.items():
         section, _, name = key.partition(".")
-        if not one.origin.startswith("stated") and section != "campaign":
+        if one.origin.startswith(CONFIRMED) and section != "campaign":
             saved.setdefault(section, {})[name] = one.value
     head = f"# Used again by: coeflab import FILE --mapping {SAVED} --out DIR\n"
     return {
