@@ -44,7 +44,7 @@ class OpenError(InputError):
 
 def open_value(argument: str) -> str | None:
     """The word in capitals of an argument; None where it has a value."""
-    word = re.search(r"\b(?:FRAME|POINT|NAME|SOURCE|KIND|SIGN|METRES|DENSITY|SPEED|X,Y,Z|IX,IY,IZ|MASS|TRUE_OR_FALSE|"
+    word = re.search(r"\b(?:FRAME|POINT|NAME|SOURCE|KIND|SIGN|SIDE|METRES|DENSITY|SPEED|X,Y,Z|IX,IY,IZ|MASS|TRUE_OR_FALSE|"
                      r"UNIT|SIZE|WHAT)\b", argument.partition("=")[2])  # fmt: skip
     return word[0] if word else None
 

@@ -91,6 +91,7 @@ def _tables(table: str, json: bool, strict: bool) -> None:
                         "datum": t.datum.id,
                         "scaling": str(t.scaling),
                         "density": t.conditions.density,
+                        "density_of_rows": None if t.density is None else [float(x) for x in t.density],
                         "excluded": [
                             {"line": e.line, "component": e.component, "reason": e.reason} for e in t.exclusions
                         ],
@@ -117,7 +118,7 @@ def _print(read: Sequence[ForceTable]) -> None:
         point = ", ".join(f"{x:g}" for x in t.reference_point)
         show.text(f"  {t.title}; body {t.body}; {t.source.kind}; {work(t.source.citation)}")
         show.text(f"  varies: {', '.join(t.varies) or 'nothing'}; moments about ({point}) m from: {t.datum}")
-        show.text(f"  primes by {t.scaling}; density {t.conditions.density:g} kg/m^3")
+        show.text(f"  primes by {t.scaling}; {t.run_at}")
         for note in t.notes:
             show.text(f"  {note}")
         show.text()

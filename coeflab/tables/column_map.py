@@ -16,6 +16,8 @@ ANGLES = ("alpha", "beta")
 ROLES = {
     **dict.fromkeys(ANGLES, "angle"),
     "U": "speed",
+    "R": "radius",
+    "density": "density",
     **dict.fromkeys((*LINEAR, *ANGULAR), "velocity"),
     **dict.fromkeys(CONTROLS, "control"),
     **dict.fromkeys(COMPONENTS, "force"),
@@ -25,9 +27,13 @@ DIMENSIONS = {
     **dict.fromkeys((*ANGLES, *CONTROLS), "angle"),
     **dict.fromkeys((*LINEAR, "U"), "speed"),
     **dict.fromkeys(ANGULAR, "rate"),
+    "R": "length",
+    "density": "density",
     **{c: "moment" if c in MOMENTS else "force" for c in COMPONENTS},
 }
-EXAMPLES = {"angle": "deg", "speed": "m/s", "rate": "deg/s", "force": "N", "moment": "N*m"}
+EXAMPLES = {
+    "angle": "deg", "speed": "m/s", "rate": "deg/s", "force": "N", "moment": "N*m", "length": "m", "density": "kg/m^3",
+}  # fmt: skip
 EXPECTED = (
     'what the column is, such as "Y [N]", "-beta [deg]", "r\' [-]", "se_N [N*m]", "Y [coefficient A=1.2 m^2]", '
     f"{', '.join(WORDS)}"
@@ -48,7 +54,7 @@ class ColumnMap:
     Attributes
     ----------
     name : str
-        One of alpha beta U u v w p q r dr ds db X Y Z K M N, or label, point, cells, ignore.
+        One of alpha beta U R density u v w p q r dr ds db X Y Z K M N, or label, point, cells, ignore.
     unit : str
         Of the column; empty for the one that its file states, ``-`` for a prime or a coefficient.
     negative : bool
@@ -73,7 +79,7 @@ class ColumnMap:
 
     @property
     def role(self) -> str:
-        """angle, speed, velocity, control, force, error or word."""
+        """angle, speed, radius, density, velocity, control, force, error or word."""
         return "error" if self.error else ROLES[self.name]
 
     @property

@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.axes import ANGLE_SIGNS, FRAMES, Axes, angle_sign, parse_axes
-from coeflab.core.declarations import POINT, numbers, text_of, validated
+from coeflab.core.declarations import POINT, numbers, one_of, text_of, validated
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS, sha256_of
 from coeflab.core.text.toml import read_toml, toml_text, value
 from coeflab.core.units import quantity
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS
-from coeflab.tables.campaign import FILE, CampaignFile, read_campaign
+from coeflab.tables.campaign import CENTRES, FILE, CampaignFile, read_campaign
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
@@ -35,7 +35,7 @@ TABLE = "table.csv"
 SAVED = "mapping.toml"
 CONFIRMED = ("confirmed", "from ")
 SECTIONS = ("campaign", "axes", "scaling", "conditions", "source", "inertia", "uncertainty", "table")
-PLACES = ("FRAME", "POINT", "NAME", "SOURCE", "KIND", "SIGN")
+PLACES = ("FRAME", "POINT", "NAME", "SOURCE", "KIND", "SIGN", "SIDE")
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
 
 
@@ -140,10 +140,8 @@ def _measured(dimension: str) -> Callable[[Any], Any]:
     return read
 
 
-def _kind(said: Any) -> Any:
-    if said not in TABLE_KINDS:
-        raise InputError(shown(said), " or ".join(TABLE_KINDS))
-    return said
+def _one_of(*words: str) -> Callable[[Any], Any]:
+    return lambda said: one_of(*words).read(said, Path())
 
 
 READERS: dict[str, Callable[[Any], Any]] = {
@@ -152,13 +150,16 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "axes.beta": _sign("beta"),
     "axes.reference_point": _triple(POINT.read),
     "inertia.centre_of_gravity": _triple(POINT.read),
+    "table.arm_point": _triple(POINT.read),
+    "table.reference_point": _triple(POINT.read),
+    "table.centre": _one_of(*CENTRES),
     "inertia.inertia": _triple(numbers(3, "inertia", "three numbers [Ix, Iy, Iz]").read),
     "inertia.mass": _measured("mass"),
     "scaling.length": _measured("length"),
     "conditions.density": _measured("density"),
     "conditions.speed": _measured("speed"),
     "table.contains_inertia": _flag,
-    "source.kind": _kind,
+    "source.kind": _one_of(*TABLE_KINDS),
     **dict.fromkeys(
         ("axes.datum", "axes.datum_note", "scaling.length_name", "source.citation", "campaign.title", "campaign.body", "campaign.name"),
         lambda said: str(text_of(said if isinstance(said, str) else json.dumps(said), Path())),
@@ -245,7 +246,13 @@ def questions(
         Question("conditions.density", "Density of the water, kg/m^3", "DENSITY"),
         Question("conditions.speed", "Speed, m/s", "SPEED", median, why, bool(median)),
     ]
-    if any(c.said.name in ANGULAR and np.any(np.nan_to_num(c.values) != 0.0) for c in by_role["velocity"]):
+    arm = any(c.said.role == "radius" for c in columns)
+    if arm:
+        out += [
+            Question("table.centre", f"Where the centre of the circle lies: {', '.join(CENTRES)}", "SIDE"),
+            Question("table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}", "X,Y,Z"),
+        ]
+    if arm or any(c.said.name in ANGULAR and np.any(np.nan_to_num(c.values) != 0.0) for c in by_role["velocity"]):
         out.append(Question("table.contains_inertia", INERTIA_ASKED, "TRUE_OR_FALSE"))
     if (inside := settings.get("table.contains_inertia")) and inside.value is True:
         out += [

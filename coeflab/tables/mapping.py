@@ -21,7 +21,7 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.to_frd import Columns, force_table, surge_column
 
-SETTINGS = ("angle", "velocity", "control", "speed")
+SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
 REMARKS = 5
 MOST_NAMED = 20
 
@@ -265,7 +265,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
     rows = usable_rows(known, len(raw))
     if not rows.size:
         raise InputError("no row with a number in every setting", "rows of numbers", file=raw.path)
-    given: dict[str, dict[str, Array]] = {r: {} for r in ("angle", "control", "error", "force", "speed", "velocity")}
+    given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force")}
     primes: dict[str, Array] = {}
     for one in known:
         if one.said.role in given:
@@ -274,7 +274,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
             if one.said.primed and one.said.role == "velocity":
                 primes[one.said.name] = values
     speed = _speed(given, primes, campaign, len(rows))
-    density = campaign.conditions.density
+    density = given["density"].get("density", np.full(len(rows), campaign.conditions.density))
     for one in known:
         if one.said.pure:
             unit = campaign.scaling.unit(one.said.name, density, speed)
@@ -302,6 +302,8 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
         doubtful=tuple(frozenset(n for n, mask in blank.items() if mask[i]) for i in range(len(rows))),
         row_labels=tuple(_taken(point, rows)) if point else (),
         files=raw.files,
+        radius=given["radius"].get("R"),
+        density=given["density"].get("density"),
     )
 
 
@@ -342,7 +344,6 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
     said = [*_left_out(raw, known), *raw.remarks]
     more = [f"{len(said) - REMARKS} more remarks; coeflab inspect lists them"] if len(said) > REMARKS else []
     cells = next((one.values[rows] for one in known if one.said.name == "cells"), None)
-    return replace(
-        out, exclusions=exclusions, notes=(*out.notes, *said[:REMARKS], *more), cells=cells,
-        uncertainty=campaign.uncertainty,
-    )  # fmt: skip
+    notes = (*out.notes, *said[:REMARKS], *more)
+    out = replace(out, exclusions=exclusions, notes=notes, cells=cells, uncertainty=campaign.uncertainty)
+    return out if cells is None else out.on_finest_grids()

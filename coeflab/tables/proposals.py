@@ -40,6 +40,8 @@ _SAID = {
     "p": "rollrate omegax rollgeschwindigkeit",
     "q": "pitchrate omegay nickgeschwindigkeit",
     "r": "yawrate omegaz turnrate turningrate giergeschwindigkeit gierrate vitessedelacet",
+    "R": "radius turningradius armradius radiusofturn armlength",
+    "density": "rho density waterdensity dichte densite",
     "dr": "rudder rudderangle deltar ruder ruderwinkel barre",
     "ds": "sternplane sternplaneangle elevator elevatorangle deltas hoehenruder",
     "db": "bowplane bowplaneangle deltab",
@@ -127,7 +129,19 @@ def _name(column: RawColumn) -> tuple[str, str, bool]:
     own = column.name.strip()
     short = own.replace("′", "'").replace("’", "'")
     plain = short.removeprefix("se_").removesuffix("'")
-    if plain in (*COMPONENTS, *LINEAR, *ANGULAR, "U", "alpha", "beta", "cells", "point", *CONTROL_COLUMNS):
+    if plain in (
+        *COMPONENTS,
+        *LINEAR,
+        *ANGULAR,
+        "U",
+        "R",
+        "density",
+        "alpha",
+        "beta",
+        "cells",
+        "point",
+        *CONTROL_COLUMNS,
+    ):
         try:
             return str(read_column_map(short)), "its name", True
         except InputError:

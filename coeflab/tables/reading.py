@@ -123,7 +123,7 @@ def with_declarations(
         raise InputError(
             f"{counts[bad[0]]:g} cells", "a count above zero", file=file, line=read.line(int(bad[0])), column=cells
         )
-    return replace(table, cells=counts, uncertainty=uncertainty)
+    return replace(table, cells=counts, uncertainty=uncertainty).on_finest_grids()
 
 
 def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTable, ...]:
