@@ -225,7 +225,7 @@ def questions(
     shows : sequence of Evidence
         What the numbers show; a default comes of it only where one key follows.
     """
-    by_role = {role: [c for c in columns if c.said.role == role] for role in ("angle", "speed", "velocity")}
+    by_role = {role: [c for c in columns if c.said.role == role] for role in ("angle", "velocity")}
     follows = {e.key: e for e in shows if e.key}
     out = [Question("axes.frame", FRAMES_ASKED, "FRAME")]
     for one in by_role["angle"]:
@@ -234,17 +234,17 @@ def questions(
         asks = f"Sign of {name}: {' or '.join(ANGLE_SIGNS[name])}, {side}, whatever the axes are; or just + or -"
         found = follows.get(f"axes.{name}")
         out.append(Question(f"axes.{name}", asks, "SIGN", found.value if found else "", found.text if found else ""))
-    speed = by_role["speed"][0].values if by_role["speed"] else np.empty(0)
-    moving = speed[np.isfinite(speed)]
-    median = f"{float(np.median(moving)):.12g}" if moving.size else ""
-    why = "median of the column of speed" if median else ""
+    median = {role: _median(columns, role) for role in ("speed", "density")}
+    why = {role: f"median of the column of {role}" if found else "" for role, found in median.items()}
     out += [
         Question("axes.datum", "Point of the body that places count from: nose, cg, midship ...", "POINT"),
         Question("axes.reference_point", f"Where the moments are about: {PLACE_ASKED}", "X,Y,Z"),
         Question("scaling.length", "Length of the primes, m", "METRES"),
         Question("scaling.length_name", "Which length that is: LBP, LOA ...", "NAME"),
-        Question("conditions.density", "Density of the water, kg/m^3", "DENSITY"),
-        Question("conditions.speed", "Speed, m/s", "SPEED", median, why, bool(median)),
+        *(
+            Question(f"conditions.{role}", asks, role.upper(), median[role], why[role], bool(median[role]))
+            for role, asks in (("density", "Density of the water, kg/m^3"), ("speed", "Speed, m/s"))
+        ),
     ]
     arm = any(c.said.role == "radius" for c in columns)
     if arm:
@@ -387,6 +387,13 @@ def saved_mapping(path: Path) -> tuple[dict[str, ColumnMap], dict[str, Setting],
     if complaints:
         raise together(complaints)
     return columns, settings, importer, dict(options) if isinstance(options, dict) else {}
+
+
+def _median(columns: Sequence[Assigned], role: str) -> str:
+    """Of the column of a role, in SI; empty where there is none."""
+    values = next((c.values for c in columns if c.said.role == role), np.empty(0))
+    usable = values[np.isfinite(values)]
+    return f"{float(np.median(usable)):.12g}" if usable.size else ""
 
 
 def assumed(out: Path) -> dict[str, Setting]:

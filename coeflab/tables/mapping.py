@@ -316,7 +316,7 @@ def _speed(given: Mapping[str, Mapping[str, Array]], primes: Mapping[str, Array]
     if "U" in given["speed"]:
         return given["speed"]["U"]
     velocity = given["velocity"]
-    if surge_column(campaign) not in velocity or given["angle"]:
+    if surge_column(campaign) not in velocity or given["angle"] or set(LINEAR) & set(velocity) <= set(primes):
         return np.full(n, campaign.conditions.speed)
     squares: Array = np.sum([velocity[c] ** 2 for c in LINEAR if c in velocity and c not in primes], axis=0)
     # v' = v / U, so the dimensional part is U^2 (1 - v'^2).
