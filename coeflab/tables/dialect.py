@@ -64,7 +64,7 @@ class Marks:
         """The number of a stripped cell: NaN where it says that there is none, None where it is text."""
         if not cell.isascii():
             cell = cell.translate(_MINUS)
-        if cell.lower() in _NO_NUMBER or cell in _DASHES:
+        if cell.lower() in _NO_NUMBER or cell in _DASHES or cell.startswith("Err:"):
             return math.nan
         if not self._form.fullmatch(cell):
             return None
