@@ -84,6 +84,7 @@ def command(
     as_: str = typer.Option("", "--as", metavar="IMPORTER", help="Read it with this importer (coeflab formats importers)."),
     name: str = typer.Option("", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."),
     runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
+    state: Path = typer.Option(None, metavar="FILE", help="Keeps what was read of many runs, so that a stopped import goes on."),
     yes: bool = typer.Option(False, "--yes", help="Take proposals that the file or clear evidence supports."),
     force: bool = typer.Option(False, "--force", help="Replace a campaign that is there."),
 ) -> None:  # fmt: skip
@@ -101,10 +102,10 @@ def command(
     file, out = typed(path), typed(out)
     if not force and out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
-    said = _said(mapping, set_, [*option, *_runs(name, runs)], as_)
+    said = _said(mapping, set_, [*option, *_runs(name, runs, state)], as_)
     importer = importer_of(file, said.importer)
-    with show.narrated():
-        raw = read_raw(file, importer, said.options)
+    with show.narrated(), show.progress(False) as say:
+        raw = read_raw(file, importer, said.options, say)
     said.columns |= _mapped(map_, raw)
     settings = assumed(out) | stated_settings(raw) | said.settings
     found = understood(raw, said.columns, settings, yes)
@@ -165,18 +166,29 @@ def _said(mapping: Path | None, set_: Sequence[str], option: Sequence[str], as_:
             out.settings[key.strip()] = Setting(read_setting(key.strip(), said.strip()), "confirmed")
         except InputError as why:
             complaints.append(why)
-    for text in option:
-        key, equals, said = text.partition("=")
-        if not equals:
-            complaints.append(InputError(shown(text), "NAME=VALUE, such as sheet=Drift", column="--option"))
-        out.options[key.strip()] = _number(said.strip())
+    try:
+        out.options |= options_of(option)
+    except InputError as why:
+        complaints += [why, *why.others]
     if complaints:
         raise together(complaints)
     return out
 
 
-def _runs(name: str, runs: Path | None) -> list[str]:
-    return [f"names={name}"] * bool(name) + ([] if runs is None else [f"run_list={runs}"])
+def options_of(texts: Sequence[str]) -> dict[str, Any]:
+    """Options of an importer from ``NAME=VALUE``; numbers where they read as such."""
+    from coeflab.core.errors import shown, together
+
+    wrong = [t for t in texts if "=" not in t]
+    if wrong:
+        raise together([InputError(shown(t), "NAME=VALUE, such as sheet=Drift", column="--option") for t in wrong])
+    pairs = (text.partition("=") for text in texts)
+    return {key.strip(): _number(said.strip()) for key, _, said in pairs}
+
+
+def _runs(name: str, runs: Path | None, state: Path | None) -> list[str]:
+    given = {"names": name, "run_list": runs, "state": state}
+    return [f"{option}={value}" for option, value in given.items() if value]
 
 
 def _number(text: str) -> Any:

@@ -11,7 +11,7 @@ from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.units import factor, quantity
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, CONTROLS, LINEAR, MOMENTS
 
-WORDS = ("label", "point", "cells", "ignore")
+WORDS = ("label", "point", "cells", "uncertain", "ignore")
 ANGLES = ("alpha", "beta")
 ROLES = {
     **dict.fromkeys(ANGLES, "angle"),
@@ -54,7 +54,7 @@ class ColumnMap:
     Attributes
     ----------
     name : str
-        One of alpha beta U R density u v w p q r dr ds db X Y Z K M N, or label, point, cells, ignore.
+        One of alpha beta U R density u v w p q r dr ds db X Y Z K M N, or label, point, cells, uncertain, ignore.
     unit : str
         Of the column; empty for the one that its file states, ``-`` for a prime or a coefficient.
     negative : bool

@@ -27,12 +27,14 @@ from coeflab.tables.campaign import CENTRES, FILE, CampaignFile, read_campaign
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
-from coeflab.tables.mapping import Assigned, assigned, known_as, mapped_table, row_name, texts_of, usable_rows
+from coeflab.tables.mapping import Assigned, assigned, doubtful, known_as, mapped_table, row_name, texts_of, usable_rows
 from coeflab.tables.proposals import OPEN, Evidence, Proposal, evidence, proposals
 from coeflab.tables.raw_table import RawColumn, RawTable
 
+LONG = {short: name for name, short in CONTROL_COLUMNS.items()}
 TABLE = "table.csv"
 SAVED = "mapping.toml"
+POINT_OF = "axes.reference_point"
 CONFIRMED = ("confirmed", "from ")
 SECTIONS = ("campaign", "axes", "scaling", "conditions", "source", "inertia", "uncertainty", "table")
 PLACES = ("FRAME", "POINT", "NAME", "SOURCE", "KIND", "SIGN", "SIDE")
@@ -196,10 +198,13 @@ def read_setting(key: str, text: Any) -> Any:
 
 
 def stated_settings(raw: RawTable) -> dict[str, Setting]:
-    """What a file says of itself, as far as campaign.toml has keys for it."""
+    """What a file says of itself, as far as campaign.toml has keys for it.
+
+    A reference point is left out: a file counts it in its own axes from its own origin.
+    """
     out = {}
     for key, said in raw.stated.items():
-        if key.partition(".")[0] in SECTIONS and key not in RESERVED:
+        if key.partition(".")[0] in SECTIONS and key not in (*RESERVED, POINT_OF):
             plain = list(map(float, said.value)) if isinstance(said.value, tuple) else said.value
             out[key] = Setting(plain, f"stated: {said.place}")
     return out
@@ -234,11 +239,13 @@ def questions(
         asks = f"Sign of {name}: {' or '.join(ANGLE_SIGNS[name])}, {side}, whatever the axes are; or just + or -"
         found = follows.get(f"axes.{name}")
         out.append(Question(f"axes.{name}", asks, "SIGN", found.value if found else "", found.text if found else ""))
+    at = raw.stated.get(POINT_OF)
+    own = f". The file has {_point(at.value)} in its own axes from its own origin ({at.place})" if at else ""
     median = {role: _median(columns, role) for role in ("speed", "density")}
     why = {role: f"median of the column of {role}" if found else "" for role, found in median.items()}
     out += [
         Question("axes.datum", "Point of the body that places count from: nose, cg, midship ...", "POINT"),
-        Question("axes.reference_point", f"Where the moments are about: {PLACE_ASKED}", "X,Y,Z"),
+        Question(POINT_OF, f"Where the moments are about: {PLACE_ASKED}{own}", "X,Y,Z"),
         Question("scaling.length", "Length of the primes, m", "METRES"),
         Question("scaling.length_name", "Which length that is: LBP, LOA ...", "NAME"),
         *(
@@ -389,6 +396,10 @@ def saved_mapping(path: Path) -> tuple[dict[str, ColumnMap], dict[str, Setting],
     return columns, settings, importer, dict(options) if isinstance(options, dict) else {}
 
 
+def _point(value: Any) -> str:
+    return f"({', '.join(f'{x:g}' for x in value)})" if isinstance(value, tuple) else str(value)
+
+
 def _median(columns: Sequence[Assigned], role: str) -> str:
     """Of the column of a role, in SI; empty where there is none."""
     values = next((c.values for c in columns if c.said.role == role), np.empty(0))
@@ -508,12 +519,14 @@ def _table(raw: RawTable, columns: Sequence[Assigned], settings: Settings) -> tu
     heads: list[str] = []
     cells: list[list[str]] = []
     labels: list[str] = []
-    blank: dict[str, Any] = {}
+    doubts = [set(words) for words in doubtful(raw, columns)]
     if not any(c.said.name == "point" for c in columns):
         heads.append("point")
         cells.append([row_name(raw, int(row)) for row in rows])
     for one in columns:
         said = one.said
+        if said.name == "uncertain":
+            continue
         if said.name in ("label", "point"):
             name = "point" if said.name == "point" else _label(one.column.name, heads)
             labels += [name] * (said.name == "label")
@@ -527,11 +540,13 @@ def _table(raw: RawTable, columns: Sequence[Assigned], settings: Settings) -> tu
         values = np.where(np.isnan(one.values), np.nan, own)[rows]
         heads.append(_head(said))
         cells.append(["" if np.isnan(x) else repr(x + 0.0) for x in values.tolist()])
-        if said.role == "force" and np.any(np.isnan(values)):
-            blank[said.name] = np.isnan(values)
-    if blank:
+        for row in rows[np.isnan(values)] if said.role == "force" else ():
+            doubts[row].add(said.name)
+    if any(doubts[row] for row in rows):
         heads.append("uncertain")
-        cells.append([" ".join(name for name, mask in blank.items() if mask[i]) for i in range(len(rows))])
+        names = [LONG.get(one.said.name, one.said.name) for one in columns if not one.said.error]
+        words = [{LONG.get(name, name) for name in doubts[row]} for row in rows]
+        cells.append([" ".join(name for name in names if name in own) for own in words])
     out = io.StringIO()
     out.write(f"# Made by `coeflab import` from {_plain(raw.path.name)}; all digits of the file.\n")
     left = sorted(set(range(len(raw))) - set(rows.tolist()))
@@ -546,8 +561,7 @@ def _table(raw: RawTable, columns: Sequence[Assigned], settings: Settings) -> tu
 def _head(said: ColumnMap) -> str:
     if said.name == "cells":
         return "cells"
-    long = {short: name for name, short in CONTROL_COLUMNS.items()}
-    name = f"se_{said.name}" if said.error else long.get(said.name, said.name)
+    name = f"se_{said.name}" if said.error else LONG.get(said.name, said.name)
     return f"{name}' [-]" if said.pure else f"{name} [{said.unit}]"
 
 

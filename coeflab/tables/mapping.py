@@ -287,6 +287,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
         point = [f"row {row + 1}" for row in range(len(raw))]
     numbered = {one.said.name: one.values[rows] for one in known if one.said.role == "force"}
     blank = {name: np.isnan(values) for name, values in numbered.items()}
+    said = doubtful(raw, known)
     return Columns(
         file=raw.path,
         header_line=raw.header_line,
@@ -299,12 +300,33 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
         forces=given["force"],
         errors=given["error"],
         labels={one.column.name: _taken(texts_of(one.column), rows) for one in known if one.said.name == "label"},
-        doubtful=tuple(frozenset(n for n, mask in blank.items() if mask[i]) for i in range(len(rows))),
+        doubtful=tuple(frozenset(n for n, mask in blank.items() if mask[i]) | said[row] for i, row in enumerate(rows)),
         row_labels=tuple(_taken(point, rows)) if point else (),
         files=raw.files,
         radius=given["radius"].get("R"),
         density=given["density"].get("density"),
     )
+
+
+def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
+    """For every row of the file the plain names that its column ``uncertain`` names.
+
+    Raises
+    ------
+    InputError
+        A word that is the name of no column.
+    """
+    column = next((one.column for one in known if one.said.name == "uncertain"), None)
+    if column is None:
+        return [frozenset()] * len(raw)
+    names = {one.said.name for one in known if one.said.name not in WORDS}
+    out = []
+    for row, text in enumerate(texts_of(column)):
+        words = {word.removesuffix("'") for word in text.replace(";", " ").replace(",", " ").split()}
+        if strange := sorted(words - names):
+            raise fault(raw, shown(strange[0]), f"names of columns: {', '.join(sorted(names))}", column, row=row)
+        out.append(frozenset(words))
+    return out
 
 
 def _taken(texts: Sequence[str], rows: NDArray[np.int64]) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,13 +12,16 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.delimited import read_cells
 from coeflab.tables.campaign import FILE, Campaign, InputUncertainty, TableDeclaration, read_campaign
+from coeflab.tables.collect import collect
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS, PlannedTable
 from coeflab.tables.mapping import mapped_table
 from coeflab.tables.raw_table import RawTable
+from coeflab.tables.runs import find_runs
 
+Progress = Callable[[str], None]
 GENERAL = "table"  # any delimited text: those of one tool come first
-OF_RUNS = ("names", "run_list")
+OF_RUNS = ("names", "run_list", "state")
 
 
 def recognised(path: Path) -> tuple[str, ...]:
@@ -55,6 +58,8 @@ def importer_of(path: Path, name: str = "") -> str:
     if not path.exists():
         raise InputError("no such file or folder", "a path that exists", file=path)
     known = recognised(path)
+    if not known and path.is_dir():
+        return find_runs(path)[0]
     if len(known) == 1:
         return known[0]
     found = f"something that {' and '.join(known)} read" if known else "nothing that an importer knows by its content"
@@ -62,7 +67,9 @@ def importer_of(path: Path, name: str = "") -> str:
     raise InputError(found, f"--as {' or --as '.join(known or readers)}", file=path, advice=f"{each}.")
 
 
-def read_raw(path: Path, name: str, options: Mapping[str, Any] | None = None) -> RawTable:
+def read_raw(
+    path: Path, name: str, options: Mapping[str, Any] | None = None, progress: Progress | None = None
+) -> RawTable:
     """A table as its file has it, or the runs of a folder as one table.
 
     Parameters
@@ -71,7 +78,9 @@ def read_raw(path: Path, name: str, options: Mapping[str, Any] | None = None) ->
     name : str
         Of the importer.
     options : mapping, optional
-        Of the importer; ``names`` and ``run_list`` are those of collected runs.
+        Of the importer; of collected runs also ``names``, ``run_list`` and ``state``, see `coeflab.tables.collect.collect`.
+    progress : callable, optional
+        Is handed a line now and then.
 
     Raises
     ------
@@ -83,10 +92,14 @@ def read_raw(path: Path, name: str, options: Mapping[str, Any] | None = None) ->
     with IMPORTERS.guarded(name):
         if importer.raw is not None:
             return importer.raw(path, given)
-        from coeflab.tables.collect import collect
-
-        names, runs = (given.pop(option, "") for option in OF_RUNS)
-        return collect(path, name, options=given, names=names, run_list=Path(runs) if runs else None)
+        names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)
+        table = collect(
+            path, name, options=given, names=names, run_list=Path(runs) if runs else None, progress=progress,
+            state=Path(state) if state else None,
+        ).table  # fmt: skip
+    # Collecting makes these columns itself: what no fit uses is no column that somebody has to explain.
+    made = (c if c.means else replace(c, means="label" if c.is_text else "ignore") for c in table.columns)
+    return replace(table, columns=tuple(made))
 
 
 def with_declarations(
@@ -189,6 +202,5 @@ def wanted(campaign: Campaign, only: str | None) -> tuple[TableDeclaration, ...]
 def _mapped(campaign: Campaign, table: TableDeclaration) -> ForceTable:
     folder = campaign.path.parent
     options = dict(campaign.options)
-    if options.get("run_list"):
-        options["run_list"] = folder / str(options["run_list"])
+    options |= {name: folder / str(options[name]) for name in ("run_list", "state") if options.get(name)}
     return mapped_table(read_raw(folder / table.file, campaign.importer, options), campaign, table)

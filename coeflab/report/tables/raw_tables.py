@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from coeflab.core.table import Table
 from coeflab.report.printable import shortened
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.mapping import known_as
-from coeflab.tables.proposals import Proposal
+from coeflab.tables.proposals import Evidence, Proposal
 from coeflab.tables.raw_table import RawColumn, RawTable
 
 NAME, UNIT = 20, 8
@@ -46,6 +47,34 @@ def columns(raw: RawTable, proposed: Sequence[Proposal], said: Mapping[str, Colu
     notes = ("? what nobody has confirmed",) if any(row[3].endswith("?") or "?" in row[3] for row in rows) else ()
     title = f"{len(raw)} rows, {len(raw.columns)} columns"
     return Table(title, ("column", "unit", "range", "is"), tuple(rows), notes, frozenset({0, 1, 2, 3}))
+
+
+def as_json(raw: RawTable, importer: str, proposed: Sequence[Proposal], shows: Sequence[Evidence]) -> dict[str, Any]:
+    """All that is shown of a file, for machines.
+
+    Parameters
+    ----------
+    raw : RawTable
+    importer : str
+    proposed : sequence of Proposal
+    shows : sequence of Evidence
+    """
+    described = []
+    for column, proposal in zip(raw.columns, proposed, strict=True):
+        ok = column.values[np.isfinite(column.values)]
+        described.append({
+            "name": column.name, "unit": column.unit, "text": column.is_text, "numbers": int(ok.size),
+            "low": float(ok.min()) if ok.size else None, "high": float(ok.max()) if ok.size else None,
+            "proposed": proposal.text, "certain": proposal.certain, "why": proposal.why,
+        })  # fmt: skip
+    said = {
+        key: {"value": list(s.value) if isinstance(s.value, tuple) else s.value, "place": s.place}
+        for key, s in raw.stated.items()
+    }
+    return {
+        "path": str(raw.path), "importer": importer, "rows": len(raw), "dialect": dict(raw.dialect), "columns": described,
+        "stated": said, "remarks": list(raw.remarks), "shows": [e.text for e in shows],
+    }  # fmt: skip
 
 
 def stated(raw: RawTable) -> Table:
