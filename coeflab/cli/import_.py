@@ -303,7 +303,8 @@ def _written(out: Path, table: ForceTable, settings: Mapping[str, Setting]) -> N
 
     taken = [f"{k} = {s.value} ({s.origin})" for k, s in settings.items() if not s.origin.startswith(CONFIRMED)]
     _listed("Taken as it stands", taken)
-    excluded = f", {len(table.exclusions)} cells excluded" if table.exclusions else ""
+    many = len(table.exclusions)
+    excluded = f", {many} cell{'s' * (many != 1)} excluded" if many else ""
     show.text(f"Written: {out / 'table.csv'} ({len(table)} rows{excluded}), campaign.toml, mapping.toml")
     show.sentence(f"  varies: {', '.join(table.varies) or 'nothing'}; in SI and FRD: {', '.join(table.forces)}")
     show.text(f"Next: coeflab fit {shlex.quote(str(out))}")
