@@ -19,7 +19,7 @@ from coeflab.core.errors import InputError
 if TYPE_CHECKING:
     from coeflab.tables.column_map import ColumnMap
     from coeflab.tables.force_table import ForceTable
-    from coeflab.tables.imported import Question, Setting, Understood
+    from coeflab.tables.questions import Question, Setting, Understood
     from coeflab.tables.raw_table import RawTable
 
 
@@ -95,8 +95,9 @@ def command(
     """
     from coeflab.core.errors import OutputError
     from coeflab.core.files import typed, write_all
-    from coeflab.tables.imported import assumed, checked, contents, stated_settings, understood
+    from coeflab.tables.imported import checked, contents
     from coeflab.tables.mapping import assigned
+    from coeflab.tables.questions import assumed, stated_settings, understood
     from coeflab.tables.reading import importer_of, read_raw
 
     file, out = typed(path), typed(out)
@@ -150,7 +151,7 @@ def _listed(title: str, texts: Sequence[str]) -> None:
 def _said(mapping: Path | None, set_: Sequence[str], option: Sequence[str], as_: str) -> Said:
     """All that the command line and a saved mapping say, but for columns; complaints at once."""
     from coeflab.core.errors import shown, together
-    from coeflab.tables.imported import Setting, read_setting, saved_mapping
+    from coeflab.tables.questions import Setting, read_setting, saved_mapping
 
     out = Said()
     if mapping is not None:
@@ -230,7 +231,7 @@ Settled = tuple[Mapping[str, "ColumnMap"], dict[str, "Setting"]]
 
 def _without_asking(file: Path, found: Understood, settings: Mapping[str, Setting], yes: bool) -> Settled:
     """Everything that is settled; what is not, in one error."""
-    from coeflab.tables.imported import open_points
+    from coeflab.tables.questions import open_points
 
     if points := open_points(found, yes):
         raise OpenError(file, points)
@@ -239,7 +240,7 @@ def _without_asking(file: Path, found: Understood, settings: Mapping[str, Settin
 
 
 def _taken(question: Question, text: str) -> Setting:
-    from coeflab.tables.imported import Setting, read_setting
+    from coeflab.tables.questions import Setting, read_setting
 
     return Setting(read_setting(question.key, text), question.why if text == question.default else "confirmed")
 
@@ -248,7 +249,7 @@ def _asked(
     raw: RawTable, said: Mapping[str, ColumnMap], settings: Mapping[str, Setting], found: Understood, yes: bool
 ) -> Settled:
     """Everything, asked for where it is open; a default only where the file or clear evidence gives one."""
-    from coeflab.tables.imported import understood
+    from coeflab.tables.questions import understood
 
     answers = {**said, **_asked_columns(raw, found)}
     settings = dict(settings)
@@ -299,7 +300,7 @@ def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
 
 def _written(out: Path, table: ForceTable, settings: Mapping[str, Setting]) -> None:
     """What was written, what was taken without a question, and the next command."""
-    from coeflab.tables.imported import CONFIRMED
+    from coeflab.tables.questions import CONFIRMED
 
     taken = [f"{k} = {s.value} ({s.origin})" for k, s in settings.items() if not s.origin.startswith(CONFIRMED)]
     _listed("Taken as it stands", taken)

@@ -71,7 +71,7 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool) -> None:
     from coeflab.cli.import_ import described, options_of, point_lines
     from coeflab.core.files import located
     from coeflab.core.wording import identifier
-    from coeflab.tables.imported import open_points, stated_settings, understood
+    from coeflab.tables.questions import open_points, stated_settings, understood
     from coeflab.tables.reading import importer_of, read_raw
 
     path = located(table, "cfd_data")
