@@ -45,6 +45,15 @@ CSV_LINE = 1 << 16
 CSV_CELLS = 2_000_000
 CSV_BLANK_LINES = 1000
 
+# Cases of OpenFOAM. foamlib takes 0.4 ms an entry, and gets one value at a time; a dictionary of a case has 10 kB.
+FOAM_BYTES = 1 << 18  # besides the long lists of fields, which are cut out unread
+FOAM_FIELD_BYTES = 64 << 20
+FOAM_FILES = 60  # that one case includes
+FOAM_DEEPEST = 12
+FOAM_VALUE = 4096
+# A history of forces: 12 components and a time take 100 bytes a row, at most 500 MB with 2 million rows.
+HISTORY_ROWS = 5_000_000
+
 # Scenes. Where a mesh stands is found by walking from each node to the root: nodes times depth. Exporters nest 10 deep.
 GLB_NODES = 10_000
 GLB_DEEPEST = 40
