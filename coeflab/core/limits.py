@@ -45,6 +45,11 @@ CSV_LINE = 1 << 16
 CSV_CELLS = 2_000_000
 CSV_BLANK_LINES = 1000
 
+# Monitors of solvers: 2 million lines of 25 columns are 400 MB of doubles.
+MONITOR_NUMBERS = 50_000_000
+MONITOR_COLUMNS = 2_000
+MONITOR_FILES = 200  # that a folder of one run may hold
+
 # Scenes. Where a mesh stands is found by walking from each node to the root: nodes times depth. Exporters nest 10 deep.
 GLB_NODES = 10_000
 GLB_DEEPEST = 40
