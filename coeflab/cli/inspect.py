@@ -19,18 +19,21 @@ EXAMPLE = "coeflab inspect suboff_cfd_barehull"
 
 def command(
     table: str = typer.Argument(
-        ..., help="A campaign folder, one CSV of it, or a shipped campaign's name; or a body.toml, or a mesh file."
+        ..., help="A campaign, one table of it, any file or folder that an importer knows, a body.toml, or a mesh file."
     ),
     unit: str = typer.Option("", help="Unit of a mesh file: m, mm, in ..."),
     axes: str = typer.Option("", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
     density: float = typer.Option(1000.0, "--density", help="Of the water that a body displaces, kg/m^3."),
+    as_: str = typer.Option("", "--as", metavar="IMPORTER", help="Read it with this importer, as it stands."),
+    option: list[str] = typer.Option([], "--option", metavar="NAME=VALUE", help="Of the importer: sheet=Drift; repeatable."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
-) -> None:
+) -> None:  # fmt: skip
     """Show a force table in SI and FRD with its declarations, excluded cells and readings that do not belong.
 
-    Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
+    Of any other file or folder: what it is, its columns with what they may be, what it states, and what is missing to read
+    it as a campaign. Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
     """
     from coeflab.bodies.simplify.source import names_body
 
@@ -41,7 +44,58 @@ def command(
         raise InputError(
             "--unit, --axes or --repair", "a mesh file with them", advice="A campaign.toml says these itself."
         )
+    if as_ or option or _is_raw(table):
+        _raw(table, as_, option, json)
+        return
     _tables(table, json, strict)
+
+
+def _is_raw(table: str) -> bool:
+    """Whether a file or folder is meant that is part of no campaign."""
+    from coeflab.core.files import located
+    from coeflab.tables.campaign import FILE, read_campaign
+
+    path = located(table, "cfd_data")
+    if path.is_dir() or path.suffix == ".toml":
+        return path.is_dir() and not (path / FILE).exists()
+    declaration = path.parent / FILE
+    return not declaration.exists() or path.name not in {
+        t.file.split("/")[-1] for t in read_campaign(declaration).tables
+    }
+
+
+def _raw(table: str, importer: str, option: Sequence[str], json: bool) -> None:
+    """What a file is before anybody said what it means, and what is missing to read it as a campaign."""
+    import shlex
+
+    from coeflab.cli.import_ import described, options_of, point_lines
+    from coeflab.core.files import located
+    from coeflab.core.wording import identifier
+    from coeflab.tables.imported import open_points, stated_settings, understood
+    from coeflab.tables.reading import importer_of, read_raw
+
+    path = located(table, "cfd_data")
+    importer = importer_of(path, importer)
+    with show.narrated(), show.progress(json) as say:
+        raw = read_raw(path, importer, options_of(option), say)
+    found = understood(raw, {}, stated_settings(raw))
+    points = open_points(found)
+    out = f"cfd_data/{identifier(path.resolve().stem)}"
+    following = " ".join(
+        ["coeflab import", shlex.quote(table), *(f"--option {shlex.quote(o)}" for o in option), f"--out {out}"]
+    )
+    if json:
+        from coeflab.report.tables.raw_tables import as_json
+
+        missing = [{"argument": argument, "about": about} for argument, about in points]
+        show.json_object(as_json(raw, importer, found.proposals, found.shows) | {"missing": missing, "next": following})
+        return
+    described(raw, importer, found)
+    show.text("Missing to read it as a campaign" if points else "Nothing is missing")
+    for line in point_lines(points):
+        show.text(line)
+    show.text()
+    show.text(f"Next: {following}")
 
 
 def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: bool) -> None:
@@ -91,6 +145,7 @@ def _tables(table: str, json: bool, strict: bool) -> None:
                         "datum": t.datum.id,
                         "scaling": str(t.scaling),
                         "density": t.conditions.density,
+                        "density_of_rows": None if t.density is None else [float(x) for x in t.density],
                         "excluded": [
                             {"line": e.line, "component": e.component, "reason": e.reason} for e in t.exclusions
                         ],
@@ -117,7 +172,7 @@ def _print(read: Sequence[ForceTable]) -> None:
         point = ", ".join(f"{x:g}" for x in t.reference_point)
         show.text(f"  {t.title}; body {t.body}; {t.source.kind}; {work(t.source.citation)}")
         show.text(f"  varies: {', '.join(t.varies) or 'nothing'}; moments about ({point}) m from: {t.datum}")
-        show.text(f"  primes by {t.scaling}; density {t.conditions.density:g} kg/m^3")
+        show.text(f"  primes by {t.scaling}; {t.run_at}")
         for note in t.notes:
             show.text(f"  {note}")
         show.text()

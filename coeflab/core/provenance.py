@@ -6,6 +6,7 @@ Works that formulas and data come from; reports print those that were used.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -58,9 +59,21 @@ class InputFile:
     sha256: Annotated[str, Within((("pattern", "^[0-9a-f]{64}$"),)), Means("of its bytes, hexadecimal")]
 
 
-def sha256_of(path: Path) -> str:
-    """Hexadecimal sha256 of a file's bytes."""
+def sha256_of(path: Path, read: Iterable[Path] = ()) -> str:
+    """Hexadecimal sha256 of a file's bytes; of a folder, of the paths in it and the sha256 of what was read there.
+
+    Parameters
+    ----------
+    path : Path
+    read : iterable of Path, optional
+        Files of the folder.
+    """
     digest = hashlib.sha256()
+    if path.is_dir():
+        for file in sorted(read):
+            place = file.relative_to(path) if file.is_relative_to(path) else file
+            digest.update(f"{place.as_posix()} {sha256_of(file)}\n".encode())
+        return digest.hexdigest()
     with path.open("rb") as stream:
         for block in iter(lambda: stream.read(1 << 20), b""):
             digest.update(block)

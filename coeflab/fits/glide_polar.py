@@ -315,7 +315,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     chosen = parse_options(Options, without_blanks(options, "printed"), "glide_polar")
     printed = read_printed(chosen.printed, "glide_polar.printed")
     first = tables[0]
-    used, left_out = only_moving(tables, ("alpha",), scaling.length)
+    used, left_out = only_moving([t.at_one_density() for t in tables], ("alpha",), scaling.length)
     radians, degrees = [], []
     for name, (rows, speed) in _rows(used, chosen.noise).items():
         _check_angles(rows)

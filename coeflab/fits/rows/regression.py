@@ -114,7 +114,7 @@ def response(table: ForceTable, name: str, area: Area) -> tuple[Array, Array | N
     InputError
         The table lacks a component, or the response is unknown.
     """
-    q = 0.5 * table.conditions.density * table.speed**2 * area.area
+    q = 0.5 * table.water_density * table.speed**2 * area.area
     component = MOMENT_COEFFICIENTS.get(name, name)
     if component in COMPONENTS:
         if component not in table.forces:

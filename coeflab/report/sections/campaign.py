@@ -105,7 +105,7 @@ def _about(table: ForceTable) -> list[str]:
     source = table.source
     text = [
         f"{table.name}: {table.body.replace('_', ' ')}, {len(table)} rows; {usable} of {cells} force cells are usable. "
-        f"Speed {table.conditions.speed:.5g} m/s, density {table.conditions.density:.5g} kg/m3. "
+        f"{table.run_at.capitalize()}. "
         f"Source: {work(source.citation)}" + (f" {source.place}." if source.place else "")
     ]
     if source.how_obtained:
