@@ -16,6 +16,7 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import ABSENT, Table
 from coeflab.core.types import Array, brief
 from coeflab.core.units import SI
+from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.conditions import (
     DIMENSIONS,
     SETTINGS,
