@@ -63,6 +63,10 @@ FOAM_DEEPEST = 12
 FOAM_VALUE = 4096
 # A history of forces: 12 components and a time take 100 bytes a row, at most 500 MB with 2 million rows.
 HISTORY_ROWS = 5_000_000
+# Monitors of solvers: 2 million lines of 25 columns are 400 MB of doubles.
+MONITOR_NUMBERS = 50_000_000
+MONITOR_COLUMNS = 2_000
+MONITOR_FILES = 200  # that a folder of one run may hold
 
 # Scenes. Where a mesh stands is found by walking from each node to the root: nodes times depth. Exporters nest 10 deep.
 GLB_NODES = 10_000

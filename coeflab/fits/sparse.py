@@ -38,6 +38,7 @@ citations = ("brunton2016", "kaptanoglu2022", "fasel2022", "chen2008", "mackinno
 
 RIDGE = 1e-8
 FEWEST_A_FOLD = 2
+UNWEIGHTED = "Rows weigh alike: their stated standard errors are noise of one run, not the error of the model."
 AFTER_SELECTION = "The terms were chosen on these rows, so U95 and the error of left-out rows are too small."
 WIDER = "Allow a larger library: a higher degree, or more variables."
 
@@ -119,6 +120,7 @@ def _model(data: JointRows, component: str, terms: tuple[Term, ...], chosen: Opt
     model = model_of(rows, fitted, symbols, f"sparse, {chosen.optimizer}", weighted=False, post_selection=True)
     said = (
         *data.statements,
+        *([UNWEIGHTED] if rows.errors is not None else []),
         *_alike(matrix, rows.y, component, terms, intercept),
         *describe(selection, _names(component, terms, selection)),
         *model.statements,

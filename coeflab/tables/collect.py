@@ -34,7 +34,7 @@ from coeflab.tables.runs import Progress, RunSummary, find_runs, read_all
 
 FULL, FEWEST = 0.75, 6  # a matrix of settings: share that is there, and its least size
 ONE_FOR_ALL = ("axes.", "scaling.", "conditions.density", "conditions.viscosity", "table.contains_inertia")
-DOUBTFUL = "uncertain"
+DOUBTFUL, ALL, LABEL, IGNORE = "uncertain", "all", "label", "ignore"
 MOST_REMARKS = 20
 
 
@@ -265,37 +265,34 @@ def _table(
     remarks: tuple[str, ...],
 ) -> RawTable:  # fmt: skip
     columns = [_setting(rows, name) for name in known]
-    components = [c for c in COMPONENTS if any(c in r.means for r in rows)]
+    by_name = _by_name(rows)
+    found = dict.fromkeys(c for r in rows for c in r.means)
+    components = list(found) if by_name else [c for c in COMPONENTS if c in found]
     more = list(remarks)
     for c in components:
-        unit = _unit_of(rows, c)
         header = next(r.headers[c] for r in rows if c in r.means)
-        columns.append(RawColumn(header, unit, _numbers([r.means.get(c) for r in rows]), means=c))
+        values = _numbers([r.means.get(c) for r in rows])
+        columns.append(RawColumn(header, _unit_of(rows, c), values, means="" if by_name else c))
     for c in components:
         errors = _numbers([r.errors.get(c) for r in rows])
         bare = [r.name for r, e in zip(rows, errors, strict=True) if c in r.means and not e > 0.0]
         if bare:
             more.append(f"No se_{c}: {named(bare)} without a history, or of zeros only, has no standard error.")
         else:
-            columns.append(RawColumn(f"se_{c}", _unit_of(rows, c), errors, means=f"se_{c}"))
+            columns.append(RawColumn(f"se_{c}", _unit_of(rows, c), errors, means="" if by_name else f"se_{c}"))
     others = dict.fromkeys(k for r in rows for k in r.conditions if k not in SETTINGS)
     columns += [
         _other(rows, k)
         for k in ("cells", "y_plus", *(o for o in others if o not in ("cells", "y_plus")))
         if k in others
     ]
-    columns.append(RawColumn("iterations", "-", _numbers([r.iterations for r in rows])))
-    columns.append(RawColumn("plateau start", next((r.start_unit for r in rows if r.start_unit), "-") or "-",
-                             _numbers([r.start for r in rows])))  # fmt: skip
+    columns.append(RawColumn("iterations", "-", _numbers([r.iterations for r in rows]), means=IGNORE))
+    unit = next((r.start_unit for r in rows if r.start_unit), "-")
+    columns.append(RawColumn("plateau start", unit, _numbers([r.start for r in rows]), means=IGNORE))
     columns.append(_text("status", [str(r.status) for r in rows]))
     marked = [r.status is not Convergence.CONVERGED or r.name in copies for r in rows]
-    columns.append(_text(DOUBTFUL, [" ".join(components) if m else "" for m in marked], means=DOUBTFUL))
-    patches = dict.fromkeys(p for r in rows for p in r.patches)
-    columns += [
-        RawColumn(p, next(r.patches[p][1] for r in rows if p in r.patches),
-                  _numbers([r.patches[p][0] if p in r.patches else None for r in rows]))
-        for p in patches
-    ]  # fmt: skip
+    columns.append(_text(DOUBTFUL, [ALL if m else "" for m in marked], means=DOUBTFUL))
+    columns += _beside([r.patches for r in rows], IGNORE) + _beside([r.beside for r in rows], "" if by_name else IGNORE)
     stated, differing = _stated(rows)
     more += [f"{k} differs between runs and is left out." for k in differing]
     versions = sorted({v for r in rows if (v := r.dialect.get("version"))})
@@ -318,7 +315,25 @@ def _numbers(values: Sequence[float | None]) -> Array:
     return np.array([math.nan if v is None else v for v in values], dtype=float)
 
 
-def _text(name: str, texts: Sequence[str], means: str = "") -> RawColumn:
+def _beside(rows: Sequence[Mapping[str, tuple[float, str]]], means: str) -> list[RawColumn]:
+    """Columns of patches, or of what is no force."""
+    first = {name: unit for row in reversed(rows) for name, (_, unit) in row.items()}
+    names = dict.fromkeys(name for row in rows for name in row)
+    return [RawColumn(n, first[n], _numbers([r[n][0] if n in r else None for r in rows]), means=means) for n in names]
+
+
+def _by_name(rows: Sequence[RunSummary]) -> bool:
+    """Whether the columns go by their own names, in all runs alike."""
+    kinds = {r.by_name: r.name for r in rows if r.means}
+    if len(kinds) > 1:
+        raise InputError(
+            f"named components in {kinds[False]} and columns of other names in {kinds[True]}", "the same columns in all runs",
+            advice="Collect them into tables of their own.",
+        )  # fmt: skip
+    return True in kinds
+
+
+def _text(name: str, texts: Sequence[str], means: str = LABEL) -> RawColumn:
     return RawColumn(name, "", np.full(len(texts), np.nan), tuple(texts), means)
 
 
@@ -335,10 +350,10 @@ def _setting(rows: Sequence[RunSummary], name: str) -> RawColumn:
 def _other(rows: Sequence[RunSummary], name: str) -> RawColumn:
     """A column of what is no setting: labels, cells, y+."""
     cells = [r.conditions.get(name) for r in rows]
-    means = name if name in ("cells", "y_plus") else ""
+    means = name if name == "cells" else IGNORE
     if any(c is not None and isinstance(c.value, str) for c in cells):
         texts = ["" if c is None else str(c.value) for c in cells]
-        return _text(name, texts, means)
+        return _text(name, texts)
     unit = next((c.unit for c in cells if c is not None and c.unit), "-")
     return RawColumn(name, unit, _numbers([_as_number(c) for c in cells]), means=means)
 

@@ -434,9 +434,8 @@ def required(conditions: Mapping[str, Mapping[str, Condition]], pattern: NamePat
     known = [s for s in SETTINGS if any(s in c for c in conditions.values())]
     sources = "a list of runs or a pattern of names, such as --name 'b{beta:deg}_r{r:rad/s}'"
     if conditions and not known:
-        some = next(iter(conditions))
-        return [InputError(f"no angle, rate or speed for any of {len(conditions)} runs", f"them in the files, {sources}",
-                           file=some, advice="Nothing is taken from names unless a pattern says what they mean.")]  # fmt: skip
+        return [InputError(f"no angle, rate or speed for {named(list(conditions))}", f"them in the files, {sources}",
+                           advice="Nothing is taken from names unless a pattern says what they mean.")]  # fmt: skip
     out = []
     for name in known:
         lacking = [run for run, c in conditions.items() if name not in c]

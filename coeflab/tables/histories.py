@@ -22,7 +22,7 @@ from enum import StrEnum
 import numpy as np
 
 from coeflab.core.types import Array
-from coeflab.law.symbols import COMPONENTS, FORCES, MOMENTS
+from coeflab.law.symbols import FORCES, MOMENTS
 
 CITATIONS = ("white1997", "conway1963", "flegal2010", "geyer1992", "wolff2004", "kendall1954", "jcgm100")
 BATCH = 5  # of MSER-5
@@ -230,15 +230,17 @@ def mean_of(values: Array, tolerance: float, floor: float) -> Mean:
     return Mean(value, max(error, floor), batches - 1.0, time, trend, trend_error, status)
 
 
-def plateau(forces: Mapping[str, Array], at: Array | None = None) -> Plateau:
+def plateau(forces: Mapping[str, Array], at: Array | None = None, groups: Mapping[str, str] | None = None) -> Plateau:
     """The plateau that all forces and moments of a run share.
 
     Parameters
     ----------
-    forces : mapping of component to (n,) array
-        X Y Z K M N, as far as there are.
+    forces : mapping of str to (n,) array
+        X Y Z K M N, as far as there are, or columns of any other name.
     at : (n,) array, optional
         Time of every row; forces at unequal steps are interpolated to equal ones.
+    groups : mapping of str to str, optional
+        Columns of one vector have one text; by default forces, and moments.
 
     Returns
     -------
@@ -246,7 +248,8 @@ def plateau(forces: Mapping[str, Array], at: Array | None = None) -> Plateau:
         A history that is not finite behind its beginning, or grew a thousandfold, diverged; one of no rows or zeros only is
         empty. ``start`` counts the rows as they came.
     """
-    names = [c for c in COMPONENTS if c in forces]
+    names = list(forces)
+    group = groups or {c: FORCES[0] if c in FORCES else MOMENTS[0] for c in names}
     columns = np.array([forces[c] for c in names], dtype=float).reshape(len(names), -1)
     finite = np.all(np.isfinite(columns), axis=0)
     skipped = int(np.argmax(finite)) if finite.any() else columns.shape[1]
@@ -268,7 +271,7 @@ def plateau(forces: Mapping[str, Array], at: Array | None = None) -> Plateau:
         steps = steps[:, n % block :].reshape(len(names), -1, block).mean(axis=2)
     late = steps[:, steps.shape[1] // 2 :]
     size = dict(zip(names, np.abs(late.mean(axis=1)), strict=True))
-    whole = {c: float(np.hypot.reduce([size.get(g, 0.0) for g in group])) for group in (FORCES, MOMENTS) for c in group}
+    whole = {c: float(np.hypot.reduce([size[g] for g in names if group[g] == group[c]])) for c in names}
     tolerance = {c: SHARE * max(size[c], OF_THE_WHOLE * whole[c]) for c in names}
     starts = [
         plateau_start(row) if float(np.ptp(row)) > tolerance[c] else (0, True)

@@ -309,7 +309,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
 
 
 def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
-    """For every row of the file the plain names that its column ``uncertain`` names.
+    """For every row of the file the plain names that its column ``uncertain`` names; ``all`` are all forces and moments.
 
     Raises
     ------
@@ -323,6 +323,8 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
     out = []
     for row, text in enumerate(texts_of(column)):
         words = {word.removesuffix("'") for word in text.replace(";", " ").replace(",", " ").split()}
+        if "all" in words:
+            words = words - {"all"} | {one.said.name for one in known if one.said.role == "force"}
         if strange := sorted(words - names):
             raise fault(raw, shown(strange[0]), f"names of columns: {', '.join(sorted(names))}", column, row=row)
         out.append(frozenset(words))

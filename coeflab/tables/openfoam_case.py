@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import FOAM_FIELD_BYTES
 from coeflab.core.text.foam import Foam, FoamCase
 from coeflab.core.text.series import opened
 from coeflab.core.types import Array
@@ -135,15 +136,16 @@ def _inflow(case: FoamCase, name: str) -> Stated | None:
 def _share_of_mesh(case: FoamCase, zone: str) -> float | None:
     """The share of the cells that a cell zone holds; None where the mesh does not say."""
     cells, file = stated_cells(case), case.root / "constant/polyMesh/cellZones"
-    if zone == "all":
-        return 1.0
     if cells is None or not file.is_file():
-        return None
-    case.files.append(file)
+        return 1.0 if zone == "all" else None
+    if file not in case.files:
+        case.files.append(file)
     with opened(file) as stream:
-        head = stream.read(1 << 22)
-    match = re.search(rb"\b" + re.escape(zone).encode() + rb"\s*\{[^{}]*?cellLabels\s+List<label>\s*(\d+)", head)
-    return float(match[1]) / float(cells.value) if match is not None and isinstance(cells.value, int) else None
+        content = stream.read(FOAM_FIELD_BYTES)
+    match = re.search(
+        rb"(?:^|\s)" + re.escape(zone).encode() + rb"\s*\{[^{}]*?cellLabels\s+List<label>\s*(\d+)", content
+    )
+    return int(match[1]) / float(str(cells.value)) if match is not None else None
 
 
 def stated_cells(case: FoamCase) -> Stated | None:
@@ -255,11 +257,12 @@ def motion(
         if inflow is not None:
             case.note("the velocity at the reference point is not stated, as no file states CofR")
         return out
-    velocity, place = -np.array(inflow.value, dtype=float), inflow.place
+    water, place = np.asarray(inflow.value, dtype=float), inflow.place
+    velocity = -water
     if frame is not None and point is not None:
         velocity = velocity + np.cross(frame.omega, np.array(point[0]) - frame.origin)
         place = f"{place}, {frame.place}, {point[1]}"
-        if np.any(inflow.value) and np.linalg.norm(np.cross(frame.omega, inflow.value)) > 0.0:
+        if np.any(np.cross(frame.omega, water)):
             case.note(f"{inflow.place}: an inflow across the axis of {frame.place} is not steady in the turning frame")
     out.update({n: Stated(float(v) + 0.0, place) for n, v in zip("uvw", velocity)})
     out["U"] = Stated(float(np.linalg.norm(velocity)), place)
@@ -305,7 +308,12 @@ def read_log(case: FoamCase, application: str) -> tuple[dict[str, str], str, boo
                 tail = stream.read(1 << 14).decode("utf-8", "replace")
         case.files.append(file)
         build = re.search(r"^Build\s*:\s*(.+)$", head, re.MULTILINE)
-        said = {"solver": program[1], "version": build[1].strip() if build is not None else "not stated"}
+        com = re.search(r"OPENFOAM=(\d+)|\bv(\d{4})\b", build[1]) if build is not None else None
+        said = {"solver": program[1]}
+        if com is not None:
+            said |= {"version": f"v{com[1] or com[2]}", "fork": "openfoam.com"}
+        elif build is not None:
+            said |= {"version": build[1].strip(), "fork": "openfoam.org"}
         if (met := re.search(r"solution converged in (\d+) iterations", tail)) is not None:
             said["convergence"] = f"the solver's residualControl was met after {met[1]} iterations ({file.name})"
         broken = re.search(

@@ -195,7 +195,7 @@ def _read_file(case: FoamCase, file: Path, kind: str) -> History:
 
 def _beside(forces: History, moments: History, place: str) -> None:
     """Add the moments of the same times."""
-    one, other = forces.values["time"], moments.values["time"]
+    one, other = forces.values["time"], moments.values.pop("time")
     if not np.array_equal(one, other, equal_nan=True):
         times, mine, its = np.intersect1d(one, other, return_indices=True)
         forces.remarks.append(
@@ -203,7 +203,7 @@ def _beside(forces: History, moments: History, place: str) -> None:
         )
         forces.values = {n: v[mine] for n, v in forces.values.items()}
         moments.values = {n: v[its] for n, v in moments.values.items()}
-    forces.values.update({n: v for n, v in moments.values.items() if n != "time"})
+    forces.values.update(moments.values)
     forces.remarks += moments.remarks
     forces.wild, forces.cut = forces.wild or moments.wild, forces.cut or moments.cut
 
@@ -214,8 +214,8 @@ def _joined(case: FoamCase, files: Sequence[tuple[str, Path]]) -> History:
     last = parts[-1]
     out = History(last.name, last.is_coefficients, facts=last.facts)
     for part in parts:
-        if part.facts.get("CofR", last.facts.get("CofR", ([],)))[0] != last.facts.get("CofR", ([],))[0]:
-            moved(part, last.facts["CofR"][0])
+        if "CofR" in part.facts and "CofR" in last.facts and part.facts["CofR"][0] != last.facts["CofR"][0]:
+            moved(part, part.facts["CofR"], last.facts["CofR"])
         out.remarks += part.remarks
     out.wild, out.cut = next((p.wild for p in parts if p.wild), ""), last.cut
     names = [n for n in parts[0].values if all(n in p.values for p in parts)]
@@ -233,17 +233,16 @@ def _joined(case: FoamCase, files: Sequence[tuple[str, Path]]) -> History:
     return out
 
 
-def moved(history: History, point: Sequence[float]) -> None:
-    """Moments about another point, m."""
-    shift = np.array(point) - np.array(history.facts["CofR"][0])
-    turn = force_transfer(shift)[3:, :3]
+def moved(history: History, old: tuple[Sequence[float], str], new: tuple[Sequence[float], str]) -> None:
+    """Moments about another point; the points in m, each with its place."""
+    turn = force_transfer(np.array(new[0]) - np.array(old[0]))[3:, :3]
     for share in ["", *history.shares]:
         names = [f"{share} {c}".strip() for c in COMPONENTS]
         if all(n in history.values for n in names):
             forces = [history.values[n] for n in names[:3]]
             for i, name in enumerate(names[3:]):
                 history.values[name] = history.values[name] + sum(turn[i, j] * forces[j] for j in range(3))
-    history.remarks.append(f"moments of {history.name} were moved from {history.facts['CofR'][1]} to {list(point)} m")
+    history.remarks.append(f"moments of {history.name} were moved from the point of {old[1]} to that of {new[1]}")
 
 
 def _turned(history: History, axes: Array) -> None:
@@ -267,7 +266,7 @@ def added(case: FoamCase, histories: Sequence[History]) -> History:
                 file=case.root, column="function",
             )  # fmt: skip
         if "CofR" in out.facts and "CofR" in other.facts and other.facts["CofR"][0] != out.facts["CofR"][0]:
-            moved(other, out.facts["CofR"][0])
+            moved(other, other.facts["CofR"], out.facts["CofR"])
         for name in [n for n in out.values if n != "time"]:
             if name in other.values:
                 out.values[name] = out.values[name] + other.values[name]

@@ -93,13 +93,10 @@ def read_raw(
         if importer.raw is not None:
             return importer.raw(path, given)
         names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)
-        table = collect(
+        return collect(
             path, name, options=given, names=names, run_list=Path(runs) if runs else None, progress=progress,
             state=Path(state) if state else None,
         ).table  # fmt: skip
-    # Collecting makes these columns itself: what no fit uses is no column that somebody has to explain.
-    made = (c if c.means else replace(c, means="label" if c.is_text else "ignore") for c in table.columns)
-    return replace(table, columns=tuple(made))
 
 
 def with_declarations(

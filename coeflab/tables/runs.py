@@ -25,16 +25,17 @@ from typing import IO, Any
 
 import numpy as np
 
-from coeflab.core.errors import CoeflabError, InputError, OutputError, clipped
+from coeflab.core.errors import CoeflabError, InputError, OutputError, UnitsError, clipped
 from coeflab.core.machine import cores, end_with_parent
 from coeflab.core.types import brief
+from coeflab.core.units import factor
 from coeflab.core.version import VERSION
 from coeflab.core.wording import listed
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.conditions import Condition
 from coeflab.tables.histories import Convergence, plateau
 from coeflab.tables.importers import IMPORTERS
-from coeflab.tables.raw_table import Ended, Run, Stated
+from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run, Stated
 
 Progress = Callable[[str], None]
 STATE = "collected_runs.jsonl"
@@ -44,6 +45,9 @@ SHALLOW, MOST_SHALLOW = 2, 2_000  # levels of a run's folder, and their entries,
 STILL_WRITTEN = 2_000_000_000  # ns; what changed so shortly before it was read may change again unseen
 CHUNK, AHEAD = 8, 4  # runs that go to a process at once, and chunks that wait for each process
 PATIENCE = 2.0  # s of work that are left before processes are started for it
+_RESIDUAL = re.compile(
+    r"resid|\brms|continuity|[xyz][- ](?:velocity|momentum)|^(?:k|omega|epsilon|energy|nut|tke|sdr|tdr)$", re.IGNORECASE
+)
 ENDED = {
     Ended.CRASHED: Convergence.CRASHED,
     Ended.DIVERGED: Convergence.DIVERGED,
@@ -63,11 +67,15 @@ class RunSummary:
     status : Convergence
     why : str
         What shows the status; empty for a converged run.
-    means, errors : mapping of component to float
-        Mean over the plateau and its standard error (NaN for a single row), in the units of the history.
-    units : mapping of component to str
-    headers : mapping of component to str
+    means, errors : mapping of str to float
+        Mean over the plateau and its standard error (NaN for a single row), in the units of the history, by component.
+    units : mapping of str to str
+    headers : mapping of str to str
         Name of the column in the history.
+    by_name : bool
+        The format does not say which column is which component: means and errors go by the names of the columns.
+    beside : mapping of str to (float, str)
+        Mean and unit of the columns that are none of these.
     start : float
         Time or iteration at which the plateau begins; NaN without one.
     start_unit : str
@@ -96,6 +104,8 @@ class RunSummary:
     errors: Mapping[str, float] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
+    by_name: bool = False
+    beside: Mapping[str, tuple[float, str]] = field(default_factory=dict)
     start: float = math.nan
     start_unit: str = ""
     rows: int = 0
@@ -226,7 +236,6 @@ def summarised(run: Run, name: str) -> RunSummary:
         stated=dict(history.stated),
         remarks=history.remarks,
     )
-    columns = {c: column for c in COMPONENTS if (column := history.meaning(c)) is not None}
     at = history.meaning("time") or history.meaning("iteration")
     if at is not None and at.means == "iteration" and len(at.values):
         common = replace(common, iterations=float(at.values[-1]))
@@ -234,14 +243,17 @@ def summarised(run: Run, name: str) -> RunSummary:
         common = replace(common, iterations=float(len(history)))
     if run.ended in ENDED:
         return common
+    columns, by_name = deciding(history)
     if not columns:
         return replace(common, status=Convergence.EMPTY, why="no column of a force or moment")
-    found = plateau(
-        {c: k.values for c, k in columns.items()}, at.values if at is not None and at.means == "time" else None
-    )
+    times = at.values if at is not None and at.means == "time" else None
+    groups = {name: column.unit for name, column in columns.items()} if by_name else None
+    found = plateau({name: column.values for name, column in columns.items()}, times, groups)
     if not found.status.has_numbers:
         return replace(common, status=found.status, why=found.why)
     start = float(at.values[found.start]) if at is not None else float(found.start)
+    used = {id(at), *map(id, columns.values())}
+    others = [c for c in history.columns if id(c) not in used and not c.is_text and not _RESIDUAL.search(c.name)]
     return replace(
         common,
         status=found.status,
@@ -250,11 +262,34 @@ def summarised(run: Run, name: str) -> RunSummary:
         errors={c: m.error for c, m in found.means.items()},
         units={c: k.unit for c, k in columns.items()},
         headers={c: k.name for c, k in columns.items()},
+        by_name=by_name,
+        beside={c.name: (float(np.mean(c.values[found.start :])), c.unit) for c in others},
         start=start,
         start_unit=at.unit if at is not None else "",
         window=found.rows,
         patches=_patches(run, start),
     )
+
+
+def deciding(history: RawTable) -> tuple[dict[str, RawColumn], bool]:
+    """The columns whose plateau decides, and whether they go by their own names.
+
+    Components that the format fixes; else what has a unit of force or moment; else all numbers but residuals.
+    """
+    known = {c: column for c in COMPONENTS if (column := history.meaning(c)) is not None}
+    if known:
+        return known, False
+    numbers = {c.name: c for c in history.columns if not c.means and not c.is_text and not _RESIDUAL.search(c.name)}
+    forces = {name: c for name, c in numbers.items() if _is_force(c.unit)}
+    return forces or numbers, True
+
+
+def _is_force(unit: str) -> bool:
+    for dimension in ("force", "moment"):
+        with suppress(UnitsError):
+            factor(unit, dimension)
+            return True
+    return False
 
 
 def _patches(run: Run, start: float) -> dict[str, tuple[float, str]]:
@@ -410,7 +445,8 @@ def _summary(content: Mapping[str, Any]) -> RunSummary:
     read = dict(content)
     for name in _STATED:
         read[name] = {k: Stated(tuple(v) if isinstance(v, list) else v, place) for k, (v, place) in read[name].items()}
-    read["patches"] = {k: (float(v), unit) for k, (v, unit) in read["patches"].items()}
+    for name in ("patches", "beside"):
+        read[name] = {k: (float(v), unit) for k, (v, unit) in read[name].items()}
     for name in ("files", "remarks"):
         read[name] = tuple(read[name])
     return RunSummary(name="", **{**read, "status": Convergence(read["status"])})

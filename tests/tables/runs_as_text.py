@@ -29,7 +29,7 @@ def recognises(path):
 def table(file, about, names, rows, part):
     scale = 1.0 if part is None else part
     columns = [RawColumn("time", about.get("time", "-"), rows[:, 0], means=about.get("counts", "iteration"))]
-    columns += [RawColumn(about.get("prefix", "") + n, about.get("unit", "N"), scale * rows[:, i + 1], means=n)
+    columns += [RawColumn(about.get("prefix", "") + n, about.get("unit", "N"), scale * rows[:, i + 1], means="" if about.get("unnamed") else n)
                 for i, n in enumerate(names)]
     stated = {k: Stated(tuple(v) if isinstance(v, list) else v, f"{file.parent.name}/setup:7") for k, v in about.get("stated", {}).items()}
     return RawTable(file, tuple(columns), files=(file,), stated=stated, dialect={"version": about.get("version", "1")},

@@ -101,9 +101,9 @@ def test_every_kind_of_end_is_listed(collected: Collected) -> None:
     for k in (4, 5, 6, 7):
         i = row(collected, f"b{k}_r0")
         assert all(np.isnan(collected.table.column(c).values[i]) for c in ("X", "Y", "N", "se_Y", "plateau start"))
-        assert collected.table.column("uncertain").texts[i] == "X Y N"
+        assert collected.table.column("uncertain").texts[i] == "all"
     drifting = row(collected, "b8_r0")
-    assert collected.table.column("uncertain").texts[drifting] == "X Y N"
+    assert collected.table.column("uncertain").texts[drifting] == "all"
     assert np.isfinite(collected.table.column("Y").values[drifting])
     assert collected.counts[Convergence.CONVERGED] == 8
 
@@ -294,7 +294,7 @@ def test_runs_of_one_condition(tmp_path: Path) -> None:
     write_run(tmp_path / "b4_fine", conditions={"cells": [8000, "log:1"]})
     found = collect(tmp_path, names="b{beta:deg}_*")
     assert found.duplicates == (("b2_again", "b2_copy", "b2_first"),)
-    assert found.table.column("uncertain").texts == ("", "X Y N", "", "", "")
+    assert found.table.column("uncertain").texts == ("", "all", "", "", "")
     said = "\n".join(found.table.remarks)
     assert "b2_copy of b2_again" in said
     assert "1 condition on several grids: b4_coarse = b4_fine." in said
@@ -342,6 +342,22 @@ def test_without_a_history_there_is_no_error(tmp_path: Path) -> None:
     assert found.table.meaning("se_Y") is None
     assert found.table.column("Y").values.tolist() == [3.0, 4.0]
     assert any(r.startswith("No se_Y: b2 and b4") for r in found.table.remarks)
+
+
+def test_columns_that_the_format_does_not_name(tmp_path: Path) -> None:
+    """Monitors have the names that a user gave them: all are averaged, and somebody says which is which."""
+    for k in (2, 4):
+        forces = {"lateral": 3.0 * k, "vertical": 1.0, "continuity": np.geomspace(1.0, 1e-9, 200)}
+        write_run(tmp_path / f"b{k}", forces, seed=k, unnamed=True)
+    found = collect(tmp_path, names="b{beta:deg}")
+    assert found.counts == {Convergence.CONVERGED: 2}
+    assert [(c.name, c.means) for c in found.table.columns[:5]] == [
+        ("beta", "beta"), ("lateral", ""), ("vertical", ""), ("se_lateral", ""), ("se_vertical", ""),
+    ]  # fmt: skip
+    assert found.table.column("lateral").values == pytest.approx([6.0, 12.0], rel=1e-3)
+    write_run(tmp_path / "b6", {"X": 1.0})
+    with pytest.raises(InputError, match="in b6 and columns of other names in b"):
+        collect(tmp_path, names="b{beta:deg}")
 
 
 def test_finished_runs_are_not_read_again(tmp_path: Path) -> None:

@@ -105,24 +105,31 @@ def read_series(file: Path, width: int, sums: Sequence[Sequence[int]]) -> Series
     InputError
         A row that is no row of numbers, with its line; more rows than memory holds.
     """
-    parts: list[list[Array]] = [[] for _ in sums]
+    columns: list[Array] = [np.empty(0) for _ in sums]
     rows, line, cut = 0, 1, ""
     remarks: list[str] = []
     wild = None
     with opened(file) as stream:
+        size = file.stat().st_size
         for block, is_last in _blocks(stream, file):
             text, tail = block, b""
             if is_last:
-                text, end, tail = block.rpartition(b"\n")
-                text += end
+                text, newline, tail = block.rpartition(b"\n")
+                text += newline
             count = text.count(b"\n")
             matrix, lines = _numbers(text, width, file, line)
-            for part, which in zip(parts, sums, strict=True):
-                part.append(matrix[:, which[0]].copy() if len(which) == 1 else matrix[:, list(which)].sum(axis=1))
+            end = rows + len(matrix)
+            for i, which in enumerate(sums):
+                if end > len(columns[i]):
+                    # As many rows as the file will have, by its size: what is not written takes no memory.
+                    longer = np.empty(end if is_last else max(3 * end // 2, int(1.05 * end * size / stream.tell())))
+                    longer[:rows] = columns[i][:rows]
+                    columns[i] = longer
+                columns[i][rows:end] = matrix[:, which[0]] if len(which) == 1 else matrix[:, list(which)].sum(axis=1)
             if wild is None and not np.all(np.isfinite(matrix)):
                 first = int(np.flatnonzero(~np.isfinite(matrix).all(axis=1))[0])
                 wild = (rows + first, line + first if lines is None else lines[first])
-            rows += len(matrix)
+            rows = end
             line += count
             if rows > HISTORY_ROWS:
                 raise InputError(f"more than {HISTORY_ROWS:,} rows", "a shorter history", file=file, line=line)
@@ -134,11 +141,7 @@ def read_series(file: Path, width: int, sums: Sequence[Sequence[int]]) -> Series
             elif tail:
                 remarks.append(f"line {line} holds no text")
                 cut = f"line {line} was never written"
-    columns = []
-    for part in parts:
-        columns.append(np.concatenate(part) if part else np.empty(0))
-        part.clear()
-    return Series(tuple(columns), tuple(remarks), cut, wild)
+    return Series(tuple(c[:rows] for c in columns), tuple(remarks), cut, wild)
 
 
 def _blocks(stream: IO[bytes], file: Path) -> Iterator[tuple[bytes, bool]]:

@@ -15,7 +15,16 @@ from coeflab.core.options import measured, one_of, parse_options, words
 from coeflab.core.text.foam import Foam, FoamCase
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables import openfoam_case as of
-from coeflab.tables.openfoam_forces import XYZ, History, added, found_histories, from_coefficients, is_vector, oriented
+from coeflab.tables.openfoam_forces import (
+    XYZ,
+    History,
+    added,
+    found_histories,
+    from_coefficients,
+    is_vector,
+    moved,
+    oriented,
+)
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run, Stated
 
 summary = "a case of OpenFOAM (.com and .org): forces, forceCoeffs, inflow, MRF and SRF, restarts"
@@ -158,6 +167,10 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
     remarks += complaints
     unit, density = _scaled(case, [main, *histories.values()], density, given.density, remarks)
     point = _reference_point(case, main, part)
+    for history in histories.values():
+        own = _reference_point(case, history, parts.get(history.name))
+        if point is not None and own is not None and own[0] != point[0]:
+            moved(history, own, point)
     frame = of.rotating_frame(case, given.rotation, body, known)
     has_srf = any((case.root / d / f"Urel{z}").is_file() for d in ("0", "0.orig") for z in ("", ".gz"))
     conditions = of.motion(case, frame, point, "Urel" if has_srf else "U")
@@ -174,11 +187,13 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
     ending, why = _ending(len(time.values), main, broken, ended)
     stated = _stated(case, main, conditions, density, point, whole)
     if "solver" in said:
-        stated["source.how_obtained"] = Stated(f"OpenFOAM {said['version']}, {said['solver']}", "log of the solver")
+        stated["source.how_obtained"] = Stated(
+            f"{said['solver']} of OpenFOAM {said.get('version', '')}".strip(), "log of the solver"
+        )
     tables = {s: _table(main, s, case, time, unit) for s in main.shares}
     for name, history in histories.items():
-        own = replace(time, values=history.values.pop("time"))
-        tables[name] = _table(history, "", case, own, unit)
+        its_time = replace(time, values=history.values.pop("time"))
+        tables[name] = _table(history, "", case, its_time, unit)
         remarks += history.remarks
     table = _table(
         main, "", case, time, unit, files=tuple(dict.fromkeys(case.files)), stated=stated,
