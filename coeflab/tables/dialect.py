@@ -60,18 +60,20 @@ class Marks:
             grouped = rf"|[-+]?[1-9][0-9]{{0,2}}(?:{mark}[0-9]{{3}})+(?:{point}[0-9]*)?"
         return re.compile(rf"[-+]?(?:[0-9]+(?:{point}[0-9]*)?|{point}[0-9]+)(?:[eEdD][-+]?[0-9]+)?{grouped}")
 
+    @cached_property
+    def _kept(self) -> dict[int, str | None]:
+        """Letters of a number as Python reads it: no marks between thousands, a point, e."""
+        away = f"{self.thousands}{BLANKS} '’" if self.thousands else ""
+        return {**dict.fromkeys(map(ord, away)), ord(self.decimal): ".", ord("d"): "e", ord("D"): "e"}
+
     def number(self, cell: str) -> float | None:
         """The number of a stripped cell: NaN where it says that there is none, None where it is text."""
         if not cell.isascii():
             cell = cell.translate(_MINUS)
-        if cell.lower() in _NO_NUMBER or cell in _DASHES or cell.startswith("Err:"):
-            return math.nan
-        if not self._form.fullmatch(cell):
-            return None
-        for mark in (*BLANKS, " ", "'", "’", self.thousands) if self.thousands else ():
-            cell = cell.replace(mark, "")
-        value = float(cell.replace(self.decimal, ".").replace("d", "e").replace("D", "e"))
-        return value if math.isfinite(value) else math.nan
+        if self._form.fullmatch(cell):
+            value = float(cell.translate(self._kept))
+            return value if math.isfinite(value) else math.nan
+        return math.nan if cell.lower() in _NO_NUMBER or cell in _DASHES or cell.startswith("Err:") else None
 
 
 def numeric(cells: Sequence[str], marks: Marks) -> int:
@@ -258,10 +260,10 @@ class Cells:
             No cell has an underscore, or a letter beyond ASCII: what Python takes for a number is one.
         """
         out = np.empty(len(cells))
-        quick, point = plain and not marks.thousands, marks.decimal == "."
+        point, mark = marks.decimal == ".", marks.thousands or "\n"
         for i, cell in enumerate(cells):
             value: float | None = math.nan
-            if quick:
+            if plain and mark not in cell:
                 try:
                     value = float(cell if point else cell.translate(_SWAPPED))
                 except ValueError:
