@@ -106,6 +106,8 @@ class Monitor:
 def head(path: Path) -> bytes:
     """The first 64 KiB of a file; empty where it cannot be read."""
     try:
+        if not path.is_file():
+            return b""
         with path.open("rb") as stream:
             return stream.read(HEAD)
     except OSError:
@@ -245,13 +247,14 @@ def _squeezed(line: str) -> str:
 
 
 class _Rows:
-    """Collects rows of a monitor, block by block."""
+    """Collects rows of a monitor, block by block, in columns that are made about as long as the file lets expect."""
 
     def __init__(self, path: Path, layout: Layout) -> None:
         self.path, self.layout = path, layout
         self.width = len(layout.names)
-        self.parts: list[list[Array]] = []
-        self.lines: list[NDArray[np.int64]] = []
+        self.columns: list[Array] = [np.empty(0)] * self.width
+        self.lines = np.empty(0, dtype=np.int64)
+        self.bytes = 0
         self.count, self.line = 0, layout.first
         self.broken: list[tuple[int, str]] = []
         self.repeated: list[int] = []
@@ -261,6 +264,7 @@ class _Rows:
         """Rows of a block of whole lines."""
         if b"\r" in block:
             block = block.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+        self.bytes += len(block)
         at, values = self._at_once(block) or self._by_line(block)
         self.line += block.count(b"\n")
         self.keep(at, values)
@@ -279,9 +283,23 @@ class _Rows:
                 f"more than {MONITOR_NUMBERS:,} numbers", "a monitor of one run", file=self.path, line=int(at[-1]),
                 advice="Write every tenth iteration.",
             )  # fmt: skip
-        if len(at):
-            self.lines.append(at)
-            self.parts.append([np.ascontiguousarray(values[:, j]) for j in range(self.width)])
+        if self.count > len(self.lines):
+            self._lengthen()
+        rows = slice(self.count - len(at), self.count)
+        self.lines[rows] = at
+        for j, column in enumerate(self.columns):
+            column[rows] = values[:, j]
+
+    def _lengthen(self) -> None:
+        """Longer columns, one after the other: a list of their pieces would take their memory twice in the end."""
+        whole = max(self.path.stat().st_size - self.layout.offset, 1)
+        length = max(self.count, int(1.02 * self.count * whole / max(self.bytes, 1)), len(self.lines) * 5 // 4)
+        length = min(length, MONITOR_NUMBERS // self.width + 1)
+        for j, column in enumerate(self.columns):
+            self.columns[j] = np.empty(length)
+            self.columns[j][: len(column)] = column
+        lines, self.lines = self.lines, np.empty(length, dtype=np.int64)
+        self.lines[: len(lines)] = lines
 
     def _at_once(self, block: bytes) -> tuple[NDArray[np.int64], Array] | None:
         """All rows of a block where every line has the right number of numbers; else None."""
@@ -431,7 +449,7 @@ def read_monitor(path: Path, layout: Layout) -> Monitor:
             "decimal points and decimal commas", "one decimal mark", file=path, line=layout.first,
             advice="Export the monitor anew, without thousands marks.",
         )  # fmt: skip
-    last = int(rows.lines[-1][-1]) if rows.lines else layout.first - 1
+    last = int(rows.lines[rows.count - 1]) if rows.count else layout.first - 1
     cut = [f"{path.name}:{n}: the last line is broken ({found})" for n, found in rows.broken if n > last][:1]
     remarks = [
         f"{path.name}:{n}: {found} instead of {rows.width}: line left out" for n, found in rows.broken[:5] if n < last
@@ -439,28 +457,23 @@ def read_monitor(path: Path, layout: Layout) -> Monitor:
     if len(rows.broken) > len(remarks) + len(cut):
         remarks.append(f"{path.name}: {len(rows.broken)} broken lines left out in all")
     remarks += [f"{path.name}:{n}: the header again, as a restart writes it" for n in rows.repeated[:5]]
-    parts = rows.parts
-    columns = [_column(parts, j) for j in range(rows.width)]
-    lines = np.concatenate(rows.lines) if rows.lines else np.empty(0, dtype=np.int64)
+    columns = [column[: rows.count] for column in rows.columns]
+    lines = rows.lines[: rows.count]
     if tail:
         remarks.append(tail)
     return Monitor(path, layout.names, columns, lines, layout.line, tuple(remarks), cut[0] if cut else "")
-
-
-def _column(parts: list[list[Array]], j: int) -> Array:
-    """One column of all blocks, whose own copies are let go."""
-    whole = np.concatenate([part[j] for part in parts]) if parts else np.empty(0)
-    for part in parts:
-        part[j] = np.empty(0)
-    return whole
 
 
 # ---------------------------------------------------------------------------------------------------- runs
 
 
 def taken(monitor: Monitor, rows: NDArray[np.bool_] | NDArray[np.int64]) -> Monitor:
-    """A monitor of some of its rows."""
-    return replace(monitor, columns=[c[rows] for c in monitor.columns], lines=monitor.lines[rows])
+    """A monitor of some of its rows; the given one loses its columns."""
+    columns = []
+    for j in range(len(monitor.columns)):
+        values, monitor.columns[j] = monitor.columns[j], np.empty(0)
+        columns.append(values[rows])
+    return replace(monitor, columns=columns, lines=monitor.lines[rows])
 
 
 def in_order(monitor: Monitor, index: int, inner: bool = False) -> Monitor:
