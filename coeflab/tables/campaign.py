@@ -95,7 +95,10 @@ def _half(value: Any, _file: Path) -> bool | str:
     raise InputError(shown(value), HALF_WORDS)
 
 
-HalfModel = Annotated[bool | str, takes.Takes(HALF_WORDS, _half, {"anyOf": [{"type": "boolean"}, {"type": "string", "enum": list(HALVES)}]})]
+HalfModel = Annotated[
+    bool | str,
+    takes.Takes(HALF_WORDS, _half, {"anyOf": [{"type": "boolean"}, {"type": "string", "enum": list(HALVES)}]}),
+]
 
 
 @brief

@@ -255,7 +255,9 @@ class ForceTable:
             if len(needed) == 1 or component not in forces:
                 continue
             if lacking := [c for c, _ in needed if c not in forces]:
-                notes.append(f"{component} left out: to move it needs {' and '.join(lacking)}, which the table does not have")
+                notes.append(
+                    f"{component} left out: to move it needs {' and '.join(lacking)}, which the table does not have"
+                )
                 del forces[component], usable[component]
                 errors.pop(component, None)
                 exclusions = [e for e in exclusions if e.component != component]

@@ -219,7 +219,10 @@ def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     if columns.radius is not None:
         if rates:
             yield columns.fail(
-                f"R and {', '.join(rates)}", "one or the other", name="R", advice="The rate is U over R; leave one column out."
+                f"R and {', '.join(rates)}",
+                "one or the other",
+                name="R",
+                advice="The rate is U over R; leave one column out.",
             )
         if not table.centre:
             yield campaign.fail(
