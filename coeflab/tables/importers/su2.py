@@ -346,7 +346,7 @@ def _add_velocity(conditions: dict[str, Stated], own: Sequence[float], place: st
     conditions |= {n: Stated(v + 0.0, place) for n, v in zip("uvw", own, strict=True)}
 
 
-def _rescaled(config: _Config, conditions: Mapping[str, Stated], stated: Mapping[str, Stated], monitor: Monitor) -> str:
+def _rescaled(config: _Config, conditions: Mapping[str, Stated], monitor: Monitor) -> str:
     """Coefficients of incompressible flow made those by the run's own density and speed; what was done, or empty.
 
     SU2 divides by INC_DENSITY_REF and INC_VELOCITY_REF where INC_NONDIM= REFERENCE_VALUES, else by the free stream, which in
