@@ -174,9 +174,9 @@ def collect(
 
 
 def _point(run: RunSummary, known: Sequence[str]) -> tuple[Any, ...]:
-    """What makes a condition: settings to six digits, and labels."""
+    """What makes a condition: settings to four digits, and labels."""
     settings = (run.conditions[k].value for k in known)
-    numbers = (v if isinstance(v, str) else 0.0 if abs(v) < 1e-9 else float(f"{v:.6g}") for v in settings)
+    numbers = (v if isinstance(v, str) else 0.0 if abs(v) < 1e-6 else float(f"{v:.4g}") for v in settings)
     labels = sorted((k, c.value) for k, c in run.conditions.items() if k not in SETTINGS and isinstance(c.value, str))
     return (*numbers, *labels)
 
@@ -207,7 +207,9 @@ def _duplicates(
 
 def _holes(rows: Sequence[RunSummary], known: Sequence[str]) -> tuple[str, ...]:
     """Conditions that a matrix of settings lacks, where at least three quarters of it are there."""
-    varied = [k for k in known if len({_point(r, [k])[0] for r in rows}) > 1]
+    # Of a velocity, u follows from the speed and the cross flow.
+    free = [k for k in known if k != "u" or not {"v", "w"} & set(known)]
+    varied = [k for k in free if len({_point(r, [k])[0] for r in rows}) > 1]
     if len(varied) < 2:
         return ()
     have = {_point(r, varied)[: len(varied)] for r in rows}

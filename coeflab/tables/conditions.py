@@ -436,15 +436,17 @@ def required(conditions: Mapping[str, Mapping[str, Condition]], pattern: NamePat
     if conditions and not known:
         return [InputError(f"no angle, rate or speed for {named(list(conditions))}", f"them in the files, {sources}",
                            advice="Nothing is taken from names unless a pattern says what they mean.")]  # fmt: skip
-    out = []
+    lacking: dict[tuple[str, ...], list[str]] = {}
     for name in known:
-        lacking = [run for run, c in conditions.items() if name not in c]
-        if lacking:
-            unfit = [r for r in lacking if pattern and pattern.conditions(r) is None]
+        lacking.setdefault(tuple(run for run, c in conditions.items() if name not in c), []).append(name)
+    out = []
+    for runs, names in lacking.items():
+        if runs:
+            unfit = pattern and any(pattern.conditions(r) is None for r in runs)
             why = f"The name does not fit {shown(pattern.text)}. " if pattern and unfit else ""
             out.append(InputError(
-                f"no {name} for {named(lacking)}", f"it in the files, {sources}, as for the other runs",
-                advice=f"{why}Where it is zero, a list of runs says so.",
+                f"no {listed(names)} for {named(runs)}", f"them in the files, {sources}, as for the other runs",
+                advice=f"{why}Where they are zero, a list of runs says so.",
             ))  # fmt: skip
     return out
 

@@ -10,7 +10,8 @@ shows too little of a long correlation. Where fewer than eight batches fit, the 
 lies within a drift that does not matter; the error is then that of a rectangular distribution over the range of the window
 (JCGM 100, 4.3.7).
 
-A drift is a slope through the batch means that is significant at 3 % and moves the value by more than a share of it.
+A drift is a slope through the batch means that is significant, at 3 % for all components of a run together, and moves the
+value by more than a share of it.
 """
 
 from __future__ import annotations
@@ -184,7 +185,7 @@ def autoregressive_time(values: Array) -> float:
     return max((1.0 + phi) / (1.0 - phi), 1.0)
 
 
-def mean_of(values: Array, tolerance: float, floor: float) -> Mean:
+def mean_of(values: Array, tolerance: float, floor: float, significance: float = SIGNIFICANCE) -> Mean:
     """Mean of a window, its standard error, and whether it drifts.
 
     Parameters
@@ -195,6 +196,8 @@ def mean_of(values: Array, tolerance: float, floor: float) -> Mean:
         Change of the value that does not matter.
     floor : float
         Least standard error.
+    significance : float
+        Of a drift.
     """
     m = len(values)
     value = float(values.mean()) if m else np.nan
@@ -221,7 +224,7 @@ def mean_of(values: Array, tolerance: float, floor: float) -> Mean:
     left = means - means.mean() - trend * at
     scatter = max(float(left @ left) / (batches - 2), noise / size)
     trend_error = float(np.sqrt(scatter / float(at @ at)))
-    limit = float(stdtrit(batches - 2, 1.0 - SIGNIFICANCE / 2.0)) * trend_error
+    limit = float(stdtrit(batches - 2, 1.0 - significance / 2.0)) * trend_error
     drifts = abs(trend) > max(limit, tolerance)
     error = float(np.sqrt(max(float(means.var(ddof=1)) / batches, long_run_variance(values)[0] / m)))
     # A mean of a value that still moves is uncertain by the range of the line as well.
@@ -280,7 +283,9 @@ def plateau(forces: Mapping[str, Array], at: Array | None = None, groups: Mappin
     start = max(first for first, _ in starts)
     window = steps[:, start:]
     floor = {c: 0.5 * DIGITS * whole[c] / np.sqrt(3.0) for c in names}
-    means = {c: mean_of(row, tolerance[c], floor[c]) for c, row in zip(names, window, strict=True)}
+    means = {
+        c: mean_of(row, tolerance[c], floor[c], SIGNIFICANCE / len(names)) for c, row in zip(names, window, strict=True)
+    }
     unsettled = [
         c
         for c, (_, found), row in zip(names, starts, window, strict=True)

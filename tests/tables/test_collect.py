@@ -248,8 +248,7 @@ def test_nothing_is_guessed(tmp_path: Path) -> None:
     write_run(tmp_path / "odd")
     with pytest.raises(InputError) as caught:
         collect(tmp_path, names="b{beta:deg}_r{r:rad/s}")
-    assert "no beta for odd" in str(caught.value)
-    assert "no r for odd" in str(caught.value)
+    assert "no beta and r for odd" in str(caught.value)
     assert 'does not fit "b{beta:deg}_r{r:rad/s}"' in str(caught.value)
 
 

@@ -60,6 +60,12 @@ def test_planted_drift_is_found(n: int, phi: float) -> None:
     assert share(judged(rows), Convergence.DRIFTING) >= 0.85
 
 
+def test_six_components_raise_no_more_false_alarms_than_one() -> None:
+    rng = np.random.default_rng(6)
+    runs = [{c: MEAN + row for c, row in zip("XYZKMN", noise(rng, 500, 0.5, 6), strict=True)} for _ in range(120)]
+    assert share([plateau(run) for run in runs], Convergence.DRIFTING) <= 0.05
+
+
 def test_small_drift_does_not_matter() -> None:
     rng = np.random.default_rng(3)
     rows = TRUTH + 0.01 * noise(rng, 2000, 0.5, 20) + np.linspace(0.0, 0.2, 2000)
