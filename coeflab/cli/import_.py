@@ -103,7 +103,7 @@ def command(
     file, out = typed(path), typed(out)
     if not force and out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
-    said = _said(mapping, set_, [*option, *_runs(name, runs, state)], as_)
+    said = _said(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
     importer = importer_of(file, said.importer)
     with show.narrated(), show.progress(False) as say:
         raw = read_raw(file, importer, said.options, say)
@@ -187,7 +187,8 @@ def options_of(texts: Sequence[str]) -> dict[str, Any]:
     return {key.strip(): _number(said.strip()) for key, _, said in pairs}
 
 
-def _runs(name: str, runs: Path | None, state: Path | None) -> list[str]:
+def of_runs(name: str, runs: Path | None, state: Path | None = None) -> list[str]:
+    """Options of collected runs as ``--option`` takes them."""
     given = {"names": name, "run_list": runs, "state": state}
     return [f"{option}={value}" for option, value in given.items() if value]
 

@@ -325,8 +325,6 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
     out = []
     for row, text in enumerate(texts_of(column)):
         words = {word.removesuffix("'") for word in text.replace(";", " ").replace(",", " ").split()}
-        if "all" in words:
-            words = words - {"all"} | {one.said.name for one in known if one.said.role == "force"}
         words = words - {ALL} | forces if ALL in words else words
         if strange := sorted(words - names):
             raise fault(raw, shown(strange[0]), f"{ALL}, or of {', '.join(sorted(names))}", column, row=row)

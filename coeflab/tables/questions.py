@@ -6,7 +6,7 @@ import json
 import shlex
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +18,18 @@ from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.text.toml import read_toml
 from coeflab.core.units import quantity
+from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR
-from coeflab.tables.campaign import CENTRES
+from coeflab.tables.campaign import (
+    CENTRES,
+    CampaignAxes,
+    CampaignConditions,
+    CampaignHead,
+    InputUncertainty,
+    TableDeclaration,
+    TableSource,
+    TowedInertia,
+)  # fmt: skip
 from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.mapping import Assigned, assigned, known_as
 from coeflab.tables.proposals import OPEN, Evidence, Proposal, evidence, proposals
@@ -27,7 +37,11 @@ from coeflab.tables.raw_table import RawColumn, RawTable
 
 POINT_OF = "axes.reference_point"
 CONFIRMED = ("confirmed", "from ")
-SECTIONS = ("campaign", "axes", "scaling", "conditions", "source", "inertia", "uncertainty", "table")
+_KINDS = {
+    "campaign": CampaignHead, "axes": CampaignAxes, "scaling": Scaling, "conditions": CampaignConditions,
+    "source": TableSource, "inertia": TowedInertia, "uncertainty": InputUncertainty, "table": TableDeclaration,
+}  # fmt: skip
+SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
 PLACES = ("FRAME", "POINT", "NAME", "SOURCE", "KIND", "SIGN", "SIDE")
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
 
@@ -176,9 +190,10 @@ def read_setting(key: str, text: Any) -> Any:
         No such key, or nothing that it takes.
     """
     section, _, name = key.partition(".")
-    if section not in SECTIONS or not name or key in RESERVED:
-        example = "--set axes.frame=CFD"
-        raise InputError(f"the key {shown(key)}", f"one of {', '.join(SECTIONS)} with a key, such as {example}")
+    if name not in SECTIONS.get(section, ()) or key in RESERVED:
+        known = [f"{section}.{n}" for n in SECTIONS.get(section, ()) if f"{section}.{n}" not in RESERVED]
+        expected = f"one of {', '.join(known or SECTIONS)}" + ("" if known else " with a key, such as axes.frame")
+        raise InputError(f"the key {shown(key)}", expected)
     if text in PLACES:
         raise InputError(shown(text), "a value in its place", column=key)
     typed = _toml(text) if isinstance(text, str) and READERS.get(key) is not READERS["axes.datum"] else text
@@ -195,7 +210,8 @@ def stated_settings(raw: RawTable) -> dict[str, Setting]:
     """
     out = {}
     for key, said in raw.stated.items():
-        if key.partition(".")[0] in SECTIONS and key not in (*RESERVED, POINT_OF):
+        section, _, name = key.partition(".")
+        if name in SECTIONS.get(section, ()) and key not in (*RESERVED, POINT_OF):
             plain = list(map(float, said.value)) if isinstance(said.value, tuple) else said.value
             out[key] = Setting(plain, f"stated: {said.place}")
     return out

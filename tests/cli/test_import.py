@@ -10,6 +10,7 @@ import shlex
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import Result
 from typer.testing import CliRunner
@@ -22,6 +23,10 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.reading import read_tables
 from tests.cli.conftest import COEFLAB, Run
+from tests.tables.runs_as_text import FILE, write_run
+from tests.tables.test_collect import stub
+
+__all__ = ["stub"]
 
 DOC = Path(__file__).parents[2] / "docs" / "data_in.md"
 DRIFT = """# tank
@@ -195,6 +200,46 @@ def test_inspect_of_what_no_importer_knows(tmp_path: Path) -> None:
     assert "found nothing that an importer knows by its content; expected --as" in lines[0]
     assert "table" in lines[0]
     assert "one of" in refused(invoke("inspect", tmp_path / "noise.bin", "--as", "csv"))[0]
+
+
+RUNS = {f"b{beta}".replace("-", "m"): beta for beta in (0, 4, 8, -4, -8)}
+
+
+@pytest.fixture
+def runs(stub: Path, tmp_path: Path) -> Path:
+    """A folder of runs whose names hold the drift angle, about a speed that their files state."""
+    folder = tmp_path / "runs"
+    for seed, (name, beta) in enumerate(RUNS.items()):
+        forces = {"X": 13.0, "Y": 3.0 * beta + 0.5}
+        stated = {"conditions.density": 998.2, "conditions.speed": 2.0, "axes.reference_point": [1.2, 0.0, 0.0]}
+        write_run(folder / name, forces, seed=seed, stated=stated, patches={"sail": 0.2})
+    return folder
+
+
+def test_a_folder_of_runs_becomes_a_campaign_that_weighs_its_points(runs: Path, tmp_path: Path) -> None:
+    ask = ("import", runs, "--out", tmp_path / "out", "--name", "b{beta:deg:m=-}", "--yes")
+    lines = refused(invoke(*ask))
+    assert "The file has (1.2, 0, 0) in its own axes from its own origin" in " ".join(" ".join(lines).split())
+    assert not any("conditions." in line for line in lines)
+    said = {k: v for k, v in SAID.items() if not k.startswith("conditions.")}
+    done = invoke(*ask, *[a for k, v in said.items() for a in ("--set", f"{k}={v}")])
+    assert done.exit_code == 0, done.output
+    table = table_of(tmp_path / "out")
+    assert table.labels == tuple(RUNS)
+    assert np.degrees(np.arcsin(table.motion["v"] / table.speed)) == pytest.approx([-b for b in RUNS.values()])
+    assert table.forces["Y"] == pytest.approx([3.0 * b + 0.5 for b in RUNS.values()], rel=2e-3)
+    assert set(table.errors) == {"X", "Y"}
+    text = (tmp_path / "out" / "campaign.toml").read_text()
+    assert re.search(r"density = 998.2 +# stated: \w+/setup:7", text)
+    # in place: the same campaign.toml on the folder itself, with the conditions by the same pattern
+    head = '[campaign]\ntitle = "T"\nbody = "b"\nimporter = "stub"\n\n[importer]\nnames = "b{beta:deg:m=-}"\n\n'
+    sections = "".join(re.findall(r"^\[(?:axes|scaling|conditions|source)\]\n(?:[^\[\n].*\n)+", text, re.MULTILINE))
+    (tmp_path / "campaign.toml").write_text(head + sections + '\n[[table]]\nfile = "runs"\n', encoding="utf-8")
+    in_place = table_of(tmp_path)
+    for name, values in table.forces.items():
+        assert in_place.forces[name].tolist() == values.tolist()
+        assert in_place.errors[name].tolist() == table.errors[name].tolist()
+    assert in_place.files[1].sha256 == sha256_of(runs, [runs / n / FILE for n in RUNS])
 
 
 def on_a_terminal(folder: Path, command: list[str], answers: str) -> tuple[int, str]:
