@@ -16,11 +16,12 @@ from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS
-from coeflab.tables.column_map import EXAMPLES, WORDS, ColumnMap, read_column_map
+from coeflab.tables.column_map import EXAMPLES, ROLES, WORDS, ColumnMap, read_column_map
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
 
 OPEN = "?"
+OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore"}  # names that coeflab's own tables have
 CLEAR = 0.8  # correlation beyond which a slope has a sign
 _SAID = {
     "X": "fx forcex xforce surgeforce longitudinalforce axialforce laengskraft langskraft forcelongitudinale fxtotal",
@@ -129,19 +130,7 @@ def _name(column: RawColumn) -> tuple[str, str, bool]:
     own = column.name.strip()
     short = own.replace("′", "'").replace("’", "'")
     plain = short.removeprefix("se_").removesuffix("'")
-    if plain in (
-        *COMPONENTS,
-        *LINEAR,
-        *ANGULAR,
-        "U",
-        "R",
-        "density",
-        "alpha",
-        "beta",
-        "cells",
-        "point",
-        *CONTROL_COLUMNS,
-    ):
+    if plain in OWN:
         try:
             return str(read_column_map(short)), "its name", True
         except InputError:

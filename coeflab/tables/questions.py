@@ -104,7 +104,7 @@ class Question:
 def _sign(name: str) -> Callable[[Any], Any]:
     def read(said: Any) -> str:
         formulas = {"+" if sign > 0 else "-": formula for formula, sign in ANGLE_SIGNS[name].items()}
-        text = formulas.get(said, said)
+        text = formulas.get(str(said), said)
         angle_sign(name, text)
         return " ".join(str(text).split())
 

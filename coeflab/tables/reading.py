@@ -32,7 +32,18 @@ def recognised(path: Path) -> tuple[str, ...]:
         with IMPORTERS.guarded(name):
             if (importer.raw or importer.run) and importer.recognises(path):
                 known.append(name)
-    return tuple(n for n in known if n != GENERAL) or tuple(known)
+    known = [n for n in known if n != GENERAL] or known
+    return tuple(known or ([GENERAL] if _is_of_a_campaign(path) else ()))
+
+
+def _is_of_a_campaign(path: Path) -> bool:
+    """Whether an importer of campaigns knows a text whose campaign.toml is not there yet."""
+    for name in IMPORTERS.usable():
+        importer = IMPORTERS.load(name)
+        with IMPORTERS.guarded(name):
+            if importer.read and not (importer.raw or importer.run) and path.is_file() and importer.recognises(path):
+                return True
+    return False
 
 
 def importer_of(path: Path, name: str = "") -> str:

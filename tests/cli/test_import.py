@@ -8,6 +8,7 @@ import pty
 import re
 import shlex
 import subprocess
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -157,10 +158,10 @@ def test_wrong_arguments_are_refused_together_and_nothing_is_written(drift: Path
     assert len(lines) == 2
     assert 'no column "Fz"' in lines[0]
     assert "unit of another dimension" in lines[1]
-    bad = invoke(
-        "import", drift, "--out", tmp_path / "out", "--yes", *sets(conditions__viscosity="thick", source__what="1")
-    )
-    assert {re.search(r'"([\w.]+)"', line)[1] for line in refused(bad)} == {"conditions.viscosity", "source.what"}  # type: ignore[index]
+    ask = ("import", drift, "--out", tmp_path / "out", "--yes")
+    lines = refused(invoke(*ask, *sets(conditions__viscosity="thick", table__labels="Run")))
+    assert [line.partition(":")[0] for line in lines] == ['"conditions.viscosity"', '"table[0].labels"']
+    assert '"source.wat"' not in refused(invoke(*ask, *sets(source__wat="1")))[0].partition("expected")[2]
     assert [p.name for p in tmp_path.iterdir()] == ["drift.csv"]
 
 
@@ -192,6 +193,21 @@ def test_inspect_of_an_unknown_file(drift: Path, monkeypatch: pytest.MonkeyPatch
     assert content["columns"][1]["proposed"] == "beta [deg]"
     assert content["columns"][1]["low"] == -8.0
     assert len(content["missing"]) == 15
+
+
+def test_a_table_in_our_own_names_is_imported_as_it_reads(tmp_path: Path) -> None:
+    """What `coeflab import` writes is what it reads: the same bytes but for the first line, the same force table."""
+    template = Path(str(files("coeflab.cli") / "template" / "campaign" / "drift.csv")).read_text()
+    (tmp_path / "own.csv").write_text(template.replace("-51.1930,-13.6577,", "-51.1930,,N"))
+    said = sets(axes__frame="FRD", axes__beta="-")
+    for source, out in (("own.csv", "one"), ("one/table.csv", "two")):
+        done = invoke("import", tmp_path / source, "--out", tmp_path / out, *said)
+        assert done.exit_code == 0, done.output + str(done.exception)
+    one, two = ((tmp_path / n / "table.csv").read_text().splitlines()[1:] for n in ("one", "two"))
+    assert one == two
+    table = table_of(tmp_path / "one")
+    assert [(e.row, e.component) for e in table.exclusions] == [(0, "N")]
+    assert table.forces["Y"][0] == -51.193
 
 
 def test_inspect_of_what_no_importer_knows(tmp_path: Path) -> None:
