@@ -126,7 +126,7 @@ def described(raw: RawTable, importer: str, found: Understood) -> None:
     """Print what a file is, its columns, what it says of itself and what its numbers show."""
     from coeflab.report.tables import raw_tables
 
-    said = "; ".join(f"{key} {text}" for key, text in raw.dialect.items())
+    said = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
     show.sentence(f"{raw.path}: read by {importer}" + (f"; {said}" if said else ""))
     show.table(raw_tables.columns(raw, found.proposals, found.mapping))
     show.table(raw_tables.stated(raw))

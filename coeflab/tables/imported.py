@@ -62,8 +62,8 @@ def contents(
     if labels:
         declared["labels"] = labels
     if any(c.said.name == "cells" for c in columns):
-        declared |= {"ignore": ["cells"], "cells": "cells"}
-    dialect = "; ".join(f"{k} {v}" for k, v in raw.dialect.items())
+        declared["cells"] = "cells"
+    dialect = "; ".join(f"{k} {v}" for k, v in raw.dialect.items() if k != "importer")
     how = f"Imported from {raw.path.name} by coeflab {VERSION}, importer {importer}" + (
         f" ({dialect})" if dialect else ""
     )
