@@ -1,4 +1,4 @@
-"""Monitors of STAR-CCM+, Fluent and SU2: the samples, and the states in which runs leave their files."""
+"""Monitors of STAR-CCM+, Fluent, CFX and SU2: the samples, and the states in which runs leave their files."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ LAYOUTS = {
     "starccm": (SAMPLES / "starccm/forces.csv", 1),
     "fluent": (SAMPLES / "fluent/forces-rset.out", 2),
     "fluent old": (SAMPLES / "fluent/cd-history.out", 1),
+    "cfx": (SAMPLES / "cfx/monitors.csv", 1),
     "su2": (SAMPLES / "su2/v8_drift/history.csv", 10),
     "su2 6": (SAMPLES / "su2/v6_incidence/history.csv", 1),
 }
@@ -174,6 +175,16 @@ def test_fluent_reports_along_directions(tmp_path: Path) -> None:
     cut = read("fluent", path)
     assert cut.ended is Ended.CRASHED
     assert "no row Net" in cut.why
+
+
+def test_cfx_names_hold_commas_and_quotation_marks() -> None:
+    run = read("cfx", SAMPLES / "cfx/monitors.csv")
+    assert [(c.name, c.unit, c.means) for c in run.history.columns] == [
+        ("ACCUMULATED TIMESTEP", "", "iteration"),
+        ("Fx hull", "", ""),
+        ("Fy hull", "", ""),
+        ('P1,D1,"x= 4.65E-02,y= 4.16E-01,z= 0.00E+00",Pressure', "", ""),
+    ]
 
 
 def test_su2_coefficients_in_the_axes_of_the_mesh() -> None:
