@@ -195,8 +195,8 @@ def test_su2_coefficients_in_the_axes_of_the_mesh() -> None:
     }  # fmt: skip
     assert {c.unit for c in run.history.columns if c.name.startswith("C")} == {"-"}
     stated = {k: (s.value, s.place) for k, s in run.history.stated.items()}
-    assert stated["scaling.length"] == (2.1, "hull.cfg:19")
-    assert stated["scaling.area"] == (4.41, "hull.cfg:20")
+    assert stated["coefficients.length"] == (2.1, "hull.cfg:19")
+    assert stated["coefficients.area"] == (4.41, "hull.cfg:20")
     assert stated["axes.reference_point"] == ((1.05, 0.0, 0.0), "hull.cfg:16, 17, 18")
     assert stated["conditions.density"] == (998.2, "hull.cfg:12")
 
