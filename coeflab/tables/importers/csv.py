@@ -18,6 +18,7 @@ from coeflab.core.units import Header, factor
 from coeflab.core.wording import Verbatim
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS, MOTIONS
 from coeflab.tables.campaign import Campaign, TableDeclaration
+from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.to_frd import Columns, force_table, surge_column
 
@@ -186,11 +187,8 @@ def _doubtful(cells: Cells, texts: list[str], headers: dict[str, str]) -> tuple[
 
 
 def recognises(path: Path) -> bool:
-    """Whether the file is text, as far as its first 4 KiB say."""
-    if not path.is_file():
-        return False
-    with path.open("rb") as stream:
-        return b"\0" not in stream.read(4096)
+    """Whether the names of the columns are ours, each with its unit in brackets, between commas."""
+    return is_house_table(path)
 
 
 def read(
