@@ -22,7 +22,7 @@ from coeflab.tables.monitor_files import HEAD, decoded, header_cells, lines_of
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Stated
 
 BLOCK = 1 << 22
-_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_NUMBER = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _NOT_FINITE = re.compile(r"[-+]?(?:nan(?:\([a-z]*\))?|inf(?:inity)?|1\.#(?:qnan|snan|ind|inf)0*)", re.I)
 _MOST_BROKEN, _BROKEN_SHARE = 10, 0.01
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import shutil
+import time
 from pathlib import Path
 
 import numpy as np
@@ -372,6 +373,17 @@ def test_mostly_broken_is_refused(layout: str, tmp_path: Path) -> None:
     text = "".join(lines[:header]) + "".join(f"{i} oh dear{i}\n" for i in range(40))
     with pytest.raises(InputError, match=f"line {header + 1}.*lines are broken"):
         read(layout, written(tmp_path, layout, text))
+
+
+@EACH
+def test_long_digits_take_no_time(layout: str, tmp_path: Path) -> None:
+    """A number that cannot be one is refused in time proportional to its length: 60,000 digits took minutes."""
+    lines, header = lines_of(layout)
+    long = lines[header].replace("1", "1" * 30_000 + "x", 1)
+    start = time.process_time()
+    run = read(layout, written(tmp_path, layout, "".join([*lines[:header], long, *lines[header + 1 :]])))
+    assert time.process_time() - start < 0.5
+    assert len(run.history) == len(lines) - header - 1
 
 
 @EACH

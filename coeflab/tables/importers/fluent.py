@@ -182,7 +182,7 @@ def _tables(path: Path) -> tuple[list[_Table], str]:
         title = _TITLE.fullmatch(line.strip())
         if title is None or n + 2 >= len(lines) or lines[n + 2].split()[:4] != ["Zone", "Pressure", "Viscous", "Total"]:
             continue
-        unit = _UNIT.search(lines[n + 1])
+        unit = _UNIT.search(lines[n + 1][:1000])
         given = title["axis"] if title["what"] == "Moments" else title["direction"]
         zones, closed = _zones(lines, n + 3, path, 1 if given else 3)
         if not closed:
