@@ -375,6 +375,13 @@ def _unit_of(rows: Sequence[RunSummary], component: str) -> str:
     return next(iter(units), "")
 
 
+def _alike(a: object, b: object) -> bool:
+    """Whether two stated values are one; speeds come from vectors of six digits."""
+    if isinstance(a, (float, tuple)) and isinstance(b, (float, tuple)):
+        return np.shape(a) == np.shape(b) and bool(np.allclose(a, b, rtol=1e-6, atol=1e-9))
+    return a == b
+
+
 def _stated(rows: Sequence[RunSummary]) -> tuple[dict[str, Stated], list[str]]:
     """What all runs state alike; axes, points and densities must not differ."""
     first: dict[str, tuple[str, Stated]] = {}
@@ -383,7 +390,7 @@ def _stated(rows: Sequence[RunSummary]) -> tuple[dict[str, Stated], list[str]]:
     for r in rows:
         for key, one in r.stated.items():
             name, before = first.setdefault(key, (r.name, one))
-            if before.value == one.value or key in differing:
+            if _alike(before.value, one.value) or key in differing:
                 continue
             differing[key] = None
             if key.startswith(ONE_FOR_ALL):

@@ -17,11 +17,14 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
+from coeflab.fits import FITS
 from coeflab.tables.collect import Collected, collect
 from coeflab.tables.conditions import name_pattern, read_run_list
 from coeflab.tables.histories import Convergence
-from coeflab.tables.importers import IMPORTERS
+from coeflab.tables.importers import IMPORTERS, PlannedTable
+from coeflab.tables.reading import read_tables
 from coeflab.tables.runs import find_runs, natural
+from tests.conftest import SECTIONS
 from tests.tables.runs_as_text import FILE, install, write_run
 
 pytestmark = pytest.mark.usefixtures("stub")
@@ -343,6 +346,31 @@ def test_without_a_history_there_is_no_error(tmp_path: Path) -> None:
     assert any(r.startswith("No se_Y: b2 and b4") for r in found.table.remarks)
 
 
+def test_a_folder_of_runs_is_a_table_of_a_campaign(tmp_path: Path) -> None:
+    """Runs that are not converged are in the table and out of the fits."""
+    for k in (-8, -4, 0, 4, 8):
+        write_run(tmp_path / "runs" / f"b{k}", {"X": -40.0, "Y": 10.0 * k + 0.01}, seed=k + 8, rows=400)
+    write_run(tmp_path / "runs" / "b12", {"X": -40.0 + np.zeros(400), "Y": np.linspace(100.0, 120.0, 400)})
+    write_run(tmp_path / "runs" / "b16", ended="crashed", why="log:3")
+    sections = {
+        **SECTIONS,
+        "campaign": f'{SECTIONS["campaign"]}\nimporter = "stub"',
+        "importer": 'names = "b{beta:deg}"',
+    }
+    text = "".join(f"[{name}]\n{content}\n" for name, content in sections.items() if content)
+    (tmp_path / "campaign.toml").write_text(f'{text}[[table]]\nfile = "runs"\n')
+    (table,) = read_tables(PlannedTable(tmp_path, ()))
+    kept = np.array([label not in ("b12", "b16") for label in table.labels])
+    assert len(kept) == 7
+    assert table.usable["Y"].tolist() == kept.tolist()
+    assert np.all(table.errors["Y"][kept] > 0.0)
+    assert any("b12 (" in n for n in table.notes)
+    model = FITS.load("polynomial").fit([table], table.scaling, {"responses": "Y", "degree": 1}).models[0]
+    assert set(model.labels) == {"b-8", "b-4", "b0", "b4", "b8"}
+    assert 32_000.0 * model.fit.coefficients[1] == pytest.approx(-10.0 * np.degrees(1.0), rel=1e-3)
+    np.testing.assert_allclose(table.errors["Y"][table.labels.index("b8")], 0.08 / np.sqrt(400), rtol=0.5)
+
+
 def test_columns_that_the_format_does_not_name(tmp_path: Path) -> None:
     """Monitors have the names that a user gave them: all are averaged, and somebody says which is which."""
     for k in (2, 4):
@@ -448,3 +476,39 @@ def test_processes_give_the_same_table(tmp_path: Path) -> None:
     assert one.table.row_labels == two.table.row_labels
     for ours, theirs in zip(one.table.columns, two.table.columns, strict=True):
         np.testing.assert_array_equal(ours.values, theirs.values)
+
+
+def test_any_text_is_a_pattern_or_a_clear_error() -> None:
+    """Fuzz: 2,000 mutations of patterns, each on a name."""
+    rng = np.random.default_rng(17)
+    seeds = ["b{beta:deg}_r{r:rad/s}", "*{U:kn:x0.1,p=.}/*_{grid:text}", "{r':-}{", "a{alpha:rad:m=-}}"]
+    letters = "{}:*/,=.x-+mp\u2212 deg{beta:deg}\n\0\u00b5"
+    for _ in range(2000):
+        text = list(seeds[rng.integers(len(seeds))])
+        for _ in range(rng.integers(1, 6)):
+            text.insert(int(rng.integers(len(text) + 1)), letters[rng.integers(len(letters))])
+            text.pop(int(rng.integers(len(text))))
+        try:
+            pattern = name_pattern("".join(text))
+        except InputError:
+            continue
+        pattern.conditions("x/b4_r0.1")
+        pattern.conditions("".join(text))
+
+
+def test_any_text_is_a_list_of_runs_or_a_clear_error(tmp_path: Path) -> None:
+    rng = np.random.default_rng(18)
+    seeds = {
+        "list.csv": b"run,beta [deg],U [kn],grid\na/first,4,4,A\nsecond,-2,4,B\n",
+        "list.toml": b'[runs.one]\nbeta = "4 deg"\ngrid = "A"\ncells = 1000\n[runs."b/two"]\nr = "0.2 rad/s"\n',
+    }
+    for name, seed in seeds.items():
+        for _ in range(400):
+            text = bytearray(seed)
+            for _ in range(rng.integers(1, 5)):
+                text[rng.integers(len(text))] = b'0.,"=[]\n e-\xff\0'[rng.integers(13)]
+            (tmp_path / name).write_bytes(bytes(text))
+            try:
+                read_run_list(tmp_path / name)
+            except InputError:
+                continue
