@@ -434,14 +434,14 @@ import sys
 from pathlib import Path
 from coeflab.tables.collect import collect
 if __name__ == "__main__":
-    root, state, workers = Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3])
-    collect(root, names="b{beta:deg}", state=state, workers=workers, progress=lambda line: print(line, flush=True))
+    root, state = Path(sys.argv[1]), Path(sys.argv[2])
+    collect(root, names="b{beta:deg}", state=state, workers=2, progress=lambda line: print(line, flush=True))
 """
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("workers", [1, 2])
-def test_killed_and_continued(tmp_path: Path, stub: Path, workers: int) -> None:
+def test_killed_and_continued(tmp_path: Path, stub: Path) -> None:
+    """With two processes; what they read is, to the last digit, what one reads."""
     log = tmp_path / "log"
     for k in range(40):
         write_run(tmp_path / "runs" / f"b{k}", seed=k, rows=60, log=str(log), slow=0.03)
@@ -449,7 +449,7 @@ def test_killed_and_continued(tmp_path: Path, stub: Path, workers: int) -> None:
     script.write_text(KILLED)
     state = tmp_path / "state.jsonl"
     process = subprocess.Popen(
-        [sys.executable, script, tmp_path / "runs", state, str(workers)], stdout=subprocess.PIPE, text=True,
+        [sys.executable, script, tmp_path / "runs", state], stdout=subprocess.PIPE, text=True,
         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(stub), *sys.path])},
     )  # fmt: skip
     assert process.stdout is not None
@@ -465,16 +465,6 @@ def test_killed_and_continued(tmp_path: Path, stub: Path, workers: int) -> None:
     assert found.again == 40 - done
     whole = collect(tmp_path / "runs", names="b{beta:deg}", workers=1)
     for ours, theirs in zip(found.table.columns, whole.table.columns, strict=True):
-        np.testing.assert_array_equal(ours.values, theirs.values)
-
-
-@pytest.mark.slow
-def test_processes_give_the_same_table(tmp_path: Path) -> None:
-    for k in range(30):
-        write_run(tmp_path / f"b{k}", seed=k, rows=60)
-    one, two = (collect(tmp_path, names="b{beta:deg}", workers=w) for w in (1, 2))
-    assert one.table.row_labels == two.table.row_labels
-    for ours, theirs in zip(one.table.columns, two.table.columns, strict=True):
         np.testing.assert_array_equal(ours.values, theirs.values)
 
 
@@ -503,7 +493,7 @@ def test_any_text_is_a_list_of_runs_or_a_clear_error(tmp_path: Path) -> None:
         "list.toml": b'[runs.one]\nbeta = "4 deg"\ngrid = "A"\ncells = 1000\n[runs."b/two"]\nr = "0.2 rad/s"\n',
     }
     for name, seed in seeds.items():
-        for _ in range(400):
+        for _ in range(200):
             text = bytearray(seed)
             for _ in range(rng.integers(1, 5)):
                 text[rng.integers(len(text))] = b'0.,"=[]\n e-\xff\0'[rng.integers(13)]
