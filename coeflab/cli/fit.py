@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from coeflab.study.study import Study
 
 
+DEFAULT = "slope_at_origin"
 EXAMPLE = "coeflab fit suboff_roddy_2 --symbol Yv"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
@@ -26,7 +28,9 @@ def command(
         help="Campaign folders, CSVs of them, or names of shipped campaigns; several are fitted jointly.",
         show_default=False,
     ),
-    fit: str = typer.Option("slope_at_origin", help="Name of the fit (see coeflab formats)."),
+    fit: str = typer.Option(
+        "", help="Name of the fit (see coeflab formats); slope_at_origin unless the tables need another.", show_default=False
+    ),
     constraint: list[str] = typer.Option(
         [], metavar="EQUATION", help='Equation between coefficients, "Mw = -Nv"; repeatable.'
     ),
@@ -57,22 +61,24 @@ def command(
     from coeflab.law.scaling import Scaling
     from coeflab.study.plan import table_at
     from coeflab.study.study import Plan, PlannedJoint
+    from coeflab.tables.reading import suited_fit
     from coeflab.workbench import run
 
     if help_options:
         from coeflab.cli.formats import explain
         from coeflab.fits import FITS
 
-        explain(FITS, fit)
+        explain(FITS, fit or DEFAULT)
         return
     names, options = given([*table, *ctx.args], constraint)
     if not names:
         raise InputError("no table", "a campaign folder, one CSV of it, or a shipped campaign's name", column="TABLE")
-    if next_runs and fit != "slope_at_origin":
-        raise InputError(f"--next with --fit {shown(fit)}", "--fit slope_at_origin", column="--next")
     if figure is not None and figure.suffix != ".svg":
         raise InputError(shown(figure.name), "a file name that ends in .svg", column="--figure")
     paths = [located(name, "cfd_data") for name in names]
+    fit = fit or suited_fit(paths[0])
+    if next_runs and fit != DEFAULT:
+        raise InputError(f"--next with --fit {shown(fit)}", f"--fit {DEFAULT}", column="--next")
     if bool(length) != bool(length_name):
         raise InputError("--length without its name", "--length and --length-name together")
     alone = len(paths) == 1
@@ -82,11 +88,9 @@ def command(
         tables=(table_at(paths[0], (fit,), {fit: options}),) if alone else (),
         joint=() if alone else (PlannedJoint(tuple(map(table_at, paths)), fit, options),),
         scaling=Scaling(quantity(length, "length", key="--length"), length_name) if length else None,
-        wanted=("Yv", "Nv", "Zw", "Mw", "Yr", "Nr") if fit == "slope_at_origin" else (),
+        wanted=("Yv", "Nv", "Zw", "Mw", "Yr", "Nr") if fit == DEFAULT else (),
         include_uncertain=include_uncertain,
     )
-    from dataclasses import replace
-
     with show.progress(json) as say:
         study = run(plan, say)
         offered = tuple(c for c in study.checks if c.name != "law at points")  # no law is offered by a fit alone
@@ -165,9 +169,11 @@ def _draw(study: Study, symbols: list[str], file: Path) -> None:
     from coeflab.report.figures.model import distinct, model_figures
     from coeflab.report.figures.svg import sheet
     from coeflab.report.figures.sweep import sweep_figure
+    from coeflab.report.sections.oscillations import oscillation_figures
 
     rows: list[tuple[Figure, ...]] = []
     for fit in study.fits:
+        rows += [oscillation_figures(o, f"o{i}") for i, o in enumerate(fit.oscillations)]
         for i, s in enumerate(s for s in fit.sweeps if not symbols or s.symbol in symbols):
             rows.append((sweep_figure(s, f"s{i}"), estimator_figure(s, (), f"e{i}")))
         for i, m in enumerate(distinct(fit.models)):
@@ -181,9 +187,12 @@ def _draw(study: Study, symbols: list[str], file: Path) -> None:
 def _diagnose(study: Study) -> None:
     from coeflab.report.figures.model import distinct
     from coeflab.report.tables import models as model_tables
+    from coeflab.report.tables import oscillations as oscillation_tables
 
     models = distinct([m for f in study.fits for m in f.models])
-    if not models:
+    for content in (t for f in study.fits for t in oscillation_tables.runs(f)):
+        show.table(content)
+    if not models and not any(f.oscillations for f in study.fits):
         show.text("No fitted model to diagnose; --symbol shows the windows and estimators of a slope.")
         return
     show.table(model_tables.diagnostics(models))
@@ -197,16 +206,20 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
     from coeflab.report.tables import models as joint_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
+    from coeflab.report.tables import oscillations as oscillation_tables
     from coeflab.report.tables import results as tables
     from coeflab.report.tables import uncertainty as budget_tables
 
-    show.sentence(tables.headline(study, symbols))
+    show.sentence(tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits))
     show.text()
     show.table(tables.coefficients(study))
     models = tuple(m for f in study.fits for m in f.models)
     for model in models:
         show.table(noun_tables.terms(model))
         show.table(budget_tables.shared(model))
+    for f in study.fits:
+        show.table(oscillation_tables.explained(f, study.fits))
+        show.table(oscillation_tables.over_frequency(f))
     show.table(model_tables.quality(models))
     show.table(joint_tables.campaigns(study.fits))
     known = {s.symbol: s for f in study.fits for s in f.sweeps}

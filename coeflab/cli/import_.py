@@ -19,7 +19,7 @@ from coeflab.core.errors import InputError
 if TYPE_CHECKING:
     from coeflab.tables.column_map import ColumnMap
     from coeflab.tables.force_table import ForceTable
-    from coeflab.tables.imported import Question, Setting, Understood
+    from coeflab.tables.questions import Question, Setting, Understood
     from coeflab.tables.raw_table import RawTable
 
 
@@ -95,14 +95,15 @@ def command(
     """
     from coeflab.core.errors import OutputError
     from coeflab.core.files import typed, write_all
-    from coeflab.tables.imported import assumed, checked, contents, stated_settings, understood
+    from coeflab.tables.imported import checked, contents
     from coeflab.tables.mapping import assigned
+    from coeflab.tables.questions import assumed, stated_settings, understood
     from coeflab.tables.reading import importer_of, read_raw
 
     file, out = typed(path), typed(out)
     if not force and out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
-    said = _said(mapping, set_, [*option, *_runs(name, runs, state)], as_)
+    said = _said(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
     importer = importer_of(file, said.importer)
     with show.narrated(), show.progress(False) as say:
         raw = read_raw(file, importer, said.options, say)
@@ -125,7 +126,7 @@ def described(raw: RawTable, importer: str, found: Understood) -> None:
     """Print what a file is, its columns, what it says of itself and what its numbers show."""
     from coeflab.report.tables import raw_tables
 
-    said = "; ".join(f"{key} {text}" for key, text in raw.dialect.items())
+    said = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
     show.sentence(f"{raw.path}: read by {importer}" + (f"; {said}" if said else ""))
     show.table(raw_tables.columns(raw, found.proposals, found.mapping))
     show.table(raw_tables.stated(raw))
@@ -150,7 +151,7 @@ def _listed(title: str, texts: Sequence[str]) -> None:
 def _said(mapping: Path | None, set_: Sequence[str], option: Sequence[str], as_: str) -> Said:
     """All that the command line and a saved mapping say, but for columns; complaints at once."""
     from coeflab.core.errors import shown, together
-    from coeflab.tables.imported import Setting, read_setting, saved_mapping
+    from coeflab.tables.questions import Setting, read_setting, saved_mapping
 
     out = Said()
     if mapping is not None:
@@ -186,7 +187,8 @@ def options_of(texts: Sequence[str]) -> dict[str, Any]:
     return {key.strip(): _number(said.strip()) for key, _, said in pairs}
 
 
-def _runs(name: str, runs: Path | None, state: Path | None) -> list[str]:
+def of_runs(name: str, runs: Path | None, state: Path | None = None) -> list[str]:
+    """Options of collected runs as ``--option`` takes them."""
     given = {"names": name, "run_list": runs, "state": state}
     return [f"{option}={value}" for option, value in given.items() if value]
 
@@ -230,7 +232,7 @@ Settled = tuple[Mapping[str, "ColumnMap"], dict[str, "Setting"]]
 
 def _without_asking(file: Path, found: Understood, settings: Mapping[str, Setting], yes: bool) -> Settled:
     """Everything that is settled; what is not, in one error."""
-    from coeflab.tables.imported import open_points
+    from coeflab.tables.questions import open_points
 
     if points := open_points(found, yes):
         raise OpenError(file, points)
@@ -239,7 +241,7 @@ def _without_asking(file: Path, found: Understood, settings: Mapping[str, Settin
 
 
 def _taken(question: Question, text: str) -> Setting:
-    from coeflab.tables.imported import Setting, read_setting
+    from coeflab.tables.questions import Setting, read_setting
 
     return Setting(read_setting(question.key, text), question.why if text == question.default else "confirmed")
 
@@ -248,7 +250,7 @@ def _asked(
     raw: RawTable, said: Mapping[str, ColumnMap], settings: Mapping[str, Setting], found: Understood, yes: bool
 ) -> Settled:
     """Everything, asked for where it is open; a default only where the file or clear evidence gives one."""
-    from coeflab.tables.imported import understood
+    from coeflab.tables.questions import understood
 
     answers = {**said, **_asked_columns(raw, found)}
     settings = dict(settings)
@@ -299,11 +301,12 @@ def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
 
 def _written(out: Path, table: ForceTable, settings: Mapping[str, Setting]) -> None:
     """What was written, what was taken without a question, and the next command."""
-    from coeflab.tables.imported import CONFIRMED
+    from coeflab.tables.questions import CONFIRMED
 
     taken = [f"{k} = {s.value} ({s.origin})" for k, s in settings.items() if not s.origin.startswith(CONFIRMED)]
     _listed("Taken as it stands", taken)
-    excluded = f", {len(table.exclusions)} cells excluded" if table.exclusions else ""
+    many = len(table.exclusions)
+    excluded = f", {many} cell{'s' * (many != 1)} excluded" if many else ""
     show.text(f"Written: {out / 'table.csv'} ({len(table)} rows{excluded}), campaign.toml, mapping.toml")
     show.sentence(f"  varies: {', '.join(table.varies) or 'nothing'}; in SI and FRD: {', '.join(table.forces)}")
     show.text(f"Next: coeflab fit {shlex.quote(str(out))}")

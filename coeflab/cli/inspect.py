@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -25,6 +26,8 @@ def command(
     axes: str = typer.Option("", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
     density: float = typer.Option(1000.0, "--density", help="Of the water that a body displaces, kg/m^3."),
+    name: str = typer.Option("", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."),
+    runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
     as_: str = typer.Option("", "--as", metavar="IMPORTER", help="Read it with this importer, as it stands."),
     option: list[str] = typer.Option([], "--option", metavar="NAME=VALUE", help="Of the importer: sheet=Drift; repeatable."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
@@ -36,6 +39,7 @@ def command(
     it as a campaign. Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
     """
     from coeflab.bodies.simplify.source import names_body
+    from coeflab.cli.import_ import of_runs
 
     if names_body(table):
         _body(table, unit, axes, repair, density, json)
@@ -44,6 +48,7 @@ def command(
         raise InputError(
             "--unit, --axes or --repair", "a mesh file with them", advice="A campaign.toml says these itself."
         )
+    option = [*option, *of_runs(name, runs)]
     if as_ or option or _is_raw(table):
         _raw(table, as_, option, json)
         return
@@ -71,13 +76,18 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool) -> None:
     from coeflab.cli.import_ import described, options_of, point_lines
     from coeflab.core.files import located
     from coeflab.core.wording import identifier
-    from coeflab.tables.imported import open_points, stated_settings, understood
+    from coeflab.tables.questions import open_points, stated_settings, understood
     from coeflab.tables.reading import importer_of, read_raw
 
     path = located(table, "cfd_data")
     importer = importer_of(path, importer)
-    with show.narrated(), show.progress(json) as say:
-        raw = read_raw(path, importer, options_of(option), say)
+    options = options_of(option)
+    try:
+        with show.narrated(), show.progress(json) as say:
+            raw = read_raw(path, importer, options, say)
+    except InputError:
+        _run(path, importer, options, json)
+        raise
     found = understood(raw, {}, stated_settings(raw))
     points = open_points(found)
     out = f"cfd_data/{identifier(path.resolve().stem)}"
@@ -96,6 +106,23 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool) -> None:
         show.text(line)
     show.text()
     show.text(f"Next: {following}")
+
+
+def _run(path: Path, importer: str, options: Mapping[str, Any], json: bool) -> None:
+    """What a single run holds, where it is no row of a table yet."""
+    from coeflab.report.tables import raw_tables
+    from coeflab.tables.importers import IMPORTERS
+    from coeflab.tables.reading import OF_RUNS
+
+    plugin = IMPORTERS.load(importer)
+    if json or plugin.run is None or not plugin.recognises(path):
+        return
+    with IMPORTERS.guarded(importer):
+        run = plugin.run(path, {name: value for name, value in options.items() if name not in OF_RUNS})
+    ended = f"{run.ended}: {run.why}" if run.why else str(run.ended)
+    show.sentence(f"{path}: a run, read by {importer}; ended {ended}")
+    for table in raw_tables.of_run(run):
+        show.table(table)
 
 
 def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: bool) -> None:

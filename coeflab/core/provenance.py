@@ -98,6 +98,10 @@ WORKS: dict[str, str] = {
     "steady_cfd": "Calculation of Linear Damping Coefficients by Numerical Simulation of Steady State Experiments, "
     f"{UNNAMED}; Table 4 (steady CFD, PMM CFD 2012, experiment 1990).",
     "coeflab_cfd": "coeflab, Steady RANS of the SUBOFF bare hull, made for this project with OpenFOAM 1912, 2026.",
+    "ittc_captive": "ITTC, Captive Model Test, recommended procedure 7.5-02-06-02.",
+    "gertler1959": "M. Gertler, The DTMB Planar-Motion-Mechanism System, Symposium on Towing Tank Facilities, Zagreb, 1959.",
+    "liang_zeger1986": "K.-Y. Liang, S. L. Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73, 1986.",
+    "schwarz1978": "G. Schwarz, Estimating the dimension of a model, Annals of Statistics 6(2), 1978.",
     "hairer1996": "E. Hairer, G. Wanner, Solving Ordinary Differential Equations II: Stiff and Differential-Algebraic "
     "Problems, 2nd edition, Springer, 1996, section IV.2.",
     "hindmarsh1983": "A. C. Hindmarsh, ODEPACK, a systematized collection of ODE solvers, in R. S. Stepleman et al. (editors), "
@@ -131,6 +135,8 @@ WORKS: dict[str, str] = {
     "prediction, Technometrics 16, 1974.",
     "huuv_synthetic": "coeflab, Synthetic table of a vehicle like the HUUV, made for this project from stated coefficients by "
     "cfd_data/make_synthetic_huuv.py, 2026; neither measured nor computed by CFD.",
+    "pmm_synthetic": "coeflab, Synthetic runs of a planar motion mechanism and steady tables of the same law, made for this project by "
+    "cfd_data/make_pmm_synthetic.py, 2026; neither measured nor computed by CFD.",
     "roache1998": "P. J. Roache, Verification and Validation in Computational Science and Engineering, Hermosa, 1998.",
     "celik2008": "I. B. Celik, U. Ghia, P. J. Roache, C. J. Freitas, H. Coleman, P. E. Raad, Procedure for Estimation and "
     "Reporting of Uncertainty Due to Discretization in CFD Applications, J. Fluids Engineering 130, 078001, 2008.",

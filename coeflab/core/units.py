@@ -27,7 +27,9 @@ SI = {
     "mass": "kg",
     "mass rate": "kg/s",
     "time": "s",
+    "frequency": "1/s",
     "acceleration": "m/s^2",
+    "angular acceleration": "rad/s^2",
     "inertia": "kg*m^2",
     "volume": "m^3",
     "area": "m^2",
@@ -113,7 +115,7 @@ def factor(unit: str, dimension: str) -> float:
         TokenError,
     ) as why:  # fmt: skip
         raise UnitsError(f"the unreadable unit {shown(unit)} ({type(why).__name__})", expected) from None
-    if turns != (dimension in ("angle", "rate")) or not math.isclose(double, 2.0 * value):
+    if turns != (dimension in ("angle", "rate", "angular acceleration")) or not math.isclose(double, 2.0 * value):
         raise UnitsError(f"[{unit}]", expected, advice="Write rad/s, deg/s or rpm." if dimension == "rate" else "")
     return value
 

@@ -22,9 +22,12 @@ class Fit(Plugin, Protocol):
     ----------
     joins_campaigns : bool
         Whether the tables may be of several campaigns.
+    reads_series : bool
+        Whether it takes oscillating runs, and nothing else.
     """
 
     joins_campaigns: bool = False
+    reads_series: bool = False
 
     def fit(self, tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
         """Coefficients with their uncertainty.

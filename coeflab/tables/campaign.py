@@ -122,6 +122,27 @@ class TowedInertia(takes.Declaration):
     inertia: Annotated[tuple[float, ...], takes.numbers(3, "inertia", "three numbers [x, y, z] of inertia")]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanarMotionKeys(takes.Declaration):
+    """What stands between the water and the records of oscillating runs.
+
+    Attributes
+    ----------
+    filter : mapping
+        What the recording did to each channel: ``forces`` or single ones of X Y Z K M N, and ``motion`` where the records hold it.
+        "none", "Butterworth 4, 5 Hz", "zero-phase Butterworth 4, 5 Hz", "delay 0.01 s" or "lag 3 deg" (positive: late).
+    restoring : tuple of 2 floats
+        [roll, pitch]: moments of weight and buoyancy per radian in the recorded K and M, positive upright, N m; [0, 0] for a
+        computation without gravity.
+    """
+
+    filter: Annotated[Mapping[str, Any], takes.TABLE]
+    restoring: (
+        Annotated[tuple[float, ...], takes.numbers(2, "moment", "two numbers [roll, pitch] of moments per radian")]
+        | None
+    ) = None
+
+
 @brief
 @dataclass(frozen=True, slots=True)
 class TableDeclaration(takes.Declaration):
@@ -297,6 +318,8 @@ class CampaignFile(takes.Declaration):
         Options of the importer, such as sheet of excel; ``coeflab formats`` lists them.
     columns : table
         What each column of the files is, by its name there: "Y [N]", "-beta [deg]", label, ignore; docs/data_in.md.
+    planar_motion : table
+        Filters and restoring moments of oscillating runs.
     table : array of tables
         One for each file.
     """
@@ -310,6 +333,7 @@ class CampaignFile(takes.Declaration):
     uncertainty: Annotated[InputUncertainty | None, takes.OrEmpty()] = None
     importer: Annotated[dict[str, Any], takes.TABLE] = field(default_factory=dict)
     columns: dict[str, Entry] = field(default_factory=dict)
+    planar_motion: PlanarMotionKeys | None = None
     table: tuple[TableDeclaration, ...] = ()
 
     def check(self) -> None:
@@ -347,6 +371,7 @@ class Campaign:
     columns: Mapping[str, ColumnMap] = field(default_factory=dict)
     options: Mapping[str, Any] = field(default_factory=dict)
     lines: tuple[int | None, ...] = ()
+    planar_motion: PlanarMotionKeys | None = None
 
     def __post_init__(self) -> None:
         for name in ("signs", "columns", "options"):
@@ -396,4 +421,5 @@ def read_campaign(path: Path) -> Campaign:
         columns=file.columns,
         options=file.importer,
         lines=tuple(toml.line(("table", i)) for i in range(len(file.table))),
+        planar_motion=file.planar_motion,
     )

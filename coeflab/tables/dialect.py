@@ -60,18 +60,20 @@ class Marks:
             grouped = rf"|[-+]?[1-9][0-9]{{0,2}}(?:{mark}[0-9]{{3}})+(?:{point}[0-9]*)?"
         return re.compile(rf"[-+]?(?:[0-9]+(?:{point}[0-9]*)?|{point}[0-9]+)(?:[eEdD][-+]?[0-9]+)?{grouped}")
 
+    @cached_property
+    def _kept(self) -> dict[int, str | None]:
+        """Letters of a number as Python reads it: no marks between thousands, a point, e."""
+        away = f"{self.thousands}{BLANKS} '’" if self.thousands else ""
+        return {**dict.fromkeys(map(ord, away)), ord(self.decimal): ".", ord("d"): "e", ord("D"): "e"}
+
     def number(self, cell: str) -> float | None:
         """The number of a stripped cell: NaN where it says that there is none, None where it is text."""
         if not cell.isascii():
             cell = cell.translate(_MINUS)
-        if cell.lower() in _NO_NUMBER or cell in _DASHES or cell.startswith("Err:"):
-            return math.nan
-        if not self._form.fullmatch(cell):
-            return None
-        for mark in (*BLANKS, " ", "'", "’", self.thousands) if self.thousands else ():
-            cell = cell.replace(mark, "")
-        value = float(cell.replace(self.decimal, ".").replace("d", "e").replace("D", "e"))
-        return value if math.isfinite(value) else math.nan
+        if self._form.fullmatch(cell):
+            value = float(cell.translate(self._kept))
+            return value if math.isfinite(value) else math.nan
+        return math.nan if cell.lower() in _NO_NUMBER or cell in _DASHES or cell.startswith("Err:") else None
 
 
 def numeric(cells: Sequence[str], marks: Marks) -> int:
@@ -192,11 +194,11 @@ def read_head(above: Sequence[Row], width: int, marks: Marks, named: int = 0, un
     if names is None:
         own = tuple(_bare(u) for u in units[1]) if units else ("",) * width
         return Head(tuple(f"column {k + 1}" for k in range(width)), own, unit_line=units[0] if units else 0)
-    group = next((r[1] for r in reversed(rows) if r[0] < names[0]), None)
+    group = next((r for r in reversed(rows) if r[0] < names[0]), None)
     return _head(names, units, group)
 
 
-def _head(names: Row, units: Row | None, group: list[str] | None) -> Head:
+def _head(names: Row, units: Row | None, group: Row | None) -> Head:
     texts = [" ".join(t.split()) for t in names[1]]
     stand = "none"
     if units:
@@ -209,33 +211,26 @@ def _head(names: Row, units: Row | None, group: list[str] | None) -> Head:
         else:
             split = _underscored(texts)
             stand = "after an underscore" if any(u for _, u in split) else stand
-    split = [(n or f"column {k}", u) for k, (n, u) in enumerate(split, start=1)]
-    found, remarks = _distinct([n for n, _ in split], group, names[0])
+    found, remarks = _distinct([n or f"column {k}" for k, (n, _) in enumerate(split, start=1)], names[0], group)
     written = tuple(tuple(r[1]) for r in (names, units) if r)
     return Head(
         tuple(found), tuple(u for _, u in split), names[0], units[0] if units else 0, written, stand, tuple(remarks)
     )
 
 
-def _distinct(names: list[str], group: list[str] | None, line: int) -> tuple[list[str], list[str]]:
-    """Names that differ: with the group over them, which stands over the columns up to the next one, else numbered."""
-    twice = {n for n, many in Counter(names).items() if many > 1}
-    if not twice:
-        return names, []
-    if group and any(group):
-        over, filled = "", []
-        for cell in group:
-            over = " ".join(cell.split()) or over
-            filled.append(over)
-        names = [f"{g} {n}" if n in twice and g else n for n, g in zip(names, filled)]
-    out: list[str] = []
+def _distinct(names: list[str], line: int, group: Row | None) -> tuple[list[str], list[str]]:
+    """Names that differ, the later ones numbered, and what stands over them: how far a group reaches no file says."""
     seen: Counter[str] = Counter()
+    out = []
     for name in names:
         seen[name] += 1
         out.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
-    again = sorted(n for n, many in seen.items() if many > 1)
-    said = ", ".join(shown(n) for n in again[:5])
-    return out, [f"line {line}: {said} stand over several columns; the later ones are numbered"] if again else []
+    again = [n for n, many in seen.items() if many > 1]
+    if not again:
+        return out, []
+    said = f"line {line}: {', '.join(map(shown, again[:8]))} stand over several columns; the later ones are numbered"
+    over = [f"{shown(' '.join(g.split()))} over {shown(n)}" for g, n in zip(group[1], out) if g] if group else []
+    return out, [said, f"line {group[0]}: {', '.join(over[:12])}"] if group and over else [said]
 
 
 @dataclass(slots=True)
@@ -265,10 +260,10 @@ class Cells:
             No cell has an underscore, or a letter beyond ASCII: what Python takes for a number is one.
         """
         out = np.empty(len(cells))
-        quick, point = plain and not marks.thousands, marks.decimal == "."
+        point, mark = marks.decimal == ".", marks.thousands or "\n"
         for i, cell in enumerate(cells):
             value: float | None = math.nan
-            if quick:
+            if plain and mark not in cell:
                 try:
                     value = float(cell if point else cell.translate(_SWAPPED))
                 except ValueError:

@@ -23,6 +23,7 @@ from coeflab.tables.to_frd import Columns, force_table, surge_column
 
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
 REMARKS = 5
+ALL = "all"
 MOST_NAMED = 20
 
 
@@ -320,13 +321,13 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
     if column is None:
         return [frozenset()] * len(raw)
     names = {one.said.name for one in known if one.said.name not in WORDS}
+    forces = {one.said.name for one in known if one.said.role == "force"}
     out = []
     for row, text in enumerate(texts_of(column)):
         words = {word.removesuffix("'") for word in text.replace(";", " ").replace(",", " ").split()}
-        if "all" in words:
-            words = words - {"all"} | {one.said.name for one in known if one.said.role == "force"}
+        words = words - {ALL} | forces if ALL in words else words
         if strange := sorted(words - names):
-            raise fault(raw, shown(strange[0]), f"names of columns: {', '.join(sorted(names))}", column, row=row)
+            raise fault(raw, shown(strange[0]), f"{ALL}, or of {', '.join(sorted(names))}", column, row=row)
         out.append(frozenset(words))
     return out
 

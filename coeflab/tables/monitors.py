@@ -1,12 +1,11 @@
 """Monitors of solvers: numbers in columns, one line an iteration, in whatever state a run left them.
 
-What the importers of single runs share: which solver wrote a file, its rows read block by block, restarts put in order,
-files of one run joined, and how the run ended.
+What the importers of single runs share: rows read block by block, restarts put in order, files of one run joined, and how
+the run ended.
 """
 
 from __future__ import annotations
 
-import csv
 import re
 import warnings
 from collections.abc import Iterator, Sequence
@@ -17,23 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.limits import CSV_LINE, MONITOR_COLUMNS, MONITOR_FILES, MONITOR_NUMBERS
+from coeflab.core.limits import CSV_LINE, MONITOR_COLUMNS, MONITOR_NUMBERS
 from coeflab.core.types import Array
+from coeflab.tables.monitor_files import HEAD, decoded, header_cells, lines_of
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Stated
 
-HEAD, BLOCK = 1 << 16, 1 << 22
-SUFFIXES = (".csv", ".dat", ".out", ".txt", ".frp", ".trn")
-# Folders and files that say that a folder is no run of a monitor alone: a case of OpenFOAM, a campaign.
-OTHERS = ("system", "constant", "postProcessing", "campaign.toml")
-FORCE_TABLE = re.compile(
-    r"^(?P<title>(?:Forces|Moments)\b.*)\n.*\n[ \t]*Zone[ \t]+Pressure[ \t]+Viscous[ \t]+Total\b", re.M
-)
-_QUOTED = re.compile(r'"([^"]*)"')
-_TITLE, _NAMES = re.compile(r'"[^"]*"'), re.compile(r'\(?\s*"[^"]+"(?:\s+"[^"]*")+\s*\)?')
-_FLUENT_INDEX = re.compile(r"iterations?|time[ -]step|flow[ -]time", re.I)
-_SU2_NAME = re.compile(r"(?:Time|Outer|Inner)_Iter|rms\[.*|bgs\[.*")
-_SU2_OLD = {"CL", "CD", "CLift", "CDrag"}
-_STAR_MONITOR = re.compile(r".+ Monitor(?: \d+)?: .+|(Iteration|Time Step): \1|Physical Time: Physical Time \(.*\)")
+BLOCK = 1 << 22
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _NOT_FINITE = re.compile(r"[-+]?(?:nan(?:\([a-z]*\))?|inf(?:inity)?|1\.#(?:qnan|snan|ind|inf)0*)", re.I)
 _MOST_BROKEN, _BROKEN_SHARE = 10, 0.01
@@ -100,126 +88,6 @@ class Monitor:
         return f"{self.path.name}:{self.lines[row]}"
 
 
-# ---------------------------------------------------------------------------------------------------- what a file is
-
-
-def head(path: Path) -> bytes:
-    """The first 64 KiB of a file; empty where it cannot be read."""
-    try:
-        with path.open("rb") as stream:
-            return stream.read(HEAD)
-    except OSError:
-        return b""
-
-
-def decoded(raw: bytes) -> tuple[str, str]:
-    """Text of the head of a file and its encoding; a character cut at the end is left out."""
-    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "", "UTF-16"
-    try:
-        return raw.decode("utf-8-sig"), "UTF-8"
-    except UnicodeDecodeError as why:
-        if why.start >= len(raw) - 3:
-            return raw[: why.start].decode("utf-8-sig"), "UTF-8"
-        return raw.decode("latin-1"), "not UTF-8"
-
-
-def lines_of(text: str) -> list[str]:
-    """The lines of a text whatever their ends, and only those three ends."""
-    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-
-
-def header_cells(line: str, delimiter: str) -> list[str]:
-    """Names in a line of a delimited header, without quotation marks and blanks around."""
-    try:
-        row = next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])
-    except csv.Error:
-        return []
-    return [" ".join(cell.replace('"', " ").split()) for cell in row]
-
-
-def kind_of(raw: bytes) -> str:
-    """Which solver wrote the file that begins so: ``starccm``, ``fluent``, ``su2``, or empty.
-
-    Parameters
-    ----------
-    raw : bytes
-        Its first 64 KiB.
-
-    Notes
-    -----
-    Layouts: STAR-CCM+ names a column ``NAME Monitor: WHAT (UNIT)`` or begins with ``Iteration: Iteration`` or ``Physical
-    Time: Physical Time (s)``. Fluent's report files have a quoted title, quoted names, names in parentheses; its force
-    reports a table with Zone, Pressure, Viscous, Total below a line that begins with Forces or Moments. SU2 quotes its
-    names and has Time_Iter, Outer_Iter, Inner_Iter or residuals ``rms[...]`` (7, 8), or Iteration and CL (6 and before).
-    """
-    if not raw or b"\0" in raw:
-        return ""
-    text = decoded(raw)[0]
-    lines = [line.strip() for line in lines_of(text[:HEAD]) if line.strip()][:4]
-    if len(lines) > 1 and _TITLE.fullmatch(lines[0]):
-        named = next((line for line in reversed(lines[1:3]) if _NAMES.fullmatch(line)), "")
-        if named and _FLUENT_INDEX.fullmatch(_QUOTED.findall(named)[0]):
-            return "fluent"
-    if FORCE_TABLE.search("\n".join(lines_of(text))):
-        return "fluent"
-    names = su2_names(lines)
-    if any(_SU2_NAME.fullmatch(n) for n in names) or (names[:1] == ("Iteration",) and not _SU2_OLD.isdisjoint(names)):
-        return "su2"
-    if lines and any(_STAR_MONITOR.fullmatch(c) for d in ",;\t" if d in lines[0] for c in header_cells(lines[0], d)):
-        return "starccm"
-    return ""
-
-
-def su2_names(lines: Sequence[str]) -> tuple[str, ...]:
-    """Names of the columns of a history of SU2, CSV or Tecplot, from its first lines; empty where it is none."""
-    kept = [line for line in lines if not line.startswith("TITLE")]
-    if kept and kept[0].startswith("VARIABLES"):
-        own = kept[0].partition("=")[2].strip()
-        kept = kept[1:] if own in ("", "\\") else [own, *kept[1:]]
-    if not kept or not kept[0].startswith('"'):
-        return ()
-    cells = kept[0].split(",")
-    names = [cell.strip() for cell in cells if cell.strip()]
-    quoted = all(len(n) > 2 and n[0] == n[-1] == '"' and '"' not in n[1:-1] for n in names)
-    return tuple(n[1:-1].strip() for n in names) if quoted and len(names) > 1 else ()
-
-
-def files_of(folder: Path, kind: str) -> tuple[Path, ...]:
-    """Monitors of one run in a folder; empty unless all monitors in it are of this kind.
-
-    A folder of a case of OpenFOAM or with a campaign.toml is none.
-    """
-    try:
-        entries = sorted(folder.iterdir())
-    except OSError:
-        return ()
-    if any(e.name in OTHERS for e in entries):
-        return ()
-    texts = [e for e in entries if e.suffix.lower() in SUFFIXES]
-    if len(texts) > MONITOR_FILES:
-        return ()
-    found = {e: kind_of(head(e)) for e in texts if e.is_file()}
-    kinds = {k for k in found.values() if k}
-    return tuple(e for e, k in found.items() if k) if kinds == {kind} else ()
-
-
-def one_run(files: Sequence[Path], part: re.Pattern[str]) -> tuple[Path, ...]:
-    """Files that are parts of one run by their names, in order; empty where they are several runs.
-
-    Parameters
-    ----------
-    files : sequence of Path
-    part : pattern
-        Of the stem of a continuation, its first group the stem of the file that it continues.
-    """
-    bases = {m[1] if (m := part.fullmatch(f.stem)) else f.stem for f in files}
-    return tuple(sorted(files, key=lambda f: (len(f.stem), f.stem))) if len(bases) == 1 else ()
-
-
-# ---------------------------------------------------------------------------------------------------- rows
-
-
 def laid_out(raw: bytes, path: Path, lines: int, names: Sequence[str], delimiter: str, names_line: int) -> Layout:
     """The layout of a file whose header has so many lines.
 
@@ -245,13 +113,14 @@ def _squeezed(line: str) -> str:
 
 
 class _Rows:
-    """Collects rows of a monitor, block by block."""
+    """Collects rows of a monitor, block by block, in columns that are made about as long as the file lets expect."""
 
     def __init__(self, path: Path, layout: Layout) -> None:
         self.path, self.layout = path, layout
         self.width = len(layout.names)
-        self.parts: list[list[Array]] = []
-        self.lines: list[NDArray[np.int64]] = []
+        self.columns: list[Array] = [np.empty(0)] * self.width
+        self.lines = np.empty(0, dtype=np.int64)
+        self.bytes = 0
         self.count, self.line = 0, layout.first
         self.broken: list[tuple[int, str]] = []
         self.repeated: list[int] = []
@@ -261,6 +130,7 @@ class _Rows:
         """Rows of a block of whole lines."""
         if b"\r" in block:
             block = block.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+        self.bytes += len(block)
         at, values = self._at_once(block) or self._by_line(block)
         self.line += block.count(b"\n")
         self.keep(at, values)
@@ -279,9 +149,23 @@ class _Rows:
                 f"more than {MONITOR_NUMBERS:,} numbers", "a monitor of one run", file=self.path, line=int(at[-1]),
                 advice="Write every tenth iteration.",
             )  # fmt: skip
-        if len(at):
-            self.lines.append(at)
-            self.parts.append([np.ascontiguousarray(values[:, j]) for j in range(self.width)])
+        if self.count > len(self.lines):
+            self._lengthen()
+        rows = slice(self.count - len(at), self.count)
+        self.lines[rows] = at
+        for j, column in enumerate(self.columns):
+            column[rows] = values[:, j]
+
+    def _lengthen(self) -> None:
+        """Longer columns, one after the other: a list of their pieces would take their memory twice in the end."""
+        whole = max(self.path.stat().st_size - self.layout.offset, 1)
+        length = max(self.count, int(1.02 * self.count * whole / max(self.bytes, 1)), len(self.lines) * 5 // 4)
+        length = min(length, MONITOR_NUMBERS // self.width + 1)
+        for j, column in enumerate(self.columns):
+            self.columns[j] = np.empty(length)
+            self.columns[j][: len(column)] = column
+        lines, self.lines = self.lines, np.empty(length, dtype=np.int64)
+        self.lines[: len(lines)] = lines
 
     def _at_once(self, block: bytes) -> tuple[NDArray[np.int64], Array] | None:
         """All rows of a block where every line has the right number of numbers; else None."""
@@ -431,7 +315,7 @@ def read_monitor(path: Path, layout: Layout) -> Monitor:
             "decimal points and decimal commas", "one decimal mark", file=path, line=layout.first,
             advice="Export the monitor anew, without thousands marks.",
         )  # fmt: skip
-    last = int(rows.lines[-1][-1]) if rows.lines else layout.first - 1
+    last = int(rows.lines[rows.count - 1]) if rows.count else layout.first - 1
     cut = [f"{path.name}:{n}: the last line is broken ({found})" for n, found in rows.broken if n > last][:1]
     remarks = [
         f"{path.name}:{n}: {found} instead of {rows.width}: line left out" for n, found in rows.broken[:5] if n < last
@@ -439,28 +323,23 @@ def read_monitor(path: Path, layout: Layout) -> Monitor:
     if len(rows.broken) > len(remarks) + len(cut):
         remarks.append(f"{path.name}: {len(rows.broken)} broken lines left out in all")
     remarks += [f"{path.name}:{n}: the header again, as a restart writes it" for n in rows.repeated[:5]]
-    parts = rows.parts
-    columns = [_column(parts, j) for j in range(rows.width)]
-    lines = np.concatenate(rows.lines) if rows.lines else np.empty(0, dtype=np.int64)
+    columns = [column[: rows.count] for column in rows.columns]
+    lines = rows.lines[: rows.count]
     if tail:
         remarks.append(tail)
     return Monitor(path, layout.names, columns, lines, layout.line, tuple(remarks), cut[0] if cut else "")
-
-
-def _column(parts: list[list[Array]], j: int) -> Array:
-    """One column of all blocks, whose own copies are let go."""
-    whole = np.concatenate([part[j] for part in parts]) if parts else np.empty(0)
-    for part in parts:
-        part[j] = np.empty(0)
-    return whole
 
 
 # ---------------------------------------------------------------------------------------------------- runs
 
 
 def taken(monitor: Monitor, rows: NDArray[np.bool_] | NDArray[np.int64]) -> Monitor:
-    """A monitor of some of its rows."""
-    return replace(monitor, columns=[c[rows] for c in monitor.columns], lines=monitor.lines[rows])
+    """A monitor of some of its rows; the given one loses its columns."""
+    columns = []
+    for j in range(len(monitor.columns)):
+        values, monitor.columns[j] = monitor.columns[j], np.empty(0)
+        columns.append(values[rows])
+    return replace(monitor, columns=columns, lines=monitor.lines[rows])
 
 
 def in_order(monitor: Monitor, index: int, inner: bool = False) -> Monitor:

@@ -173,19 +173,35 @@ def stated_cells(case: FoamCase) -> Stated | None:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A rotating frame: rad/s, m, and its place."""
+    """A rotating frame: its rates, rad/s, and a point of its axis, m, where they are known; and its place."""
 
-    omega: Array
-    origin: Array
+    turning: tuple[Array, Array] | None
     place: str
 
 
 def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[str, set[str]]) -> Frame | None:
-    """The rotating frame that is the body's own motion."""
+    """The rotating frame that is the body's own motion; one that is not known where the files do not say enough.
+
+    Parameters
+    ----------
+    case : FoamCase
+    wanted : {"", "body", "none"}
+        Whether frames of MRFProperties are the motion of the body; by what they cover where empty.
+    body : set of str
+        Patches of the body.
+    known : mapping of str to set of str
+        Patches with their groups.
+
+    Raises
+    ------
+    InputError
+        Several frames.
+    """
     srf = case.read("constant/SRFProperties")
     if srf is not None:
         model = case.value(srf, "SRFModel")
-        return _frame(case, srf, srf.part(f"{model[0]}Coeffs") or srf if model is not None else srf, "SRFProperties")
+        speeds = srf.part(f"{model[0]}Coeffs") if model is not None else None
+        return _frame(case, srf, speeds or srf, "SRFProperties")
     zones = case.read("constant/MRFProperties")
     out = []
     for name, part in zones.parts() if zones is not None else ():
@@ -194,21 +210,26 @@ def rotating_frame(case: FoamCase, wanted: str, body: set[str], known: Mapping[s
             continue
         zone = case.value(part, "cellZone") or case.value(part, "cellSet")
         share = _share_of_mesh(case, str(zone[0])) if zone is not None else None
-        still = covered(_still_patches(case, part), known)
-        is_body = wanted == "body" or (wanted != "none" and share is not None and share == 1.0 and not (body & still))
-        if is_body:
-            out.append(_frame(case, part, part, f"MRFProperties, {name}"))
-        else:
-            reason = (
-                "the option says so" if wanted == "none"
-                else "it does not turn the body's patches" if body & still
-                else "the mesh does not say how much of it it covers" if share is None
-                else f"it covers {share:.0%} of the cells"
-            )  # fmt: skip
+        stands = body & covered(_still_patches(case, part), known)
+        rotor = (
+            "as the option rotation says so" if wanted == "none"
+            else "" if wanted == "body"
+            else "as it does not turn the body's patches" if stands
+            else f"as it covers {share:.0%} of the cells" if share is not None and share < 1.0
+            else ""
+        )  # fmt: skip
+        where = f"constant/MRFProperties, {name}"
+        if rotor:
             case.note(
-                f"constant/MRFProperties, {name}: not taken as the motion of the body, as {reason}; "
-                "the option rotation=body says that it is"
+                f"{where}: not taken as the motion of the body, {rotor}; the option rotation=body says that it is"
             )
+        elif wanted != "body" and share is None:
+            case.note(
+                f"{where}: no file says how much of the mesh it covers; give the option rotation=body or rotation=none"
+            )
+            out.append(Frame(None, where))
+        else:
+            out.append(_frame(case, part, part, f"MRFProperties, {name}"))
     if len(out) > 1:
         raise InputError(
             f"{len(out)} rotating frames", "one that is the motion of the body", file=case.root / "constant/MRFProperties",
@@ -222,18 +243,18 @@ def _still_patches(case: FoamCase, part: Foam) -> list[str]:
     return [str(p) for p in found[0]] if found is not None and isinstance(found[0], list) else []
 
 
-def _frame(case: FoamCase, part: Foam, speeds: Foam, what: str) -> Frame | None:
+def _frame(case: FoamCase, part: Foam, speeds: Foam, what: str) -> Frame:
     axis, origin = case.value(part, "axis"), case.value(part, "origin")
     omega, rpm = case.value(speeds, "omega"), case.value(speeds, "rpm")
     rate = omega[0] if omega is not None else rpm[0] * math.pi / 30.0 if rpm is not None and is_number(rpm[0]) else None
     if axis is None or origin is None or not is_vector(axis[0]) or not is_vector(origin[0]) or not is_number(rate):
-        case.note(f"constant/{what}: axis, origin or a constant rate is not stated; no rotation is taken")
-        return None
+        case.note(f"constant/{what}: axis, origin or a constant rate is not stated; no motion is taken")
+        return Frame(None, f"constant/{what}")
     unit = np.array(axis[0], dtype=float)
     if not np.any(unit):
         raise InputError("an axis of length zero", "a direction", file=case.root / "constant", column=what)
-    place = (omega or rpm or axis)[1]
-    return Frame(float(rate or 0.0) * unit / np.linalg.norm(unit), np.array(origin[0], dtype=float), place)
+    turning = float(str(rate)) * unit / np.linalg.norm(unit)
+    return Frame((turning, np.array(origin[0], dtype=float)), (omega or rpm or axis)[1])
 
 
 def is_number(value: Any) -> bool:
@@ -242,27 +263,40 @@ def is_number(value: Any) -> bool:
 
 
 def motion(
-    case: FoamCase, frame: Frame | None, point: tuple[list[float], str] | None, field_: str
-) -> dict[str, Stated]:
+    case: FoamCase, frame: Frame | None, point: tuple[list[float], str] | None, name: str
+) -> dict[str, Stated]:  # fmt: skip
     """Velocity and rates of the body through the water at rest, in the solver's axes.
 
     The water comes with U; seen from it the body moves with -U, and with omega x r where its frame turns:
     v = omega x (CofR - origin) - U, (p, q, r) = omega.
+
+    Parameters
+    ----------
+    case : FoamCase
+    frame : Frame or None
+    point : tuple of list of float and str, or None
+        CofR, m, and its place.
+    name : str
+        Of the velocity, ``U`` or ``Urel``.
     """
     out: dict[str, Stated] = {}
-    inflow = _inflow(case, field_)
-    if frame is not None:
-        out.update({n: Stated(float(w) + 0.0, frame.place) for n, w in zip("pqr", frame.omega)})
-    if inflow is None or (frame is not None and point is None):
-        if inflow is not None:
+    inflow = _inflow(case, name)
+    if frame is not None and frame.turning is None:
+        return out
+    if frame is not None and frame.turning is not None:
+        out.update({n: Stated(float(w) + 0.0, frame.place) for n, w in zip("pqr", frame.turning[0])})
+        if point is None:
             case.note("the velocity at the reference point is not stated, as no file states CofR")
+            return out
+    if inflow is None:
         return out
     water, place = np.asarray(inflow.value, dtype=float), inflow.place
     velocity = -water
-    if frame is not None and point is not None:
-        velocity = velocity + np.cross(frame.omega, np.array(point[0]) - frame.origin)
+    if frame is not None and frame.turning is not None and point is not None:
+        omega, origin = frame.turning
+        velocity = velocity + np.cross(omega, np.array(point[0]) - origin)
         place = f"{place}, {frame.place}, {point[1]}"
-        if np.any(np.cross(frame.omega, water)):
+        if np.any(np.cross(omega, water)):
             case.note(f"{inflow.place}: an inflow across the axis of {frame.place} is not steady in the turning frame")
     out.update({n: Stated(float(v) + 0.0, place) for n, v in zip("uvw", velocity)})
     out["U"] = Stated(float(np.linalg.norm(velocity)), place)

@@ -16,11 +16,12 @@ from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS
-from coeflab.tables.column_map import EXAMPLES, WORDS, ColumnMap, read_column_map
+from coeflab.tables.column_map import EXAMPLES, ROLES, WORDS, ColumnMap, read_column_map
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
 
 OPEN = "?"
+OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore"}  # names that coeflab's own tables have
 CLEAR = 0.8  # correlation beyond which a slope has a sign
 _SAID = {
     "X": "fx forcex xforce surgeforce longitudinalforce axialforce laengskraft langskraft forcelongitudinale fxtotal",
@@ -103,7 +104,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     ----------
     column : RawColumn
     stated : mapping, optional
-        What the file says of itself; ``coefficients.area`` and ``coefficients.length`` complete a coefficient.
+        What the file says of itself; ``scaling.area`` and ``scaling.length`` complete a coefficient.
     """
     name, why, certain = _name(column)
     if not name:
@@ -115,7 +116,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         return Proposal(name, why, certain)
     if column.is_text and not np.any(np.isfinite(column.values)):
         return Proposal("label", "text")
-    area = (stated or {}).get("coefficients.area"), (stated or {}).get("coefficients.length")
+    area = (stated or {}).get("scaling.area"), (stated or {}).get("scaling.length")
     return _with_unit(column, said, why, certain, area)
 
 
@@ -129,19 +130,7 @@ def _name(column: RawColumn) -> tuple[str, str, bool]:
     own = column.name.strip()
     short = own.replace("′", "'").replace("’", "'")
     plain = short.removeprefix("se_").removesuffix("'")
-    if plain in (
-        *COMPONENTS,
-        *LINEAR,
-        *ANGULAR,
-        "U",
-        "R",
-        "density",
-        "alpha",
-        "beta",
-        "cells",
-        "point",
-        *CONTROL_COLUMNS,
-    ):
+    if plain in OWN:
         try:
             return str(read_column_map(short)), "its name", True
         except InputError:

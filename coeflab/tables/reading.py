@@ -14,7 +14,7 @@ from coeflab.core.text.delimited import read_cells
 from coeflab.tables.campaign import FILE, Campaign, InputUncertainty, TableDeclaration, read_campaign
 from coeflab.tables.collect import collect
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.importers import IMPORTERS, PlannedTable
+from coeflab.tables.importers import IMPORTERS, Importer, PlannedTable
 from coeflab.tables.mapping import mapped_table
 from coeflab.tables.raw_table import RawTable
 from coeflab.tables.runs import find_runs
@@ -32,7 +32,18 @@ def recognised(path: Path) -> tuple[str, ...]:
         with IMPORTERS.guarded(name):
             if (importer.raw or importer.run) and importer.recognises(path):
                 known.append(name)
-    return tuple(n for n in known if n != GENERAL) or tuple(known)
+    known = [n for n in known if n != GENERAL] or known
+    return tuple(known or ([GENERAL] if _is_of_a_campaign(path) else ()))
+
+
+def _is_of_a_campaign(path: Path) -> bool:
+    """Whether an importer of campaigns knows a text whose campaign.toml is not there yet."""
+    for name in IMPORTERS.usable():
+        importer = IMPORTERS.load(name)
+        with IMPORTERS.guarded(name):
+            if importer.read and not (importer.raw or importer.run) and path.is_file() and importer.recognises(path):
+                return True
+    return False
 
 
 def importer_of(path: Path, name: str = "") -> str:
@@ -146,6 +157,17 @@ def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTab
     return tuple(out)
 
 
+def _declaration(path: Path) -> Path:
+    return path / FILE if path.is_dir() else path if path.suffix == ".toml" else path.parent / FILE
+
+
+def suited_fit(path: Path) -> str:
+    """The fit that the tables of a campaign are for, as its importer says; the usual one where none can be asked."""
+    declaration = _declaration(path)
+    name = read_campaign(declaration).importer if declaration.exists() else "csv"
+    return IMPORTERS.load(name).fit if name in IMPORTERS.names() else Importer.fit
+
+
 def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
     """The tables of a planned campaign: a folder, its campaign.toml, or one table beside it.
 
@@ -155,7 +177,7 @@ def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
         By file, line and column.
     """
     path = planned.campaign
-    declaration = path / FILE if path.is_dir() else path if path.suffix == ".toml" else path.parent / FILE
+    declaration = _declaration(path)
     if not declaration.exists():
         raise InputError(
             f"no {FILE} in {declaration.parent}",

@@ -85,6 +85,7 @@ class TextDialect:
     start: int
     width: int
     numbers: tuple[int, ...]  # columns that hold numbers
+    words: frozenset[int]  # columns that hold text
     decimals: int  # digits behind the mark in the last column, -1 where they differ
     said: Mapping[str, str]
     remarks: tuple[str, ...] = ()
@@ -387,6 +388,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
     head, remarks = _head(lines, rows[begin][0], (delimiter, marks, width, filled), options, path)
     _two_blanks(delimiter, marks, kept, rows[begin : run[1]], path)
     numbers = tuple(k for k in range(width) if any(numeric([c[k]], marks) for c in body))
+    words = frozenset(k for c in body for k in range(width) if marks.number(c[k]) is None)
     ends_of = {len(c[-1].partition(marks.decimal)[2]) for c in body[:-1]} if len(body) > 3 else {-1}
     used = sorted(
         {
@@ -411,7 +413,7 @@ def sniff(path: Path, options: Options) -> TextDialect:
         "line ends": ends,
     }
     return TextDialect(
-        encoding, delimiter, marks, comments, head, rows[begin][0], width, numbers, ends_of.pop() if len(ends_of) == 1 else -1,
+        encoding, delimiter, marks, comments, head, rows[begin][0], width, numbers, words, ends_of.pop() if len(ends_of) == 1 else -1,
         said, tuple(remarks),
     )  # fmt: skip
 

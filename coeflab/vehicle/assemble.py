@@ -85,19 +85,25 @@ def _owners(chosen: Sequence[FitResult]) -> tuple[dict[str, str], list[str]]:
     """Which fit gives each force component, and notes on what the other fits give for it.
 
     Terms of one force law belong together: a linear term of one fit beside a quadratic one of another is the law of
-    neither.
+    neither. An acceleration derivative stands by itself: oscillating runs add theirs to a law of steady forces.
     """
     owner: dict[str, str] = {}
     left: dict[tuple[str, str], list[str]] = {}
     for f in chosen:
         for c in f.coefficients.coefficients:
             component = derivative(c.symbol).component
+            if _accelerates(c):
+                continue
             if c.value is not None and owner.setdefault(component, f.law) != f.law:
                 left.setdefault((component, f.fit), []).append(primed(c.symbol))
     return owner, [
         f"{component}' is that of {owner[component]}; left out, from {fit}: {', '.join(dict.fromkeys(symbols))}"
         for (component, fit), symbols in left.items()
     ]
+
+
+def _accelerates(c: Coefficient) -> bool:
+    return any(f.endswith("dot") for f in derivative(c.symbol).factors)
 
 
 def gathered(
@@ -113,7 +119,8 @@ def gathered(
     entries: dict[str, tuple[Coefficient, int, int]] = {}
     for k, s in enumerate(sets):
         for i, c in enumerate(s.coefficients):
-            if owner.get(derivative(c.symbol).component, chosen[k].law) != chosen[k].law:
+            law = chosen[k].law
+            if not _accelerates(c) and owner.get(derivative(c.symbol).component, law) != law:
                 continue
             elsewhere = [s for s in _tied_to(chosen[k], i) if s not in entries or entries[s][0].campaign != c.campaign]
             if elsewhere:

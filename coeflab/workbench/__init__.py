@@ -29,6 +29,7 @@ from coeflab.report.formats import REPORTERS
 from coeflab.study.checks import CHECKS
 from coeflab.study.study import Plan, PlannedJoint, Study
 from coeflab.tables.force_table import ForceTable
+from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.reading import read_tables
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.parameter_file import refusals_told
@@ -179,6 +180,7 @@ def _fitted(
 ) -> tuple[FitResult, tuple[Budget, ...]]:
     """One fit with its budgets in it, and these; one that completes another is given that, budgets and all."""
     _refuse_several(name, tables)
+    _refuse_unsuited(name, tables)
 
     def once(some: Sequence[ForceTable], by: Scaling) -> FitResult:
         with FITS.guarded(name):
@@ -203,6 +205,18 @@ def _refuse_several(name: str, tables: Sequence[ForceTable]) -> None:
         able = [n for n in FITS.usable() if FITS.load(n).joins_campaigns]
         raise InputError(f"{name} over the campaigns {campaigns}", f"a fit that joins campaigns: {', '.join(able)}",
                          column="fit", advice="Or fit each campaign by itself.")  # fmt: skip
+
+
+def _refuse_unsuited(name: str, tables: Sequence[ForceTable]) -> None:
+    """Refuse a fit of steady forces to oscillating runs, and the reverse."""
+    with FITS.guarded(name):
+        series = FITS.load(name).reads_series
+    odd = next((t for t in tables if isinstance(t, PlanarMotionTable) != series), None)
+    if odd is not None:
+        what = "steady forces" if series else "oscillating runs"
+        able = [n for n in FITS.usable() if FITS.load(n).reads_series != series]
+        few = ", ".join(able) if len(able) < FEWEST else "slope_at_origin, tied_law or another fit of steady forces"
+        raise InputError(f"{name} over {what}", f"fits of those: {few}", file=odd.name, column="fits")
 
 
 def _refuse_starved(fit: FitResult) -> None:

@@ -8,19 +8,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from coeflab.cli import app
-from coeflab.core.axes import FRAMES, Axes
+from coeflab.core.axes import FRAMES, Axes, parse_axes
 from coeflab.core.errors import InputError
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
-from coeflab.tables.proposals import proposed
+from coeflab.tables.mapping import assigned
+from coeflab.tables.proposals import evidence, proposed
 from coeflab.tables.raw_table import RawColumn
-from coeflab.tables.reading import read_tables
+from coeflab.tables.reading import importer_of, read_tables, recognised
 from tests.conftest import SECTIONS
-from tests.tables.raw_files import NAME, plain_stub
+from tests.tables.raw_files import NAME, plain_stub, raw
 
 __all__ = ["plain_stub"]
 FOOT, POUND_FORCE, POUND, KNOT = 0.3048, 4.4482216152605, 0.45359237, 1852.0 / 3600.0
@@ -301,3 +304,44 @@ def test_proposals_are_certain_only_where_nobody_can_mean_otherwise() -> None:
     assert proposed(RawColumn("drift", "", np.array([-12.0, 12.0]))).text == "beta [deg]"
     assert proposed(RawColumn("drift", "", one)).text == "beta [?]"
     assert proposed(RawColumn("Fy mean", "N", np.array([np.nan]), ("diverged",))).text == "label"
+
+
+@pytest.mark.parametrize("axes", AXES)
+def test_evidence_finds_the_signs_of_angles_once_the_axes_are_known(tmp_path: Path, axes: str) -> None:
+    file, said, settings = written(tmp_path, axes, "US", 0.0)
+    table = raw(file, {})
+    known = assigned(table, {name: read_column_map(what) for name, what in said.items()})
+    shows = evidence(known, parse_axes(list(AXES[axes])))
+    assert {e.key: f'"{e.value}"' for e in shows if e.key} == {k: settings[k] for k in ("axes.alpha", "axes.beta")}
+    assert not any(e.key for e in evidence(known))
+    texts = " | ".join(e.text for e in shows)
+    assert "disagree" not in texts
+    damped = {"M and q", "N and r"} if axes != "odd" else {"K and p", "N and r"}
+    assert all(f"{pair} have opposite signs, as damping has" in texts for pair in damped)
+    flipped = assigned(
+        table, {name: read_column_map("-N [ft*lbf]" if what.startswith("N ") else what) for name, what in said.items()}
+    )
+    texts = " | ".join(e.text for e in evidence(flipped, parse_axes(list(AXES[axes]))))
+    assert "N and r have the same sign: no damping of a slender body" in texts
+
+
+def test_a_general_reader_gives_way_and_two_claims_are_a_question(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "test.raw"
+    file.write_text("beta (deg),Y (N)\n1,2\n2,3\n3,4\n")
+    assert recognised(file) == (NAME,)
+    monkeypatch.setattr("coeflab.tables.reading.GENERAL", "nobody")
+    with pytest.raises(InputError, match=f"something that {NAME} and table read; expected --as {NAME} or --as table"):
+        importer_of(file)
+    assert importer_of(file, "table") == "table"
+
+
+@settings(max_examples=200)
+@given(st.text(max_size=30) | st.from_regex(r"-?(se_)?[A-Za-z]{1,5}'?( \[[A-Za-z0-9^*/=. ]{0,20}\])?", fullmatch=True))
+def test_any_text_is_a_column_or_a_clear_refusal(text: str) -> None:
+    try:
+        said = read_column_map(text)
+    except InputError:
+        return
+    assert read_column_map(str(said)) == said

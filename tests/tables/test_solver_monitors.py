@@ -221,6 +221,23 @@ def test_su2_rotating_frame_by_hand() -> None:
     )
 
 
+def test_su2_coefficients_by_another_speed_are_those_of_the_run(tmp_path: Path) -> None:
+    """Twice the reference speed of the run: coefficients a quarter of its own, by 1/2 rho U^2."""
+    shutil.copytree(SAMPLES / "su2/v7_rotating_arm", tmp_path / "run")
+    config = tmp_path / "run/arm.cfg"
+    first = read("su2", tmp_path / "run")
+    config.write_text(config.read_text().replace("INC_VELOCITY_REF= 2.4", "INC_VELOCITY_REF= 4.8"))
+    run = read("su2", tmp_path / "run")
+    for table, one in ((run.history, first.history), (run.patches["sail"], first.patches["sail"])):
+        assert np.allclose(table.meaning("Y").values, 4.0 * one.meaning("Y").values, rtol=1e-12)
+    assert np.array_equal(run.history.column("CEff").values, first.history.column("CEff").values)
+    assert any(
+        "arm.cfg:7, 8: coefficients by 998.2 kg/m^3 and 4.8 m/s multiplied by 4" in r for r in run.history.remarks
+    )
+    config.write_text(config.read_text().replace("REFERENCE_VALUES", "INITIAL_VALUES"))  # of a stream that rests
+    assert any("not by density and speed of the run" in r for r in read("su2", tmp_path / "run").history.remarks)
+
+
 def test_su2_unsteady_keeps_the_last_inner_iteration() -> None:
     run = read("su2", SAMPLES / "su2/v7_unsteady_tecplot")
     assert np.array_equal(run.history.column("Time_Iter").values, np.arange(1.0, 25.0))

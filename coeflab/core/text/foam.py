@@ -326,6 +326,9 @@ class _Walk:
             self._end()
             return True
         is_list = mark == "(" and len(self.words) == 1 and (self.words[0] == "functions" or self.words[0].isdigit())
+        if mark == "{" and self.words and self.words[-1] in _EVALUATED:
+            self._open("}")
+            return False
         if mark == "{" or is_list:
             if len(self.stack) > FOAM_DEEPEST:
                 raise InputError("braces that nest too deep", f"at most {FOAM_DEEPEST}", file=self.file, line=self.line)

@@ -13,6 +13,7 @@ import numpy as np
 from coeflab.core.table import html_by, plus_minus
 from coeflab.core.types import Array, brief, locked
 from coeflab.fits.results.fitted_model import UNLIKELY, FittedModel, OutOfSample, chance
+from coeflab.fits.results.oscillation import Oscillation
 from coeflab.fits.statistics.groups import Poolability
 from coeflab.fits.statistics.least_squares import Index
 from coeflab.fits.statistics.origin_slope import estimate, next_points
@@ -346,6 +347,8 @@ class FitResult:
         What sets several campaigns apart: bodies, Reynolds numbers, sources, points.
     tied : Tied or None
         The fit whose law these coefficients complete.
+    oscillations : tuple of Oscillation
+        Of oscillating runs, one a force component and motion.
     """
 
     fit: str
@@ -359,6 +362,7 @@ class FitResult:
     poolings: tuple[Pooling, ...] = ()
     differences: tuple[str, ...] = ()
     tied: Tied | None = None
+    oscillations: tuple[Oscillation, ...] = ()
 
     @property
     def law(self) -> str:

@@ -117,6 +117,29 @@ def collect_points(
     return np.array(x), np.array(y), known, tuple(labels), tuple(left)
 
 
+SAME_SIZE = 0.02  # of the largest |x|: the radius or speed of one setting, as measured
+
+
+def one_size(x: Array, variable: str, speed: Array) -> str:
+    """Why settings (n,) of one size determine no slope, in words; empty where they have several.
+
+    Readings at -a, 0 and a give the odd part of the force at a: one number for x and x|x| together. On a rotating arm the
+    radius alone makes |r'| = L/R; the speed, shape (n,), does not.
+    """
+    sizes = np.abs(x[np.abs(x) > AT_REST])
+    if not len(sizes) or float(np.ptp(sizes)) > SAME_SIZE * float(sizes.max()):
+        return ""
+    size = float(np.median(sizes))
+    faster = float(np.ptp(speed)) > SAME_SIZE * float(speed.max())
+    over = f", though the speed goes from {speed.min():.3g} to {speed.max():.3g} m/s" if faster else ""
+    name, signs = f"{variable}'", "; both signs are one size" if np.any(x > AT_REST) and np.any(x < -AT_REST) else ""
+    how = " (|r'| = L/R: other radii, not other speeds)" if variable in "qr" else ""
+    return (
+        f"all runs have one |{name}|, {size:.3g}{over}{signs}, so that {name} and {name}|{name}| cannot be told apart; measure "
+        f"|{name}| of about {size / 3.0:.2g} and {2.0 * size / 3.0:.2g} too{how}"
+    )
+
+
 def arm_shift(tables: Sequence[ForceTable]) -> float:
     """How far forward the point lies at which rotating runs have no cross flow; 0 if there is no one such point.
 

@@ -31,6 +31,7 @@ from coeflab.report.figures.series import numbers, points
 from coeflab.report.figures.svg import COLOURS, POINTS, power_of_ten, settings, svg_text
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.figures.variables import moving, response_name
+from coeflab.report.sections.oscillations import oscillation_sections
 from coeflab.report.tables import models as joint_tables
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import results as tables
@@ -89,6 +90,7 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
         subsections=(
             *(_sweep_section(study, fit, s, anchor(f"{place} {s.symbol}", taken)) for s in fit.sweeps),
             *(_model_section(m, anchor(f"{place} {m.response}", taken)) for m in distinct(fit.models)),
+            *oscillation_sections(study, fit, lambda name: anchor(f"{place} {name}", taken)),
         ),
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -12,9 +13,10 @@ from coeflab.report.printable import shortened
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.mapping import known_as
 from coeflab.tables.proposals import Evidence, Proposal
-from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.raw_table import RawColumn, RawTable, Run
 
 NAME, UNIT = 20, 8
+MANY = 20  # columns, beyond which those that no fit uses stand in a note
 
 
 def limits(column: RawColumn) -> str:
@@ -29,7 +31,7 @@ def limits(column: RawColumn) -> str:
 
 
 def columns(raw: RawTable, proposed: Sequence[Proposal], said: Mapping[str, ColumnMap] | None = None) -> Table:
-    """Every column with its unit, range and what it is, or may be.
+    """Every column that is used, with its unit, range and what it is, or may be.
 
     Parameters
     ----------
@@ -39,14 +41,31 @@ def columns(raw: RawTable, proposed: Sequence[Proposal], said: Mapping[str, Colu
     said : mapping of str to ColumnMap, optional
         What is settled.
     """
-    rows = []
+    rows, unused = [], []
     for column, proposal in zip(raw.columns, proposed, strict=True):
         settled = next((str(said[n]) for n in (column.name, *known_as(column)) if said and n in said), "")
         text = settled or (f"{proposal.text}?" if proposal.whole and not proposal.certain else proposal.text)
+        if text == "ignore" and len(raw.columns) > MANY:
+            unused.append(column.name)
+            continue
         rows.append((shortened(column.name, NAME), shortened(column.unit, UNIT), limits(column), text or "?"))
     notes = ("? what nobody has confirmed",) if any(row[3].endswith("?") or "?" in row[3] for row in rows) else ()
+    if unused:
+        notes = (*notes, *textwrap.wrap(f"{len(unused)} not used by fits: {', '.join(unused)}", 76))
     title = f"{len(raw)} rows, {len(raw.columns)} columns"
     return Table(title, ("column", "unit", "range", "is"), tuple(rows), notes, frozenset({0, 1, 2, 3}))
+
+
+def of_run(run: Run) -> tuple[Table, ...]:
+    """One run: its conditions with their places, and the columns of its history."""
+    said = [(name, _text(s.value), shortened(s.place, 40)) for name, s in run.conditions.items()]
+    rows = tuple((shortened(c.name, 34), shortened(c.unit, UNIT), limits(c), c.means) for c in run.history.columns)
+    return (
+        Table("Conditions", ("condition", "value", "where"), tuple(said), (), frozenset({0, 1, 2})),
+        Table(
+            f"History of {len(run.history)} rows", ("column", "unit", "range", "is"), rows, (), frozenset({0, 1, 2, 3})
+        ),
+    )
 
 
 def as_json(raw: RawTable, importer: str, proposed: Sequence[Proposal], shows: Sequence[Evidence]) -> dict[str, Any]:

@@ -22,6 +22,8 @@ class Importer(Plugin, Protocol):
     ----------
     reads : str
         What it reads, as lists of formats name it.
+    fit : str
+        The fit that its tables are for.
     raw : callable or None
         ``raw(path, options)``: the table as the file has it.
     run : callable or None
@@ -32,6 +34,7 @@ class Importer(Plugin, Protocol):
     """
 
     reads: str = ""
+    fit: str = "slope_at_origin"
     raw: Callable[[Path, Mapping[str, Any]], RawTable] | None = None
     run: Callable[[Path, Mapping[str, Any]], Run] | None = None
     read: Callable[[Campaign, str | None, Mapping[str, Any]], tuple[ForceTable, ...]] | None = None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import math
 import re
+import struct
 import zipfile
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -38,6 +39,9 @@ _CHUNK = 1 << 20
 Cell = str | float
 Value = Any  # what calamine hands out: str, float, int, bool, date, time, datetime, timedelta
 PLAIN = Marks()
+_BROKEN = (
+    zipfile.BadZipFile, zlib.error, LZMAError, EOFError, ValueError, NotImplementedError, RuntimeError, struct.error, IndexError,
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,28 +149,21 @@ def _cells_of_ods(packed: zipfile.ZipFile) -> int:
 
 def _checked(path: Path, kind: str) -> list[str]:
     """Refuse a workbook that unpacks to more than memory holds, whatever its directory says; remarks on errors in cells."""
-    cells, blank = 0, []
+    found, cells, blank = "", 0, list[str]()
     try:
-        with zipfile.ZipFile(path) as packed:
-            parts = packed.infolist()
-            found = _too_much(packed, parts)
-            if not found and kind == "ods":
-                cells = _cells_of_ods(packed)
-            elif not found:
-                for part in (p.filename for p in parts):
-                    many, errors = _scan_of_xlsx(packed, part)
-                    cells += many
-                    blank += [f"{place} of {part.rpartition('/')[2]}" for place in errors]
-    except (
-        zipfile.BadZipFile,
-        zlib.error,
-        EOFError,
-        ValueError,
-        NotImplementedError,
-        RuntimeError,
-        OSError,
-        LZMAError,
-    ) as why:
+        if kind == "xls":
+            cells = _cells_of_xls(path.read_bytes())
+        else:
+            with zipfile.ZipFile(path) as packed:
+                found = _too_much(packed, packed.infolist())
+                if not found and kind == "ods":
+                    cells = _cells_of_ods(packed)
+                elif not found:
+                    for part in packed.namelist():
+                        many, errors = _scan_of_xlsx(packed, part)
+                        cells += many
+                        blank += [f"{place} of {part.rpartition('/')[2]}" for place in errors]
+    except (*_BROKEN, OSError) as why:
         raise _refused(f"a broken workbook ({why})", path) from None
     if cells > SHEET_CELLS:
         found = f"{cells:,} cells between the first and the last"
@@ -179,6 +176,88 @@ def _checked(path: Path, kind: str) -> list[str]:
         if blank
         else []
     )
+
+
+_END, _FREE = 0xFFFFFFFE, 0xFFFFFFFA  # end of a chain of sectors; from here on no sector
+_CELLS = frozenset({0x0006, 0x00BD, 0x00BE, 0x00FD, 0x0201, 0x0203, 0x0204, 0x0205, 0x027E})
+_SHEET_BEGINS, _MANY = 0x0809, frozenset({0x00BD, 0x00BE})
+
+
+def _chain(first: int, table: Sequence[int]) -> list[int]:
+    """Numbers of the sectors from the first on; [MS-CFB] 2.3.
+
+    Raises
+    ------
+    ValueError
+        The chain bites its tail or leaves the table: the reader would follow it until memory ends.
+    """
+    out: list[int] = []
+    while first != _END:
+        if first >= len(table) or len(out) >= len(table):
+            raise ValueError("a chain of sectors without end")
+        out.append(first)
+        first = table[first]
+    return out
+
+
+def _numbers(content: bytes) -> tuple[int, ...]:
+    return struct.unpack(f"<{len(content) // 4}I", content[: len(content) // 4 * 4])
+
+
+def _stream_of_xls(content: bytes) -> bytes:
+    """The workbook inside a compound file; [MS-CFB] 2.2 to 2.6."""
+    power, small_power = struct.unpack_from("<HH", content, 30)
+    if power not in (9, 12) or small_power != 6:
+        raise ValueError("sectors of an unknown size")
+    size = 1 << power
+    sectors = [content[i : i + size] for i in range(size, len(content), size)]
+    places, more = list(_numbers(content[76:512])), struct.unpack_from("<I", content, 68)[0]
+    for _ in sectors:
+        if more >= _FREE:
+            break
+        *found, more = _numbers(sectors[more])
+        places += found
+    if more < _FREE:
+        raise ValueError("a chain of sectors without end")
+    table = [n for place in places if place < _FREE for n in _numbers(sectors[place])]
+
+    def whole(first: int) -> bytes:
+        return b"".join(sectors[n] for n in _chain(first, table))
+
+    start, _, cutoff, small_start, small_many = struct.unpack_from("<5I", content, 48)
+    folder = whole(start)
+    entries = [folder[i : i + 128] for i in range(0, len(folder) - 127, 128)]
+    small = whole(struct.unpack_from("<I", entries[0], 116)[0])
+    small_table = _numbers(whole(small_start)) if small_many else ()
+    for entry in entries:
+        first, length = struct.unpack_from("<II", entry, 116)
+        name = entry[: min(struct.unpack_from("<H", entry, 64)[0], 64)].decode("utf-16-le", "replace").rstrip("\0")
+        if length == 0 or entry[66] != 2:
+            continue
+        pieces = (
+            (small[64 * n : 64 * n + 64] for n in _chain(first, small_table)) if length < cutoff else (whole(first),)
+        )
+        stream = b"".join(pieces)[:length]
+        if name.lower() in ("workbook", "book"):
+            return stream
+    raise ValueError("no workbook in it")
+
+
+def _cells_of_xls(content: bytes) -> int:
+    """Cells of the rectangles of all sheets; [MS-XLS] 2.4."""
+    stream = _stream_of_xls(content)
+    at = total = rows = columns = 0
+    while at + 4 <= len(stream):
+        kind, length = struct.unpack_from("<HH", stream, at)
+        body = stream[at + 4 : at + 4 + length]
+        if kind == _SHEET_BEGINS:
+            total, rows, columns = total + rows * columns, 0, 0
+        elif kind in _CELLS and len(body) >= 6:
+            row, column = struct.unpack_from("<HH", body)
+            last = struct.unpack_from("<H", body, len(body) - 2)[0] if kind in _MANY else column
+            rows, columns = max(rows, row + 1), max(columns, column + 1, last + 1)
+        at += 4 + length
+    return total + rows * columns
 
 
 def _too_much(packed: zipfile.ZipFile, parts: list[zipfile.ZipInfo]) -> str:
@@ -371,7 +450,7 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         )
     if path.stat().st_size > SHEET_BYTES:
         raise _refused(f"{path.stat().st_size:,} bytes", path, f"at most {SHEET_BYTES:,}", "Save the table as CSV.")
-    errors = _checked(path, kind) if kind != "xls" else []
+    errors = _checked(path, kind)
     sheets = _sheets(path)
     name = _chosen(sheets, given, path)
     rows = sheets[name]

@@ -19,23 +19,8 @@ import numpy as np
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.options import NoOptions, parse_options
-from coeflab.tables.monitors import (
-    FORCE_TABLE,
-    Monitor,
-    decoded,
-    files_of,
-    head,
-    how_ended,
-    in_order,
-    joined,
-    kind_of,
-    laid_out,
-    lines_of,
-    one_run,
-    pieced,
-    raw_table,
-    read_monitor,
-)
+from coeflab.tables.monitor_files import FORCE_TABLE, decoded, files_of, head, kind_of, lines_of, one_run
+from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, pieced, raw_table, read_monitor
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run, Stated
 
 summary = "report files (.out) and force reports of Ansys Fluent"

@@ -16,21 +16,8 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.options import NoOptions, parse_options
-from coeflab.tables.monitors import (
-    Monitor,
-    decoded,
-    files_of,
-    head,
-    header_cells,
-    how_ended,
-    in_order,
-    joined,
-    kind_of,
-    laid_out,
-    lines_of,
-    raw_table,
-    read_monitor,
-)
+from coeflab.tables.monitor_files import decoded, files_of, head, header_cells, kind_of, lines_of
+from coeflab.tables.monitors import Monitor, how_ended, in_order, joined, laid_out, raw_table, read_monitor
 from coeflab.tables.raw_table import Ended, RawTable, Run
 
 summary = "monitors and monitor plots of Simcenter STAR-CCM+ exported as CSV"

@@ -22,29 +22,15 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import LARGEST_NUMBER, MONITOR_FILES, TOML_BYTES
 from coeflab.core.options import NoOptions, parse_options
-from coeflab.tables.monitors import (
-    Monitor,
-    decoded,
-    files_of,
-    head,
-    how_ended,
-    in_order,
-    kind_of,
-    laid_out,
-    lines_of,
-    one_run,
-    pieced,
-    raw_table,
-    read_monitor,
-    su2_names,
-)
+from coeflab.tables.monitor_files import decoded, files_of, head, kind_of, lines_of, one_run, su2_names
+from coeflab.tables.monitors import Monitor, how_ended, in_order, laid_out, pieced, raw_table, read_monitor
 from coeflab.tables.raw_table import Ended, RawTable, Run, Stated
 
 summary = "histories of SU2 6, 7 and 8 (history.csv, history.dat) with the config file beside them"
@@ -102,6 +88,8 @@ def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
     ended, why = how_ended(pieces[-1], judged)
     monitor = pieced(pieces, index)
     conditions, stated, said = _stated(config, monitor)
+    if config is not None and (change := _rescaled(config, conditions, monitor)):
+        said = [*said, change]
     dialect = {
         "format": f"SU2 history, {'6 or before' if 'Iteration' in monitor.names else '7 or later'}",
         "delimiter": "comma",
@@ -356,6 +344,37 @@ def _add_velocity(conditions: dict[str, Stated], own: Sequence[float], place: st
     speed = math.hypot(*own)
     conditions["U"] = stated["conditions.speed"] = Stated(speed, place)
     conditions |= {n: Stated(v + 0.0, place) for n, v in zip("uvw", own, strict=True)}
+
+
+def _rescaled(config: _Config, conditions: Mapping[str, Stated], monitor: Monitor) -> str:
+    """Coefficients of incompressible flow made those by the run's own density and speed; what was done, or empty.
+
+    SU2 divides by INC_DENSITY_REF and INC_VELOCITY_REF where INC_NONDIM= REFERENCE_VALUES, else by the free stream, which in
+    a rotating frame is not the speed of the body.
+    """
+    if "U" not in conditions or (flow := config.vector("INC_VELOCITY_INIT")) is None:
+        return ""
+    own = (config.numbers("INC_DENSITY_INIT", 1) or (math.nan,))[0]
+    density, speed = own, math.hypot(*flow)
+    keys = ["INC_VELOCITY_INIT"]
+    if config.text("INC_NONDIM").upper() == "REFERENCE_VALUES":
+        keys = ["INC_DENSITY_REF", "INC_VELOCITY_REF"]
+        density, speed = ((config.numbers(key, 1) or (1.0,))[0] for key in keys)
+    elif math.isnan(density):
+        own = density = 1.0
+    with np.errstate(all="ignore"):
+        factor = float(np.divide(density * speed**2, own * float(cast(float, conditions["U"].value)) ** 2))
+    if abs(factor - 1.0) < 1e-9:
+        return ""
+    if not (math.isfinite(factor) and factor > 0.0):
+        return f"{config.at(*keys)}: coefficients by {density:g} kg/m^3 and {speed:g} m/s, not by density and speed of the run"
+    for j, name in enumerate(monitor.names):
+        if _SURFACE.sub(r"\g<name>", name) in JUDGED:
+            monitor.columns[j] = monitor.columns[j] * factor
+    return (
+        f"{config.at(*keys)}: coefficients by {density:g} kg/m^3 and {speed:g} m/s multiplied by {factor:.10g}: "
+        "by density and speed of the run"
+    )
 
 
 def _add_angles(config: _Config, monitor: Monitor, conditions: dict[str, Stated]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -19,6 +20,7 @@ from coeflab.core.wording import listed
 from coeflab.tables.dialect import Cells, Marks, is_house_table, is_of_a_solver, raw_columns
 from coeflab.tables.raw_table import RawTable
 from coeflab.tables.text_dialect import (
+    COMMENTS,
     RULE,
     AmbiguousError,
     Options,
@@ -37,7 +39,10 @@ summary = "any delimited text: delimiter, decimal mark, units and encoding found
 citations = ()
 reads = "tables of delimited text"
 
-_BLOCK = 1 << 20
+_BLOCK = 1 << 20  # letters
+_COMMENT_BEGINS = frozenset(c[0] for c in COMMENTS)
+_PLAIN = re.compile(r"[-+]?[0-9][-+.,0-9eE]*")
+_PIECE = 32  # lines: where a block has a cell without number, most of its pieces have none
 
 
 def _blocks(path: Path, dialect: TextDialect) -> Iterator[tuple[int, list[str], bool]]:
@@ -79,6 +84,10 @@ class _Body:
             self._grow(np.arange(line, line + len(lines)))
             for column, values in zip(self.columns, block.T):
                 column.append(np.ascontiguousarray(values))
+            return
+        if ended and not self.keep and not self.dialect.marks.thousands and len(lines) > _PIECE:
+            for i in range(0, len(lines), _PIECE):
+                self.add(line + i, lines[i : i + _PIECE], ended)
             return
         numbers: list[int] = []
         rows: list[list[str]] = []
@@ -131,6 +140,10 @@ class _Body:
     def _cells(self, n: int, text: str, ended: bool) -> list[str] | None:
         """The cells of one line, None where it is no row."""
         d = self.dialect
+        if ended and d.numbers and text.lstrip()[:1] not in _COMMENT_BEGINS:
+            cells = split_line(text, d.delimiter)
+            if len(cells) == d.width and _PLAIN.fullmatch(cells[d.numbers[0]]):
+                return cells
         stripped = text.strip()
         if not stripped or is_comment(stripped, d.comments) or (stripped[0] in "-=+|:_" and RULE.fullmatch(stripped)):
             return None
@@ -240,9 +253,9 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     given = parse_options(Options, options, "table")
     dialect = sniff(path, given)
     try:
-        body = _read(path, dialect, frozenset())
+        body = _read(path, dialect, dialect.words)
         textual = frozenset(k for k, met in enumerate(body.met) if met.text)
-        if textual:
+        if textual - dialect.words:
             body = _read(path, dialect, textual)
     except UnicodeDecodeError as why:
         if dialect.encoding == "utf-8" and not given.encoding:
@@ -254,7 +267,9 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     for pieces in body.columns:
         values.append(np.concatenate(pieces))
         pieces.clear()
-    columns, remarks = raw_columns(dialect.head, values, body.texts, body.met)
+    columns, remarks = raw_columns(
+        dialect.head, values, {k: t for k, t in body.texts.items() if k in textual}, body.met
+    )
     return RawTable(
         path, columns, dialect.head.line, np.concatenate(body.lines), files=(path,), dialect=dialect.said,
         remarks=(*dialect.remarks, *_remarks(body), *remarks),

@@ -1,0 +1,375 @@
+"""Runs of a planar motion mechanism: a list of runs and one file of forces over time for each.
+
+The list (``runs.csv``) says of every run its file, motion and frequency, and what the files do not hold; a file has ``t`` and the
+forces, and may have the motion: displacements y z phi theta psi, velocities u v w p q r, accelerations udot ... rdot.
+All of them are in the axes that campaign.toml declares, displacements in axes that move with the carriage and lie along
+those of the body at rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coeflab.core.axes import angle_sign
+from coeflab.core.errors import InputError, UnitsError, shown
+from coeflab.core.options import NoOptions, parse_options
+from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.text.delimited import Cells, read_cells, require_unit
+from coeflab.core.types import Array
+from coeflab.core.units import factor
+from coeflab.law.symbols import ANGULAR, COMPONENTS, FORCES, LINEAR, MOMENTS
+from coeflab.tables.campaign import Campaign, TableDeclaration, TowedInertia
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.planar_motion import (
+    DISPLACEMENTS,
+    VARIABLES,
+    Filter,
+    PlanarMotionRun,
+    PlanarMotionTable,
+    TimeSeries,
+)
+
+summary = (
+    "runs of a planar motion mechanism: runs.csv (file, motion, frequency [Hz] ...) and one CSV over time for each"
+)
+citations = ("sname1950", "ittc_captive")
+reads = "PMM runs"
+fit = "planar_motion"
+
+OFFSETS, TURNS = ("x", "y", "z"), ("phi", "theta", "psi")
+LINEAR_RATES, ANGULAR_RATES = tuple(f"{v}dot" for v in LINEAR), tuple(f"{v}dot" for v in ANGULAR)
+GROUPS = {
+    "displacements": ((OFFSETS, "length"), (TURNS, "angle")),
+    "velocities": ((LINEAR, "speed"), (ANGULAR, "rate")),
+    "accelerations": ((LINEAR_RATES, "acceleration"), (ANGULAR_RATES, "angular acceleration")),
+    "forces": ((FORCES, "force"), (MOMENTS, "moment")),
+}
+DIMENSIONS = {n: d for groups in GROUPS.values() for names, d in groups for n in names}
+NUMBERS = {
+    "frequency": "frequency", "omega": "rate", "period": "time", "U": "speed", "phase": "angle", "beta": "angle",
+    "alpha": "angle", "start": "time", **{DISPLACEMENTS[m]: DIMENSIONS[DISPLACEMENTS[m]] for m in VARIABLES},
+}  # fmt: skip
+TEXTS = ("run", "file", "motion", "in_air")
+MEANS = "rows are means of oscillating runs, which no steady fit uses; planar_motion reads them over time"
+HEAD = 4096
+
+
+def recognises(path: Path) -> bool:
+    """Whether the file is a list of runs: CSV with the columns file and motion, as far as its first 4 KiB say."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as stream:
+        lines = stream.read(HEAD).decode("utf-8", "replace").splitlines()
+    head = next((line for line in lines if line.strip() and not line.lstrip().startswith("#")), "")
+    return {"file", "motion"} <= {c.strip() for c in head.lstrip("\ufeff").split(",")}
+
+
+def read(
+    campaign: Campaign, only: str | None = None, options: Mapping[str, Any] | None = None
+) -> tuple[ForceTable, ...]:
+    """Read the lists of runs of a campaign, and every file that they name.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    only : str, optional
+        File name of the one list that is wanted.
+    options : mapping, optional
+        None are known.
+
+    Returns
+    -------
+    tuple of PlanarMotionTable
+
+    Raises
+    ------
+    InputError
+        A declaration that is missing, a cell that cannot be, a file that is not there.
+    """
+    parse_options(NoOptions, options or {}, "pmm")
+    wanted = [t for t in campaign.tables if only is None or Path(t.file).name == only]
+    if not wanted:
+        known = ", ".join(t.file for t in campaign.tables)
+        raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=campaign.path, column="table")
+    if campaign.half_model:
+        raise InputError(
+            "a half model of oscillating runs", "the whole model", file=campaign.path, column="campaign.half_model"
+        )
+    return tuple(_table(campaign, t) for t in wanted)
+
+
+def _table(campaign: Campaign, table: TableDeclaration) -> PlanarMotionTable:
+    cells = read_cells(campaign.path.parent / table.file)
+    runs = tuple(_runs(campaign, table, cells))
+    inertia = _inertia(campaign, table, runs)
+    filters, restoring = _declared(campaign, runs)
+    digest = sha256_of(cells.file)
+    if table.sha256 and table.sha256 != digest:
+        raise InputError(
+            f"sha256 {digest[:12]}...", f"{table.sha256[:12]}... as campaign.toml declares", file=cells.file,
+            advice="The list of runs was changed after it was entered; restore it or update table.sha256.",
+        )  # fmt: skip
+    drift, attack, speed = (np.array([getattr(r, n) for r in runs]) for n in ("drift", "attack", "speed"))
+    zero = np.zeros(len(runs))
+    flow = (np.cos(attack) * np.cos(drift), np.sin(drift), np.sin(attack) * np.cos(drift))
+    means = {
+        c: np.array([np.mean(r.record.forces[c]) if c in r.record.forces else np.nan for r in runs]) for c in COMPONENTS
+    }
+    means = {c: m for c, m in means.items() if np.any(np.isfinite(m))}
+    folder = campaign.path.parent
+    files = dict.fromkeys(s.file for r in runs for s in (r.record, r.in_air) if s is not None)
+    notes = [MEANS]
+    notes += [] if campaign.axes.name == "FRD" else [f"axes turned from {campaign.axes.name} to FRD"]
+    notes += [f"filter of {c}: {f.text}" for c, f in filters.items() if f.text != "none"]
+    return PlanarMotionTable(
+        name=f"{campaign.name}/{table.file}",
+        campaign=campaign.name,
+        title=campaign.title,
+        body=campaign.body,
+        motion={**{m: speed * p for m, p in zip(LINEAR, flow, strict=True)}, **dict.fromkeys(ANGULAR, zero)},
+        controls={},
+        speed=speed,
+        forces=means,
+        errors={},
+        usable={c: np.zeros(len(runs), dtype=bool) for c in means},
+        exclusions=(),
+        labels=tuple(r.label for r in runs),
+        reference_point=campaign.reference_point,
+        datum=campaign.datum,
+        conditions=campaign.conditions,
+        scaling=campaign.scaling,
+        source=campaign.source,
+        files=(
+            InputFile(f"{campaign.name}/{campaign.path.name}", sha256_of(campaign.path)),
+            InputFile(f"{campaign.name}/{table.file}", digest),
+            *(InputFile(f"{campaign.name}/{f.relative_to(folder).as_posix()}", sha256_of(f)) for f in files),
+        ),
+        notes=tuple(notes),
+        lines=tuple(r.line for r in runs),
+        runs=runs,
+        inertia=inertia,
+        filters=filters,
+        restoring=restoring,
+    )
+
+
+def _si(cells: Cells, name: str, dimension: str) -> Array:
+    """A column in SI; errors of its unit at its header."""
+    header = next(h for h in cells.headers if h.name == name)
+    line = cells.first_line - 1
+    unit = require_unit(header, cells.file, line, f"{name} [...]")
+    try:
+        scale = factor(unit, dimension)
+    except UnitsError as why:
+        raise UnitsError(
+            why.found, why.expected, file=cells.file, line=line, column=header.text, advice=why.advice
+        ) from None
+    return np.asarray(cells.numbers(name) * scale)
+
+
+def _unknown(cells: Cells, known: tuple[str, ...]) -> None:
+    strange = next((h for h in cells.headers if h.name not in known), None)
+    if strange is not None:
+        raise InputError(
+            f"the unknown column {shown(strange.text)}", f"one of {', '.join(known)}", file=cells.file,
+            line=cells.first_line - 1, column=strange.text, advice="Name other columns under ignore of the [[table]].",
+        )  # fmt: skip
+
+
+def _runs(campaign: Campaign, table: TableDeclaration, cells: Cells) -> list[PlanarMotionRun]:
+    """Every row of the list with its record."""
+    ignored = (*table.ignore, *table.labels)
+    _unknown(cells, (*TEXTS, *NUMBERS, *ignored))
+    names = [h.name for h in cells.headers]
+    for name in ("file", "motion"):
+        if name not in names:
+            raise InputError(f"no column {name}", "file and motion", file=cells.file, line=cells.first_line - 1)
+    texts = {n: cells.texts(n) for n in TEXTS if n in names}
+    numbers = {n: _si(cells, n, d) for n, d in NUMBERS.items() if n in names}
+    if "frequency" in numbers:
+        numbers["omega"] = 2.0 * np.pi * numbers["frequency"]
+    elif "period" in numbers:
+        numbers["omega"] = 2.0 * np.pi / numbers["period"]
+    signs = {n: angle_sign(n, campaign.signs.get(n), campaign.path) if n in numbers else 1.0 for n in ("alpha", "beta")}
+    turn = _turns(campaign)
+    out = []
+    for i in range(len(cells)):
+        given = {n: float(v[i]) for n, v in numbers.items() if np.isfinite(v[i])}
+        motion = texts["motion"][i]
+
+        def fail(found: str, expected: str, column: str, advice: str = "", row: int = i) -> InputError:
+            return InputError(found, expected, file=cells.file, line=cells.line(row), column=column, advice=advice)
+
+        if motion not in VARIABLES:
+            raise fail(shown(motion), f"one of {', '.join(VARIABLES)}", "motion")
+        if not given.get("omega", 0.0) > 0.0:
+            raise fail("no frequency above zero", "frequency [Hz], omega [rad/s] or period [s]", "frequency")
+        speed = given.get("U", campaign.conditions.speed)
+        if not speed > 0.0:
+            raise fail(f"a speed of {speed:g} m/s", "a speed above zero", "U")
+        moved = DISPLACEMENTS[motion]
+        amplitude, phase = given.get(moved), given.get("phase")
+        if amplitude is not None and not amplitude > 0.0:
+            raise fail(
+                f"an amplitude of {amplitude:g}",
+                "an amplitude above zero",
+                moved,
+                "A turned sign is a phase of 180 deg.",
+            )
+        if phase is not None and abs(phase) > 2.0 * np.pi:
+            raise fail(
+                f"a phase of {np.degrees(phase):.4g} deg", "a phase within a whole turn", "phase", "Write phase [deg]."
+            )
+        start = given.get("start", 0.0)
+        record = _series(cells.file.parent, texts["file"][i], start, ignored, turn, fail)
+        air = texts.get("in_air", [""] * len(cells))[i]
+        if not record.has_motion and (amplitude is None or phase is None):
+            raise fail(
+                "a run whose file holds no motion, without amplitude or phase", f"{moved} [...] and phase [deg]", moved,
+                f"{moved} = amplitude sin(2 pi f t + phase); or put {moved}(t) into {texts['file'][i]}.",
+            )  # fmt: skip
+        # A motion about or along a table's axis that points the other way is the same with the phase turned by half.
+        if phase is not None and turn[moved][1] < 0.0:
+            phase += np.pi
+        out.append(
+            PlanarMotionRun(
+                label=texts["run"][i] if texts.get("run", [""] * len(cells))[i] else Path(texts["file"][i]).stem,
+                line=cells.line(i),
+                listed=cells.file,
+                motion=motion,
+                omega=given["omega"],
+                speed=speed,
+                amplitude=amplitude,
+                phase=phase,
+                drift=signs["beta"] * given.get("beta", 0.0),
+                attack=signs["alpha"] * given.get("alpha", 0.0),
+                record=record,
+                in_air=_series(cells.file.parent, air, start, ignored, turn, fail) if air else None,
+            )
+        )
+    return out
+
+
+def _turns(campaign: Campaign) -> dict[str, tuple[str, float]]:
+    """FRD name of every column of a record's triads -> the table's own column and its sign."""
+    out = {}
+    for groups in GROUPS.values():
+        for names, _ in groups:
+            for i, name in enumerate(names):
+                j = int(np.argmax(np.abs(campaign.axes.rotation[i])))
+                out[name] = names[j], float(campaign.axes.rotation[i, j])
+    return out
+
+
+def _series(
+    folder: Path, name: str, start: float, ignored: tuple[str, ...], turn: Mapping[str, tuple[str, float]], fail: Any
+) -> TimeSeries:
+    """One record, from ``start`` on, turned to FRD."""
+    path = (folder / name).resolve()
+    if not name or not path.is_relative_to(folder.resolve()):
+        raise fail(shown(name), "a file beside the list of runs or in a folder under it", "file")
+    if not path.is_file():
+        raise fail(f"no file {shown(name)}", "a CSV file with t [s] and forces", "file")
+    path = folder / name
+    cells = read_cells(path)
+    _unknown(cells, ("t", *DIMENSIONS, *ignored))
+    names = [h.name for h in cells.headers if h.name not in ignored]
+    if "t" not in names:
+        raise InputError("no column t", "t [s]", file=path, line=cells.first_line - 1)
+    columns = {n: _si(cells, n, "time" if n == "t" else DIMENSIONS[n]) for n in names}
+    for n, values in columns.items():
+        blank = np.flatnonzero(np.isnan(values))
+        if blank.size:
+            raise InputError("a blank cell", "a number", file=path, line=cells.line(int(blank[0])), column=n)
+    time = columns.pop("t")
+    back = np.flatnonzero(np.diff(time) <= 0.0)
+    if back.size:
+        at = int(back[0]) + 1
+        raise InputError(
+            f"{time[at]:g} s after {time[at - 1]:g} s", "a time that rises", file=path, line=cells.line(at), column="t"
+        )
+    keep = time >= start
+    made: dict[str, dict[str, Array]] = {}
+    for kind, groups in GROUPS.items():
+        frd = [n for names, _ in groups for n in names if turn[n][0] in columns]
+        made[kind] = {n: turn[n][1] * columns[turn[n][0]][keep] for n in frd}
+    if not made["forces"]:
+        raise InputError("no force column", "at least one of X Y Z K M N", file=path, line=cells.first_line - 1)
+    made["accelerations"] = {n.removesuffix("dot"): v for n, v in made["accelerations"].items()}
+    return TimeSeries(file=path, time=time[keep], **made)
+
+
+def _inertia(campaign: Campaign, table: TableDeclaration, runs: tuple[PlanarMotionRun, ...]) -> TowedInertia | None:
+    """The inertia that is to be taken out by its numbers."""
+    in_air = sum(r.in_air is not None for r in runs)
+    if table.contains_inertia is None:
+        raise InputError(
+            "no declaration", "contains_inertia = true or false", file=campaign.path, column="table.contains_inertia",
+            advice="A balance carries the model's inertia, which is as large as the added mass; the force of a solver does not.",
+        )  # fmt: skip
+    if not table.contains_inertia:
+        if in_air:
+            raise InputError(
+                "runs in air of forces without inertia", "contains_inertia = true, or no in_air", file=campaign.path,
+                column="table.contains_inertia",
+            )  # fmt: skip
+        return None
+    if 0 < in_air < len(runs):
+        run = next(r for r in runs if r.in_air is None)
+        raise run.fail(
+            f"{run.label} without a run in air", "in_air for every run, or [inertia] for all", column="in_air"
+        )
+    if in_air:
+        return None
+    if campaign.inertia is None:
+        raise InputError(
+            "contains_inertia = true without mass", "[inertia] with mass, centre_of_gravity, inertia, or a run in air for every "
+            "run (column in_air)", file=campaign.path, column="inertia",
+        )  # fmt: skip
+    return campaign.inertia
+
+
+def _declared(
+    campaign: Campaign, runs: tuple[PlanarMotionRun, ...]
+) -> tuple[dict[str, Filter], tuple[float, float] | None]:
+    """Filters by FRD channel, and restoring moments, refused where they matter and are not declared."""
+    keys = campaign.planar_motion
+    if keys is None:
+        raise InputError(
+            "no [planar_motion]", '[planar_motion] with filter = { forces = "none" }', file=campaign.path, column="planar_motion",
+            advice="A phase that is off by a degree turns damping into added mass: say what the recording did to the channels.",
+        )  # fmt: skip
+    known = ("forces", "motion", *COMPONENTS)
+    strange = next((n for n in keys.filter if n not in known), None)
+    if strange is not None:
+        raise InputError(
+            f"the channel {shown(strange)}",
+            f"one of {', '.join(known)}",
+            file=campaign.path,
+            column="planar_motion.filter",
+        )
+    read = {n: Filter.read(t, campaign.path, f"planar_motion.filter.{n}") for n, t in keys.filter.items()}
+    turn = _turns(campaign)
+    out = {}
+    have = [c for c in COMPONENTS if any(c in r.record.forces for r in runs)]
+    for c in [*have, *(["motion"] if any(r.record.has_motion for r in runs) else [])]:
+        column = turn[c][0] if c in turn else c
+        declared = read.get(column, read.get("forces") if c != "motion" else None)
+        if declared is None:
+            raise InputError(
+                f"no filter of {column}", f'planar_motion.filter.{column} = "none" or what it is', file=campaign.path,
+                column="planar_motion.filter", advice="Where motion and forces pass the same filter, declare it for both.",
+            )  # fmt: skip
+        out[c] = declared
+    turning = next((r for r in runs if r.motion in ("roll", "pitch")), None)
+    if keys.restoring is None and turning is not None:
+        raise InputError(
+            f"{turning.motion} runs without restoring", "planar_motion.restoring = [roll, pitch], N m/rad", file=campaign.path,
+            column="planar_motion.restoring",
+            advice="Weight and buoyancy swing in phase with the acceleration; [0, 0] where the forces do not contain them.",
+        )  # fmt: skip
+    return out, None if keys.restoring is None else (keys.restoring[0], keys.restoring[1])
