@@ -125,9 +125,12 @@ def command(
 def described(raw: RawTable, importer: str, found: Understood) -> None:
     """Print what a file is, its columns, what it says of itself and what its numbers show."""
     from coeflab.report.tables import raw_tables
+    from coeflab.tables.collect import runs_shown
 
     said = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
     show.sentence(f"{raw.path}: read by {importer}" + (f"; {said}" if said else ""))
+    if runs := runs_shown(raw, MOST):
+        show.table(runs)
     show.table(raw_tables.columns(raw, found.proposals, found.mapping))
     show.table(raw_tables.stated(raw))
     _listed("Left out or mended", raw.remarks)

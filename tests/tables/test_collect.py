@@ -112,10 +112,13 @@ def test_every_kind_of_end_is_listed(collected: Collected) -> None:
 
 def test_origin_of_every_condition_is_shown(collected: Collected) -> None:
     shown = collected.shown()
+    assert shown.headers == ("run", "beta", "r", "plateau from", "status", "condition from")
     assert shown.rows[[r[0] for r in shown.rows].index("sweep/b10_r0p2")] == (
-        "sweep/b10_r0p2", "10 deg", "0.2 rad/s", "1", "converged", "name b10_r0p2", "",
+        "sweep/b10_r0p2", "10 deg", "0.2 rad/s", "1", "converged", "name b10_r0p2",
     )  # fmt: skip
-    assert len(collected.shown(most=3).rows) == 3
+    few = collected.shown(most=5)
+    assert {r[4] for r in few.rows} == {"crashed", "diverged", "empty", "unreadable", "drifting"}
+    assert few.notes[0].endswith("8 are not shown.")
 
 
 def test_files_have_their_hashes(collected: Collected, matrix: Path) -> None:
