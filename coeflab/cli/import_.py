@@ -278,7 +278,7 @@ def _asked(
 
 def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
     from coeflab.tables.column_map import read_column_map
-    from coeflab.tables.mapping import with_unit
+    from coeflab.tables.mapping import error_of, with_unit
 
     out: dict[str, ColumnMap] = {}
     whole = [(column, offer) for column, offer in found.open if offer.whole]
@@ -287,7 +287,7 @@ def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
         if typer.confirm("  All of them right?", default=None):
             out = {column.name: read_column_map(offer.text) for column, offer in whole}
     for column, offer in found.open:
-        if column.name in out:
+        if column.name in out or error_of(column, out):
             continue
         hint = f"{offer.text}: {offer.why}" if offer.text else offer.why
         show.sentence(f'Column "{column.name}" ({hint}). Say Y [N], -beta [deg], r\' [-], label, ignore ...')

@@ -18,9 +18,11 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.fits import FITS
 from coeflab.tables.collect import Collected, collect
+from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.conditions import name_pattern, read_run_list
 from coeflab.tables.histories import Convergence
 from coeflab.tables.importers import IMPORTERS, PlannedTable
+from coeflab.tables.mapping import assigned
 from coeflab.tables.reading import read_tables
 from coeflab.tables.runs import find_runs, natural
 from tests.conftest import SECTIONS
@@ -384,6 +386,10 @@ def test_columns_that_the_format_does_not_name(tmp_path: Path) -> None:
         ("beta", "beta"), ("lateral", ""), ("vertical", ""), ("se_lateral", ""), ("se_vertical", ""),
     ]  # fmt: skip
     assert found.table.column("lateral").values == pytest.approx([6.0, 12.0], rel=1e-3)
+    said = {"lateral": ColumnMap("Y", negative=True), "vertical": ColumnMap("ignore")}
+    known = {a.column.name: a.said for a in assigned(found.table, said)}
+    assert known["se_lateral"] == ColumnMap("Y", unit="N", error=True)
+    assert "se_vertical" not in known
     write_run(tmp_path / "b6", {"X": 1.0})
     with pytest.raises(InputError, match="in b6 and columns of other names in b"):
         collect(tmp_path, names="b{beta:deg}")
