@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -561,9 +562,9 @@ def test_two_million_rows_take_bounded_memory_and_time(case: Callable[[str], Pat
     assert peak * (1 if sys.platform == "darwin" else 1024) < 500e6
     begin = time.process_time()
     with file.open() as stream:
-        for cells in csv.reader(stream, delimiter=" "):
+        for cells in csv.reader(islice(stream, rows // 10), delimiter=" "):
             if not cells[0].startswith("#"):
                 for cell in cells:
                     for number in cell.split("\t"):
                         float(number.strip("()") or 0.0)
-    assert seconds < 3.0 * (time.process_time() - begin)
+    assert seconds < 3.0 * 10.0 * (time.process_time() - begin)
