@@ -77,6 +77,13 @@ def known_patches(case: FoamCase, lists: Sequence[Sequence[str]]) -> dict[str, s
     return out
 
 
+def walls(case: FoamCase) -> set[str]:
+    """The patches of the mesh that are walls."""
+    boundary = case.read("constant/polyMesh/boundary")
+    kinds = {n: case.value(part, "type") for n, part in boundary.parts()} if boundary is not None else {}
+    return {n for n, kind in kinds.items() if kind is not None and kind[0] == "wall"}
+
+
 def stated_density(case: FoamCase, part: Foam | None) -> tuple[Found | None, list[str]]:
     """The density that forces were multiplied by, and what disagrees."""
     fluid: Found | None = None

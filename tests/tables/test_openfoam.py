@@ -93,7 +93,7 @@ def test_forces_of_every_layout_are_the_same_numbers(name: str) -> None:
 
 
 def test_every_sample_is_one_case_for_one_importer(tmp_path: Path) -> None:
-    for folder in SAMPLES.iterdir():
+    for folder in filter(Path.is_dir, SAMPLES.iterdir()):
         assert [n for n in IMPORTERS.names() if IMPORTERS.load(n).recognises(folder)] == ["openfoam"]
     assert not openfoam.recognises(SAMPLES)
     assert not openfoam.recognises(SAMPLES / "arm_mrf" / FORCE)
@@ -103,6 +103,7 @@ def test_every_sample_is_one_case_for_one_importer(tmp_path: Path) -> None:
     run = read(tmp_path / "alone")
     np.testing.assert_allclose(forces(run.history), WHOLE)
     assert dict(run.conditions) == {}
+    assert (run.history.columns[0].means, run.history.columns[0].unit) == ("time", "")
     assert "conditions.density" not in run.history.stated
 
 
@@ -138,11 +139,14 @@ def test_groups_of_patches_about_the_point_of_the_whole() -> None:
 def test_two_groups_without_the_whole_are_asked_about(case: Callable[[str], Path]) -> None:
     folder = case("com_v2212")
     shutil.rmtree(folder / "postProcessing/all")
-    with pytest.raises(InputError, match=r"function objects hull, sail; none of them.*function=hull"):
+    with pytest.raises(InputError, match=r"function objects hull, sail; none of them covers all.*function=hull"):
         read(folder)
     both = read(folder, function="hull sail")
     np.testing.assert_allclose(forces(both.history), WHOLE, rtol=1e-12)
-    np.testing.assert_allclose(forces(read(folder, function=["sail"]).history)[:, :3], 0.25 * WHOLE[:, :3])
+    sail = read(folder, function=["sail"])
+    np.testing.assert_allclose(forces(sail.history)[:, :3], 0.25 * WHOLE[:, :3])
+    assert "leave out the walls hull" in remarks(sail)
+    assert "leave out" not in remarks(both)
     with pytest.raises(InputError, match='no forces of the function object "fin"'):
         read(folder, function=["fin"])
 
@@ -152,6 +156,18 @@ def test_two_that_cover_the_same_are_asked_about(case: Callable[[str], Path]) ->
     edit(folder / "system/controlDict", ("patches         (hull)", 'patches         (sail ".*ull")'))
     with pytest.raises(InputError, match="all and hull cover the same patches"):
         read(folder)
+
+
+def test_forces_of_a_part_beside_coefficients_of_the_whole_are_not_the_whole(case: Callable[[str], Path]) -> None:
+    folder = case("arm_mrf")
+    shutil.copytree(SAMPLES / "coefficients_com/postProcessing/forceCoeffs1", folder / "postProcessing/all")
+    with pytest.raises(InputError, match=r"no dictionary says which patches all has"):
+        read(folder)
+    alike = "all { type forceCoeffs; patches (hull); rho rhoInf; rhoInf 998; }\n"
+    edit(folder / "system/controlDict", ("functions\n{\n", "functions\n{\n" + alike))
+    assert read(folder).history.dialect["function object"] == "forces"
+    edit(folder / "system/controlDict", ("patches (hull)", "patches (hull sail)"))
+    assert read(folder).history.dialect["function object"] == "all"
 
 
 def test_coefficients_become_forces_by_what_their_comments_state() -> None:
