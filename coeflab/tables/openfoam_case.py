@@ -314,7 +314,7 @@ def stated_y_plus(case: FoamCase, body: set[str]) -> Stated | None:
     """The largest average y+ of the body's patches at the last time."""
     last: dict[str, tuple[float, float, str]] = {}
     for folder in listed(case.root / "postProcessing"):
-        for time in listed(folder) if folder.name.startswith("yPlus") else ():
+        for time in listed(folder) if folder.is_dir() else ():
             file = time / "yPlus.dat"
             if not file.is_file():
                 continue

@@ -47,15 +47,20 @@ def flow(beta: float) -> tuple[float, float]:
 
 
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory: pytest.TempPathFactory) -> list[Run]:
-    """The five cases: one mesh, five inflows."""
-    root = tmp_path_factory.mktemp("openfoam")
-    mesh = shutil.copytree(CASE, root / "mesh")
-    solve(mesh, "blockMesh")
-    solve(mesh, "transformPoints", "-scale", "(2 0.5 0.5)")
+def mesh(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The case with its mesh."""
+    folder = shutil.copytree(CASE, tmp_path_factory.mktemp("openfoam") / "mesh", ignore=lambda *_: {"arm"})
+    solve(folder, "blockMesh")
+    solve(folder, "transformPoints", "-scale", "(2 0.5 0.5)")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def runs(mesh: Path) -> list[Run]:
+    """Five inflows."""
     out = []
     for beta in DRIFT:
-        folder = shutil.copytree(mesh, root / f"beta_{beta:+.0f}")
+        folder = shutil.copytree(mesh, mesh.with_name(f"beta_{beta:+.0f}"))
         inflow = folder / "0/include/inflow"
         text = inflow.read_text()
         assert "(1 0 0)" in text
@@ -128,3 +133,18 @@ def test_drag_is_that_of_a_laminar_boundary_layer(runs: list[Run]) -> None:
     wetted = 0.5 * np.pi * DIAMETER**2 * (1.0 + LENGTH / DIAMETER * np.arcsin(eccentricity) / eccentricity)
     plate = 0.5 * DENSITY * SPEED**2 * wetted * 1.328 / np.sqrt(2000.0)
     assert plate < last(runs[2].patches["viscous"])[0] < 3.0 * plate
+
+
+def test_on_the_arm_the_body_goes_forwards_and_is_damped(mesh: Path, runs: list[Run]) -> None:
+    folder = shutil.copytree(mesh, mesh.with_name("arm"))
+    shutil.copytree(CASE / "arm", folder, dirs_exist_ok=True)
+    solve(folder, "topoSet", "-constant")
+    solve(folder, "simpleFoam")
+    run = openfoam.run(folder, {})
+    # Axes x aft, y to starboard, z up: 1 m/s forwards, about a centre 10 m to starboard.
+    found = [float(str(run.conditions[n].value)) for n in "uvwpqr"]
+    np.testing.assert_allclose(found, [-SPEED, 0.0, 0.0, 0.0, 0.0, -0.1], atol=1e-12)
+    # OpenFOAM's own forces say the same: they hold back the way, nearly as much as without the turn, and the turn.
+    force = last(run.history)
+    assert force[0] == pytest.approx(last(runs[2].history)[0], rel=0.1)
+    assert force[5] * found[5] < 0.0

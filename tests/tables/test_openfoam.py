@@ -202,6 +202,13 @@ def test_coefficients_whose_comments_say_nothing_stay_coefficients(case: Callabl
     run = read(folder)
     assert [(c.name, c.unit, c.means) for c in run.history.columns[1:3]] == [("Cm", "-", ""), ("Cd", "-", "")]
     assert "state no magUInf" in remarks(run)
+    edit(
+        folder / "postProcessing/forceCoeffs/0/forceCoeffs.dat",
+        ("# somewhat", "# magUInf"),
+        ("(0.000000e+00 0.0", "(0.0"),
+    )
+    assert "state no dragDir" not in remarks(read(folder))
+    assert "state no liftDir" in remarks(read(folder))
 
 
 def test_kinematic_density_is_said_and_turned(case: Callable[[str], Path]) -> None:
