@@ -238,6 +238,15 @@ def test_rotating_arm_by_hand() -> None:
         assert "constant/" in run.conditions["r"].place
 
 
+def test_an_inflow_relative_to_the_frame_is_not_taken(case: Callable[[str], Path]) -> None:
+    folder = case("arm_srf")
+    edit(folder / "0/Urel", ("relative        no", "relative        yes"))
+    run = read(folder)
+    assert "u" not in run.conditions
+    assert run.conditions["r"].value == pytest.approx(0.25)
+    assert "UInf of far is relative to the rotating frame" in remarks(run)
+
+
 def test_a_rotor_is_not_the_motion_of_the_body(case: Callable[[str], Path]) -> None:
     folder = case("arm_mrf")
     mesh = folder / "constant/polyMesh"

@@ -11,6 +11,7 @@ import re
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -242,8 +243,9 @@ def _named(part: Foam, name: str) -> tuple[Entry, Foam] | None:
     return None
 
 
+@lru_cache(maxsize=1000)
 def _value(text: str) -> Any:
-    """A value through foamlib; None where it is none."""
+    """A value through foamlib; None where it is none. Cases of one folder share most of theirs."""
     import numpy as np
     from foamlib import Dimensioned, FoamFile
 
