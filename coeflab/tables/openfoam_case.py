@@ -95,7 +95,7 @@ def stated_density(case: FoamCase, part: Foam | None) -> tuple[Found | None, lis
                 fluid = float(found[0]), found[1]
     rho, reference = case.value(part, "rho"), case.value(part, "rhoInf")
     if reference is None or not is_number(reference[0]) or (rho is not None and rho[0] != "rhoInf"):
-        return fluid, []
+        return fluid, [] if fluid is not None else ["no file states the density that forces were multiplied by"]
     stated = float(reference[0]), reference[1]
     other = f", while {fluid[1]} says {fluid[0]:g}" if fluid is not None and fluid[0] != stated[0] else ""
     if stated[0] == 1.0:

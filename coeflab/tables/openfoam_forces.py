@@ -26,7 +26,7 @@ _GROUP = re.compile(r"(local)?(force|moment)s?\(([^)]*)\)", re.IGNORECASE)
 XYZ = "xyz"
 VECTORS = ("CofR", "dragDir", "sideDir", "liftDir", "rollAxis", "pitchAxis", "yawAxis")
 NUMBERS = ("magUInf", "lRef", "Aref")
-_MOST = 10_000  # entries of one folder
+_MOST = 200_000  # entries of one folder
 
 
 def listed(folder: Path) -> list[Path]:

@@ -190,10 +190,21 @@ def test_coefficients_without_density_are_those_of_one(case: Callable[[str], Pat
     shutil.rmtree(folder / "system")
     alone = read(folder)
     assert alone.history.stated["conditions.density"].value == 1.0
-    assert "no file states a density" in remarks(alone)
+    assert "no file states the density" in remarks(alone)
+    assert "forces are made those of a fluid of 1 kg/m^3" in remarks(alone)
     np.testing.assert_allclose(1000.0 * forces(alone.history), forces(read(SAMPLES / "coefficients_com").history))
     given_ = read(folder, density="1025 kg/m^3")
     np.testing.assert_allclose(1025.0 * forces(alone.history), forces(given_.history))
+
+
+def test_coefficients_by_another_speed_than_the_inflow_are_said(case: Callable[[str], Path]) -> None:
+    folder = case("coefficients_old")
+    shutil.copytree(SAMPLES / "org_v4_porous/0", folder / "0")
+    assert "magUInf" not in remarks(read(folder))
+    edit(folder / "0/U", ("value           uniform (2 0 0)", "value           uniform (2 0.3 0)"))
+    run = read(folder)
+    assert "magUInf 2 is not the speed 2.02237 m/s of 0/U:16" in remarks(run)
+    assert run.history.stated["conditions.speed"].value == pytest.approx(np.hypot(2.0, 0.3))
 
 
 def test_coefficients_whose_comments_say_nothing_stay_coefficients(case: Callable[[str], Path]) -> None:

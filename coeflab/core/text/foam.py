@@ -202,7 +202,25 @@ class FoamCase:
         return out + text[end:]
 
     def include(self, file: Path, named: str, into: Foam, depth: int, *, needed: bool) -> None:
-        """Read another file into a dictionary."""
+        """Read another file into a dictionary.
+
+        Parameters
+        ----------
+        file : Path
+            That includes it.
+        named : str
+            As it is named there.
+        into : Foam
+        depth : int
+            How many files include one another by now.
+        needed : bool
+            Whether a missing one is noted.
+
+        Raises
+        ------
+        InputError
+            Includes without end, or as `read`.
+        """
         prefix = next((p for p in ROOTS if named.startswith(p)), None)
         path = file.parent / named if prefix is None else self.root / ROOTS[prefix] / named[len(prefix) :].lstrip("/")
         if depth >= FOAM_DEEPEST or len(self.files) >= FOAM_FILES:

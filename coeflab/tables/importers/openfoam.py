@@ -180,6 +180,9 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
     frame = of.rotating_frame(case, given.rotation, body, known)
     has_srf = any((case.root / d / f"Urel{z}").is_file() for d in ("0", "0.orig") for z in ("", ".gz"))
     conditions = of.motion(case, frame, point, "Urel" if has_srf else "U")
+    speed, flow = main.facts.get("magUInf"), conditions.get("U")
+    if speed is not None and flow is not None and abs(float(str(flow.value)) - speed[0]) > 0.005 * speed[0]:
+        case.note(f"{speed[1]}: magUInf {speed[0]:g} is not the speed {flow.value:.6g} m/s of {flow.place}")
     if any((case.root / "constant" / n).is_file() for n in ("dynamicMeshDict", "dynamicMeshDict.gz")):
         case.note("constant/dynamicMeshDict: the motion of a moving mesh is not read; state it in a list of runs")
     for name, value in (("cells", of.stated_cells(case)), ("y_plus", of.stated_y_plus(case, body))):
@@ -221,7 +224,7 @@ def _scaled(
             remarks.append(f"{main.name}: coefficients stay as they are, as {reason}")
             return ("-", "-"), density
         if density is None and not wanted:
-            remarks.append(f"{main.name}: no file states a density, so forces are those of a fluid of 1 kg/m^3")
+            remarks.append(f"{main.name}: without a density forces are made those of a fluid of 1 kg/m^3")
         return ("N", "N m"), (wanted, "option density") if wanted else (rho, place or main.facts["magUInf"][1])
     if not wanted:
         return ("N", "N m"), density
