@@ -318,18 +318,21 @@ def raw_columns(
 
 
 _HOUSE = frozenset({*COMPONENTS, *MOTIONS, *CONTROL_COLUMNS, "alpha", "beta", "U"})
+# OpenFOAM's forces; CFX; STAR-CCM+; Fluent's report files and force reports; SU2, as CSV and for Tecplot.
 _SOLVER = re.compile(
-    r"#\s*(?:Force|Moment|Forces|Force coefficients|Moment coefficients|CofR|liftDir|dragDir|magUInf|Patches|Regions?)\b"
-    r"|#\s*Time\b.*(?:total_[xyz]|pressure_[xyz]|forces?\(|moments?\(|\bC[mdls]\b|\bCd\(|\()"
-    r'|"?(?:Iteration|Physical Time[^",]*|Time Step)"?\s*,.*(?:Monitor|Report)\b'
-    r'|\(\s*"[^"]*"|\(title\s|"?\s*(?:Time_Iter|Inner_Iter|Outer_Iter|Global_Index)\b'
-    r"|(?:Forces|Moments) - (?:Direction Vector|Moment Center)|\s*(?:TITLE|VARIABLES)\s*=|FoamFile\b"
+    r"^\s*#\s*(?:Force|Moment|Forces|Force coefficients|Moment coefficients|CofR|liftDir|dragDir|magUInf)\b"
+    r"|^\s*#\s*Time\b.*(?:total_[xyz]|pressure_[xyz]|forces?\(|moments?\(|\(|\bC[mdls]\b)|^FoamFile\b"
+    r'|^\s*"ACCUMULATED TIMESTEP",'
+    r"|\S Monitor(?: \d+)?: \S|\b(Iteration|Time Step|Physical Time): \1\b"
+    r"|^\s*Zone\s+Pressure\s+Viscous\s+Total\b"
+    r'|^\s*\(?\s*"(?:[Ii]terations?|[Tt]ime[ -][Ss]tep|[Ff]low[ -][Tt]ime)"\s+"|^\s*\(title\s|^(?:Forces|Moments) - '
+    r'|"(?:Time|Outer|Inner)_Iter\s*"|"\s*(?:rms|bgs)\[|^"Iteration",.*"(?:CL|CD|CLift|CDrag)"|^\s*(?:TITLE|VARIABLES)\s*='
 )
 
 
 def is_of_a_solver(lines: Sequence[str]) -> bool:
     """Whether the first lines are those of a table that a solver writes, which has its own importer."""
-    return any(_SOLVER.match(line) for line in lines[:6])
+    return any(_SOLVER.search(line[:2000]) for line in lines[:60])
 
 
 def is_house_table(path: Path) -> bool:

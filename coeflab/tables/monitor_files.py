@@ -21,6 +21,7 @@ _TITLE, _NAMES = re.compile(r'"[^"]*"'), re.compile(r'\(?\s*"[^"]+"(?:\s+"[^"]*"
 _FLUENT_INDEX = re.compile(r"iterations?|time[ -]step|flow[ -]time", re.I)
 _SU2_NAME = re.compile(r"(?:Time|Outer|Inner)_Iter|rms\[.*|bgs\[.*")
 _SU2_OLD = {"CL", "CD", "CLift", "CDrag"}
+CFX_INDEX = b'"ACCUMULATED TIMESTEP"'
 _STAR_MONITOR = re.compile(r".+ Monitor(?: \d+)?: .+|(Iteration|Time Step): \1|Physical Time: Physical Time \(.*\)")
 
 
@@ -62,7 +63,7 @@ def header_cells(line: str, delimiter: str) -> list[str]:
 
 
 def kind_of(raw: bytes) -> str:
-    """Which solver wrote the file that begins so: ``starccm``, ``fluent``, ``su2``, or empty.
+    """Which solver wrote the file that begins so: ``starccm``, ``fluent``, ``su2``, ``cfx``, or empty.
 
     Parameters
     ----------
@@ -74,10 +75,13 @@ def kind_of(raw: bytes) -> str:
     Layouts: STAR-CCM+ names a column ``NAME Monitor: WHAT (UNIT)`` or begins with ``Iteration: Iteration`` or ``Physical
     Time: Physical Time (s)``. Fluent's report files have a quoted title, quoted names, names in parentheses; its force
     reports a table with Zone, Pressure, Viscous, Total below a line that begins with Forces or Moments. SU2 quotes its
-    names and has Time_Iter, Outer_Iter, Inner_Iter or residuals ``rms[...]`` (7, 8), or Iteration and CL (6 and before).
+    names and has Time_Iter, Outer_Iter, Inner_Iter or residuals ``rms[...]`` (7, 8), or Iteration and CL (6 and before). CFX's cfx5mondata begins
+    with ACCUMULATED TIMESTEP.
     """
     if not raw or b"\0" in raw:
         return ""
+    if raw.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(CFX_INDEX + b","):
+        return "cfx"
     text = decoded(raw)[0]
     lines = [line.strip() for line in lines_of(text[:HEAD]) if line.strip()][:4]
     if len(lines) > 1 and _TITLE.fullmatch(lines[0]):

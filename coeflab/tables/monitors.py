@@ -22,7 +22,7 @@ from coeflab.tables.monitor_files import HEAD, decoded, header_cells, lines_of
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Stated
 
 BLOCK = 1 << 22
-_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_NUMBER = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _NOT_FINITE = re.compile(r"[-+]?(?:nan(?:\([a-z]*\))?|inf(?:inity)?|1\.#(?:qnan|snan|ind|inf)0*)", re.I)
 _MOST_BROKEN, _BROKEN_SHARE = 10, 0.01
 
@@ -43,7 +43,6 @@ class Layout:
         ``,``, ``;``, a tab, or a blank for any run of blanks.
     headings : frozenset of str
         Lines that a restart may write again.
-    encoding : str
     """
 
     names: tuple[str, ...]
@@ -52,7 +51,6 @@ class Layout:
     offset: int
     delimiter: str
     headings: frozenset[str]
-    encoding: str
 
 
 @dataclass(slots=True, eq=False)
@@ -102,10 +100,10 @@ def laid_out(raw: bytes, path: Path, lines: int, names: Sequence[str], delimiter
     if len(names) > MONITOR_COLUMNS:
         found = f"{len(names)} columns"
         raise InputError(found, f"a monitor of at most {MONITOR_COLUMNS}", file=path, line=names_line)
-    text, encoding = decoded(raw)
+    text = decoded(raw)[0]
     headings = frozenset(_squeezed(line) for line in lines_of(text)[:lines] if line.strip())
     offset = ends[lines - 1] if len(ends) >= lines else len(raw)
-    return Layout(tuple(names), names_line, lines + 1, offset, delimiter, headings, encoding)
+    return Layout(tuple(names), names_line, lines + 1, offset, delimiter, headings)
 
 
 def _squeezed(line: str) -> str:

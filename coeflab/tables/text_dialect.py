@@ -334,7 +334,7 @@ def _head(
                 advice="Say the line of the names by the option header (-1 where there are none), or the delimiter; "
                 "decimal commas between commas cannot be read.",
             )  # fmt: skip
-        if cells is None and not above and not remark:
+        if cells is None and not above and not remark and max(options.header, options.units) <= 0:
             break
         if cells is not None and (asked or not remark or not above or len(above) == 1):
             above.insert(0, (n, cells))
@@ -372,7 +372,8 @@ def sniff(path: Path, options: Options) -> TextDialect:
         if line.strip() and n > first and not is_comment(line.lstrip(), comments) and not RULE.fullmatch(line)
     ]  # fmt: skip
     if not kept:
-        raise InputError("an empty file, or one of comments only", "a table", file=path)
+        found = f"nothing under line {first}" if first > 0 else "an empty file, or one of comments only"
+        raise InputError(found, "a table", file=path)
     delimiter, rows, run = _delimiter(kept, options, path)
     delimiter, rows, run = _single_column(lines, kept, (delimiter, rows, run), options, path)
     width = run[2]

@@ -110,9 +110,14 @@ class Tally:
 HEADER = f"{'importer':12} {'inputs':>8} {'InputErrors':>12} {'read':>8} {'worst ms':>9}"
 
 
+def of_foreign_files() -> list[str]:
+    """Importers that bring whole tables or runs."""
+    return [n for n in IMPORTERS.names() if IMPORTERS.load(n).raw or IMPORTERS.load(n).run]
+
+
 def with_samples() -> list[str]:
-    """Importers that have samples."""
-    return [n for n in IMPORTERS.names() if (SAMPLES / n).is_dir() and any((SAMPLES / n).iterdir())]
+    """Those of them that have samples."""
+    return [n for n in of_foreign_files() if (SAMPLES / n).is_dir() and any((SAMPLES / n).iterdir())]
 
 
 def _touch(found: Any) -> None:
@@ -126,13 +131,15 @@ def _touch(found: Any) -> None:
 def attempt(importer: Any, path: Path) -> bool:
     """Whether a spoilt input is read; False where it is refused by an InputError of bearable length."""
     importer.recognises(path)
-    try:
-        _touch((importer.raw or importer.run)(path, {}))
-    except InputError as why:
-        if len(str(why)) >= LONGEST_MESSAGE:
-            raise ValueError(f"a message of {len(str(why))} letters") from why
-        return False
-    return True
+    read = False
+    for reader in filter(None, (importer.raw, importer.run)):
+        try:
+            _touch(reader(path, {}))
+            read = True
+        except InputError as why:
+            if len(str(why)) >= LONGEST_MESSAGE:
+                raise ValueError(f"a message of {len(str(why))} letters") from why
+    return read
 
 
 def _parts(sample: Path) -> list[Path]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,17 @@ def test_there_are_samples_of_the_solvers() -> None:
 @pytest.mark.parametrize("path", ENTRIES, ids=lambda p: f"{p.parent.name}/{p.name}")
 def test_one_importer_knows_a_sample(path: Path) -> None:
     assert [name for name in READERS if IMPORTERS.load(name).recognises(path)] == [path.parent.name]
+
+
+def test_a_folder_of_several_solvers_is_nobodys(tmp_path: Path) -> None:
+    solvers = [IMPORTERS.load(n) for n in ("starccm", "fluent", "su2")]
+    shutil.copy(SAMPLES / "su2/v8_drift/history.csv", tmp_path)
+    assert [s.recognises(tmp_path) for s in solvers] == [False, False, True]
+    shutil.copy(SAMPLES / "starccm/forces.csv", tmp_path)
+    assert not any(s.recognises(tmp_path) for s in solvers)
+    (tmp_path / "forces.csv").unlink()
+    (tmp_path / "constant").mkdir()  # a case of OpenFOAM
+    assert not any(s.recognises(tmp_path) for s in solvers)
 
 
 @pytest.mark.parametrize("name", READERS)

@@ -1,10 +1,11 @@
-"""Monitors of STAR-CCM+, Fluent and SU2: the samples, and the states in which runs leave their files."""
+"""Monitors of STAR-CCM+, Fluent, CFX and SU2: the samples, and the states in which runs leave their files."""
 
 from __future__ import annotations
 
 import math
 import re
 import shutil
+import time
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,7 @@ LAYOUTS = {
     "starccm": (SAMPLES / "starccm/forces.csv", 1),
     "fluent": (SAMPLES / "fluent/forces-rset.out", 2),
     "fluent old": (SAMPLES / "fluent/cd-history.out", 1),
+    "cfx": (SAMPLES / "cfx/monitors.csv", 1),
     "su2": (SAMPLES / "su2/v8_drift/history.csv", 10),
     "su2 6": (SAMPLES / "su2/v6_incidence/history.csv", 1),
 }
@@ -99,6 +101,16 @@ def test_star_decimal_marks_are_not_mixed(tmp_path: Path) -> None:
         read("starccm", path)
 
 
+def test_star_cells_are_counted_by_their_commas(tmp_path: Path) -> None:
+    path = tmp_path / "drag.csv"
+    path.write_text('"Iteration","A Monitor: A (N)","B Monitor: B (N)"\n1,2,3\n2 5,,6\n3,,7\n4,8,9\n')
+    run = read("starccm", path)
+    assert np.array_equal(run.history.columns[0].values, [1.0, 3.0, 4.0])
+    assert np.array_equal(run.history.columns[1].values, [2.0, np.nan, 8.0], equal_nan=True)  # a blank is no divergence
+    assert run.ended is Ended.WHOLE
+    assert any('drag.csv:3: "2 5"' in r for r in run.history.remarks)
+
+
 def test_star_files_of_one_run(tmp_path: Path) -> None:
     run = read("starccm", SAMPLES / "starccm/run_b06")
     assert [c.name for c in run.history.columns] == ["Iteration", "Fx Monitor", "Fy Monitor", "Mz Monitor"]
@@ -156,7 +168,7 @@ def test_fluent_reports_along_directions(tmp_path: Path) -> None:
     turned = read("fluent", path).history
     assert float(turned.meaning("X").values[0]) == -18.135
     assert any("X is minus the number along (-1 0 0)" in r for r in turned.remarks)
-    assert turned.meaning("Y") is None
+    assert [c.means for c in turned.columns if c.means] == ["iteration", "X"]  # (0.6 0.8 0) is no axis
     path.write_text(text + text)
     twice = read("fluent", path).history
     assert np.array_equal(twice.meaning("iteration").values, [1.0, 2.0])
@@ -164,6 +176,16 @@ def test_fluent_reports_along_directions(tmp_path: Path) -> None:
     cut = read("fluent", path)
     assert cut.ended is Ended.CRASHED
     assert "no row Net" in cut.why
+
+
+def test_cfx_names_hold_commas_and_quotation_marks() -> None:
+    run = read("cfx", SAMPLES / "cfx/monitors.csv")
+    assert [(c.name, c.unit, c.means) for c in run.history.columns] == [
+        ("ACCUMULATED TIMESTEP", "", "iteration"),
+        ("Fx hull", "", ""),
+        ("Fy hull", "", ""),
+        ('P1,D1,"x= 4.65E-02,y= 4.16E-01,z= 0.00E+00",Pressure', "", ""),
+    ]
 
 
 def test_su2_coefficients_in_the_axes_of_the_mesh() -> None:
@@ -174,8 +196,8 @@ def test_su2_coefficients_in_the_axes_of_the_mesh() -> None:
     }  # fmt: skip
     assert {c.unit for c in run.history.columns if c.name.startswith("C")} == {"-"}
     stated = {k: (s.value, s.place) for k, s in run.history.stated.items()}
-    assert stated["scaling.length"] == (2.1, "hull.cfg:19")
-    assert stated["scaling.area"] == (4.41, "hull.cfg:20")
+    assert stated["coefficients.length"] == (2.1, "hull.cfg:19")
+    assert stated["coefficients.area"] == (4.41, "hull.cfg:20")
     assert stated["axes.reference_point"] == ((1.05, 0.0, 0.0), "hull.cfg:16, 17, 18")
     assert stated["conditions.density"] == (998.2, "hull.cfg:12")
 
@@ -351,6 +373,17 @@ def test_mostly_broken_is_refused(layout: str, tmp_path: Path) -> None:
     text = "".join(lines[:header]) + "".join(f"{i} oh dear{i}\n" for i in range(40))
     with pytest.raises(InputError, match=f"line {header + 1}.*lines are broken"):
         read(layout, written(tmp_path, layout, text))
+
+
+@EACH
+def test_long_digits_take_no_time(layout: str, tmp_path: Path) -> None:
+    """A number that cannot be one is refused in time proportional to its length: 60,000 digits took minutes."""
+    lines, header = lines_of(layout)
+    long = lines[header].replace("1", "1" * 30_000 + "x", 1)
+    start = time.process_time()
+    run = read(layout, written(tmp_path, layout, "".join([*lines[:header], long, *lines[header + 1 :]])))
+    assert time.process_time() - start < 0.5
+    assert len(run.history) == len(lines) - header - 1
 
 
 @EACH

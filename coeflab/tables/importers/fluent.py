@@ -182,11 +182,11 @@ def _tables(path: Path) -> tuple[list[_Table], str]:
         title = _TITLE.fullmatch(line.strip())
         if title is None or n + 2 >= len(lines) or lines[n + 2].split()[:4] != ["Zone", "Pressure", "Viscous", "Total"]:
             continue
-        unit = _UNIT.search(lines[n + 1])
-        zones, closed = _zones(lines, n + 3, path)
+        unit = _UNIT.search(lines[n + 1][:1000])
+        given = title["axis"] if title["what"] == "Moments" else title["direction"]
+        zones, closed = _zones(lines, n + 3, path, 1 if given else 3)
         if not closed:
             return out, f"{path.name}:{n + 1}: the table has no row Net"
-        given = title["axis"] if title["what"] == "Moments" else title["direction"]
         written = unit[1].strip() if unit else ""
         out.append(
             _Table(
@@ -198,8 +198,10 @@ def _tables(path: Path) -> tuple[list[_Table], str]:
     return out, ""
 
 
-def _zones(lines: Sequence[str], start: int, path: Path) -> tuple[dict[str, tuple[tuple[float, ...], ...]], bool]:
-    """Numbers of every zone as pressure, viscous, total and their coefficients, and whether the row Net ends them."""
+def _zones(
+    lines: Sequence[str], start: int, path: Path, size: int
+) -> tuple[dict[str, tuple[tuple[float, ...], ...]], bool]:
+    """Pressure, viscous, total and their coefficients of every zone, each of so many numbers; whether Net ends them."""
     zones: dict[str, tuple[tuple[float, ...], ...]] = {}
     for n, line in enumerate(lines[start:], start=start + 1):
         cells = line.split()
@@ -212,13 +214,12 @@ def _zones(lines: Sequence[str], start: int, path: Path) -> tuple[dict[str, tupl
         rows = (
             [_numbers(g, path, n) for g in groups] if groups else [(v,) for v in _numbers(" ".join(cells[1:]), path, n)]
         )
-        size = 3 if groups else 1
         if len(rows) != 6 or any(len(r) != size for r in rows):
             if n == len(lines):
                 return zones, False
             raise InputError(
-                f"{len(rows)} numbers for the zone {shown(name)}",
-                "pressure, viscous, total and their three coefficients", file=path, line=n,
+                f"{len(rows)} {'vectors' if groups else 'numbers'} for the zone {shown(name)}",
+                f"{'six vectors' if size == 3 else 'six numbers'}: pressure, viscous, total and their coefficients", file=path, line=n,
             )  # fmt: skip
         zones[name] = tuple(rows)
         if name.lower() == "net":

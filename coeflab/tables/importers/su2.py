@@ -278,9 +278,9 @@ def _stated(config: _Config | None, monitor: Monitor) -> tuple[dict[str, Stated]
         config.text("REGIME_TYPE").upper() == "INCOMPRESSIBLE"
     )
     for key, name in (
-        ("REF_LENGTH", "scaling.length"),
-        ("REF_LENGTH_MOMENT", "scaling.length"),
-        ("REF_AREA", "scaling.area"),
+        ("REF_LENGTH", "coefficients.length"),
+        ("REF_LENGTH_MOMENT", "coefficients.length"),
+        ("REF_AREA", "coefficients.area"),
     ):
         values = config.numbers(key, 1)
         if values and values[0] > 0.0:
