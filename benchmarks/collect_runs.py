@@ -72,7 +72,7 @@ def written(root: Path, cases: int, rows: int) -> None:
         (case / "system/fvSchemes").write_text(
             FOAM.format(kind="dictionary", name="fvSchemes") + "ddtSchemes\n{\n    default steadyState;\n}\n"
         )
-        flow = FLOW.format(u=-2.0 * np.cos(beta), v=2.0 * np.sin(beta))
+        flow = FLOW.format(u=2.0 * np.cos(beta), v=2.0 * np.sin(beta))
         (case / "0/U").write_text(FOAM.format(kind="volVectorField", name="U") + flow)
         fluid = "transportModel Newtonian;\nnu 1e-06;\n"
         (case / "constant/transportProperties").write_text(

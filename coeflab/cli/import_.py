@@ -125,9 +125,12 @@ def command(
 def described(raw: RawTable, importer: str, found: Understood) -> None:
     """Print what a file is, its columns, what it says of itself and what its numbers show."""
     from coeflab.report.tables import raw_tables
+    from coeflab.tables.collect import runs_shown
 
     said = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
     show.sentence(f"{raw.path}: read by {importer}" + (f"; {said}" if said else ""))
+    if runs := runs_shown(raw, MOST):
+        show.table(runs)
     show.table(raw_tables.columns(raw, found.proposals, found.mapping))
     show.table(raw_tables.stated(raw))
     _listed("Left out or mended", raw.remarks)
@@ -275,7 +278,7 @@ def _asked(
 
 def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
     from coeflab.tables.column_map import read_column_map
-    from coeflab.tables.mapping import with_unit
+    from coeflab.tables.mapping import error_of, with_unit
 
     out: dict[str, ColumnMap] = {}
     whole = [(column, offer) for column, offer in found.open if offer.whole]
@@ -284,7 +287,7 @@ def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
         if typer.confirm("  All of them right?", default=None):
             out = {column.name: read_column_map(offer.text) for column, offer in whole}
     for column, offer in found.open:
-        if column.name in out:
+        if column.name in out or error_of(column, out):
             continue
         hint = f"{offer.text}: {offer.why}" if offer.text else offer.why
         show.sentence(f'Column "{column.name}" ({hint}). Say Y [N], -beta [deg], r\' [-], label, ignore ...')

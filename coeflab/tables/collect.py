@@ -34,6 +34,7 @@ from coeflab.tables.runs import Progress, RunSummary, find_runs, read_all
 
 FULL, FEWEST = 0.75, 6  # a matrix of settings: share that is there, and its least size
 ONE_FOR_ALL = ("axes.", "scaling.", "conditions.density", "conditions.viscosity", "table.contains_inertia")
+START, STATUS, ORIGIN = "plateau start", "status", "condition from"
 DOUBTFUL, ALL, LABEL, IGNORE = "uncertain", "all", "label", "ignore"
 MOST_REMARKS = 20
 
@@ -81,36 +82,41 @@ class Collected:
         return tuple(InputFile(Path(os.path.relpath(p, root)).as_posix(), sha256_of(Path(p))) for p in paths)
 
     def shown(self, most: int = 0) -> Table:
-        """Every run with its condition, where that comes from, and its status.
+        """Every run of the table with its condition, see `runs_shown`."""
+        return runs_shown(self.table, most) or Table("Runs", ("run",), ())
 
-        Parameters
-        ----------
-        most : int
-            Runs shown, the worst of them at least; 0 for all.
-        """
-        runs = list(self.runs)
-        if most and len(runs) > most:
-            kept = set(sorted(range(len(runs)), key=lambda i: -ORDER.index(runs[i].status))[:most])
-            runs = [r for i, r in enumerate(runs) if i in kept]
-        known = [s for s in SETTINGS if any(s in r.conditions for r in runs)]
-        rows = []
-        for r in runs:
-            cells = [r.conditions.get(s) for s in known]
-            origins = dict.fromkeys(o for c in cells if c is not None for o in c.origins)
-            texts = ["" if c is None else str(c).partition(" (")[0] for c in cells]
-            rows.append(
-                (
-                    r.name,
-                    *texts,
-                    ABSENT if math.isnan(r.start) else f"{r.start:g}",
-                    str(r.status),
-                    "; ".join(origins),
-                    r.why,
-                )
-            )
-        notes = (", ".join(f"{n} {s}" for s, n in self.counts.items()) + ".", *self.table.remarks)
-        heads = ("run", *known, "plateau from", "status", "condition from", "why")
-        return Table("Runs", heads, tuple(rows), notes, frozenset({0, len(heads) - 1, len(heads) - 2, len(heads) - 3}))
+
+def runs_shown(table: RawTable, most: int = 0) -> Table | None:
+    """Every run with its condition, the place that it comes from, and its status; None for a table of no runs.
+
+    Parameters
+    ----------
+    table : RawTable
+    most : int
+        Runs shown, those that are not converged first; 0 for all.
+    """
+    texts = {c.name: c.texts for c in table.columns if c.name in (ORIGIN, STATUS)}
+    if len(texts) < 2:
+        return None
+    chosen = list(range(len(table)))
+    if most and len(chosen) > most:
+        chosen = sorted(sorted(chosen, key=lambda i: -ORDER.index(Convergence(texts[STATUS][i])))[:most])
+    settings = [c for c in table.columns if c.means in SETTINGS]
+    start = table.column(START).values
+    rows = [
+        (
+            table.row_labels[i],
+            *(f"{c.values[i]:.10g} {c.unit}".removesuffix(" -") for c in settings),
+            ABSENT if math.isnan(start[i]) else f"{start[i]:g}",
+            texts[STATUS][i],
+            texts[ORIGIN][i],
+        )
+        for i in chosen
+    ]
+    counts = ", ".join(f"{n} {s}" for s in ORDER if (n := texts[STATUS].count(s)))
+    more = f"; {len(table) - len(rows)} are not shown" if len(rows) < len(table) else ""
+    heads = ("run", *(c.name for c in settings), "plateau from", STATUS, ORIGIN)
+    return Table("Runs", heads, tuple(rows), (f"{counts}{more}.",), frozenset({0, len(heads) - 2, len(heads) - 1}))
 
 
 def collect(
@@ -290,8 +296,9 @@ def _table(
     ]
     columns.append(RawColumn("iterations", "-", _numbers([r.iterations for r in rows]), means=IGNORE))
     unit = next((r.start_unit for r in rows if r.start_unit), "-")
-    columns.append(RawColumn("plateau start", unit, _numbers([r.start for r in rows]), means=IGNORE))
-    columns.append(_text("status", [str(r.status) for r in rows]))
+    columns.append(RawColumn(START, unit, _numbers([r.start for r in rows]), means=IGNORE))
+    columns.append(_text(STATUS, [str(r.status) for r in rows]))
+    columns.append(_text(ORIGIN, [_origin(r, known) for r in rows]))
     marked = [r.status is not Convergence.CONVERGED or r.name in copies for r in rows]
     columns.append(_text(DOUBTFUL, [ALL if m else "" for m in marked], means=DOUBTFUL))
     columns += _beside([r.patches for r in rows], IGNORE) + _beside([r.beside for r in rows], "" if by_name else IGNORE)
@@ -322,6 +329,10 @@ def _beside(rows: Sequence[Mapping[str, tuple[float, str]]], means: str) -> list
     first = {name: unit for row in reversed(rows) for name, (_, unit) in row.items()}
     names = dict.fromkeys(name for row in rows for name in row)
     return [RawColumn(n, first[n], _numbers([r[n][0] if n in r else None for r in rows]), means=means) for n in names]
+
+
+def _origin(run: RunSummary, known: Sequence[str]) -> str:
+    return "; ".join(dict.fromkeys(o for k in known for o in run.conditions[k].origins))
 
 
 def _by_name(rows: Sequence[RunSummary]) -> bool:
@@ -375,6 +386,13 @@ def _unit_of(rows: Sequence[RunSummary], component: str) -> str:
     return next(iter(units), "")
 
 
+def _alike(a: object, b: object) -> bool:
+    """Whether two stated values are one; speeds come from vectors of six digits."""
+    if isinstance(a, (float, tuple)) and isinstance(b, (float, tuple)):
+        return np.shape(a) == np.shape(b) and bool(np.allclose(a, b, rtol=1e-6, atol=1e-9))
+    return a == b
+
+
 def _stated(rows: Sequence[RunSummary]) -> tuple[dict[str, Stated], list[str]]:
     """What all runs state alike; axes, points and densities must not differ."""
     first: dict[str, tuple[str, Stated]] = {}
@@ -383,7 +401,7 @@ def _stated(rows: Sequence[RunSummary]) -> tuple[dict[str, Stated], list[str]]:
     for r in rows:
         for key, one in r.stated.items():
             name, before = first.setdefault(key, (r.name, one))
-            if before.value == one.value or key in differing:
+            if _alike(before.value, one.value) or key in differing:
                 continue
             differing[key] = None
             if key.startswith(ONE_FOR_ALL):

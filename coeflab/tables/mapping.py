@@ -70,11 +70,19 @@ def entry_of(column: RawColumn, mapping: Mapping[str, ColumnMap]) -> ColumnMap |
         if name in mapping:
             return mapping[name]
     if not column.means:
-        return None
+        return error_of(column, mapping)
     try:
         return read_column_map(column.means)
     except InputError:
         return ColumnMap("label")  # the format knows what it is, and no fit uses it
+
+
+def error_of(column: RawColumn, mapping: Mapping[str, ColumnMap]) -> ColumnMap | None:
+    """What ``se_NAME`` is by what NAME is, as collected runs have them; None for any other column."""
+    of = mapping.get(column.name.removeprefix("se_")) if column.name.startswith("se_") else None
+    if of is None:
+        return None
+    return replace(of, error=True, negative=False) if of.role == "force" else ColumnMap("ignore")
 
 
 def declared_mapping(campaign: Campaign, table: TableDeclaration) -> Mapping[str, ColumnMap]:

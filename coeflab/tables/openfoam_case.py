@@ -77,6 +77,13 @@ def known_patches(case: FoamCase, lists: Sequence[Sequence[str]]) -> dict[str, s
     return out
 
 
+def walls(case: FoamCase) -> set[str]:
+    """The patches of the mesh that are walls."""
+    boundary = case.read("constant/polyMesh/boundary")
+    kinds = {n: case.value(part, "type") for n, part in boundary.parts()} if boundary is not None else {}
+    return {n for n, kind in kinds.items() if kind is not None and kind[0] == "wall"}
+
+
 def stated_density(case: FoamCase, part: Foam | None) -> tuple[Found | None, list[str]]:
     """The density that forces were multiplied by, and what disagrees."""
     fluid: Found | None = None
@@ -88,7 +95,7 @@ def stated_density(case: FoamCase, part: Foam | None) -> tuple[Found | None, lis
                 fluid = float(found[0]), found[1]
     rho, reference = case.value(part, "rho"), case.value(part, "rhoInf")
     if reference is None or not is_number(reference[0]) or (rho is not None and rho[0] != "rhoInf"):
-        return fluid, []
+        return fluid, [] if fluid is not None else ["no file states the density that forces were multiplied by"]
     stated = float(reference[0]), reference[1]
     other = f", while {fluid[1]} says {fluid[0]:g}" if fluid is not None and fluid[0] != stated[0] else ""
     if stated[0] == 1.0:
@@ -307,7 +314,7 @@ def stated_y_plus(case: FoamCase, body: set[str]) -> Stated | None:
     """The largest average y+ of the body's patches at the last time."""
     last: dict[str, tuple[float, float, str]] = {}
     for folder in listed(case.root / "postProcessing"):
-        for time in listed(folder) if folder.name.startswith("yPlus") else ():
+        for time in listed(folder) if folder.is_dir() else ():
             file = time / "yPlus.dat"
             if not file.is_file():
                 continue

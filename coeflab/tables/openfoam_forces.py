@@ -24,7 +24,9 @@ _FILE = re.compile(r"(forces|force|forceCoeffs|coefficient)(_[-+.\deE]+)?\.dat(\
 _TIME = re.compile(r"[-+]?\d[\d.eE+-]*")
 _GROUP = re.compile(r"(local)?(force|moment)s?\(([^)]*)\)", re.IGNORECASE)
 XYZ = "xyz"
-_MOST = 10_000  # entries of one folder
+VECTORS = ("CofR", "dragDir", "sideDir", "liftDir", "rollAxis", "pitchAxis", "yawAxis")
+NUMBERS = ("magUInf", "lRef", "Aref")
+_MOST = 200_000  # entries of one folder
 
 
 def listed(folder: Path) -> list[Path]:
@@ -101,13 +103,14 @@ class History:
 
 
 def _facts(case: FoamCase, file: Path, comments: Sequence[str]) -> dict[str, tuple[Any, str]]:
-    """``# CofR : (0 0 0)`` and the like."""
+    """``# CofR : (0 0 0)`` and the like: vectors and numbers by name, each with its place."""
     out: dict[str, tuple[Any, str]] = {}
     for line, comment in enumerate(comments, start=1):
-        name, colon, text = comment.partition(":")
+        name, _, text = comment.partition(":")
         numbers = [number(t) for t in text.replace("(", " ").replace(")", " ").split()]
-        if colon and numbers and all(map(math.isfinite, numbers)):
-            out[name.strip()] = (numbers if len(numbers) > 1 else numbers[0], f"{case.relative(file)}:{line}")
+        value: Any = numbers if name.strip() in VECTORS else numbers[0] if len(numbers) == 1 else None
+        if is_vector(value) or (name.strip() in NUMBERS and value is not None and math.isfinite(value)):
+            out[name.strip()] = (value, f"{case.relative(file)}:{line}")
     return out
 
 

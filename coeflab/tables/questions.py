@@ -31,7 +31,7 @@ from coeflab.tables.campaign import (
     TowedInertia,
 )  # fmt: skip
 from coeflab.tables.column_map import ColumnMap, read_column_map
-from coeflab.tables.mapping import Assigned, assigned, known_as
+from coeflab.tables.mapping import Assigned, assigned, error_of, known_as
 from coeflab.tables.proposals import OPEN, Evidence, Proposal, evidence, proposals
 from coeflab.tables.raw_table import RawColumn, RawTable
 
@@ -325,7 +325,7 @@ def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings,
     mapping: dict[str, ColumnMap] = {}
     still: list[tuple[RawColumn, Proposal]] = []
     for column, offer in zip(raw.columns, offers, strict=True):
-        one = next((said[name] for name in (column.name, *known_as(column)) if name in said), None)
+        one = next((said[name] for name in (column.name, *known_as(column)) if name in said), error_of(column, said))
         if one is None and offer.whole and (offer.certain or accept):
             one = read_column_map(offer.text)
         if one is None:

@@ -381,7 +381,8 @@ class State:
         with suppress(OSError), self.path.open("rb") as stream:
             for line in stream:
                 with suppress(ValueError, KeyError, TypeError):  # a line that a kill cut short
-                    content = json.loads(line)
+                    digest, text = line.decode().rstrip("\n").split(" ", 1)
+                    content = json.loads(text) if digest == _digest(text) else {}
                     if content["kind"] == STATE_KIND and content["key"] == self.key:
                         self._known[content["path"]] = content["mark"], content["run"]
 
@@ -415,7 +416,8 @@ class State:
                 self.path.parent.mkdir(parents=True, exist_ok=True)
                 self._stream = self.path.open("ab")
                 self._stream.write(b"\n" * (self._stream.tell() > 0))  # behind a line that a kill cut short
-            self._stream.write(json.dumps(content).encode() + b"\n")
+            text = json.dumps(content)
+            self._stream.write(f"{_digest(text)} {text}\n".encode())
             self._stream.flush()
         except OSError as why:
             raise OutputError(
@@ -452,9 +454,12 @@ def _summary(content: Mapping[str, Any]) -> RunSummary:
     return RunSummary(name="", **{**read, "status": Convergence(read["status"])})
 
 
-def _key(importer: str, options: Mapping[str, Any]) -> str:
-    text = json.dumps([VERSION, importer, sorted(options.items())], default=str)
+def _digest(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _key(importer: str, options: Mapping[str, Any]) -> str:
+    return _digest(json.dumps([VERSION, importer, sorted(options.items())], default=str))
 
 
 def read_all(

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -92,7 +93,7 @@ def test_forces_of_every_layout_are_the_same_numbers(name: str) -> None:
 
 
 def test_every_sample_is_one_case_for_one_importer(tmp_path: Path) -> None:
-    for folder in SAMPLES.iterdir():
+    for folder in filter(Path.is_dir, SAMPLES.iterdir()):
         assert [n for n in IMPORTERS.names() if IMPORTERS.load(n).recognises(folder)] == ["openfoam"]
     assert not openfoam.recognises(SAMPLES)
     assert not openfoam.recognises(SAMPLES / "arm_mrf" / FORCE)
@@ -102,6 +103,7 @@ def test_every_sample_is_one_case_for_one_importer(tmp_path: Path) -> None:
     run = read(tmp_path / "alone")
     np.testing.assert_allclose(forces(run.history), WHOLE)
     assert dict(run.conditions) == {}
+    assert (run.history.columns[0].means, run.history.columns[0].unit) == ("time", "")
     assert "conditions.density" not in run.history.stated
 
 
@@ -137,11 +139,14 @@ def test_groups_of_patches_about_the_point_of_the_whole() -> None:
 def test_two_groups_without_the_whole_are_asked_about(case: Callable[[str], Path]) -> None:
     folder = case("com_v2212")
     shutil.rmtree(folder / "postProcessing/all")
-    with pytest.raises(InputError, match=r"function objects hull, sail; none of them.*function=hull"):
+    with pytest.raises(InputError, match=r"function objects hull, sail; none of them covers all.*function=hull"):
         read(folder)
     both = read(folder, function="hull sail")
     np.testing.assert_allclose(forces(both.history), WHOLE, rtol=1e-12)
-    np.testing.assert_allclose(forces(read(folder, function=["sail"]).history)[:, :3], 0.25 * WHOLE[:, :3])
+    sail = read(folder, function=["sail"])
+    np.testing.assert_allclose(forces(sail.history)[:, :3], 0.25 * WHOLE[:, :3])
+    assert "leave out the walls hull" in remarks(sail)
+    assert "leave out" not in remarks(both)
     with pytest.raises(InputError, match='no forces of the function object "fin"'):
         read(folder, function=["fin"])
 
@@ -151,6 +156,18 @@ def test_two_that_cover_the_same_are_asked_about(case: Callable[[str], Path]) ->
     edit(folder / "system/controlDict", ("patches         (hull)", 'patches         (sail ".*ull")'))
     with pytest.raises(InputError, match="all and hull cover the same patches"):
         read(folder)
+
+
+def test_forces_of_a_part_beside_coefficients_of_the_whole_are_not_the_whole(case: Callable[[str], Path]) -> None:
+    folder = case("arm_mrf")
+    shutil.copytree(SAMPLES / "coefficients_com/postProcessing/forceCoeffs1", folder / "postProcessing/all")
+    with pytest.raises(InputError, match=r"no dictionary says which patches all has"):
+        read(folder)
+    alike = "all { type forceCoeffs; patches (hull); rho rhoInf; rhoInf 998; }\n"
+    edit(folder / "system/controlDict", ("functions\n{\n", "functions\n{\n" + alike))
+    assert read(folder).history.dialect["function object"] == "forces"
+    edit(folder / "system/controlDict", ("patches (hull)", "patches (hull sail)"))
+    assert read(folder).history.dialect["function object"] == "all"
 
 
 def test_coefficients_become_forces_by_what_their_comments_state() -> None:
@@ -173,10 +190,21 @@ def test_coefficients_without_density_are_those_of_one(case: Callable[[str], Pat
     shutil.rmtree(folder / "system")
     alone = read(folder)
     assert alone.history.stated["conditions.density"].value == 1.0
-    assert "no file states a density" in remarks(alone)
+    assert "no file states the density" in remarks(alone)
+    assert "forces are made those of a fluid of 1 kg/m^3" in remarks(alone)
     np.testing.assert_allclose(1000.0 * forces(alone.history), forces(read(SAMPLES / "coefficients_com").history))
     given_ = read(folder, density="1025 kg/m^3")
     np.testing.assert_allclose(1025.0 * forces(alone.history), forces(given_.history))
+
+
+def test_coefficients_by_another_speed_than_the_inflow_are_said(case: Callable[[str], Path]) -> None:
+    folder = case("coefficients_old")
+    shutil.copytree(SAMPLES / "org_v4_porous/0", folder / "0")
+    assert "magUInf" not in remarks(read(folder))
+    edit(folder / "0/U", ("value           uniform (2 0 0)", "value           uniform (2 0.3 0)"))
+    run = read(folder)
+    assert "magUInf 2 is not the speed 2.02237 m/s of 0/U:16" in remarks(run)
+    assert run.history.stated["conditions.speed"].value == pytest.approx(np.hypot(2.0, 0.3))
 
 
 def test_coefficients_whose_comments_say_nothing_stay_coefficients(case: Callable[[str], Path]) -> None:
@@ -185,6 +213,13 @@ def test_coefficients_whose_comments_say_nothing_stay_coefficients(case: Callabl
     run = read(folder)
     assert [(c.name, c.unit, c.means) for c in run.history.columns[1:3]] == [("Cm", "-", ""), ("Cd", "-", "")]
     assert "state no magUInf" in remarks(run)
+    edit(
+        folder / "postProcessing/forceCoeffs/0/forceCoeffs.dat",
+        ("# somewhat", "# magUInf"),
+        ("(0.000000e+00 0.0", "(0.0"),
+    )
+    assert "state no dragDir" not in remarks(read(folder))
+    assert "state no liftDir" in remarks(read(folder))
 
 
 def test_kinematic_density_is_said_and_turned(case: Callable[[str], Path]) -> None:
@@ -212,6 +247,15 @@ def test_rotating_arm_by_hand() -> None:
         np.testing.assert_allclose(conditions(run, "uvwpqr"), [2.0, 0.125, 0.0, 0.0, 0.0, 0.25], atol=1e-12)
         assert run.conditions["U"].value == pytest.approx(np.hypot(2.0, 0.125))
         assert "constant/" in run.conditions["r"].place
+
+
+def test_an_inflow_relative_to_the_frame_is_not_taken(case: Callable[[str], Path]) -> None:
+    folder = case("arm_srf")
+    edit(folder / "0/Urel", ("relative        no", "relative        yes"))
+    run = read(folder)
+    assert "u" not in run.conditions
+    assert run.conditions["r"].value == pytest.approx(0.25)
+    assert "UInf of far is relative to the rotating frame" in remarks(run)
 
 
 def test_a_rotor_is_not_the_motion_of_the_body(case: Callable[[str], Path]) -> None:
@@ -561,9 +605,9 @@ def test_two_million_rows_take_bounded_memory_and_time(case: Callable[[str], Pat
     assert peak * (1 if sys.platform == "darwin" else 1024) < 500e6
     begin = time.process_time()
     with file.open() as stream:
-        for cells in csv.reader(stream, delimiter=" "):
+        for cells in csv.reader(islice(stream, rows // 10), delimiter=" "):
             if not cells[0].startswith("#"):
                 for cell in cells:
                     for number in cell.split("\t"):
                         float(number.strip("()") or 0.0)
-    assert seconds < 3.0 * (time.process_time() - begin)
+    assert seconds < 3.0 * 10.0 * (time.process_time() - begin)

@@ -11,6 +11,7 @@ import re
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -201,7 +202,25 @@ class FoamCase:
         return out + text[end:]
 
     def include(self, file: Path, named: str, into: Foam, depth: int, *, needed: bool) -> None:
-        """Read another file into a dictionary."""
+        """Read another file into a dictionary.
+
+        Parameters
+        ----------
+        file : Path
+            That includes it.
+        named : str
+            As it is named there.
+        into : Foam
+        depth : int
+            How many files include one another by now.
+        needed : bool
+            Whether a missing one is noted.
+
+        Raises
+        ------
+        InputError
+            Includes without end, or as `read`.
+        """
         prefix = next((p for p in ROOTS if named.startswith(p)), None)
         path = file.parent / named if prefix is None else self.root / ROOTS[prefix] / named[len(prefix) :].lstrip("/")
         if depth >= FOAM_DEEPEST or len(self.files) >= FOAM_FILES:
@@ -242,8 +261,9 @@ def _named(part: Foam, name: str) -> tuple[Entry, Foam] | None:
     return None
 
 
+@lru_cache(maxsize=1000)
 def _value(text: str) -> Any:
-    """A value through foamlib; None where it is none."""
+    """A value through foamlib; None where it is none. Cases of one folder share most of theirs."""
     import numpy as np
     from foamlib import Dimensioned, FoamFile
 

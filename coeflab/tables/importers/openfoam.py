@@ -92,21 +92,25 @@ def _whole(case: FoamCase, found: Mapping[str, bool], parts: Mapping[str, Foam],
         )  # fmt: skip
     if asked:
         return list(asked)
-    pool = [n for n, coefficients in found.items() if not coefficients] or list(found)
-    if len(pool) == 1:
-        return pool
-    lists = {n: of.body_patches(case, parts.get(n)) for n in pool}
+    if len(found) == 1:
+        return list(found)
+    lists = {n: of.body_patches(case, parts.get(n)) for n in found}
     known = of.known_patches(case, list(lists.values()))
     sets = {n: of.covered(p, known) for n, p in lists.items()}
     union = set().union(*sets.values())
-    best = [n for n in pool if sets[n] and sets[n] == union] if all(sets.values()) else []
+    best = [n for n in found if sets[n] == union] if all(sets.values()) else []
+    # Forces and coefficients of the same patches are one; the forces say more.
+    best = [n for n in best if not found[n]] or best
     if len(best) != 1:
+        silent = [n for n in found if not sets[n]]
         what = (
-            "none of them is said to cover all patches" if not best else f"{' and '.join(best)} cover the same patches"
-        )
+            f"{' and '.join(best)} cover the same patches" if best
+            else f"no dictionary says which patches {' and '.join(silent)} has" if silent
+            else "none of them covers all patches"
+        )  # fmt: skip
         raise InputError(
             f"the function objects {names}; {what}", "one that is the whole body", file=case.root, column="function",
-            advice=f"Say which with the option function, such as function={pool[0]}; several names are added.",
+            advice=f"Say which with the option function, such as function={next(iter(found))}; several names are added.",
         )  # fmt: skip
     return best
 
@@ -163,6 +167,8 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
     part = parts.get(whole[0])
     known = of.known_patches(case, [of.body_patches(case, p) for p in parts.values()])
     body = set().union(*(of.covered(of.body_patches(case, parts.get(n)), known) for n in whole))
+    if bare := of.walls(case) - body:
+        case.note(f"constant/polyMesh/boundary: forces of the body leave out the walls {', '.join(sorted(bare))}")
     density, complaints = of.stated_density(case, part)
     remarks += complaints
     unit, density = _scaled(case, [main, *histories.values()], density, given.density, remarks)
@@ -174,16 +180,20 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
     frame = of.rotating_frame(case, given.rotation, body, known)
     has_srf = any((case.root / d / f"Urel{z}").is_file() for d in ("0", "0.orig") for z in ("", ".gz"))
     conditions = of.motion(case, frame, point, "Urel" if has_srf else "U")
+    speed, flow = main.facts.get("magUInf"), conditions.get("U")
+    if speed is not None and flow is not None and abs(float(str(flow.value)) - speed[0]) > 0.005 * speed[0]:
+        case.note(f"{speed[1]}: magUInf {speed[0]:g} is not the speed {flow.value:.6g} m/s of {flow.place}")
     if any((case.root / "constant" / n).is_file() for n in ("dynamicMeshDict", "dynamicMeshDict.gz")):
         case.note("constant/dynamicMeshDict: the motion of a moving mesh is not read; state it in a list of runs")
     for name, value in (("cells", of.stated_cells(case)), ("y_plus", of.stated_y_plus(case, body))):
         if value is not None:
             conditions[name] = value
     said, broken, ended = of.read_log(case, of.word(case, "system/controlDict", "application"))
-    steady = of.word(case, "system/fvSchemes", "ddtSchemes", "default") == "steadyState"
+    scheme = of.word(case, "system/fvSchemes", "ddtSchemes", "default")
+    counted = scheme in ("steadyState", "localEuler")
     time = RawColumn(
-        "Time", "" if steady else "s", main.values.pop("time"), means="iteration" if steady else "time",
-    )  # fmt: skip
+        "Time", "s" if scheme and not counted else "", main.values.pop("time"), means="iteration" if counted else "time"
+    )
     ending, why = _ending(len(time.values), main, broken, ended)
     stated = _stated(case, main, conditions, density, point, whole)
     if "solver" in said:
@@ -214,7 +224,7 @@ def _scaled(
             remarks.append(f"{main.name}: coefficients stay as they are, as {reason}")
             return ("-", "-"), density
         if density is None and not wanted:
-            remarks.append(f"{main.name}: no file states a density, so forces are those of a fluid of 1 kg/m^3")
+            remarks.append(f"{main.name}: without a density forces are made those of a fluid of 1 kg/m^3")
         return ("N", "N m"), (wanted, "option density") if wanted else (rho, place or main.facts["magUInf"][1])
     if not wanted:
         return ("N", "N m"), density
