@@ -29,17 +29,17 @@ NAMES = ("t", "X", "Y", "Z", "K", "M", "N")
 
 
 def write(path: Path, delimiter: str, decimal: str, hole: bool) -> None:
-    """Synthetic rows of seven digits."""
-    rng = np.random.default_rng(1)
+    """Synthetic rows of seven digits, 20,000 of them again and again."""
+    lines = []
+    for i, row in enumerate(np.random.default_rng(1).standard_normal((20_000, COLUMNS))):
+        cells = [f"{x:.6e}".replace(".", decimal) for x in row]
+        if hole and i % 100 == 50:
+            cells[3] = "nan"
+        lines.append(delimiter.join(cells) + "\n")
     with path.open("w") as stream:
         stream.write(delimiter.join(NAMES) + "\n")
-        for start in range(0, LINES, 100_000):
-            rows = rng.standard_normal((min(100_000, LINES - start), COLUMNS))
-            for i, row in enumerate(rows):
-                cells = [f"{x:.6e}".replace(".", decimal) for x in row]
-                if hole and i % 100 == 50:
-                    cells[3] = "nan"
-                stream.write(delimiter.join(cells) + "\n")
+        for _ in range(LINES // len(lines)):
+            stream.writelines(lines)
 
 
 def peer(path: Path, delimiter: str, decimal: str) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -305,7 +305,7 @@ def _counted(many: int) -> str:
 
 
 def raw_columns(
-    head: Head, values: Sequence[Array], texts: Mapping[int, Sequence[str]], met: Sequence[Cells]
+    head: Head, values: Iterable[Array], texts: Mapping[int, Sequence[str]], met: Sequence[Cells]
 ) -> tuple[tuple[RawColumn, ...], list[str]]:
     """The columns of a raw table and what is remarkable of them; columns without name and content are left out."""
     columns, remarks = [], list(head.remarks)

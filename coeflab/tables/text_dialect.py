@@ -321,6 +321,14 @@ def _head(
             continue
         cells = _fitted(bare, delimiter, width, filled)
         asked = n in (options.header, options.units)
+        if (
+            cells is None
+            and not remark
+            and not asked
+            and numeric(found := split_line(bare, delimiter), marks) == len(found)
+        ):
+            remarks.append(f"line {n}: left out, {len(found)} of {width} cells")
+            continue
         if (cells is None and asked) or (
             cells is None
             and not remark

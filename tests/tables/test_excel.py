@@ -173,6 +173,19 @@ def test_a_chain_of_sectors_that_bites_its_tail(tmp_path: Path) -> None:
     assert "a chain of sectors without end" in refusal(path)
 
 
+def test_a_panic_of_the_reader_is_an_input_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rust's panics come as an exception that is no Exception."""
+
+    class PanicException(BaseException):
+        pass
+
+    def panics(_path: str) -> None:
+        raise PanicException("index out of range")
+
+    monkeypatch.setattr("python_calamine.CalamineWorkbook", type("Book", (), {"from_path": staticmethod(panics)}))
+    assert "a broken workbook (index out of range)" in refusal(SAMPLES / "yaw.xls")
+
+
 def test_locked_and_foreign_files_say_so(tmp_path: Path) -> None:
     locked = tmp_path / "a.xlsx"
     locked.write_bytes(

@@ -135,6 +135,8 @@ def test_what_is_left_out_is_said_with_its_line(tmp_path: Path) -> None:
         "line 7: left out, 2 of 3 cells, and the line has no end: the file is cut there",
         "the head stands again in line 5; left out",
     )
+    first = read(tmp_path, "a b c\n1 2\n3 4 5\n6 7 8\n")
+    assert (list(first.column("c").values), first.remarks) == ([5.0, 8.0], ("line 2: left out, 2 of 3 cells",))
     cut = read(tmp_path, "a b\n0.123 1.234\n0.234 2.345\n0.345 3.456\n0.456 4.567\n0.567 5.6")
     assert len(cut) == 4
     assert "line 6: left out, the last number is not whole" in cut.remarks[0]

@@ -226,6 +226,8 @@ def _stream_of_xls(content: bytes) -> bytes:
 
     start, _, cutoff, small_start, small_many = struct.unpack_from("<5I", content, 48)
     folder = whole(start)
+    if not folder or len(folder) % 128:
+        raise ValueError("a folder that is cut")
     entries = [folder[i : i + 128] for i in range(0, len(folder) - 127, 128)]
     small = whole(struct.unpack_from("<I", entries[0], 116)[0])
     small_table = _numbers(whole(small_start)) if small_many else ()
@@ -274,6 +276,14 @@ def _too_much(packed: zipfile.ZipFile, parts: list[zipfile.ZipInfo]) -> str:
     return ""
 
 
+def _cells_of(sheet: Any, name: str, path: Path) -> list[list[Value]]:
+    high, wide = sheet.total_height, sheet.total_width
+    if high * wide > SHEET_CELLS or wide > TABLE_COLUMNS:
+        found = f"{high:,} rows of {wide:,} cells in sheet {shown(name)}"
+        raise _refused(found, path, f"at most {SHEET_CELLS:,} cells and {TABLE_COLUMNS} columns")
+    return list(sheet.to_python(skip_empty_area=False))
+
+
 def _sheets(path: Path) -> dict[str, list[list[Value]]]:
     """Every sheet as rows of cells from A1 on."""
     import python_calamine
@@ -286,16 +296,14 @@ def _sheets(path: Path) -> dict[str, list[list[Value]]]:
                     sheet = book.get_sheet_by_name(name)
                 except python_calamine.CalamineError:
                     continue  # a chart or a macro sheet
-                if sheet.total_height * sheet.total_width > SHEET_CELLS or sheet.total_width > TABLE_COLUMNS:
-                    raise _refused(
-                        f"{sheet.total_height:,} rows of {sheet.total_width:,} cells in sheet {shown(name)}",
-                        path,
-                        f"at most {SHEET_CELLS:,} cells and {TABLE_COLUMNS} columns",
-                    )
-                out[name] = sheet.to_python(skip_empty_area=False)
+                out[name] = _cells_of(sheet, name, path)
     except python_calamine.PasswordError:
         raise _refused("a locked workbook", path, advice="Save it without a password.") from None
     except (python_calamine.CalamineError, OSError, ValueError) as why:
+        raise _refused(f"a broken workbook ({why})", path) from None
+    except BaseException as why:  # a panic of the reader in Rust is no Exception
+        if type(why).__name__ != "PanicException":
+            raise
         raise _refused(f"a broken workbook ({why})", path) from None
     return out
 

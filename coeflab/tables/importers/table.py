@@ -86,8 +86,12 @@ class _Body:
                 column.append(np.ascontiguousarray(values))
             return
         if ended and not self.keep and not self.dialect.marks.thousands and len(lines) > _PIECE:
+            first, firsts = len(self.lines), [len(column) for column in self.columns]
             for i in range(0, len(lines), _PIECE):
                 self.add(line + i, lines[i : i + _PIECE], ended)
+            self.lines[first:] = [np.concatenate(self.lines[first:])]
+            for start, column in zip(firsts, self.columns):
+                column[start:] = [np.concatenate(column[start:])] if column[start:] else []
             return
         numbers: list[int] = []
         rows: list[list[str]] = []
@@ -101,6 +105,13 @@ class _Body:
             self.columns[k].append(self._values(k, cells, numbers, plain))
             if k in self.keep:
                 self.texts.setdefault(k, []).extend(self.known.setdefault(c, c) for c in cells)
+
+    def whole_columns(self) -> Iterator[Array]:
+        """The columns one after the other, their pieces given back to the memory."""
+        for pieces in self.columns:
+            whole = np.concatenate(pieces)
+            pieces.clear()
+            yield whole
 
     def _grow(self, lines: NDArray[np.int64]) -> None:
         self.rows += len(lines)
@@ -263,13 +274,8 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         raise undecoded(why, dialect.encoding, path) from None
     except OSError as why:
         raise unread(path, why) from None
-    values = []
-    for pieces in body.columns:
-        values.append(np.concatenate(pieces))
-        pieces.clear()
-    columns, remarks = raw_columns(
-        dialect.head, values, {k: t for k, t in body.texts.items() if k in textual}, body.met
-    )
+    texts = {k: t for k, t in body.texts.items() if k in textual}
+    columns, remarks = raw_columns(dialect.head, body.whole_columns(), texts, body.met)
     return RawTable(
         path, columns, dialect.head.line, np.concatenate(body.lines), files=(path,), dialect=dialect.said,
         remarks=(*dialect.remarks, *_remarks(body), *remarks),
