@@ -361,3 +361,53 @@ def test_an_angle_filter_names_what_it_leaves_out() -> None:
     sweep = slope_at_origin.fit([table], LENGTH, {"largest_angle": 9.0}).sweep("Yv")
     assert len(sweep.x) == 9
     assert {p.reason for p in sweep.left_out} == {"beyond largest_angle"}
+
+
+def turning(rates: list[float], speeds: list[float]) -> ForceTable:
+    """A table of an arm: forces linear and quadratic in the rate, at rates of so many r' and speeds."""
+    straight = small_table([0.0] * len(rates))
+    speed, primes = np.array(speeds), np.array(rates)
+    q = 0.5 * straight.conditions.density * speed**2 * LENGTH.length**2
+    forces = {
+        "X": q * (-0.003 - 0.002 * primes**2),
+        "Y": q * (0.004 * primes + 0.01 * primes * np.abs(primes)),
+        "N": q * LENGTH.length * (-0.005 * primes - 0.004 * primes * np.abs(primes)),
+    }
+    still = dict.fromkeys("vwpq", np.zeros(len(rates)))
+    return replace(
+        straight,
+        motion={**still, "u": speed, "r": primes * speed / LENGTH.length},
+        speed=speed,
+        forces=forces,
+        usable={c: np.ones(len(rates), dtype=bool) for c in forces},
+        exclusions=(),
+    )
+
+
+@pytest.mark.parametrize("signs", [[1.0], [1.0, -1.0], [1.0, -1.0, 0.0]], ids=["one side", "both sides", "with rest"])
+def test_one_radius_gives_no_slope_whatever_the_speeds_and_sides(signs: list[float]) -> None:
+    """Y' at r' = -a, 0, a is one number of the odd part: a line, r'|r'| and any mixture go through it."""
+    rates = [0.3 * s for s in signs for _ in range(3)]
+    table = turning(rates, [1.0, 2.0, 3.0] * len(signs))
+    found = FITS.load("slope_at_origin").fit([table], LENGTH, {})
+    for symbol in ("Yr", "Nr", "Xrr"):
+        c = found.coefficients[symbol]
+        assert (c.value, c.u95, c.status) == (None, None, Status.NOT_DETERMINED)
+        assert "all runs have one |r'|, 0.3, though the speed goes from 1 to 3 m/s" in c.estimator
+        assert "measure |r'| of about 0.1 and 0.2 too (|r'| = L/R: other radii, not other speeds)" in c.estimator
+        assert ("both signs are one size" in c.estimator) == (len(signs) > 1)
+    lines = [e for e in found.sweep("Yr").forms if e.family.name == LINE]
+    assert [round(e.value, 9) for e in lines] == ([] if len(signs) == 1 else [0.004 + 0.01 * 0.3])
+    tied = FITS.load("tied_law").fit([table], LENGTH, {})
+    assert not any(c.symbol.startswith(("Yr", "Nr")) for c in tied.coefficients.coefficients)
+
+
+def test_two_radii_give_the_slope() -> None:
+    both = [0.3, 0.302, 0.298, -0.3, 0.15, -0.15, 0.0]
+    found = FITS.load("slope_at_origin").fit([turning(both, [2.0] * len(both))], LENGTH, {})
+    c = found.coefficients["Yr"]
+    assert c.value is not None
+    assert c.u95 is not None
+    assert abs(c.value - 0.004) < c.u95
+    scatter = FITS.load("slope_at_origin").fit([turning(both[:4], [2.0] * 4)], LENGTH, {})
+    assert scatter.coefficients["Yr"].status is Status.NOT_DETERMINED

@@ -95,8 +95,8 @@ def test_everything_an_arm_leaves_open_comes_at_once(read_table: Read) -> None:
     lines = str(caught.value).split("\n")
     assert len(lines) == 3
     for key, line in zip(("centre", "arm_point", "contains_inertia"), lines, strict=True):
-        assert f'campaign.toml, line 24, "table.{key}": found no declaration' in line
-    with pytest.raises(InputError, match=r'line 25, "table\.centre": found "left"'):
+        assert f'campaign.toml, line 24, "table[0].{key}": found no declaration' in line
+    with pytest.raises(InputError, match=r'line 26, "table\[0\]\.centre": found "left"'):
         read_table("R [m],Y [N]\n10,1\n", table='centre = "left"')
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from coeflab.bodies.body import Body
@@ -94,7 +96,7 @@ def incidence_figure(table: ForceTable, rate: str, body: Body | None, anchor: st
         )  # fmt: skip
         handles, told = [], []
         for k, (y, name, style) in enumerate(zip(curves, names, STYLES, strict=False)):
-            look = {"color": style.colour, "linestyle": style.line, "linewidth": 1.3, "zorder": 2.5}
+            look: dict[str, Any] = {"color": style.colour, "linestyle": style.line, "linewidth": 1.3, "zorder": 2.5}
             handles += tagged(axes.plot(x, y, label=name, **look), f"setting{k}")
             told.append(plotted.curve(f"setting{k}", name, x, y))
         legend(figure, handles, BOTTOM + TALL)
