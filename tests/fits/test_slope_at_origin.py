@@ -411,3 +411,22 @@ def test_two_radii_give_the_slope() -> None:
     assert abs(c.value - 0.004) < c.u95
     scatter = FITS.load("slope_at_origin").fit([turning(both[:4], [2.0] * 4)], LENGTH, {})
     assert scatter.coefficients["Yr"].status is Status.NOT_DETERMINED
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [("manoeuvring_model", {}), ("polynomial", {"variable": "r", "degree": 1}), ("sparse", {"folds": 2})],
+)
+def test_a_fixed_form_over_one_radius_shows_a_secant_and_recommends_nothing(
+    name: str, options: dict[str, object]
+) -> None:
+    arm = replace(turning([0.3, -0.3] * 3, [1.0, 1.0, 2.0, 2.0, 3.0, 3.0]), name="tow/arm.csv")
+    drift = small_table([-12.0, -10.0, -8.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0])
+    found = FITS.load(name).fit([drift, arm], LENGTH, options)
+    c = found.coefficients["Yr"]
+    assert (c.value, c.u95, c.status) == (None, None, Status.NOT_DETERMINED)
+    assert "all rows that turn have one |r'|, 0.3" in c.estimator
+    model = next(m for m in found.models if m.response.removesuffix("'") == "Y")
+    shown = next(s for s in model.symbols if s.startswith("Yr"))
+    assert model.named(shown)[0] == pytest.approx(0.004 + 0.01 * 0.3, rel=1e-3)
+    assert sum("(a secant) and is not determined" in s for s in model.statements) == 1

@@ -31,7 +31,7 @@ from coeflab.fits.statistics.slopes import is_one_sided
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, FORCES
 from coeflab.law.terms import canonical
-from coeflab.tables.force_table import AT_REST, Exclusion, ForceTable
+from coeflab.tables.force_table import AT_REST, SAME_SIZE, Exclusion, ForceTable
 
 INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
 ASTERN = "does not run ahead (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
@@ -115,9 +115,6 @@ def collect_points(
     errors = np.array(se)
     known = errors if len(errors) and np.all(np.isfinite(errors)) else None
     return np.array(x), np.array(y), known, tuple(labels), tuple(left)
-
-
-SAME_SIZE = 0.02  # of the largest |x|: the radius or speed of one setting, as measured
 
 
 def one_size(x: Array, variable: str, speed: Array) -> str:
