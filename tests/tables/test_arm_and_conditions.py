@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
+from coeflab.core.files import shipped
 from coeflab.core.types import Array
 from coeflab.fits import FITS
 from coeflab.fits.rows.regression import Area, response
@@ -331,3 +332,31 @@ def test_a_selection_comes_before_the_finest_grid_and_an_unusable_cell_gives_way
     assert table.usable["X"].tolist() == [False, True, False, True, True]
     assert [(e.row, e.component) for e in table.exclusions if e.reason == COARSER] == [(0, "X")]
     assert table.notes == ("1 rows of coarser grids left to the grid study; grids in use have 100 to 300 cells",)
+
+
+# ---- the page
+
+
+def test_the_example_of_the_documentation(read_table: Read) -> None:
+    page = (shipped("cfd_data").parent / "docs" / "rotating_arm.md").read_text(encoding="utf-8")
+    toml, csv = (page.split(f"```{kind}\n")[1].split("```")[0] for kind in ("toml", "csv"))
+    keys, _, inertia = toml.partition("[inertia]")
+    table = read_table(csv, table=keys.split("\n", 2)[2], inertia=inertia)
+    rows = page.split("|---|---|---|---|---|---|---|\n")[1].split("\n\n")[0]
+    printed = np.array([[float(cell) for cell in row.strip("|").split("|")] for row in rows.split("\n")])
+    found = [
+        table.motion["r"],
+        table.primed_motion("r", LENGTH),
+        table.motion["v"],
+        table.forces["Y"],
+        table.forces["N"],
+    ]
+    np.testing.assert_allclose(np.column_stack(found), printed[:, 2:], rtol=2e-5, atol=6e-5)
+    radius, speed = printed[:, 0], printed[:, 1]
+    prime = LENGTH / radius
+    q = 0.5 * DENSITY * speed**2 * LENGTH**2
+    side = q * (0.004 * prime + 0.010 * prime * np.abs(prime))
+    yaw = q * LENGTH * (-0.005 * prime - 0.004 * prime * np.abs(prime)) - 0.3 * side
+    np.testing.assert_allclose(table.forces["Y"], side, atol=1e-3)
+    np.testing.assert_allclose(table.forces["N"], yaw, atol=2e-3)
+    np.testing.assert_allclose(table.forces["X"], -0.0035 * q, atol=1e-3)
