@@ -393,9 +393,9 @@ def test_one_radius_gives_no_slope_whatever_the_speeds_and_sides(signs: list[flo
     for symbol in ("Yr", "Nr", "Xrr"):
         c = found.coefficients[symbol]
         assert (c.value, c.u95, c.status) == (None, None, Status.NOT_DETERMINED)
-        assert "all runs have one |r'|, 0.3, though the speed goes from 1 to 3 m/s" in c.estimator
-        assert "measure |r'| of about 0.1 and 0.2 too (|r'| = L/R: other radii, not other speeds)" in c.estimator
-        assert ("both signs are one size" in c.estimator) == (len(signs) > 1)
+        where = "speeds 1 to 3 m/s, both signs" if len(signs) > 1 else "speeds 1 to 3 m/s"
+        assert c.estimator.startswith(f"one |r'|, 0.3 ({where}): ")
+        assert c.estimator.endswith("measure |r'| near 0.1 and 0.2 (L/R: other radii, not speeds)")
     lines = [e for e in found.sweep("Yr").forms if e.family.name == LINE]
     assert [round(e.value, 9) for e in lines] == ([] if len(signs) == 1 else [0.004 + 0.01 * 0.3])
     tied = FITS.load("tied_law").fit([table], LENGTH, {})
