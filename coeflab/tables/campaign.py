@@ -380,8 +380,9 @@ class Campaign:
 
     def fail(self, table: TableDeclaration, key: str, found: str, expected: str, advice: str = "") -> InputError:
         """An error about a key of one ``[[table]]``, to be raised by the caller."""
-        line = dict(zip(map(id, self.tables), self.lines, strict=False)).get(id(table))
-        return InputError(found, expected, file=self.path, line=line, key=f"table.{key}", advice=advice)
+        at = next(i for i, own in enumerate(self.tables) if own is table)
+        line = self.lines[at] if self.lines else None
+        return InputError(found, expected, file=self.path, line=line, key=f"table[{at}].{key}", advice=advice)
 
 
 def read_campaign(path: Path) -> Campaign:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 AT_REST = float(np.sin(np.radians(0.05)))
 ROUNDING = 1e-12
 COARSER = "coarser grid"
+SAME_SIZE = 0.02  # of the largest |x|: one radius, or one setting of a sweep, as measured
 
 
 def _range(values: Array) -> str:

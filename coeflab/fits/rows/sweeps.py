@@ -31,7 +31,7 @@ from coeflab.fits.statistics.slopes import is_one_sided
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, FORCES
 from coeflab.law.terms import canonical
-from coeflab.tables.force_table import AT_REST, Exclusion, ForceTable
+from coeflab.tables.force_table import AT_REST, SAME_SIZE, Exclusion, ForceTable
 
 INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
 ASTERN = "does not run ahead (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
@@ -117,9 +117,6 @@ def collect_points(
     return np.array(x), np.array(y), known, tuple(labels), tuple(left)
 
 
-SAME_SIZE = 0.02  # of the largest |x|: the radius or speed of one setting, as measured
-
-
 def one_size(x: Array, variable: str, speed: Array) -> str:
     """Why settings (n,) of one size determine no slope, in words; empty where they have several.
 
@@ -131,12 +128,13 @@ def one_size(x: Array, variable: str, speed: Array) -> str:
         return ""
     size = float(np.median(sizes))
     faster = float(np.ptp(speed)) > SAME_SIZE * float(speed.max())
-    over = f", though the speed goes from {speed.min():.3g} to {speed.max():.3g} m/s" if faster else ""
-    name, signs = f"{variable}'", "; both signs are one size" if np.any(x > AT_REST) and np.any(x < -AT_REST) else ""
-    how = " (|r'| = L/R: other radii, not other speeds)" if variable in "qr" else ""
+    said = [f"speeds {speed.min():.3g} to {speed.max():.3g} m/s"] if faster else []
+    said += ["both signs"] if np.any(x > AT_REST) and np.any(x < -AT_REST) else []
+    seen = f" ({', '.join(said)})" if said else ""
+    name, how = f"{variable}'", " (L/R: other radii, not speeds)" if variable in "qr" else ""
     return (
-        f"all runs have one |{name}|, {size:.3g}{over}{signs}, so that {name} and {name}|{name}| cannot be told apart; measure "
-        f"|{name}| of about {size / 3.0:.2g} and {2.0 * size / 3.0:.2g} too{how}"
+        f"one |{name}|, {size:.3g}{seen}: {name} and {name}|{name}| are one; measure "
+        f"|{name}| near {size / 3.0:.2g} and {2.0 * size / 3.0:.2g}{how}"
     )
 
 
