@@ -7,6 +7,7 @@ inertia is put in, the records pass a stated Butterworth filter and have seeded 
 
 from __future__ import annotations
 
+import hashlib
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -236,14 +237,16 @@ restoring = {list(RESTORING)}                       # N m per radian of roll and
 
 [[table]]
 file = "runs.csv"
+sha256 = "{hashlib.sha256(out["pmm_synthetic/runs.csv"]).hexdigest()}"
 contains_inertia = true                        # a balance in the model
 """,
     )  # fmt: skip
     out["pmm_synthetic_steady/table.csv"] = csv_of(steady(), UNITS)
     out["pmm_synthetic_steady/campaign.toml"] = campaign_of(
         "pmm_synthetic_steady", "Synthetic steady drift and rotation of the hull of pmm_synthetic (no measurement, no CFD)", "csv",
-        """[[table]]
+        f"""[[table]]
 file = "table.csv"
+sha256 = "{hashlib.sha256(out["pmm_synthetic_steady/table.csv"]).hexdigest()}"
 contains_inertia = false                       # the fluid's force alone
 """,
     )  # fmt: skip

@@ -17,6 +17,7 @@ from coeflab.core.table import Check
 from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult, Pooling, Sweep
 from coeflab.fits.results.fitted_model import FittedModel
+from coeflab.fits.results.oscillation import Oscillation
 from coeflab.formats.export import Export, Loss
 from coeflab.law.coefficient import COVERS, Coefficient
 from coeflab.law.symbols import ANGULAR, primed
@@ -121,6 +122,33 @@ def pooling(campaign: str, p: Pooling) -> dict[str, Any]:
     }
 
 
+def oscillation(campaign: str, o: Oscillation) -> dict[str, Any]:
+    """One component of oscillating runs; half-widths are 95 %, unknown ones null."""
+    e = o.explained()
+    return {
+        "campaign": campaign,
+        "motion": o.motion,
+        "symbol": primed(o.symbol),
+        "steady_interval": None if o.interval is None else list(o.interval),
+        "by_amplitude": {
+            "amplitude": e.amplitude, "measured": finite(e.measured[0]), "measured_u95": finite(e.measured[1]),
+            "difference_from_zero_amplitude": finite(e.difference), "explained": finite(e.by_amplitude),
+        },
+        "over_frequency": {
+            primed(name): {"slope": finite(at.frequency[0]), "u95": finite(at.frequency[1]), "p": finite(at.frequency[2])}
+            for name, at in ((o.symbol, o.damping), (f"{o.symbol}dot", o.inertia))
+        },
+        "runs": [
+            {
+                "run": r.label, "amplitude": r.amplitude, "frequency": r.frequency, "cycles": r.cycles, "drift": r.drift,
+                "damping": finite(r.damping[0]), "damping_u95": finite(r.damping[1]), "inertia": finite(r.inertia[0]),
+                "inertia_u95": finite(r.inertia[1]), "mean": r.mean, "used": r.used,
+            }
+            for r in o.runs
+        ],
+    }  # fmt: skip
+
+
 def accelerations(water: WaterInertia) -> dict[str, Any]:
     """Which accelerations were asked for and taken, and where they come from."""
     return {"asked": water.asked, "used": water.used, "source": water.source, "warnings": list(water.warnings)}
@@ -184,6 +212,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
         "coefficients": [coefficient(c, scalings.get(c.campaign or "", common)) for c in s.coefficients],
         "models": [model(m) for f in s.fits for m in f.models],
         "poolings": [pooling(f.campaign, p) for f in s.fits for p in f.poolings],
+        "oscillations": [oscillation(f.campaign, o) for f in s.fits for o in f.oscillations],
         "comparisons": [
             {
                 "symbol": primed(c.coefficient.symbol),

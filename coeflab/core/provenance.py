@@ -98,7 +98,7 @@ WORKS: dict[str, str] = {
     "steady_cfd": "Calculation of Linear Damping Coefficients by Numerical Simulation of Steady State Experiments, "
     f"{UNNAMED}; Table 4 (steady CFD, PMM CFD 2012, experiment 1990).",
     "coeflab_cfd": "coeflab, Steady RANS of the SUBOFF bare hull, made for this project with OpenFOAM 1912, 2026.",
-    "ittc_captive": "ITTC, Captive Model Test, recommended procedure 7.5-02-06-02.",
+    "ittc_captive": "ITTC, Captive Model Test Procedures, recommended procedure 7.5-02-06-02, revision 04, 2014.",
     "gertler1959": "M. Gertler, The DTMB Planar-Motion-Mechanism System, Symposium on Towing Tank Facilities, Zagreb, 1959.",
     "liang_zeger1986": "K.-Y. Liang, S. L. Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73, 1986.",
     "schwarz1978": "G. Schwarz, Estimating the dimension of a model, Annals of Statistics 6(2), 1978.",

@@ -6,10 +6,11 @@ F = F0 + F_s s + F_s|s| s|s| + F_sdot sdot, the fundamental of F is
     in phase with s:     F_s s_a + 8/(3 pi) F_s|s| s_a^2        (of F_sss s^3 instead: 3/4 F_sss s_a^3)
     in quadrature:       -omega s_a F_sdot
 
-(Gertler 1959, the planar motion mechanism; Newman 1977, section 8.9; ITTC 7.5-02-06-02, captive model tests). What is recorded is
-the filter's gain times the fluid's force less the model's inertia, M_RB nudot + C_RB(nu) nu about the reference point, less
-weight and buoyancy: each is taken out before the forces are primed. A steady derivative is the limit at zero frequency;
-values here are those of the runs' own frequencies unless an interval of w' is named over which they go as a + b w'^2.
+(Gertler 1959, the planar motion mechanism; ITTC 7.5-02-06-02, captive model tests; equivalent linear damping as in ITTC
+7.5-02-07-04.5). What is recorded is the filter's gain times the fluid's force less the model's inertia, M_RB nudot + C_RB(nu) nu
+about the reference point, less weight and buoyancy: each is taken out before the forces are primed. A steady derivative is
+the limit at zero frequency; values here are those of the runs' own frequencies unless an interval of w' is named over which
+they go as a + b w'^2.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ from coeflab.tables.planar_motion import (
 )
 
 summary = "added mass and damping from oscillating runs (PMM), with what amplitude and frequency do to them"
-citations = ("gertler1959", "newman1977", "ittc_captive", "liang_zeger1986", "schwarz1978")
+citations = ("gertler1959", "ittc_captive", "ittc_roll_decay", "liang_zeger1986", "schwarz1978")
 reads_series = True
 
 SAME_SPEED = 0.02

@@ -104,7 +104,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     ----------
     column : RawColumn
     stated : mapping, optional
-        What the file says of itself; ``scaling.area`` and ``scaling.length`` complete a coefficient.
+        What the file says of itself; ``coefficients.area`` and ``coefficients.length`` complete a coefficient.
     """
     name, why, certain = _name(column)
     if not name:
@@ -116,8 +116,9 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         return Proposal(name, why, certain)
     if column.is_text and not np.any(np.isfinite(column.values)):
         return Proposal("label", "text")
-    area = (stated or {}).get("scaling.area"), (stated or {}).get("scaling.length")
-    return _with_unit(column, said, why, certain, area)
+    said_of = stated or {}
+    by = (said_of.get("coefficients.area"), said_of.get("coefficients.length", said_of.get("scaling.length")))
+    return _with_unit(column, said, why, certain, by)
 
 
 def _name(column: RawColumn) -> tuple[str, str, bool]:

@@ -137,8 +137,8 @@ def test_restoring_moments_left_in_pass_for_added_inertia() -> None:
     assert kept.value == pytest.approx(truth("Kpdot") + off, rel=1e-3)
 
 
-def test_newmans_relations_by_hand() -> None:
-    """Newman 1977, section 8.9: with y = a sin(wt), Y in phase is (Yvdot - m) w^2 a ... and in quadrature Yv w a."""
+def test_relations_of_pure_sway_by_hand() -> None:
+    """Gertler 1959: with y = a sin(wt), Y holds -Yvdot w^2 a in phase with y and Yv w a in quadrature."""
     a, w, yv, yvdot = 0.1, 1.7, -40.0, -55.0
     t = np.arange(200) * 2.0 * np.pi / w / 40.0
     force = -yvdot * w**2 * a * np.sin(w * t) + yv * w * a * np.cos(w * t)

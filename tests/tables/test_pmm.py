@@ -21,12 +21,15 @@ from tests.fits.oscillating import law
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """The two smallest motions of the shipped campaign: sway_1 and roll_1."""
+    """The sway runs and one of roll of the shipped campaign."""
     here = shipped("cfd_data") / "pmm_synthetic"
     shutil.copytree(here, tmp_path / "pmm")
     lines = (here / "runs.csv").read_text().splitlines()
     keep = [lines[0], *(line for line in lines if line.startswith(("sway_", "roll_1")))]
     (tmp_path / "pmm" / "runs.csv").write_text("\n".join(keep) + "\n")
+    declared = (here / FILE).read_text().splitlines()
+    kept = [line for line in declared if not line.startswith("sha256")]
+    (tmp_path / "pmm" / FILE).write_text("\n".join(kept) + "\n")
     return tmp_path / "pmm"
 
 

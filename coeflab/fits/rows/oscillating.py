@@ -13,7 +13,17 @@ import numpy as np
 
 from coeflab.core.types import Array
 from coeflab.fits.results.oscillation import OscillatedForce
-from coeflab.fits.statistics.harmonics import SAME, Harmonics, Phasors, cycles_of, derivative, refined, regress, series
+from coeflab.fits.statistics.harmonics import (
+    SAME,
+    WHOLE,
+    Harmonics,
+    Phasors,
+    cycles_of,
+    derivative,
+    refined,
+    regress,
+    series,
+)
 from coeflab.fits.statistics.linear_model import t_factor
 from coeflab.law.rigid_body import parallel_axis, rigid_body_force, rigid_body_inertia
 from coeflab.law.scaling import Scaling
@@ -49,27 +59,28 @@ class _Motion:
         return np.asarray(self.omega * (time - self.start) + self.phase)
 
 
-def _checked_record(run: PlanarMotionRun, record: TimeSeries) -> None:
+def _checked_record(run: PlanarMotionRun, record: TimeSeries, orders: int) -> None:
     if len(record.time) < 3:
         raise run.fail(f"{len(record.time)} samples", "a record of one cycle and more", file=record.file)
     cycles = cycles_of(run.omega * record.time)
-    if cycles < 1.0 - 1e-6:
+    if cycles < 1.0 - WHOLE:
         raise run.fail(
             f"a record of {cycles:.2g} cycles at {run.omega / (2.0 * np.pi):g} Hz",
             "at least one whole cycle",
             file=record.file,
         )
     samples = 2.0 * np.pi / (run.omega * float(np.max(np.diff(record.time))))
-    if samples < LEAST_SAMPLES:
+    least = max(LEAST_SAMPLES, 2 * orders + 2)
+    if samples < least * (1.0 - 1e-9):
         raise run.fail(
-            f"{samples:.1f} samples a cycle at the widest step", f"at least {LEAST_SAMPLES}", file=record.file, column="t",
+            f"{samples:.1f} samples a cycle at the widest step", f"at least {least}", file=record.file, column="t",
             advice="Harmonics fold back into the fundamental: record more often.",
         )  # fmt: skip
 
 
 def _motion(run: PlanarMotionRun, record: TimeSeries, gain: Filter, orders: int) -> _Motion:
     """The motion of a record, from its columns or as the list of runs declares it."""
-    _checked_record(run, record)
+    _checked_record(run, record, orders)
     axis = MOTIONS.index(VARIABLES[run.motion])
     start, omega = float(record.time[0]), run.omega
     velocity = np.zeros((6, orders + 1), dtype=complex)
@@ -79,6 +90,10 @@ def _motion(run: PlanarMotionRun, record: TimeSeries, gain: Filter, orders: int)
         if run.amplitude is None or run.phase is None:
             raise run.fail("no motion", "columns of the motion, or amplitude and phase")
         velocity[axis, 1] = run.amplitude * omega * np.exp(1j * (run.phase + omega * start))
+        if run.motion in ("yaw", "pitch") and not run.drift and not run.attack:
+            # The carriage keeps its speed, and the slope of a pure path is the angle.
+            angle = run.amplitude * np.sin(GRID + run.phase + omega * start)
+            velocity[0] = regress(GRID, run.speed / np.cos(angle)[:, None], orders).phasors[0]
     else:
         omega = _frequency(run, record, orders)
         _from_columns(run, record, gain, omega, velocity)

@@ -4,8 +4,8 @@ The standard error of a harmonic comes from blocks of one cycle (whole number no
 what a cycle by itself would have given, so that noise which stays correlated within a cycle counts in full (cluster-robust
 variance, Liang & Zeger 1986; batch means). Its Student factor has one degree of freedom less than there are cycles.
 
-Describing functions: a force c x|x| under x = a cos has the fundamental 8/(3 pi) c a |a| cos, c x^3 has 3/4 c a^3 cos (Krylov &
-Bogoliubov; Newman, Marine Hydrodynamics, 1977, uses the former for viscous damping).
+Describing functions: a force c x|x| under x = a cos has the fundamental 8/(3 pi) c a |a| cos, c x^3 has 3/4 c a^3 cos: the equivalent
+linear damping of ITTC 7.5-02-07-04.5 (2011).
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ Phasors = NDArray[np.complex128]
 QUADRATIC, CUBIC = 8.0 / (3.0 * np.pi), 0.75
 STEPS, SETTLED = 20, 1e-12
 REJECTED = 0.05  # probability below which runs scatter by more than their cycles say
+WHOLE = 0.02  # of a cycle that a whole one may lack, by a rounded frequency or time
 ONE = "one amplitude"
 NOTHING = (np.nan, np.nan, np.nan)
 SAME = 0.01  # relative: amplitudes or frequencies nearer than this are one
@@ -80,7 +81,7 @@ def regress(theta: Array, values: Array, orders: int = 3) -> Harmonics:
     found = inverse @ (x.T @ values)
     rest = values - x @ found
     cycles = cycles_of(theta)
-    blocks = int(cycles * (1.0 + 1e-9))
+    blocks = int(cycles + WHOLE)
     covariance = np.full((values.shape[1], 2, 2), np.nan)
     if blocks >= 2:
         edge = np.searchsorted(theta, theta[0] + np.arange(blocks) * cycles / blocks * 2.0 * np.pi * (1.0 - 1e-12))
@@ -257,13 +258,17 @@ def _weighed(x: Array, y: Array, scatter: RunScatter) -> _Weighed | None:
         expected = float(np.sum(variance / scatter.assumed * (1.0 - np.einsum("ij,ji->i", x, estimator))))
         misfit = float(rest.sum()) / expected if spare and expected > 0.0 else 0.0
         chance = float(fdtrc(spare, float(scatter.freedom.sum()), misfit)) if spare else np.nan
-        freedom = shares.sum(axis=1) ** 2 / np.sum(shares**2 / np.maximum(scatter.freedom, 1.0), axis=1)
+        squares = np.sum(shares**2 / np.maximum(scatter.freedom, 1.0), axis=1)
+        whole = np.full(len(beta), float(scatter.freedom.sum()))
+        freedom = np.divide(shares.sum(axis=1) ** 2, squares, out=whole, where=squares > 0.0)
         half = np.sqrt(shares.sum(axis=1)) * t_factor(freedom)
     if spare and (not known or chance < REJECTED):
         half = np.sqrt(misfit * shares.sum(axis=1)) * t_factor(float(spare))
     covariance = (estimator * (variance if known else scatter.assumed)) @ estimator.T
     size = np.sqrt(np.diag(covariance))
-    return _Weighed(beta, np.asarray(half), np.asarray(covariance / np.outer(size, size)), misfit, spare, chance)
+    pair = np.outer(size, size)
+    correlation = np.divide(covariance, pair, out=np.zeros_like(pair), where=pair > 0.0)
+    return _Weighed(beta, np.asarray(half), correlation, misfit, spare, chance)
 
 
 def at_zero_amplitude(

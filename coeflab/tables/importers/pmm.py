@@ -16,6 +16,7 @@ import numpy as np
 
 from coeflab.core.axes import angle_sign
 from coeflab.core.errors import InputError, UnitsError, shown
+from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.options import NoOptions, parse_options
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
@@ -168,7 +169,18 @@ def _si(cells: Cells, name: str, dimension: str) -> Array:
         raise UnitsError(
             why.found, why.expected, file=cells.file, line=line, column=header.text, advice=why.advice
         ) from None
-    return np.asarray(cells.numbers(name) * scale)
+    values = np.asarray(cells.numbers(name) * scale)
+    wild = np.flatnonzero(np.abs(values) > LARGEST_NUMBER)
+    if wild.size:
+        row = int(wild[0])
+        raise InputError(
+            shown(cells.texts(name)[row]),
+            f"a number of at most {LARGEST_NUMBER:g} in SI units",
+            file=cells.file,
+            line=cells.line(row),
+            column=header.text,
+        )
+    return values
 
 
 def _unknown(cells: Cells, known: tuple[str, ...]) -> None:
