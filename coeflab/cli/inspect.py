@@ -86,8 +86,10 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool) -> None:
     try:
         with show.narrated(), show.progress(json) as say:
             raw = read_raw(path, importer, options, say)
-    except InputError:
-        _run(path, importer, options, json)
+    except InputError as why:
+        if _is_run(path, importer):
+            _run(path, importer, options, json, why)
+            return
         raise
     found = understood(raw, {}, stated_settings(raw))
     points = open_points(found)
@@ -109,21 +111,37 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool) -> None:
     show.text(f"Next: {following}")
 
 
-def _run(path: Path, importer: str, options: Mapping[str, Any], json: bool) -> None:
-    """What a single run holds, where it is no row of a table yet."""
+def _is_run(path: Path, importer: str) -> bool:
+    from coeflab.tables.importers import IMPORTERS
+
+    plugin = IMPORTERS.load(importer)
+    return plugin.run is not None and plugin.recognises(path)
+
+
+def _run(path: Path, importer: str, options: Mapping[str, Any], json: bool, missing: InputError) -> None:
+    """What a single run holds that is no row of a table yet, and what is missing for it to be one."""
     from coeflab.report.tables import raw_tables
     from coeflab.tables.importers import IMPORTERS
     from coeflab.tables.reading import OF_RUNS
 
-    plugin = IMPORTERS.load(importer)
-    if json or plugin.run is None or not plugin.recognises(path):
-        return
+    read = IMPORTERS.load(importer).run
+    if read is None:
+        raise missing
     with IMPORTERS.guarded(importer):
-        run = plugin.run(path, {name: value for name, value in options.items() if name not in OF_RUNS})
+        run = read(path, {name: value for name, value in options.items() if name not in OF_RUNS})
+    tables = raw_tables.of_run(run)
+    if json:
+        told = {t.title: [dict(zip(t.headers, row, strict=True)) for row in t.rows] for t in tables}
+        about = {"path": str(path), "importer": importer, "ended": str(run.ended), "why": run.why}
+        show.json_object(about | told | {"missing": list(missing.lines)})
+        return
     ended = f"{run.ended}: {run.why}" if run.why else str(run.ended)
     show.sentence(f"{path}: a run, read by {importer}; ended {ended}")
-    for table in raw_tables.of_run(run):
+    for table in tables:
         show.table(table)
+    show.text("Missing to read it as a row of a table")
+    for line in missing.lines:
+        show.sentence(line)
 
 
 def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: bool) -> None:

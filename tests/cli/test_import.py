@@ -218,6 +218,22 @@ def test_inspect_of_what_no_importer_knows(tmp_path: Path) -> None:
     assert "one of" in refused(invoke("inspect", tmp_path / "noise.bin", "--as", "csv"))[0]
 
 
+def test_inspect_of_a_run_whose_condition_nobody_states(stub: Path, tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "alone", {"X": 13.0, "Y": 2.0})
+    done = invoke("inspect", folder)
+    assert done.exit_code == 0, done.output
+    for part in (
+        "a run, read by stub; ended whole",
+        "200 rows",
+        "Missing to read it as a row of a table",
+    ):
+        assert part in " ".join(done.output.split())
+    content = json.loads(invoke("inspect", folder, "--json").stdout)
+    assert content["ended"] == "whole"
+    assert [c["is"] for c in content["History"]] == ["iteration", "X", "Y"]
+    assert content["missing"]
+
+
 RUNS = {f"b{beta}".replace("-", "m"): beta for beta in (0, 4, 8, -4, -8)}
 
 

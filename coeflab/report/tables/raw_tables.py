@@ -63,7 +63,7 @@ def of_run(run: Run) -> tuple[Table, ...]:
     return (
         Table("Conditions", ("condition", "value", "where"), tuple(said), (), frozenset({0, 1, 2})),
         Table(
-            f"History of {len(run.history)} rows", ("column", "unit", "range", "is"), rows, (), frozenset({0, 1, 2, 3})
+            "History", ("column", "unit", "range", "is"), rows, (f"{len(run.history)} rows",), frozenset({0, 1, 2, 3})
         ),
     )
 
