@@ -69,7 +69,9 @@ class Said:
 
 
 def command(
-    path: str = typer.Argument(..., help="A table, or a folder of cases: text, Excel, OpenFOAM ... (coeflab formats importers)."),
+    path: str = typer.Argument(
+        ..., help="A table, or a folder of cases: text, Excel, OpenFOAM ... (coeflab formats importers)."
+    ),
     out: Path = typer.Option(..., "--out", help="Folder of the new campaign, such as cfd_data/mine."),
     map_: list[str] = typer.Option(
         [], "--map", metavar="COLUMN=WHAT", help="What a column is: 'Fy=Y [N]', 'Run=label', 'Note=ignore'; repeatable."
@@ -81,13 +83,19 @@ def command(
     option: list[str] = typer.Option(
         [], "--option", metavar="NAME=VALUE", help="An option of the importer: sheet=Drift; repeatable."
     ),
-    as_: str = typer.Option("", "--as", metavar="IMPORTER", help="Read it with this importer (coeflab formats importers)."),
-    name: str = typer.Option("", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."),
+    as_: str = typer.Option(
+        "", "--as", metavar="IMPORTER", help="Read it with this importer (coeflab formats importers)."
+    ),
+    name: str = typer.Option(
+        "", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."
+    ),
     runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
-    state: Path = typer.Option(None, metavar="FILE", help="Keeps what was read of many runs, so that a stopped import goes on."),
+    state: Path = typer.Option(
+        None, metavar="FILE", help="Keeps what was read of many runs, so that a stopped import goes on."
+    ),
     yes: bool = typer.Option(False, "--yes", help="Take proposals that the file or clear evidence supports."),
     force: bool = typer.Option(False, "--force", help="Replace a campaign that is there."),
-) -> None:  # fmt: skip
+) -> None:
     """Make a campaign of a table or a folder of runs: table.csv and a commented campaign.toml.
 
     It proposes what each column is and shows what the numbers say of signs. On a terminal it asks; elsewhere it lists all

@@ -26,14 +26,18 @@ def command(
     axes: str = typer.Option("", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
     density: float = typer.Option(1000.0, "--density", help="Of the water that a body displaces, kg/m^3."),
-    name: str = typer.Option("", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."),
+    name: str = typer.Option(
+        "", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."
+    ),
     runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
     as_: str = typer.Option("", "--as", metavar="IMPORTER", help="Read it with this importer, as it stands."),
-    option: list[str] = typer.Option([], "--option", metavar="NAME=VALUE", help="Of the importer: sheet=Drift; repeatable."),
+    option: list[str] = typer.Option(
+        [], "--option", metavar="NAME=VALUE", help="Of the importer: sheet=Drift; repeatable."
+    ),
     rows: int = typer.Option(60, "--rows", min=0, help="Most rows of a table that are shown; 0 shows all."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
-) -> None:  # fmt: skip
+) -> None:
     """Show a force table in SI and FRD with its declarations, excluded cells and readings that do not belong.
 
     Of any other file or folder: what it is, its columns with what they may be, what it states, and what is missing to read

@@ -180,6 +180,12 @@ def test_a_rotating_table_has_to_say_what_it_contains(tmp_path: Path) -> None:
     assert table_of(tmp_path / "out").forces["Y"][3] == pytest.approx(10.0 + 40.0 * 2.0 * 0.4)
 
 
+def test_the_list_of_commands_says_what_they_do() -> None:
+    listed = " ".join(invoke("--help").output.split())
+    assert "import Make a campaign of a table or a folder of runs" in listed
+    assert "inspect Show a force table in SI and FRD" in listed
+
+
 def test_inspect_of_an_unknown_file(drift: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(drift.parent)
     done = invoke("inspect", drift.name)
