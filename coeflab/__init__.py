@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from coeflab.study.study import Plan, Study
     from coeflab.tables.campaign import read_campaign
     from coeflab.tables.force_table import ForceTable
-    from coeflab.tables.importers import PlannedTable, read_tables
+    from coeflab.tables.importers import PlannedTable
+    from coeflab.tables.reading import read_tables
     from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
     from coeflab.workbench import rendered, run
 
@@ -49,7 +50,8 @@ _HOMES = {
     "study.plan": ("read_plan",),
     "law.scaling": ("Conditions", "Scaling"),
     "study.study": ("Plan", "Study"),
-    "tables.importers": ("PlannedTable", "read_tables"),
+    "tables.importers": ("PlannedTable",),
+    "tables.reading": ("read_tables",),
     "bodies.readers": ("read_body",),
     "published": ("validation",),
     "workbench": ("rendered", "run"),

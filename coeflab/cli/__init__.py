@@ -7,6 +7,7 @@ import re
 import sys
 from importlib import import_module
 from inspect import cleandoc
+from keyword import iskeyword
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ ORDER = [
     "run",
     "report",
     "serve",
+    "import",
     "fit",
     "inspect",
     "new",
@@ -60,14 +62,19 @@ class Commands(TyperGroup):
         super().format_commands(ctx, formatter)
 
 
+def _module(name: str) -> str:
+    """The file of a command; words of Python have an underscore behind."""
+    return f"{name}_" if iskeyword(name) else name.replace("-", "_")
+
+
 def _summary(name: str) -> str:
-    text = Path(__file__).with_name(f"{name.replace('-', '_')}.py").read_text(encoding="utf-8")
+    text = Path(__file__).with_name(f"{_module(name)}.py").read_text(encoding="utf-8")
     found = _SUMMARY.search(text)
     return cleandoc(found[1] or found[2]) if found else ""
 
 
 def _built(name: str) -> Any:
-    module = import_module(f"{__name__}.{name.replace('-', '_')}")
+    module = import_module(f"{__name__}.{_module(name)}")
     one = getattr(module, "app", None)
     if one is None:
         one = typer.Typer(rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)

@@ -61,7 +61,7 @@ def command(
     from coeflab.law.scaling import Scaling
     from coeflab.study.plan import table_at
     from coeflab.study.study import Plan, PlannedJoint
-    from coeflab.tables.importers import suited_fit
+    from coeflab.tables.reading import suited_fit
     from coeflab.workbench import run
 
     if help_options:

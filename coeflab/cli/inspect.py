@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -19,21 +20,31 @@ EXAMPLE = "coeflab inspect suboff_cfd_barehull"
 
 def command(
     table: str = typer.Argument(
-        ..., help="A campaign folder, one CSV of it, or a shipped campaign's name; or a body.toml, or a mesh file."
+        ..., help="A campaign, one table of it, any file or folder that an importer knows, a body.toml, or a mesh file."
     ),
     unit: str = typer.Option("", help="Unit of a mesh file: m, mm, in ..."),
     axes: str = typer.Option("", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
     density: float = typer.Option(1000.0, "--density", help="Of the water that a body displaces, kg/m^3."),
+    name: str = typer.Option(
+        "", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."
+    ),
+    runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
+    as_: str = typer.Option("", "--as", metavar="IMPORTER", help="Read it with this importer, as it stands."),
+    option: list[str] = typer.Option(
+        [], "--option", metavar="NAME=VALUE", help="Of the importer: sheet=Drift; repeatable."
+    ),
     rows: int = typer.Option(60, "--rows", min=0, help="Most rows of a table that are shown; 0 shows all."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Show a force table in SI and FRD with its declarations, excluded cells and readings that do not belong.
 
-    Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
+    Of any other file or folder: what it is, its columns with what they may be, what it states, and what is missing to read
+    it as a campaign. Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.
     """
     from coeflab.bodies.simplify.source import names_body
+    from coeflab.cli.import_ import of_runs
 
     if names_body(table):
         _body(table, unit, axes, repair, density, json)
@@ -42,7 +53,99 @@ def command(
         raise InputError(
             "--unit, --axes or --repair", "a mesh file with them", advice="A campaign.toml says these itself."
         )
+    option = [*option, *of_runs(name, runs)]
+    if as_ or option or _is_raw(table):
+        _raw(table, as_, option, json)
+        return
     _tables(table, json, strict, rows)
+
+
+def _is_raw(table: str) -> bool:
+    """Whether a file or folder is meant that is part of no campaign."""
+    from coeflab.core.files import located
+    from coeflab.tables.campaign import FILE, read_campaign
+
+    path = located(table, "cfd_data")
+    if path.is_dir() or path.suffix == ".toml":
+        return path.is_dir() and not (path / FILE).exists()
+    declaration = path.parent / FILE
+    return not declaration.exists() or path.name not in {
+        t.file.split("/")[-1] for t in read_campaign(declaration).tables
+    }
+
+
+def _raw(table: str, importer: str, option: Sequence[str], json: bool) -> None:
+    """What a file is before anybody said what it means, and what is missing to read it as a campaign."""
+    import shlex
+
+    from coeflab.cli.import_ import described, options_of, point_lines
+    from coeflab.core.files import located
+    from coeflab.core.wording import identifier
+    from coeflab.tables.questions import open_points, stated_settings, understood
+    from coeflab.tables.reading import importer_of, read_raw
+
+    path = located(table, "cfd_data")
+    importer = importer_of(path, importer)
+    options = options_of(option)
+    try:
+        with show.narrated(), show.progress(json) as say:
+            raw = read_raw(path, importer, options, say)
+    except InputError as why:
+        if _is_run(path, importer):
+            _run(path, importer, options, json, why)
+            return
+        raise
+    found = understood(raw, {}, stated_settings(raw))
+    points = open_points(found)
+    out = f"cfd_data/{identifier(path.resolve().stem)}"
+    following = " ".join(
+        ["coeflab import", shlex.quote(table), *(f"--option {shlex.quote(o)}" for o in option), f"--out {out}"]
+    )
+    if json:
+        from coeflab.report.tables.raw_tables import as_json
+
+        missing = [{"argument": argument, "about": about} for argument, about in points]
+        show.json_object(as_json(raw, importer, found.proposals, found.shows) | {"missing": missing, "next": following})
+        return
+    described(raw, importer, found)
+    show.text("Missing to read it as a campaign" if points else "Nothing is missing")
+    for line in point_lines(points):
+        show.text(line)
+    show.text()
+    show.text(f"Next: {following}")
+
+
+def _is_run(path: Path, importer: str) -> bool:
+    from coeflab.tables.importers import IMPORTERS
+
+    plugin = IMPORTERS.load(importer)
+    return plugin.run is not None and plugin.recognises(path)
+
+
+def _run(path: Path, importer: str, options: Mapping[str, Any], json: bool, missing: InputError) -> None:
+    """What a single run holds that is no row of a table yet, and what is missing for it to be one."""
+    from coeflab.report.tables import raw_tables
+    from coeflab.tables.importers import IMPORTERS
+    from coeflab.tables.reading import OF_RUNS
+
+    read = IMPORTERS.load(importer).run
+    if read is None:
+        raise missing
+    with IMPORTERS.guarded(importer):
+        run = read(path, {name: value for name, value in options.items() if name not in OF_RUNS})
+    tables = raw_tables.of_run(run)
+    if json:
+        told = {t.title: [dict(zip(t.headers, row, strict=True)) for row in t.rows] for t in tables}
+        about = {"path": str(path), "importer": importer, "ended": str(run.ended), "why": run.why}
+        show.json_object(about | told | {"missing": list(missing.lines)})
+        return
+    ended = f"{run.ended}: {run.why}" if run.why else str(run.ended)
+    show.sentence(f"{path}: a run, read by {importer}; ended {ended}")
+    for table in tables:
+        show.table(table)
+    show.text("Missing to read it as a row of a table")
+    for line in missing.lines:
+        show.sentence(line)
 
 
 def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: bool) -> None:
@@ -92,6 +195,7 @@ def _tables(table: str, json: bool, strict: bool, rows: int) -> None:
                         "datum": t.datum.id,
                         "scaling": str(t.scaling),
                         "density": t.conditions.density,
+                        "density_of_rows": None if t.density is None else [float(x) for x in t.density],
                         "excluded": [
                             {"line": e.line, "component": e.component, "reason": e.reason} for e in t.exclusions
                         ],
@@ -119,7 +223,7 @@ def _print(read: Sequence[ForceTable], rows: int) -> None:
         point = ", ".join(f"{x:g}" for x in t.reference_point)
         show.text(f"  {t.title}; body {t.body}; {t.source.kind}; {work(t.source.citation)}")
         show.text(f"  varies: {', '.join(t.varies) or 'nothing'}; moments about ({point}) m from: {t.datum}")
-        show.text(f"  primes by {t.scaling}; density {t.conditions.density:g} kg/m^3")
+        show.text(f"  primes by {t.scaling}; {t.run_at}")
         for note in t.notes:
             show.text(f"  {note}")
         show.text()

@@ -172,6 +172,8 @@ class Declaration:
             if len(given) == 1:
                 field.pop("anyOf")
                 field.update(given[0])
+            elif given:
+                field["anyOf"] = given
             field["description"] = said.get(name, "")
         return reference
 

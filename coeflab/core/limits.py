@@ -45,6 +45,29 @@ CSV_LINE = 1 << 16
 CSV_CELLS = 2_000_000
 CSV_BLANK_LINES = 1000
 
+# Tables of other people's tools, as numbers 8 bytes a cell: 2,000,000 lines of 15 columns take 240 MB. A text takes 60 bytes.
+TABLE_CELLS = 30_000_000
+TABLE_TEXTS = 3_000_000
+TABLE_COLUMNS = 2_000
+TABLE_CUT_LINES = 20  # left out and said; beyond, and beyond one in a hundred, the dialect is wrong
+# A spreadsheet is read at once, some 100 bytes a cell and 10 a byte of it; LibreOffice and Excel end at 1,048,576 rows.
+SHEET_BYTES = 64 << 20
+SHEET_UNPACKED = 256 << 20
+SHEET_CELLS = 3_000_000
+
+# Cases of OpenFOAM. foamlib takes 0.4 ms an entry, and gets one value at a time; a dictionary of a case has 10 kB.
+FOAM_BYTES = 1 << 18  # besides the long lists of fields, which are cut out unread
+FOAM_FIELD_BYTES = 64 << 20
+FOAM_FILES = 60  # that one case includes
+FOAM_DEEPEST = 12
+FOAM_VALUE = 4096
+# A history of forces: 12 components and a time take 100 bytes a row, at most 500 MB with 2 million rows.
+HISTORY_ROWS = 5_000_000
+# Monitors of solvers: 2 million lines of 25 columns are 400 MB of doubles.
+MONITOR_NUMBERS = 50_000_000
+MONITOR_COLUMNS = 2_000
+MONITOR_FILES = 200  # that a folder of one run may hold
+
 # Scenes. Where a mesh stands is found by walking from each node to the root: nodes times depth. Exporters nest 10 deep.
 GLB_NODES = 10_000
 GLB_DEEPEST = 40

@@ -81,6 +81,18 @@ def words(*default: str) -> Any:
     return _option(default, "words", read)
 
 
+def text(default: str) -> Any:
+    """A dataclass field that takes one line of text; a whole number counts as its digits."""
+
+    def read(value: Any, _file: Path) -> str:
+        digits = isinstance(value, int) and not isinstance(value, bool)
+        if not (digits or isinstance(value, str)) or len(line := str(value)) > 200 or not line.isprintable():
+            raise InputError(shown(value), "a line of text, or a whole number")
+        return line
+
+    return _option(default, "text", read)
+
+
 def _option(default: Any, takes: str, read: Callable[[Any, Path], Any], unit: str = "") -> Any:
     return dataclasses.field(default=default, metadata={"takes": Takes(takes, read, {}), "unit": unit})
 

@@ -6,6 +6,7 @@ Works that formulas and data come from; reports print those that were used.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -58,9 +59,21 @@ class InputFile:
     sha256: Annotated[str, Within((("pattern", "^[0-9a-f]{64}$"),)), Means("of its bytes, hexadecimal")]
 
 
-def sha256_of(path: Path) -> str:
-    """Hexadecimal sha256 of a file's bytes."""
+def sha256_of(path: Path, read: Iterable[Path] = ()) -> str:
+    """Hexadecimal sha256 of a file's bytes; of a folder, of the paths in it and the sha256 of what was read there.
+
+    Parameters
+    ----------
+    path : Path
+    read : iterable of Path, optional
+        Files of the folder.
+    """
     digest = hashlib.sha256()
+    if path.is_dir():
+        for file in sorted(read):
+            place = file.relative_to(path) if file.is_relative_to(path) else file
+            digest.update(f"{place.as_posix()} {sha256_of(file)}\n".encode())
+        return digest.hexdigest()
     with path.open("rb") as stream:
         for block in iter(lambda: stream.read(1 << 20), b""):
             digest.update(block)
@@ -152,6 +165,15 @@ WORKS: dict[str, str] = {
     "soderstrom1983": "T. Soderstrom, P. Stoica, Instrumental Variable Methods for System Identification, Springer, 1983.",
     "chen2008": "J. Chen, Z. Chen, Extended Bayesian information criteria for model selection with large model spaces, "
     "Biometrika 95(3), 2008.",
+    "white1997": "K. P. White, An effective truncation heuristic for bias reduction in simulation output, Simulation 69(6), 1997; as "
+    "MSER-5 in K. P. White, M. J. Cobb, S. C. Spratt, A comparison of five steady-state truncation heuristics for simulation, Winter "
+    "Simulation Conference, 2000.",
+    "conway1963": "R. W. Conway, Some tactical problems in digital simulation, Management Science 10(1), 1963.",
+    "geyer1992": "C. J. Geyer, Practical Markov chain Monte Carlo, Statistical Science 7(4), 1992.",
+    "flegal2010": "J. M. Flegal, G. L. Jones, Batch means and spectral variance estimators in Markov chain Monte Carlo, Annals of "
+    "Statistics 38(2), 2010.",
+    "wolff2004": "U. Wolff, Monte Carlo errors with less errors, Computer Physics Communications 156, 2004.",
+    "kendall1954": "M. G. Kendall, Note on bias in the estimation of autocorrelation, Biometrika 41, 1954.",
     "lamb1932": "H. Lamb, Hydrodynamics, 6th edition, Cambridge, 1932, sections 114, 115 and 121 a.",
     "carlson1995": "B. C. Carlson, Numerical computation of real or complex elliptic integrals, Numerical Algorithms 10, "
     "1995.",

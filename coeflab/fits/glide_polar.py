@@ -27,9 +27,9 @@ from coeflab.fits.rows.sweeps import only_moving, without_blanks
 from coeflab.fits.statistics.linear_model import fit_linear, t_probability
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.scaling import Scaling
-from coeflab.law.symbols import LINEAR
+from coeflab.law.symbols import FORCES, LINEAR
 from coeflab.law.terms import Term, design
-from coeflab.law.transforms import wind_forces
+from coeflab.law.transforms import wind_errors, wind_forces
 from coeflab.tables.force_table import ForceTable
 
 
@@ -95,16 +95,16 @@ class Options:
     ----------
     angle_unit : {"deg", "rad"}
         ``deg`` lists the models per degree, as the paper prints them, beside those per radian; ``rad`` the latter only.
-    noise : {"square", "constant"}
+    noise : {"square", "constant", "stated"}
         How the error of a force goes with V, which gives the weights: ``square`` for an error that is a share of the
-        force, as in computations; ``constant`` for a balance. The intervals stand another noise, but are then wider
+        force, as in computations; ``constant`` for a balance; ``stated`` by the table's own standard errors. The intervals stand another noise, but are then wider
         than need be (``square``) or, with fewer rows that count, less sure (``constant``).
     printed : tuple of str
         Coefficients that somebody printed, such as ``K_L=9.5281 K_D=0.215``; the models then state their unit.
     """
 
     angle_unit: str = one_of("deg", "deg", "rad")
-    noise: str = one_of("square", "square", "constant")
+    noise: str = one_of("square", "square", "constant", "stated")
     printed: tuple[str, ...] = words()
 
 
@@ -125,8 +125,8 @@ class AngleUnit:
     statements: tuple[str, ...]
 
 
-def _forces(table: ForceTable) -> dict[str, tuple[Array, NDArray[np.bool_]]]:
-    """D, L and, where the table has it, M with the rows that are usable.
+def _forces(table: ForceTable) -> dict[str, tuple[Array, Array | None, NDArray[np.bool_]]]:
+    """D, L and, where the table has it, M with their standard errors, where it states them, and the rows that are usable.
 
     Raises
     ------
@@ -139,27 +139,37 @@ def _forces(table: ForceTable) -> dict[str, tuple[Array, NDArray[np.bool_]]]:
     alpha, beta = variable(table, "alpha", 1.0), variable(table, "beta", 1.0)
     zero = np.zeros(len(table))
     usable = table.usable["X"] & table.usable["Z"]
-    drag, _, lift = wind_forces(alpha, beta, table.forces["X"], table.forces.get("Y", zero), table.forces["Z"])
-    out = {"L": (lift, usable), "D": (drag, usable)}
+    flow = {c: table.forces.get(c, zero) for c in FORCES}
+    drag, _, lift = wind_forces(alpha, beta, *flow.values())
+    of_lift = of_drag = None
+    if all(c in table.errors or not np.any(flow[c]) for c in FORCES):
+        of_drag, _, of_lift = wind_errors(alpha, beta, *(table.errors.get(c, zero) for c in FORCES))
+    out = {"L": (lift, of_lift, usable), "D": (drag, of_drag, usable)}
     if "M" in table.forces:
-        out["M"] = (np.asarray(table.forces["M"]), np.array(table.usable["M"]))
+        out["M"] = (np.asarray(table.forces["M"]), table.errors.get("M"), np.array(table.usable["M"]))
     return out
 
 
 def _rows(tables: Sequence[ForceTable], noise: str) -> dict[str, tuple[Rows, Array]]:
     """L, D and M over V^2 against alpha in radians, and V."""
     found: dict[str, list[tuple[ForceTable, Array, NDArray[np.intp]]]] = {}
+    known: dict[str, list[Array]] = {}
     for t in tables:
-        for name, (values, usable) in _forces(t).items():
+        for name, (values, stated, usable) in _forces(t).items():
             found.setdefault(name, []).append((t, values, np.flatnonzero(usable)))
+            known.setdefault(name, []).extend([] if stated is None else [stated[usable]])
     out = {}
     for name, parts in found.items():
         squares = [sum((np.square(t.motion[m][i]) for m in LINEAR), np.zeros(len(i))) for t, _, i in parts]
         square = np.concatenate(squares)
+        if noise == "stated" and len(known[name]) < len(parts):
+            raise InputError(f"no standard errors of {name}", "columns se_X, se_Z and, with M, se_M", column="glide_polar.noise",
+                             advice="Or noise = square or constant.")  # fmt: skip
+        weights = {"square": None, "constant": 1.0 / square}
         rows = Rows(
             x={"alpha": np.concatenate([variable(t, "alpha", 1.0)[i] for t, _, i in parts])},
             y=np.concatenate([values[i] for _, values, i in parts]) / square,
-            errors=1.0 / square if noise == "constant" else None,
+            errors=np.concatenate(known[name]) / square if noise == "stated" else weights[noise],
             labels=tuple(t.labels[k] for t, _, i in parts for k in i),
             response=f"{name}/V^2",
             tables=tuple(t.name for t, _, _ in parts),
@@ -305,7 +315,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     chosen = parse_options(Options, without_blanks(options, "printed"), "glide_polar")
     printed = read_printed(chosen.printed, "glide_polar.printed")
     first = tables[0]
-    used, left_out = only_moving(tables, ("alpha",), scaling.length)
+    used, left_out = only_moving([t.at_one_density() for t in tables], ("alpha",), scaling.length)
     radians, degrees = [], []
     for name, (rows, speed) in _rows(used, chosen.noise).items():
         _check_angles(rows)

@@ -200,7 +200,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
         raise InputError(
             shown(wrong[0]), f"some of {', '.join(MOTIONS)}", column="linear_quadratic_damping.axes"
         )  # fmt: skip
-    first = tables[0]
+    first, tables = tables[0], [t.at_one_density() for t in tables]
     gathered = {a: r for a in dict.fromkeys(chosen.axes) if (r := _rows(tables, a, chosen)) is not None}
     if not gathered:
         raise InputError(

@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from coeflab.core.errors import InputError
 from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.types import Array, brief
-from coeflab.core.wording import finite
 from coeflab.fits.joint.model import joint_models
 from coeflab.fits.joint.rows import Component, about_one_point, differences, joint_name, joint_rows, measured, moving
 from coeflab.fits.results.fit_result import FitResult
@@ -224,10 +223,14 @@ def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
     }  # fmt: skip
     out = []
     for i, symbol in enumerate(model.symbols):
-        value = finite(float(model.fit.coefficients[i]))
+        value = model.recommended(i)
         u95, status, parts = model.worth(i)
         if value is None:
-            out.append(Coefficient(symbol, None, None, status, **shared))
+            out.append(
+                Coefficient(
+                    symbol, None, None, status, **(shared | {"estimator": model.one_size(i) or shared["estimator"]})
+                )
+            )
             continue
         at_rest = not np.any(model.terms[i].evaluate(model.x))
         own = {"n_points": 0, "estimator": f"from the equations alone, no motion of {symbol} in its rows"}
@@ -359,6 +362,7 @@ def _finished(model: FittedModel, first: Sequence[str], more: Sequence[str], idl
     absent = [t.symbol for t in idle if t.component == model.response]
     said = [
         *first,
+        *model.secants,
         *residuals_in_words(model, MORE_TERMS),
         *model.statements,
         *_with_secants(model),

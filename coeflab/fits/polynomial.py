@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.options import bounded, measured, one_of, parse_options, words
-from coeflab.core.wording import finite
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import Extrapolation, FittedModel, in_words, residuals_in_words
 from coeflab.fits.rows.regression import ANGLES, Area, collect, model_of
@@ -84,7 +83,9 @@ def _model(
     found = replace(model, response=named_response(name, area), fit=exact)
     freer = f"Try a higher degree, such as degree = {chosen.degree + (1 if chosen.parity == 'full' else 2)}"
     freer += "." if chosen.parity == "full" else ", or parity = full."
-    return replace(found, statements=(*said, *residuals_in_words(found, freer), *in_words(exact, symbols)))
+    return replace(
+        found, statements=(*said, *found.secants, *residuals_in_words(found, freer), *in_words(exact, symbols))
+    )
 
 
 def _coefficients(
@@ -103,7 +104,7 @@ def _coefficients(
         out.append(
             Coefficient(
                 symbol=model.symbols[i].removesuffix("'"),
-                value=finite(float(model.fit.coefficients[i])),
+                value=model.recommended(i),
                 u95=u95,
                 status=status,
                 body=model.body,
@@ -111,14 +112,17 @@ def _coefficients(
                 origin="fit",
                 table=model.table,
                 campaign=model.campaign,
-                estimator=model.form,
+                estimator=model.one_size(i) or model.form,
                 window=(low, high),
                 window_over=chosen.variable,
                 n_points=model.n_points,
                 citation=citation,
             )
         )
-    return out, model.covariance[np.ix_(keep, keep)]
+    covariance = model.covariance[np.ix_(keep, keep)]
+    void = [c.value is None for c in out]
+    covariance[void, :] = covariance[:, void] = np.nan
+    return out, covariance
 
 
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:

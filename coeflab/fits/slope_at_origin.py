@@ -20,13 +20,14 @@ import numpy as np
 from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
 from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Sweep
-from coeflab.fits.rows.sweeps import INCIDENCE, SweepRows, arm_shift, collect_points, sweep_rows
+from coeflab.fits.rows.sweeps import INCIDENCE, SweepRows, arm_shift, collect_points, one_size, sweep_rows
 from coeflab.fits.statistics import origin_slope, slopes
 from coeflab.fits.statistics.diagnostics import levels
 from coeflab.fits.statistics.many_rows import condensed_rows
 from coeflab.fits.statistics.origin_slope import OriginSlope
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import ANGULAR
 from coeflab.tables.force_table import ForceTable
 
 summary = "slopes at the origin without a choice of form or window, with a calibrated uncertainty"
@@ -96,6 +97,11 @@ def _sweep(
         at_rest = (float(curve[1, NODES // 2]), float(curve[2, NODES // 2]))
     middle = None if se is None or not np.any(se > 0.0) else float(np.median(se[se > 0.0]))
     value, u95, moved = slopes.determined(origin, target, middle, at_rest)
+    single = ""
+    if target != "1" and (origin.design is not None or variable in ANGULAR):
+        single = one_size(x, variable, rows.table.speed[rows.rows])
+    if single:
+        value, u95, moved = None, None, np.zeros_like(moved)
     by_row = np.zeros(len(x))
     by_row[origin.used] = moved
     random = None
@@ -127,7 +133,7 @@ def _sweep(
         value=value,
         u95=u95,
         random=random,
-        reason=origin.reason,
+        reason=single or origin.reason,
         notes=origin.notes,
         used=origin.used,
         wrong=np.flatnonzero(np.logical_not(origin.used) & np.isfinite(origin.without)),
@@ -151,6 +157,7 @@ def _sweep(
         campaign=rows.table.campaign,
         body=rows.table.body,
         offset=offset,
+        one_size=bool(single),
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces else "",
     )
     return made, origin
@@ -166,8 +173,9 @@ def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
     """U95 is split: random is what scatter of one reading does through the fixed mixture, the rest is the form."""
     value, u95, random = sweep.value, sweep.u95, sweep.random
     if value is None or u95 is None or random is None:
+        status = Status.NOT_DETERMINED if sweep.one_size else Status.TOO_FEW_POINTS
         return Coefficient(
-            sweep.symbol, None, None, Status.TOO_FEW_POINTS, sweep.body, origin="fit", table=sweep.table,
+            sweep.symbol, None, None, status, sweep.body, origin="fit", table=sweep.table,
             campaign=sweep.campaign, n_points=len(sweep.x), citation=citation, estimator=sweep.reason,
         )  # fmt: skip
     estimator = {"x": "calibrated slope", "x2": "calibrated slope of the part over x", "1": "calibrated curve at rest"}

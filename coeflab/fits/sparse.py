@@ -21,7 +21,6 @@ from coeflab.core.limits import REPLICATES
 from coeflab.core.machine import one_thread
 from coeflab.core.options import bounded, one_of, parse_options, words
 from coeflab.core.types import Array
-from coeflab.core.wording import finite
 from coeflab.fits.joint.rows import JointRows, joint_rows, measured, moving
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.results.fitted_model import FittedModel, every_third_point, residuals_in_words
@@ -38,6 +37,7 @@ citations = ("brunton2016", "kaptanoglu2022", "fasel2022", "chen2008", "mackinno
 
 RIDGE = 1e-8
 FEWEST_A_FOLD = 2
+UNWEIGHTED = "Rows weigh alike: their stated standard errors are noise of one run, not the error of the model."
 AFTER_SELECTION = "The terms were chosen on these rows, so U95 and the error of left-out rows are too small."
 WIDER = "Allow a larger library: a higher degree, or more variables."
 
@@ -119,8 +119,10 @@ def _model(data: JointRows, component: str, terms: tuple[Term, ...], chosen: Opt
     model = model_of(rows, fitted, symbols, f"sparse, {chosen.optimizer}", weighted=False, post_selection=True)
     said = (
         *data.statements,
+        *([UNWEIGHTED] if rows.errors is not None else []),
         *_alike(matrix, rows.y, component, terms, intercept),
         *describe(selection, _names(component, terms, selection)),
+        *model.secants,
         *model.statements,
         *residuals_in_words(model, WIDER),
         str(every_third_point(model)),
@@ -152,9 +154,10 @@ def _coefficients(model: FittedModel, citation: str) -> list[Coefficient]:
         u95, status, parts = model.worth(i)
         out.append(
             Coefficient(
-                symbol, finite(float(model.fit.coefficients[i])), u95, status, model.body, parts=parts,
+                symbol, model.recommended(i), u95, status, model.body, parts=parts,
                 origin="fit", table=model.table, campaign=model.campaign, n_points=model.n_points, citation=citation,
-                estimator=f"{model.form}, refit of the chosen terms {' + '.join(model.symbols)}; U95 ignores the choice",
+                estimator=model.one_size(i)
+                or f"{model.form}, refit of the chosen terms {' + '.join(model.symbols)}; U95 ignores the choice",
             )
         )  # fmt: skip
     return out
@@ -167,7 +170,7 @@ def _covariance(models: Sequence[FittedModel], coefficients: Sequence[Coefficien
         block = slice(at, at + len(m.symbols))
         out[block, block] = m.covariance
         at = block.stop
-    void = np.isnan(np.diag(out))
+    void = np.isnan(np.diag(out)) | [c.value is None for c in coefficients]
     out[void, :] = out[:, void] = np.nan
     return out
 

@@ -93,9 +93,9 @@ class Scaling(takes.Declaration):
     def unit(self, symbol: str, density: float, speed: float = 1.0) -> float: ...
 
     @overload
-    def unit(self, symbol: str, density: float, speed: Array) -> Array: ...
+    def unit(self, symbol: str, density: float | Array, speed: Array) -> Array: ...
 
-    def unit(self, symbol: str, density: float, speed: float | Array = 1.0) -> float | Array:
+    def unit(self, symbol: str, density: float | Array, speed: float | Array = 1.0) -> float | Array:
         """SI value of one unit of the prime system (SNAME 1950): 1/2 rho U^a L^b.
 
         Parameters
@@ -104,7 +104,7 @@ class Scaling(takes.Declaration):
             With or without prime: a derivative (``Yv``, ``Nrdot``), a force or moment (``Y``, ``N``), a velocity, rate or
             acceleration (``v``, ``r``, ``vdot``), a control angle (``dr``), the mass ``m``, a moment of inertia (``I``,
             ``Iz``). A product m x_G has the unit of the mass times the length.
-        density : float
+        density : float or (n,) array
             kg/m^3. Motions and angles do not depend on it.
         speed : float or (n,) array
             m/s. At the default of 1 m/s the unit of a derivative is 1/2 rho L^b, which stands before the velocities and the

@@ -60,6 +60,16 @@ def wind_forces(alpha: Array, beta: Array, x: Array, y: Array, z: Array) -> tupl
     return drag, side, lift
 
 
+def wind_errors(alpha: Array, beta: Array, x: Array, y: Array, z: Array) -> tuple[Array, Array, Array]:
+    """Standard errors of (D, S, L) from independent ones of X, Y and Z, each (n,)."""
+    none = np.zeros_like(x)
+    shares = zip(
+        *(wind_forces(alpha, beta, *e) for e in ((x, none, none), (none, y, none), (none, none, z))), strict=True
+    )
+    drag, side, lift = (np.sqrt(a**2 + b**2 + c**2) for a, b, c in shares)
+    return drag, side, lift
+
+
 def body_forces(alpha: Array, beta: Array, drag: Array, side: Array, lift: Array) -> tuple[Array, Array, Array]:
     """(X, Y, Z) in FRD from (D, S, L), each (n,)."""
     return along_body(np.cos(alpha), np.sin(alpha), np.cos(beta), np.sin(beta), drag, side, lift)

@@ -22,6 +22,7 @@ from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief, locked
 from coeflab.core.wording import Verbatim
 from coeflab.law.scaling import Conditions, Scaling
+from coeflab.tables.column_map import ColumnMap, Entry
 
 # Beyond these an input is a mistyped unit (per cent for a share, degrees for radians) or no measurement.
 LARGEST_RELATIVE = 0.5
@@ -80,6 +81,25 @@ class InputUncertainty(takes.Declaration):
 
 NAMES = tuple(f.name for f in fields(InputUncertainty))
 FILE = "campaign.toml"
+
+# Unit vectors, FRD, from the body to the side that the centre of its circle lies on.
+SIDES = {"starboard": (0.0, 1.0, 0.0), "port": (0.0, -1.0, 0.0), "above": (0.0, 0.0, -1.0), "below": (0.0, 0.0, 1.0)}
+SIGNED = "+R "  # before the side that a positive radius means
+CENTRES = (*SIDES, *(f"{SIGNED}{side}" for side in SIDES))
+HALVES = ("starboard", "port")
+HALF_WORDS = f"true or false, or which half: {' or '.join(map(shown, HALVES))}"
+
+
+def _half(value: Any, _file: Path) -> bool | str:
+    if isinstance(value, bool) or value in HALVES:
+        return Verbatim(value) if isinstance(value, str) else value
+    raise InputError(shown(value), HALF_WORDS)
+
+
+HalfModel = Annotated[
+    bool | str,
+    takes.Takes(HALF_WORDS, _half, {"anyOf": [{"type": "boolean"}, {"type": "string", "enum": list(HALVES)}]}),
+]
 
 
 @brief
@@ -141,7 +161,17 @@ class TableDeclaration(takes.Declaration):
     select : mapping of str to str
         Only rows with this text in that label column enter fits; ``reason`` says why.
     cells : str
-        Column with the cells of the grid that computed each row, or empty.
+        Column with the cells of the grid that computed each row, or empty. Of rows at one condition the finest grid enters fits.
+    reference_point : (3,) array or None
+        Of this table's moments and rates, m, FRD, from the datum; the campaign's unless given. Moments are moved to the campaign's.
+    arm_point : (3,) array or None
+        Point that U, angles, velocities and R are measured at, m, FRD, from the datum; the reference point unless given, and
+        required with a column R.
+    centre : str
+        Side of the body on which the centre of its circle lies, where a column R has the radius: starboard (r > 0), port,
+        above (q > 0), below; or "+R starboard" and the like, where R has a sign.
+    half_model : bool or str
+        As campaign.half_model, which it overrides.
     source_sha256 : str
         Of the file that the table was made from; for people.
     """
@@ -153,10 +183,17 @@ class TableDeclaration(takes.Declaration):
     ignore: takes.Texts = ()
     select: Mapping[str, Any] = field(default_factory=dict)
     cells: takes.Words = ""
+    reference_point: takes.Point | None = None
+    arm_point: takes.Point | None = None
+    centre: Annotated[str, takes.one_of(*CENTRES)] = ""
+    half_model: HalfModel | None = None
     source_sha256: takes.Anything = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "select", MappingProxyType(dict(self.select)))
+        for name in ("reference_point", "arm_point"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, locked(getattr(self, name)))
 
     def check(self) -> None:
         """The reason of the selection is a text."""
@@ -188,8 +225,8 @@ class CampaignHead(takes.Declaration):
         Configuration of a body.toml that the tables are about.
     importer : str
         Format of the tables; ``coeflab formats`` lists them.
-    half_model : bool
-        Whether the tables are of one half of a symmetric model.
+    half_model : bool or str
+        Whether the tables are of one half of a symmetric model, and which: true, false, starboard or port.
     appendages, reynolds, notes, configuration, date : any
         For people.
     """
@@ -198,7 +235,7 @@ class CampaignHead(takes.Declaration):
     title: takes.Text
     body: takes.Text
     importer: takes.Words = "csv"
-    half_model: takes.Flag = False
+    half_model: HalfModel = False
     appendages: takes.Anything = None
     reynolds: takes.Anything = None
     notes: takes.Anything = None
@@ -277,6 +314,10 @@ class CampaignFile(takes.Declaration):
         Mass properties of the model, where tables contain its inertia.
     uncertainty : table
         95 % half-widths of errors that all points share; absent where not assessed, which is not zero.
+    importer : table
+        Options of the importer, such as sheet of excel; ``coeflab formats`` lists them.
+    columns : table
+        What each column of the files is, by its name there: "Y [N]", "-beta [deg]", label, ignore; docs/data_in.md.
     planar_motion : table
         Filters and restoring moments of oscillating runs.
     table : array of tables
@@ -290,6 +331,8 @@ class CampaignFile(takes.Declaration):
     source: TableSource
     inertia: Annotated[TowedInertia | None, takes.OrEmpty()] = None
     uncertainty: Annotated[InputUncertainty | None, takes.OrEmpty()] = None
+    importer: Annotated[dict[str, Any], takes.TABLE] = field(default_factory=dict)
+    columns: dict[str, Entry] = field(default_factory=dict)
     planar_motion: PlanarMotionKeys | None = None
     table: tuple[TableDeclaration, ...] = ()
 
@@ -304,7 +347,10 @@ class CampaignFile(takes.Declaration):
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Campaign:
-    """A folder of tables from one test or one set of computations."""
+    """A folder of tables from one test or one set of computations.
+
+    `lines` has the line of every ``[[table]]`` in its file, `options` are those of the importer.
+    """
 
     path: Path
     name: str
@@ -317,16 +363,26 @@ class Campaign:
     reference_point: NDArray[np.float64]
     scaling: Scaling
     conditions: Conditions
-    half_model: bool
+    half_model: bool | str
     inertia: TowedInertia | None
     source: Source
     tables: tuple[TableDeclaration, ...]
     uncertainty: InputUncertainty | None = None
+    columns: Mapping[str, ColumnMap] = field(default_factory=dict)
+    options: Mapping[str, Any] = field(default_factory=dict)
+    lines: tuple[int | None, ...] = ()
     planar_motion: PlanarMotionKeys | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "signs", MappingProxyType(dict(self.signs)))
+        for name in ("signs", "columns", "options"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
+
+    def fail(self, table: TableDeclaration, key: str, found: str, expected: str, advice: str = "") -> InputError:
+        """An error about a key of one ``[[table]]``, to be raised by the caller."""
+        at = next(i for i, own in enumerate(self.tables) if own is table)
+        line = self.lines[at] if self.lines else None
+        return InputError(found, expected, file=self.path, line=line, key=f"table[{at}].{key}", advice=advice)
 
 
 def read_campaign(path: Path) -> Campaign:
@@ -342,7 +398,8 @@ def read_campaign(path: Path) -> Campaign:
     InputError
         Everything missing, unknown or inconsistent, by file, line and key.
     """
-    file = takes.declared(CampaignFile, read_toml(path))
+    toml = read_toml(path)
+    file = takes.declared(CampaignFile, toml)
     head, axes, at, source = file.campaign, file.axes, file.conditions, file.source
     signs = {"alpha": axes.alpha, "beta": axes.beta}
     return Campaign(
@@ -362,5 +419,8 @@ def read_campaign(path: Path) -> Campaign:
         source=Source(*(getattr(source, f.name) for f in fields(Source))),
         tables=file.table,
         uncertainty=file.uncertainty,
+        columns=file.columns,
+        options=file.importer,
+        lines=tuple(toml.line(("table", i)) for i in range(len(file.table))),
         planar_motion=file.planar_motion,
     )

@@ -23,6 +23,13 @@ if TYPE_CHECKING:
 
 AT_REST = float(np.sin(np.radians(0.05)))
 ROUNDING = 1e-12
+COARSER = "coarser grid"
+SAME_SIZE = 0.02  # of the largest |x|: one radius, or one setting of a sweep, as measured
+
+
+def _range(values: Array) -> str:
+    low, high = (f"{float(f(values)):.5g}" for f in (np.min, np.max))
+    return low if low == high else f"{low} to {high}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +101,11 @@ class ForceTable:
         Line of every row in its file; empty where there is none.
     measured_about : (3,) array or None
         Where the file's moments are about, once they have been moved.
+    density : (n,) array or None
+        Of the water of every row, kg/m^3; None where that of the conditions holds for all.
+    arm_point : (3,) array or None
+        Point of the body that runs on the circle of an arm with the speed U, m, FRD, from the datum; None where the file's
+        motions are at the point of its moments.
     """
 
     name: str
@@ -119,17 +131,18 @@ class ForceTable:
     uncertainty: InputUncertainty | None = None
     lines: tuple[int, ...] = ()
     measured_about: Array | None = None
+    density: Array | None = None
+    arm_point: Array | None = None
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors"):
             object.__setattr__(self, name, locked_columns(getattr(self, name)))
         object.__setattr__(self, "usable", locked_columns(self.usable, bool))
         object.__setattr__(self, "speed", locked(self.speed))
-        if self.cells is not None:
-            object.__setattr__(self, "cells", locked(self.cells))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
-        if self.measured_about is not None:
-            object.__setattr__(self, "measured_about", locked(self.measured_about))
+        for name in ("cells", "measured_about", "density", "arm_point"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, locked(getattr(self, name)))
 
     def __len__(self) -> int:
         return len(self.speed)
@@ -141,6 +154,67 @@ class ForceTable:
         length = self.scaling.length
         return tuple(m for m in names if np.any(np.abs(self.primed_motion(m, length)) > AT_REST))
 
+    @property
+    def water_density(self) -> float | Array:
+        """Of each row where the table has it, (n,), else of the conditions; kg/m^3."""
+        return self.conditions.density if self.density is None else self.density
+
+    @property
+    def run_at(self) -> str:
+        """Speed and density of the rows in words, a range where they differ."""
+        speed, density = (_range(np.atleast_1d(v)) for v in (self.speed, self.water_density))
+        return f"speed {speed} m/s, density {density} kg/m^3"
+
+    def reynolds(self, length: float) -> Array | None:
+        """U L / nu of every row, (n,); the one that the source states where the viscosity is not known, None without either."""
+        at = self.conditions
+        if at.viscosity is None:
+            return None if at.reynolds is None else np.full(len(self), at.reynolds)
+        return np.asarray(self.speed * length / at.viscosity)
+
+    def at_one_density(self) -> ForceTable:
+        """The table with forces in proportion to those that water of the conditions' density would exert."""
+        if self.density is None:
+            return self
+        ratio = self.conditions.density / self.density
+        forces, errors = ({c: v * ratio for c, v in x.items()} for x in (self.forces, self.errors))
+        return replace(self, forces=forces, errors=errors, density=None)
+
+    @property
+    def setting(self) -> NDArray[np.intp]:
+        """A number for every row, (n,), that rows at one setting share: motions, controls, speed and density to 1e-9."""
+        own = [*(self.motion[m] for m in MOTIONS), *self.controls.values(), self.speed]
+        settings = np.column_stack([*own, *([] if self.density is None else [self.density])])
+        scale = np.maximum(np.max(np.abs(settings), axis=0, initial=0.0), 1e-300)
+        return np.asarray(np.unique(np.round(settings / scale, 9), axis=0, return_inverse=True)[1]).ravel()
+
+    def on_finest_grids(self) -> ForceTable:
+        """Of usable rows at one setting those of the finest grid stay in use; coarser ones are left to the grid study."""
+        if self.cells is None:
+            return self
+        setting, counts = self.setting, np.where(np.isfinite(self.cells), self.cells, np.inf)
+        usable, coarse = {}, {}
+        for c, mask in self.usable.items():
+            finest = np.zeros(len(self))
+            counted = mask & np.isfinite(counts)
+            np.maximum.at(finest, setting[counted], counts[counted])
+            coarse[c] = mask & (counts < finest[setting])
+            usable[c] = mask & ~coarse[c]
+        left = np.logical_or.reduce([*usable.values(), np.zeros(len(self), dtype=bool)])
+        out = np.logical_or.reduce([*coarse.values(), np.zeros(len(self), dtype=bool)])
+        if not np.any(out):
+            return self
+        found = [
+            Exclusion(int(row), self.lines[row] if self.lines else 0, component, COARSER)
+            for row in np.flatnonzero(out)
+            for component in ([c for c in coarse if coarse[c][row]] if left[row] else [""])
+        ]
+        used = self.cells[left & np.isfinite(self.cells)]
+        note = f"{int(np.sum(out))} rows of coarser grids left to the grid study"
+        if np.ptp(used) > 0.0:
+            note += f"; grids in use have {int(used.min())} to {int(used.max())} cells"
+        return replace(self, usable=usable, exclusions=(*self.exclusions, *found), notes=(*self.notes, note))
+
     def primed_motion(self, variable: str, length: float) -> Array:
         """v/U, r L/U or a control angle, shape (n,); what rounding leaves of a zero is zero."""
         if variable in self.controls:
@@ -151,7 +225,7 @@ class ForceTable:
 
     def primed_force(self, component: str, length: float, values: Array | None = None) -> Array:
         """Y' = Y / (1/2 rho U^2 L^2), moments with L^3, shape (n,)."""
-        unit = replace(self.scaling, length=length).unit(component, self.conditions.density, self.speed)
+        unit = replace(self.scaling, length=length).unit(component, self.water_density, self.speed)
         return np.asarray((self.forces[component] if values is None else values) / unit)
 
     def frame(self) -> pd.DataFrame:
@@ -176,12 +250,15 @@ class ForceTable:
         nu = np.column_stack([self.motion[m] for m in MOTIONS]) @ velocity_transfer(shift).T
         transfer = force_transfer(shift)
         forces, errors, usable = dict(self.forces), dict(self.errors), dict(self.usable)
-        exclusions = list(self.exclusions)
+        exclusions, notes = list(self.exclusions), [f"moments moved by ({', '.join(f'{s:+.6g}' for s in shift)}) m"]
         for i, component in enumerate(COMPONENTS):
             needed = [(c, transfer[i, j]) for j, c in enumerate(COMPONENTS) if transfer[i, j] != 0.0]
             if len(needed) == 1 or component not in forces:
                 continue
-            if any(c not in forces for c, _ in needed):
+            if lacking := [c for c, _ in needed if c not in forces]:
+                notes.append(
+                    f"{component} left out: to move it needs {' and '.join(lacking)}, which the table does not have"
+                )
                 del forces[component], usable[component]
                 errors.pop(component, None)
                 exclusions = [e for e in exclusions if e.component != component]
@@ -202,7 +279,7 @@ class ForceTable:
             exclusions=tuple(exclusions),
             reference_point=np.asarray(point, dtype=float),
             measured_about=self.reference_point if self.measured_about is None else self.measured_about,
-            notes=(*self.notes, f"moments moved by ({', '.join(f'{s:+.6g}' for s in shift)}) m"),
+            notes=(*self.notes, *notes),
         )
 
     def _passed_on(self, component: str, needed: list[str]) -> list[Exclusion]:

@@ -5,7 +5,7 @@ Columns of a table in SI but in its own axes: what every importer makes of its f
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.axes import angle_sign
-from coeflab.core.errors import InputError, shown
+from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_force
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
-from coeflab.tables.campaign import Campaign, TableDeclaration, TowedInertia
+from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, TableDeclaration, TowedInertia
 from coeflab.tables.force_table import Exclusion, ForceTable
 
 
@@ -50,6 +50,12 @@ class Columns:
         For every row the plain names of columns whose digits are doubtful in the source.
     row_labels : tuple of str
         One short name per row.
+    files : tuple of Path
+        What was read, where ``file`` is a folder.
+    radius : (n,) array or None
+        Column R, from the arm point to the centre of the circle, m; in the place of p, q and r.
+    density : (n,) array or None
+        Of the water of every row, kg/m^3; by default the campaign's.
     """
 
     file: Path
@@ -65,6 +71,9 @@ class Columns:
     labels: Mapping[str, list[str]]
     doubtful: tuple[frozenset[str], ...]
     row_labels: tuple[str, ...] = field(default=())
+    files: tuple[Path, ...] = ()
+    radius: Array | None = None
+    density: Array | None = None
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -93,19 +102,27 @@ class Columns:
         Raises
         ------
         InputError
-            By line and column.
+            By line and column; of every column the first cell.
         """
+        if complaints := list(self._complaints()):
+            raise together(complaints)
+
+    def _complaints(self) -> Iterator[InputError]:
         if not self.forces:
-            raise self.fail("no force column", "at least one of X Y Z K M N")
+            yield self.fail("no force column", "at least one of X Y Z K M N")
         if (row := _first(~(self.speed > 0.0))) is not None:
             found = "a blank cell" if np.isnan(self.speed[row]) else f"a speed of {self.speed[row]:g} m/s"
-            raise self.fail(found, "a speed above zero", row=row, name="U")
+            yield self.fail(found, "a speed above zero", row=row, name="U")
+        if self.density is not None and (row := _first(~(self.density > 0.0))) is not None:
+            found = "a blank cell" if np.isnan(self.density[row]) else f"a density of {self.density[row]:g} kg/m^3"
+            yield self.fail(found, "a density above zero", row=row, name="density")
         for name, values in self.settings.items():
             if (row := _first(np.isnan(values))) is not None:
-                raise self.fail("a blank cell", "a number", row=row, name=name)
+                yield self.fail("a blank cell", "a number", row=row, name=name)
+                continue
             if name in self.velocity or (row := _first(np.abs(values) > np.pi)) is None:
                 continue
-            raise self.fail(
+            yield self.fail(
                 f"an angle of {values[row]:.4g} rad",
                 "an angle within half a turn",
                 row=row,
@@ -114,11 +131,12 @@ class Columns:
             )
         for name, values in self.errors.items():
             if name not in self.forces:
-                raise self.fail(f"se_{name} without {name}", f"a column {name}", name=f"se_{name}")
+                yield self.fail(f"se_{name} without {name}", f"a column {name}", name=f"se_{name}")
+                continue
             unused = np.isnan(self.forces[name]) & np.isnan(values)
             if (row := _first(~(values > 0.0) & ~unused)) is not None:
                 found = "a blank cell" if np.isnan(values[row]) else f"{values[row]:g}"
-                raise self.fail(found, "a standard error above zero", row=row, name=f"se_{name}")
+                yield self.fail(found, "a standard error above zero", row=row, name=f"se_{name}")
 
 
 def _first(where: NDArray[np.bool_]) -> int | None:
@@ -133,32 +151,44 @@ TAKEN_OUT = "inertia of the model taken out"
 def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -> ForceTable:
     """Turn columns into the fluid's force on the body in FRD about the campaign's reference point.
 
+    Moments that the table has about a point of its own are moved; one whose move needs a force that the table lacks is left
+    out, which the notes say.
+
     Raises
     ------
     InputError
         A cell that cannot be, or something that campaign.toml leaves open or contradicts.
     """
     columns.check()
-    digest = sha256_of(columns.file)
+    digest = sha256_of(columns.file, columns.files)
     if table.sha256 and table.sha256 != digest:
         raise InputError(
             f"sha256 {digest[:12]}...", f"{table.sha256[:12]}... as campaign.toml declares", file=columns.file,
             advice="The table was changed after it was entered; restore it or update table.sha256.",
         )  # fmt: skip
-    motion = _motion(columns, campaign)
+    if complaints := list(_undeclared(columns, campaign, table)):
+        raise together(complaints)
+    point = campaign.reference_point if table.reference_point is None else table.reference_point
+    motion = _motion(columns, campaign, table, point)
     notes = [] if campaign.axes.name == "FRD" else [f"axes turned from {campaign.axes.name} to FRD"]
     sources = _sources(campaign)
     usable, exclusions = _exclusions(columns, campaign, table, {c: s for c, (s, _) in sources.items()})
     forces = {c: sign * columns.forces[s] for c, (s, sign) in sources.items() if s in columns.forces}
     errors = {c: columns.errors[s] for c, (s, _) in sources.items() if s in columns.errors}
-    if campaign.half_model:
+    if columns.radius is not None:
+        notes.append(f"rates from U and R, centre of the circle: {table.centre}")
+    if table.arm_point is not None and np.any(table.arm_point != point):
+        notes.append(f"U and velocities are those of {_place(table.arm_point)}, moved from there")
+    half = campaign.half_model if table.half_model is None else table.half_model
+    if half:
         _require_symmetry(columns, forces, motion)
         forces, errors = ({c: 2.0 * v for c, v in x.items()} for x in (forces, errors))
-        notes.append("half model: X, Z, M doubled")
-    if any(np.any(motion[m] != 0.0) for m in ANGULAR) and (inertia := _contained(campaign, table)):
-        forces = _without_inertia(inertia, campaign, forces, motion)
-        notes.append(f"{TAKEN_OUT} (m = {inertia.mass:g} kg)")
-    return ForceTable(
+        notes.append(f"half model{f' ({half})' if isinstance(half, str) else ''}: X, Z, M doubled")
+    turns = any(np.any(motion[m] != 0.0) for m in ANGULAR)
+    if turns and table.contains_inertia and campaign.inertia is not None:
+        forces = _without_inertia(campaign.inertia, point, forces, motion)
+        notes.append(f"{TAKEN_OUT} (m = {campaign.inertia.mass:g} kg)")
+    made = ForceTable(
         name=f"{campaign.name}/{table.file}",
         campaign=campaign.name,
         title=campaign.title,
@@ -171,7 +201,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         usable=usable,
         exclusions=exclusions,
         labels=columns.row_labels or tuple(f"line {line}" for line in columns.lines),
-        reference_point=campaign.reference_point,
+        reference_point=point,
         datum=campaign.datum,
         conditions=campaign.conditions,
         scaling=campaign.scaling,
@@ -182,11 +212,56 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         ),
         notes=tuple(notes),
         lines=columns.lines,
+        density=columns.density,
+        arm_point=table.arm_point,
     )
+    return made.about(campaign.reference_point)
 
 
-def _motion(columns: Columns, campaign: Campaign) -> dict[str, Array]:
-    """Velocities in FRD."""
+def _place(point: Array) -> str:
+    return f"({', '.join(f'{x:.6g}' for x in point)}) m"
+
+
+def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -> Iterator[InputError]:
+    """Everything that campaign.toml leaves open or contradicts about a table on an arm."""
+    rates = [c for c in ANGULAR if c in columns.velocity]
+    if columns.radius is not None:
+        if rates:
+            yield columns.fail(
+                f"R and {', '.join(rates)}",
+                "one or the other",
+                name="R",
+                advice="The rate is U over R; leave one column out.",
+            )
+        if not table.centre:
+            yield campaign.fail(
+                table, "centre", "no declaration", f"one of {', '.join(map(shown, CENTRES))}",
+                "The side of the body on which the centre of its circle lies: on the starboard side r > 0.",
+            )  # fmt: skip
+        if table.arm_point is None:
+            yield campaign.fail(
+                table, "arm_point", "no declaration", "the point [x, y, z] that R and U are measured to, FRD, from the datum",
+                f"Often the reference point, {[float(x) for x in campaign.reference_point]}; a point x forward of it sees "
+                "v = x r more.",
+            )  # fmt: skip
+    elif table.centre:
+        yield campaign.fail(table, "centre", "centre without a column R", "a column R [m], or no centre")
+    turning = columns.radius is not None or any(np.any(columns.velocity[c] != 0.0) for c in rates)
+    if turning and table.contains_inertia is None:
+        yield campaign.fail(
+            table, "contains_inertia", "no declaration", "contains_inertia = true or false",
+            "A balance on a rotating arm carries the model's inertia, a solver in a rotating frame does not; "
+            "for a slender body the sign of Yr' depends on it.",
+        )  # fmt: skip
+    if turning and table.contains_inertia and campaign.inertia is None:
+        yield campaign.fail(
+            table, "contains_inertia", "contains_inertia = true without mass",
+            "[inertia] with mass, centre_of_gravity, inertia",
+        )  # fmt: skip
+
+
+def _motion(columns: Columns, campaign: Campaign, table: TableDeclaration, point: Array) -> dict[str, Array]:
+    """Velocities in FRD at a point."""
     linear_columns = [c for c in LINEAR if c in columns.velocity]
     if columns.angles and linear_columns:
         raise columns.fail(
@@ -210,8 +285,35 @@ def _motion(columns: Columns, campaign: Campaign) -> dict[str, Array]:
                 row = int(np.flatnonzero(rest < 0.0)[0])
                 raise columns.fail("a cross-flow faster than U", "v and w within U", row=row)
             linear[:, 0] = np.sqrt(rest)
-    angular = np.column_stack([columns.velocity.get(c, zero) for c in ANGULAR]) @ campaign.axes.rotation.T
+    if columns.radius is None:
+        angular = np.column_stack([columns.velocity.get(c, zero) for c in ANGULAR]) @ campaign.axes.rotation.T
+    else:
+        angular = _on_circle(columns, table.centre, linear)
+    if table.arm_point is not None:
+        linear = linear + np.cross(angular, point - table.arm_point)
     return {**dict(zip(LINEAR, linear.T, strict=True)), **dict(zip(ANGULAR, angular.T, strict=True))}
+
+
+def _on_circle(columns: Columns, centre: str, linear: Array) -> Array:
+    """Rates p q r, (n, 3), of a body that runs on a circle, with the axis that ``centre`` names in its plane.
+
+    The centre lies R away from the arm point across its velocity V, towards a side c. Omega x (point - centre) = V gives
+    omega = |V|/R and the axis V x c: r = U/R for a centre to starboard, and p = -tan(alpha) r for a pitched body.
+    """
+    radius = np.asarray(columns.radius)
+    side, signed = centre.removeprefix(SIGNED), centre.startswith(SIGNED)
+    if (row := _first(~(np.abs(radius) > 0.0 if signed else radius > 0.0))) is not None:
+        found = "a blank cell" if np.isnan(radius[row]) else f"a radius of {radius[row]:g} m"
+        raise columns.fail(
+            found, "a radius that is not zero" if signed else "a radius above zero", row=row, name="R",
+            advice="A run without rotation goes to a table of its own."
+            + ("" if signed else f' Where the sign of R tells the sides apart, write centre = "{SIGNED}{side}".'),
+        )  # fmt: skip
+    axis = np.cross(linear, SIDES[side])
+    size, speed = np.linalg.norm(axis, axis=1), np.linalg.norm(linear, axis=1)
+    if (row := _first(size <= 1e-9 * speed)) is not None:
+        raise columns.fail(f"a motion straight to {side}", "a motion across the arm", row=row, name="R")
+    return np.asarray(axis * (speed / (radius * size))[:, None] + 0.0)
 
 
 def surge_column(campaign: Campaign) -> str:
@@ -249,7 +351,7 @@ def _exclusions(
     """Which cells fits may use, and why not the others. ``frd`` maps FRD components to the table's columns."""
     have = {c: column for c, column in frd.items() if column in columns.forces}
     usable = {c: np.ones(len(columns), dtype=bool) for c in have}
-    settings = {*columns.settings, "U"}
+    settings = {*columns.settings, "U", "R", "density"}
     out: list[Exclusion] = []
     for label in table.selected:
         if label not in columns.labels:
@@ -277,29 +379,11 @@ def _exclusions(
     return usable, tuple(out)
 
 
-def _contained(campaign: Campaign, table: TableDeclaration) -> TowedInertia | None:
-    """The inertia that the forces of a rotating test contain, if they do."""
-    if table.contains_inertia is None:
-        raise InputError(
-            "no declaration", "contains_inertia = true or false", file=campaign.path, column="table.contains_inertia",
-            advice="A balance on a rotating arm carries the model's inertia, a solver in a rotating frame does not; "
-            "for a slender body the sign of Yr' depends on it.",
-        )  # fmt: skip
-    if table.contains_inertia and campaign.inertia is None:
-        raise InputError(
-            "contains_inertia = true without mass",
-            "[inertia] with mass, centre_of_gravity, inertia",
-            file=campaign.path,
-            column="inertia",
-        )
-    return campaign.inertia if table.contains_inertia else None
-
-
 def _without_inertia(
-    inertia: TowedInertia, campaign: Campaign, forces: Mapping[str, Array], motion: Mapping[str, Array]
+    inertia: TowedInertia, point: Array, forces: Mapping[str, Array], motion: Mapping[str, Array]
 ) -> dict[str, Array]:
     """Add what holds the model on its circle, so that the fluid's force remains."""
-    centre = inertia.centre_of_gravity - campaign.reference_point
+    centre = inertia.centre_of_gravity - point
     tensor = np.diag(inertia.inertia) + inertia.mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
     nu = np.column_stack([motion[m] for m in MOTIONS])
     held = rigid_body_force(inertia.mass, centre, tensor, nu)

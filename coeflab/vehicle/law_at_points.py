@@ -161,7 +161,7 @@ def measured_tables(
         names = [m for m in (*MOTIONS[1:], *CONTROLS) if m in MOTIONS or m in t.controls]
         moving = np.array([np.abs(t.primed_motion(m, length)) > AT_REST for m in names])
         forces = []
-        scale = density / t.conditions.density
+        scale = density / t.water_density
         tied = any(f.tied is not None and f.campaign == t.campaign for f in fits)
         for c in COMPONENTS:
             variables = spoken.get((c, t.name))

@@ -29,8 +29,8 @@ from coeflab.report.formats import REPORTERS
 from coeflab.study.checks import CHECKS
 from coeflab.study.study import Plan, PlannedJoint, Study
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.importers import read_tables
 from coeflab.tables.planar_motion import PlanarMotionTable
+from coeflab.tables.reading import read_tables
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.parameter_file import refusals_told
 from coeflab.vehicle.reference import compare, compare_set, read_references

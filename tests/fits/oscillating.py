@@ -15,8 +15,9 @@ import numpy as np
 from coeflab.core.files import shipped
 from coeflab.fits.planar_motion import fit
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.tables.importers import PlannedTable, read_tables
+from coeflab.tables.importers import PlannedTable
 from coeflab.tables.planar_motion import DISPLACEMENTS, PlanarMotionRun, PlanarMotionTable, TimeSeries
+from coeflab.tables.reading import read_tables
 
 
 @cache

@@ -22,7 +22,8 @@ from coeflab.fits.uncertainty.grid_convergence import Convergence, gravest, grid
 from coeflab.study.validation import validation
 from coeflab.tables.campaign import InputUncertainty, read_campaign
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.importers import PlannedTable, declared, with_declarations
+from coeflab.tables.importers import PlannedTable
+from coeflab.tables.reading import declared, with_declarations
 from coeflab.vehicle.derived import centre_of_pressure, stability
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.workbench import read_tables

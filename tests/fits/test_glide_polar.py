@@ -271,3 +271,21 @@ def test_a_table_without_angles_is_refused() -> None:
 def test_fewer_rows_than_terms_are_refused() -> None:
     with pytest.raises(InputError, match="2 usable rows for 2 terms of L/V"):
         fitted(rows(table("01"), np.arange(27) < 2))
+
+
+def test_stated_errors_weigh_the_polar() -> None:
+    t = table("01")
+    lift, drag, moment = exact(t)
+    wild = np.arange(len(t)) == 2
+    off = with_polar(t, lift + 20.0 * wild, drag + 20.0 * wild, moment + 20.0 * wild)
+    errors = {c: np.where(wild, 100.0, 0.01) for c in ("X", "Z", "M")}
+    stated = fitted(replace(off, errors=errors), noise="stated")
+    for force in "LDM":
+        names = {
+            s.partition(" [")[0]: v
+            for s, v in zip(law(stated, force, "deg").symbols, law(stated, force, "deg").fit.coefficients)
+        }
+        for name, value in names.items():
+            assert value == pytest.approx(printed("01")[name], rel=1e-4)
+    with pytest.raises(InputError, match="no standard errors of L"):
+        fitted(t, noise="stated")

@@ -361,3 +361,72 @@ def test_an_angle_filter_names_what_it_leaves_out() -> None:
     sweep = slope_at_origin.fit([table], LENGTH, {"largest_angle": 9.0}).sweep("Yv")
     assert len(sweep.x) == 9
     assert {p.reason for p in sweep.left_out} == {"beyond largest_angle"}
+
+
+def turning(rates: list[float], speeds: list[float]) -> ForceTable:
+    """A table of an arm: forces linear and quadratic in the rate, at rates of so many r' and speeds."""
+    straight = small_table([0.0] * len(rates))
+    speed, primes = np.array(speeds), np.array(rates)
+    q = 0.5 * straight.conditions.density * speed**2 * LENGTH.length**2
+    forces = {
+        "X": q * (-0.003 - 0.002 * primes**2),
+        "Y": q * (0.004 * primes + 0.01 * primes * np.abs(primes)),
+        "N": q * LENGTH.length * (-0.005 * primes - 0.004 * primes * np.abs(primes)),
+    }
+    still = dict.fromkeys("vwpq", np.zeros(len(rates)))
+    return replace(
+        straight,
+        motion={**still, "u": speed, "r": primes * speed / LENGTH.length},
+        speed=speed,
+        forces=forces,
+        usable={c: np.ones(len(rates), dtype=bool) for c in forces},
+        exclusions=(),
+    )
+
+
+@pytest.mark.parametrize("signs", [[1.0], [1.0, -1.0], [1.0, -1.0, 0.0]], ids=["one side", "both sides", "with rest"])
+def test_one_radius_gives_no_slope_whatever_the_speeds_and_sides(signs: list[float]) -> None:
+    """Y' at r' = -a, 0, a is one number of the odd part: a line, r'|r'| and any mixture go through it."""
+    rates = [0.3 * s for s in signs for _ in range(3)]
+    table = turning(rates, [1.0, 2.0, 3.0] * len(signs))
+    found = FITS.load("slope_at_origin").fit([table], LENGTH, {})
+    for symbol in ("Yr", "Nr", "Xrr"):
+        c = found.coefficients[symbol]
+        assert (c.value, c.u95, c.status) == (None, None, Status.NOT_DETERMINED)
+        where = "speeds 1 to 3 m/s, both signs" if len(signs) > 1 else "speeds 1 to 3 m/s"
+        assert c.estimator.startswith(f"one |r'|, 0.3 ({where}): ")
+        assert c.estimator.endswith("measure |r'| near 0.1 and 0.2 (L/R: other radii, not speeds)")
+    lines = [e for e in found.sweep("Yr").forms if e.family.name == LINE]
+    assert [round(e.value, 9) for e in lines] == ([] if len(signs) == 1 else [0.004 + 0.01 * 0.3])
+    tied = FITS.load("tied_law").fit([table], LENGTH, {})
+    assert not any(c.symbol.startswith(("Yr", "Nr")) for c in tied.coefficients.coefficients)
+
+
+def test_two_radii_give_the_slope() -> None:
+    both = [0.3, 0.302, 0.298, -0.3, 0.15, -0.15, 0.0]
+    found = FITS.load("slope_at_origin").fit([turning(both, [2.0] * len(both))], LENGTH, {})
+    c = found.coefficients["Yr"]
+    assert c.value is not None
+    assert c.u95 is not None
+    assert abs(c.value - 0.004) < c.u95
+    scatter = FITS.load("slope_at_origin").fit([turning(both[:4], [2.0] * 4)], LENGTH, {})
+    assert scatter.coefficients["Yr"].status is Status.NOT_DETERMINED
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [("manoeuvring_model", {}), ("polynomial", {"variable": "r", "degree": 1}), ("sparse", {"folds": 2})],
+)
+def test_a_fixed_form_over_one_radius_shows_a_secant_and_recommends_nothing(
+    name: str, options: dict[str, object]
+) -> None:
+    arm = replace(turning([0.3, -0.3] * 3, [1.0, 1.0, 2.0, 2.0, 3.0, 3.0]), name="tow/arm.csv")
+    drift = small_table([-12.0, -10.0, -8.0, -6.0, -4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0])
+    found = FITS.load(name).fit([drift, arm], LENGTH, options)
+    c = found.coefficients["Yr"]
+    assert (c.value, c.u95, c.status) == (None, None, Status.NOT_DETERMINED)
+    assert "all rows that turn have one |r'|, 0.3" in c.estimator
+    model = next(m for m in found.models if m.response.removesuffix("'") == "Y")
+    shown = next(s for s in model.symbols if s.startswith("Yr"))
+    assert model.named(shown)[0] == pytest.approx(0.004 + 0.01 * 0.3, rel=1e-3)
+    assert sum("(a secant) and is not determined" in s for s in model.statements) == 1

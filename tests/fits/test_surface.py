@@ -18,6 +18,7 @@ from coeflab.fits.statistics.least_squares import factorise, solve
 from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
 from coeflab.fits.surface import sum_of_slices
 from coeflab.law.terms import design
+from coeflab.law.transforms import wind_errors, wind_forces
 from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import IMPORTERS
@@ -297,3 +298,31 @@ def test_more_terms_than_rows_is_refused_and_the_comparison_says_so():
     assert said.startswith("Additive against full")
     assert "full: 10 terms" in said
     assert "not tested" in interaction(fit(few, degree=6, form="additive", parity="beta=full", responses="C_m"))
+
+
+def test_stated_errors_of_components_weigh_drag() -> None:
+    """Drag of a turned force: its error is that of X, Y and Z, each by its share; a wild row of large error hardly counts."""
+    table, rng = campaign(), np.random.default_rng(3)
+    wild = np.zeros(len(table), dtype=bool)
+    wild[7] = True
+    forces = {c: table.forces[c] + np.where(wild, 5.0, 0.01 * rng.normal(size=len(table))) for c in ("X", "Y", "Z")}
+    stated = {c: np.where(wild, 5.0, 0.01) for c in forces}
+    clean = model(fit(table, responses="C_D", **SYMMETRIC), "C_D")
+    apart = model(fit(replace(table, forces=forces), responses="C_D", **SYMMETRIC), "C_D")
+    weighed = model(fit(replace(table, forces=forces, errors=stated), responses="C_D", **SYMMETRIC), "C_D")
+    off = [np.abs(m.fit.coefficients[0] - clean.fit.coefficients[0]) for m in (apart, weighed)]
+    assert off[1] < 0.05 * off[0]
+    partly = replace(table, forces=forces, errors={"X": stated["X"]})
+    np.testing.assert_array_equal(
+        model(fit(partly, responses="C_D", **SYMMETRIC), "C_D").fit.coefficients, apart.fit.coefficients
+    )
+
+
+def test_errors_turn_as_forces_do() -> None:
+    alpha, beta = (np.array(a) for a in ([0.0, 0.3, -0.2], [0.0, 0.0, 0.4]))
+    rng = np.random.default_rng(5)
+    sizes = np.array([1.0, 2.0, 3.0])
+    noise = sizes[:, None, None] * rng.normal(size=(3, 40_000, 1))
+    drawn = wind_forces(alpha, beta, *noise)
+    for found, expected in zip(wind_errors(alpha, beta, *(np.full(3, s) for s in sizes)), drawn, strict=True):
+        np.testing.assert_allclose(found, expected.std(axis=0), rtol=0.02)

@@ -13,8 +13,9 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.fits.planar_motion import fit
 from coeflab.tables.campaign import FILE
-from coeflab.tables.importers import IMPORTERS, PlannedTable, read_tables, suited_fit
+from coeflab.tables.importers import IMPORTERS, PlannedTable
 from coeflab.tables.planar_motion import PlanarMotionTable
+from coeflab.tables.reading import read_tables, suited_fit
 from tests.fits.oscillating import law
 
 

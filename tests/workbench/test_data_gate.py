@@ -20,7 +20,8 @@ from coeflab.core.table import Check, Severity
 from coeflab.core.types import Array
 from coeflab.study.checks.data_gate import findings
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.importers import PlannedTable, read_tables
+from coeflab.tables.importers import PlannedTable
+from coeflab.tables.reading import read_tables
 from tests.coverage.slope_campaigns import FAMILIES
 
 TEMPLATE = Path(__file__).parents[2] / "coeflab" / "cli" / "template" / "campaign"

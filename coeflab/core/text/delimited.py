@@ -15,7 +15,7 @@ from coeflab.core.errors import InputError, UnitsError, shown
 from coeflab.core.limits import CSV_BLANK_LINES, CSV_CELLS, CSV_LINE
 from coeflab.core.units import Header, parse_header
 
-_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+_NUMBER = re.compile(r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 
 

@@ -238,7 +238,8 @@ def differences(tables: Sequence[ForceTable], length: float) -> tuple[str, ...]:
     out = []
     if len({t.body for t in by.values()}) > 1:
         out.append(f"Different bodies: {_each(by, lambda t: t.body)}.")
-    numbers = {c: t.conditions.reynolds_on(length) for c, t in by.items()}
+    rows = {c: t.reynolds(length) for c, t in by.items()}
+    numbers = {c: None if at is None else float(np.median(at)) for c, at in rows.items()}
     known = [n for n in numbers.values() if n is not None]
     if len(known) < len(by):
         out.append(f"Reynolds numbers are not known of {', '.join(c for c, n in numbers.items() if n is None)}.")

@@ -207,6 +207,8 @@ class Sweep:
         What was subtracted before the fit, if anything.
     borrowed : str
         Table that lent its row at rest, if any.
+    one_size : bool
+        Whether all settings have one size, so that they determine neither slope nor curvature.
     """
 
     symbol: str
@@ -239,6 +241,7 @@ class Sweep:
     body: str
     offset: str = ""
     borrowed: str = ""
+    one_size: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "x", locked(self.x))

@@ -25,9 +25,9 @@ from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probab
 from coeflab.fits.statistics.remainder import Remainder
 from coeflab.law.coefficient import Parts, Status
 from coeflab.law.domain import half_spaces, inside
-from coeflab.law.symbols import MOTIONS
+from coeflab.law.symbols import ANGULAR, MOTIONS
 from coeflab.law.terms import Term, canonical, design
-from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import AT_REST, SAME_SIZE, ForceTable
 
 
 @brief
@@ -225,11 +225,41 @@ class FittedModel:
             return ()
         return tuple(s for s, r in zip(self.symbols, self.remainder.rejected, strict=True) if r)
 
+    def one_size(self, i: int) -> str:
+        """Why a coefficient is no derivative, in words: its rows turn at one |r'|, a rotating arm's one radius.
+
+        There r', r'|r'| and r'^3 are one column, and a term of one of them stands for all. Empty for any other coefficient.
+        """
+        variables = {v for v, *_ in canonical(self.terms[i])}
+        v = min(variables) if len(variables) == 1 else ""
+        if v not in ANGULAR or v not in self.x:
+            return ""
+        sizes = np.abs(self.x[v])[np.abs(self.x[v]) > AT_REST]
+        if not len(sizes) or float(np.ptp(sizes)) > SAME_SIZE * float(sizes.max()):
+            return ""
+        return (
+            f"all rows that turn have one |{v}'|, {np.median(sizes):.3g}: {self.symbols[i]} stands for all powers of {v}' together there "
+            "(a secant) and is not determined as a derivative"
+        )
+
+    @property
+    def secants(self) -> tuple[str, ...]:
+        """What `one_size` says, of every coefficient that it speaks of, a sentence each."""
+        said = [self.one_size(i) for i in range(len(self.terms)) if np.isfinite(self.fit.coefficients[i])]
+        return tuple(f"{s[0].upper()}{s[1:]}." for s in said if s)
+
+    def recommended(self, i: int) -> float | None:
+        """The value of a coefficient; None where it is open, or no derivative."""
+        value = float(self.fit.coefficients[i])
+        return value if np.isfinite(value) and not self.one_size(i) else None
+
     def worth(self, i: int, unknown: Status = Status.NOT_DETERMINED) -> tuple[float | None, Status, Parts]:
         """U95 of a coefficient without shared errors, its status (``unknown`` without a value), and what makes U95 up."""
         value, scatter = float(self.fit.coefficients[i]), float(self.fit.half_width[i])
         if not np.isfinite(value):
             return None, unknown, Parts()
+        if self.one_size(i):
+            return None, Status.NOT_DETERMINED, Parts()
         if not np.isfinite(scatter):
             return None, Status.SINGLE_ESTIMATOR, Parts()
         form = None if self.remainder is None else float(self.remainder.half_width[i])

@@ -24,7 +24,7 @@ from coeflab.fits.statistics.linear_model import LinearFit, fit_linear
 from coeflab.fits.statistics.remainder import Block, Remainder, judged, left_out
 from coeflab.law.symbols import COMPONENTS, LINEAR, MOMENTS, MOTIONS
 from coeflab.law.terms import Term, design
-from coeflab.law.transforms import incidence, wind_forces
+from coeflab.law.transforms import incidence, wind_errors, wind_forces
 from coeflab.tables.force_table import ForceTable
 
 ANGLES = ("alpha", "beta")
@@ -114,7 +114,7 @@ def response(table: ForceTable, name: str, area: Area) -> tuple[Array, Array | N
     InputError
         The table lacks a component, or the response is unknown.
     """
-    q = 0.5 * table.conditions.density * table.speed**2 * area.area
+    q = 0.5 * table.water_density * table.speed**2 * area.area
     component = MOMENT_COEFFICIENTS.get(name, name)
     if component in COMPONENTS:
         if component not in table.forces:
@@ -131,8 +131,9 @@ def response(table: ForceTable, name: str, area: Area) -> tuple[Array, Array | N
     if name == "C_L":
         needed["Z"], needed["X"], needed["Y"] = needed["X"], alpha != 0.0, np.zeros(len(table), dtype=bool)
     usable = np.ones(len(table), dtype=bool)
-    forces = []
+    forces, stated = [], []
     for c in ("X", "Y", "Z"):
+        stated.append(np.where(needed[c], table.errors.get(c, np.full(len(table), np.nan)), 0.0))
         if c in table.forces:
             usable &= table.usable[c] | ~needed[c]
             forces.append(np.where(table.usable[c], table.forces[c], 0.0))
@@ -140,7 +141,9 @@ def response(table: ForceTable, name: str, area: Area) -> tuple[Array, Array | N
             raise InputError(f"no {c} in {table.name}", f"a column {c}, which {name} needs", column="responses")
         else:
             forces.append(np.zeros(len(table)))
-    return wind_forces(alpha, beta, *forces)[WIND.index(name)] / q, None, usable
+    error = wind_errors(alpha, beta, *stated)[WIND.index(name)] / q
+    known = bool(np.all(error[usable] > 0.0))
+    return wind_forces(alpha, beta, *forces)[WIND.index(name)] / q, error if known else None, usable
 
 
 def collect(tables: Sequence[ForceTable], variables: Sequence[str], name: str, area: Area) -> Rows:

@@ -31,7 +31,7 @@ from coeflab.fits.statistics.slopes import is_one_sided
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, FORCES
 from coeflab.law.terms import canonical
-from coeflab.tables.force_table import AT_REST, Exclusion, ForceTable
+from coeflab.tables.force_table import AT_REST, SAME_SIZE, Exclusion, ForceTable
 
 INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
 ASTERN = "does not run ahead (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
@@ -115,6 +115,27 @@ def collect_points(
     errors = np.array(se)
     known = errors if len(errors) and np.all(np.isfinite(errors)) else None
     return np.array(x), np.array(y), known, tuple(labels), tuple(left)
+
+
+def one_size(x: Array, variable: str, speed: Array) -> str:
+    """Why settings (n,) of one size determine no slope, in words; empty where they have several.
+
+    Readings at -a, 0 and a give the odd part of the force at a: one number for x and x|x| together. On a rotating arm the
+    radius alone makes |r'| = L/R; the speed, shape (n,), does not.
+    """
+    sizes = np.abs(x[np.abs(x) > AT_REST])
+    if not len(sizes) or float(np.ptp(sizes)) > SAME_SIZE * float(sizes.max()):
+        return ""
+    size = float(np.median(sizes))
+    faster = float(np.ptp(speed)) > SAME_SIZE * float(speed.max())
+    said = [f"speeds {speed.min():.3g} to {speed.max():.3g} m/s"] if faster else []
+    said += ["both signs"] if np.any(x > AT_REST) and np.any(x < -AT_REST) else []
+    seen = f" ({', '.join(said)})" if said else ""
+    name, how = f"{variable}'", " (L/R: other radii, not speeds)" if variable in "qr" else ""
+    return (
+        f"one |{name}|, {size:.3g}{seen}: {name} and {name}|{name}| are one; measure "
+        f"|{name}| near {size / 3.0:.2g} and {2.0 * size / 3.0:.2g}{how}"
+    )
 
 
 def arm_shift(tables: Sequence[ForceTable]) -> float:

@@ -21,7 +21,6 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
 from coeflab.core.types import Array, brief
@@ -383,9 +382,8 @@ def grid_studies(table: ForceTable, component: str, dimension: int = 3) -> tuple
     cells = table.cells
     if cells is None or component not in table.forces:
         return ()
-    settings = np.column_stack([table.motion[m] for m in MOTIONS] + list(table.controls.values()) + [table.speed])
-    found = []
-    for group in _alike(settings):
+    found, setting = [], table.setting
+    for group in (np.flatnonzero(setting == k) for k in range(int(setting.max(initial=-1)) + 1)):
         rows = [int(i) for i in group if np.isfinite(cells[i]) and np.isfinite(table.forces[component][i])]
         used = [i for i in rows if table.usable[component][i]]
         if len(used) != 1 or len(np.unique(cells[rows])) != len(rows) or len(rows) < 2:
@@ -410,13 +408,6 @@ def gravest(studies: tuple[GridStudy, ...]) -> GridStudy | None:
     if not studies:
         return None
     return max(studies, key=lambda s: np.inf if s.convergence.relative is None else s.convergence.relative)
-
-
-def _alike(settings: NDArray[np.float64]) -> list[NDArray[np.intp]]:
-    scale = np.maximum(np.max(np.abs(settings), axis=0), 1e-300)
-    _, names = np.unique(np.round(settings / scale, 9), axis=0, return_inverse=True)
-    groups = names.ravel()
-    return [np.flatnonzero(groups == k) for k in range(int(groups.max(initial=-1)) + 1)]
 
 
 def _moving(table: ForceTable, row: int) -> tuple[str, ...]:

@@ -141,6 +141,7 @@ def _moved(table: ForceTable, errors: Mapping[tuple[str, str], float]) -> ForceT
         forces={c: f * scale[c] for c, f in table.forces.items()},
         errors={c: e * scale[c] for c, e in table.errors.items()},
         conditions=replace(table.conditions, density=table.conditions.density * factor("density")),
+        density=None if table.density is None else table.density * factor("density"),
     )
 
 

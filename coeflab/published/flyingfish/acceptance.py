@@ -34,7 +34,8 @@ from coeflab.published.parameter_files import flyingfish_file
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
 from coeflab.report.document import Figure
 from coeflab.report.figures.laws import Plot, Trace, laws_figure
-from coeflab.tables.importers import PlannedTable, read_tables
+from coeflab.tables.importers import PlannedTable
+from coeflab.tables.reading import read_tables
 from coeflab.vehicle.parameter_file import ParameterFile
 
 ALONG = "motion of Table 1  [-]"

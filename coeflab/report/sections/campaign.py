@@ -22,6 +22,7 @@ from coeflab.law.coefficient import COVERS
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Section
 from coeflab.report.figures.estimator import estimator_figure
+from coeflab.report.figures.incidence import ACROSS, incidence_figure
 from coeflab.report.figures.model import distinct, model_figures, over_what
 from coeflab.report.figures.panel import tick_texts, ticks
 from coeflab.report.figures.series import numbers, points
@@ -84,12 +85,21 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
         title,
         tuple(text),
         filled(tables.coefficients(study, fit.campaign), joint_tables.campaigns((fit,))),
+        tuple(
+            incidence_figure(t, rate, study.body, anchor(f"{place} {t.name} {rate}", taken))
+            for t in mine for rate in ACROSS if rate in t.varies and not _shown_before(study, fit)
+        ),
         subsections=(
             *(_sweep_section(study, fit, s, anchor(f"{place} {s.symbol}", taken)) for s in fit.sweeps),
             *(_model_section(m, anchor(f"{place} {m.response}", taken)) for m in distinct(fit.models)),
             *oscillation_sections(study, fit, lambda name: anchor(f"{place} {name}", taken)),
         ),
     )
+
+
+def _shown_before(study: Study, fit: FitResult) -> bool:
+    """Whether the section of another fit already draws the tables of this one."""
+    return next(f for f in study.fits if set(fit.campaigns) & set(f.campaigns)) is not fit
 
 
 def _model_section(model: FittedModel, place: str) -> Section:
@@ -104,7 +114,7 @@ def _about(table: ForceTable) -> list[str]:
     source = table.source
     text = [
         f"{table.name}: {table.body.replace('_', ' ')}, {len(table)} rows; {usable} of {cells} force cells are usable. "
-        f"Speed {table.conditions.speed:.5g} m/s, density {table.conditions.density:.5g} kg/m3. "
+        f"{table.run_at.capitalize()}. "
         f"Source: {work(source.citation)}" + (f" {source.place}." if source.place else "")
     ]
     if source.how_obtained:

@@ -1,4 +1,4 @@
-"""Whether the declared density is that of water, and the declared Reynolds number that of speed, length and viscosity."""
+"""Whether densities are those of water, and the declared Reynolds number that of speed, length and viscosity."""
 
 from __future__ import annotations
 
@@ -18,17 +18,24 @@ REYNOLDS = 0.05  # what LOA in the place of LBP makes
 
 def check(study: Study) -> Sequence[Check]:
     """Findings on every campaign that was run in water or states viscosity and Reynolds number."""
-    return [c for t in {t.campaign: t for t in study.tables}.values() for c in _found(t)]
+    found = [c for t in {t.campaign: t for t in study.tables}.values() for c in _found(t)]
+    rows = [(t.name, t.density) for t in study.tables if t.density is not None]
+    return found + [c for name, by_row in rows for c in _water(name, float(by_row.min()), float(by_row.max()))]
+
+
+def _water(name: str, low: float, high: float) -> Iterator[Check]:
+    if low > LIQUID:
+        good = WATER[0] <= low and high <= WATER[1]
+        found = f"{low:.5g} kg/m^3" if low == high else f"{low:.5g} to {high:.5g} kg/m^3"
+        yield Check(
+            "conditions", f"{name} density", Severity.PASS if good else Severity.WARN, found,
+            f"{WATER[0]:g} to {WATER[1]:g} kg/m^3, water", "" if good else "Coefficients of dimensional forces go with 1/density.",
+        )  # fmt: skip
 
 
 def _found(t: ForceTable) -> Iterator[Check]:
     at = t.conditions
-    if at.density > LIQUID:
-        good = WATER[0] <= at.density <= WATER[1]
-        yield Check(
-            "conditions", f"{t.campaign} density", Severity.PASS if good else Severity.WARN, f"{at.density:.5g} kg/m^3",
-            f"{WATER[0]:g} to {WATER[1]:g} kg/m^3, water", "" if good else "Coefficients of dimensional forces go with 1/density.",
-        )  # fmt: skip
+    yield from _water(t.campaign, at.density, at.density)
     if at.viscosity is not None and at.reynolds is not None:
         own = at.speed * t.scaling.length / at.viscosity
         good = abs(own / at.reynolds - 1.0) <= REYNOLDS

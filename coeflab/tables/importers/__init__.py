@@ -1,68 +1,17 @@
-"""Readers of force tables: one plugin a file, what a plugin is, and tables by the campaign that a person names."""
+"""Readers of force tables: one plugin a file, what a plugin is, and the campaign that a person names."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
-import numpy as np
-
-from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
-from coeflab.core.text.delimited import read_cells
 from coeflab.core.types import brief
-from coeflab.tables.campaign import FILE, Campaign, InputUncertainty, read_campaign
+from coeflab.tables.campaign import Campaign
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawTable, Run
-
-
-def with_declarations(
-    table: ForceTable, file: Path, cells: str = "", uncertainty: InputUncertainty | None = None
-) -> ForceTable:
-    """A table with its cell counts and input uncertainty.
-
-    Parameters
-    ----------
-    table : ForceTable
-        As its importer read it, row for row.
-    file : Path
-        The table's own file.
-    cells : str
-        Column of the cell counts, or empty.
-    uncertainty : InputUncertainty, optional
-
-    Raises
-    ------
-    InputError
-        No such column, or a count that is not above zero.
-    """
-    if not cells:
-        return replace(table, uncertainty=uncertainty)
-    read = read_cells(file)
-    if cells not in [h.name for h in read.headers]:
-        raise InputError(
-            f"no column {cells}", "the column of cell counts that [[table]] cells names", file=file,
-            line=read.first_line - 1, column=cells,
-        )  # fmt: skip
-    counts = read.numbers(cells)
-    bad = np.flatnonzero(counts <= 0.0)
-    if bad.size:
-        raise InputError(
-            f"{counts[bad[0]]:g} cells", "a count above zero", file=file, line=read.line(int(bad[0])), column=cells
-        )
-    return replace(table, cells=counts, uncertainty=uncertainty)
-
-
-def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTable, ...]:
-    """The tables of a campaign with what its campaign.toml declares about them."""
-    columns = {f"{campaign.name}/{t.file}": t for t in campaign.tables}
-    out = []
-    for table in tables:
-        t = columns[table.name]
-        out.append(with_declarations(table, campaign.path.parent / t.file, t.cells, campaign.uncertainty))
-    return tuple(out)
 
 
 @runtime_checkable
@@ -103,42 +52,6 @@ class Importer(Plugin, Protocol):
 
 
 IMPORTERS = Registry("coeflab.importers", "importer", Importer, __name__)  # type: ignore[type-abstract]
-
-
-def _declaration(path: Path) -> Path:
-    return path / FILE if path.is_dir() else path if path.suffix == ".toml" else path.parent / FILE
-
-
-def suited_fit(path: Path) -> str:
-    """The fit that the tables of a campaign are for, as its importer says; the usual one where none can be asked."""
-    declaration = _declaration(path)
-    name = read_campaign(declaration).importer if declaration.exists() else "csv"
-    return IMPORTERS.load(name).fit if name in IMPORTERS.names() else Importer.fit
-
-
-def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
-    """The tables of a planned campaign: a folder, its campaign.toml, or one CSV beside it."""
-    path = planned.campaign
-    declaration = _declaration(path)
-    if not declaration.exists():
-        raise InputError(
-            f"no {FILE} in {declaration.parent}",
-            f"a {FILE} that declares axes, angle sign, reference point and scaling",
-            file=path,
-            advice="`coeflab new DIR` writes a commented one.",
-        )
-    campaign = read_campaign(declaration)
-    with IMPORTERS.guarded(campaign.importer):
-        importer = IMPORTERS.load(campaign.importer)
-        if importer.read is None:
-            raise InputError(
-                f"the importer {campaign.importer}",
-                "one that reads campaigns",
-                file=declaration,
-                column="campaign.importer",
-            )
-        read = importer.read(campaign, planned.only, {})
-    return declared(read, campaign)
 
 
 @brief

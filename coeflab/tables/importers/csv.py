@@ -18,6 +18,7 @@ from coeflab.core.units import Header, factor
 from coeflab.core.wording import Verbatim
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS, MOTIONS
 from coeflab.tables.campaign import Campaign, TableDeclaration
+from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.to_frd import Columns, force_table, surge_column
 
@@ -32,7 +33,10 @@ EXAMPLES = {
     **dict.fromkeys((*ANGLES, *CONTROL_COLUMNS), "deg"),
     **dict.fromkeys((*LINEAR, "U"), "m/s"),
     **dict.fromkeys(ANGULAR, "rad/s"),
+    "R": "m",
+    "density": "kg/m^3",
 }
+PLAIN = {"U": "speed", "R": "length", "density": "density"}  # roles of their own, by dimension
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +65,7 @@ def _kind(name: str) -> _Kind | None:
         return _Kind("angle", "angle", plain, primed)
     if plain in CONTROL_COLUMNS:
         return _Kind("control", "angle", CONTROL_COLUMNS[plain], primed)
-    return _Kind("speed", "speed", "U", primed) if plain == "U" else None
+    return _Kind(plain, PLAIN[plain], plain, primed) if plain in PLAIN else None
 
 
 def _factor(header: Header, kind: _Kind, cells: Cells) -> float:
@@ -96,7 +100,7 @@ def _values(cells: Cells, header: Header, kind: _Kind) -> Array:
 
 
 def _unknown(cells: Cells, header: Header) -> InputError:
-    known = ", ".join((*ANGLES, "U", *MOTIONS, *CONTROL_COLUMNS, *COMPONENTS))
+    known = ", ".join((*ANGLES, *PLAIN, *MOTIONS, *CONTROL_COLUMNS, *COMPONENTS))
     return InputError(
         f"the unknown column {shown(header.text)}",
         f"one of {known}, se_..., {POINT}, {UNCERTAIN}",
@@ -109,7 +113,7 @@ def _unknown(cells: Cells, header: Header) -> InputError:
 
 def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Columns:
     """The columns in SI. Primed ones need the speed, so they are made dimensional last."""
-    given: dict[str, dict[str, Array]] = {r: {} for r in ("angle", "control", "error", "force", "speed", "velocity")}
+    given: dict[str, dict[str, Array]] = {r: {} for r in ("angle", "control", "error", "force", "velocity", *PLAIN)}
     labels: dict[str, list[str]] = {}
     headers: dict[str, str] = {}
     primes: list[tuple[_Kind, Array]] = []
@@ -118,6 +122,8 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
             continue
         if header.name in (*table.labels, UNCERTAIN, POINT):
             labels[header.name] = list(map(Verbatim, cells.texts(header.name)))
+            continue
+        if table.cells and header.name == table.cells:
             continue
         kind = _kind(header.name)
         if kind is None:
@@ -134,9 +140,11 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
             primes.append((kind, values))
         else:
             given[kind.role][kind.name] = values
-    speed = _speed(given, primes, campaign, len(cells))
+    speed, density = _speed(given, primes, campaign, len(cells)), given["density"].get("density")
     for kind, values in primes:
-        given[kind.role][kind.name] = values * campaign.scaling.unit(kind.name, campaign.conditions.density, speed)
+        given[kind.role][kind.name] = values * campaign.scaling.unit(
+            kind.name, campaign.conditions.density if density is None else density, speed
+        )
     return Columns(
         file=cells.file,
         header_line=cells.first_line - 1,
@@ -151,13 +159,15 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         labels=labels,
         doubtful=_doubtful(cells, labels.get(UNCERTAIN, [""] * len(cells)), headers),
         row_labels=tuple(labels.get(POINT, ())),
+        radius=given["R"].get("R"),
+        density=density,
     )
 
 
 def _speed(given: dict[str, dict[str, Array]], primes: list[tuple[_Kind, Array]], campaign: Campaign, n: int) -> Array:
     """U: its column, else the length of a full velocity vector, else the campaign's."""
-    if "U" in given["speed"]:
-        return given["speed"]["U"]
+    if "U" in given["U"]:
+        return given["U"]["U"]
     velocity = given["velocity"]
     if surge_column(campaign) not in velocity or given["angle"]:
         return np.full(n, campaign.conditions.speed)
@@ -186,11 +196,8 @@ def _doubtful(cells: Cells, texts: list[str], headers: dict[str, str]) -> tuple[
 
 
 def recognises(path: Path) -> bool:
-    """Whether the file is text, as far as its first 4 KiB say."""
-    if not path.is_file():
-        return False
-    with path.open("rb") as stream:
-        return b"\0" not in stream.read(4096)
+    """Whether the names of the columns are ours, each with its unit in brackets, between commas."""
+    return is_house_table(path)
 
 
 def read(

@@ -1,0 +1,323 @@
+"""``coeflab import``: a file or folder of any known kind becomes a campaign, once somebody has said what it means."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import sys
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from coeflab.cli import show
+from coeflab.core.errors import InputError
+
+if TYPE_CHECKING:
+    from coeflab.tables.column_map import ColumnMap
+    from coeflab.tables.force_table import ForceTable
+    from coeflab.tables.questions import Question, Setting, Understood
+    from coeflab.tables.raw_table import RawTable
+
+
+EXAMPLE = "coeflab import drift.csv --out cfd_data/mine"
+
+
+class OpenError(InputError):
+    """What nobody has said yet, with the arguments that say it."""
+
+    def __init__(self, path: Path, points: Sequence[tuple[str, str]]) -> None:
+        many = f"{len(points)} open point" + "s" * (len(points) != 1)
+        super().__init__(many, "these arguments, with values for words in capitals", file=path)
+        self.points = points
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The arguments, each with its question below."""
+        points = getattr(self, "points", ())
+        proposed = any(open_value(argument) is None for argument, _ in points)
+        return (*super().lines, *point_lines(points), *["  --yes takes those with values."] * proposed)
+
+
+def open_value(argument: str) -> str | None:
+    """The word in capitals of an argument; None where it has a value."""
+    word = re.search(r"\b(?:FRAME|POINT|NAME|SOURCE|KIND|SIGN|SIDE|METRES|DENSITY|SPEED|X,Y,Z|IX,IY,IZ|MASS|TRUE_OR_FALSE|"
+                     r"UNIT|SIZE|WHAT)\b", argument.partition("=")[2])  # fmt: skip
+    return word[0] if word else None
+
+
+def point_lines(points: Sequence[tuple[str, str]]) -> list[str]:
+    """Arguments and what they are about, at most 80 columns where words allow."""
+    out = []
+    for argument, why in points:
+        out.append(f"  {argument}")
+        out += textwrap.wrap(why, 72, initial_indent="      ", subsequent_indent="      ", break_long_words=False)
+    return out
+
+
+@dataclass(slots=True)
+class Said:
+    """What a person says: columns, settings, importer, options."""
+
+    columns: dict[str, ColumnMap] = field(default_factory=dict)
+    settings: dict[str, Setting] = field(default_factory=dict)
+    importer: str = ""
+    options: dict[str, Any] = field(default_factory=dict)
+
+
+def command(
+    path: str = typer.Argument(
+        ..., help="A table, or a folder of cases: text, Excel, OpenFOAM ... (coeflab formats importers)."
+    ),
+    out: Path = typer.Option(..., "--out", help="Folder of the new campaign, such as cfd_data/mine."),
+    map_: list[str] = typer.Option(
+        [], "--map", metavar="COLUMN=WHAT", help="What a column is: 'Fy=Y [N]', 'Run=label', 'Note=ignore'; repeatable."
+    ),
+    set_: list[str] = typer.Option(
+        [], "--set", metavar="KEY=VALUE", help="Any key of campaign.toml: axes.frame=CFD; repeatable."
+    ),
+    mapping: Path = typer.Option(None, metavar="FILE.toml", help="A mapping.toml that an earlier import wrote."),
+    option: list[str] = typer.Option(
+        [], "--option", metavar="NAME=VALUE", help="An option of the importer: sheet=Drift; repeatable."
+    ),
+    as_: str = typer.Option(
+        "", "--as", metavar="IMPORTER", help="Read it with this importer (coeflab formats importers)."
+    ),
+    name: str = typer.Option(
+        "", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."
+    ),
+    runs: Path = typer.Option(None, "--runs", metavar="LIST.csv", help="A list of runs with their conditions."),
+    state: Path = typer.Option(
+        None, metavar="FILE", help="Keeps what was read of many runs, so that a stopped import goes on."
+    ),
+    yes: bool = typer.Option(False, "--yes", help="Take proposals that the file or clear evidence supports."),
+    force: bool = typer.Option(False, "--force", help="Replace a campaign that is there."),
+) -> None:
+    """Make a campaign of a table or a folder of runs: table.csv and a commented campaign.toml.
+
+    It proposes what each column is and shows what the numbers say of signs. On a terminal it asks; elsewhere it lists all
+    open points at once with the arguments that settle them. Axes, angle signs, reference point and inertia are never guessed.
+    """
+    from coeflab.core.errors import OutputError
+    from coeflab.core.files import typed, write_all
+    from coeflab.tables.imported import checked, contents
+    from coeflab.tables.mapping import assigned
+    from coeflab.tables.questions import assumed, stated_settings, understood
+    from coeflab.tables.reading import importer_of, read_raw
+
+    file, out = typed(path), typed(out)
+    if not force and out.exists() and (not out.is_dir() or any(out.iterdir())):
+        raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
+    said = _said(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
+    importer = importer_of(file, said.importer)
+    with show.narrated(), show.progress(False) as say:
+        raw = read_raw(file, importer, said.options, say)
+    said.columns |= _mapped(map_, raw)
+    settings = assumed(out) | stated_settings(raw) | said.settings
+    found = understood(raw, said.columns, settings, yes)
+    described(raw, importer, found)
+    if sys.stdin.isatty():
+        columns, settings = _asked(raw, said.columns, settings, found, yes)
+    else:
+        columns, settings = _without_asking(file, found, settings, yes)
+    known = assigned(raw, columns)
+    made = contents(raw, importer, said.options, known, columns, settings)
+    table = checked(made, raw, columns)
+    write_all(out, made)
+    _written(out, table, settings)
+
+
+def described(raw: RawTable, importer: str, found: Understood) -> None:
+    """Print what a file is, its columns, what it says of itself and what its numbers show."""
+    from coeflab.report.tables import raw_tables
+    from coeflab.tables.collect import runs_shown
+
+    said = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
+    show.sentence(f"{raw.path}: read by {importer}" + (f"; {said}" if said else ""))
+    if runs := runs_shown(raw, MOST):
+        show.table(runs)
+    show.table(raw_tables.columns(raw, found.proposals, found.mapping))
+    show.table(raw_tables.stated(raw))
+    _listed("Left out or mended", raw.remarks)
+    _listed("The numbers show", [e.text for e in found.shows])
+
+
+MOST = 12
+
+
+def _listed(title: str, texts: Sequence[str]) -> None:
+    if not texts:
+        return
+    show.text(title)
+    for text in texts[:MOST]:
+        show.lines(textwrap.fill(text, 79, initial_indent="  ", subsequent_indent="    ", break_long_words=False))
+    if len(texts) > MOST:
+        show.text(f"  and {len(texts) - MOST} more")
+    show.text()
+
+
+def _said(mapping: Path | None, set_: Sequence[str], option: Sequence[str], as_: str) -> Said:
+    """All that the command line and a saved mapping say, but for columns; complaints at once."""
+    from coeflab.core.errors import shown, together
+    from coeflab.tables.questions import Setting, read_setting, saved_mapping
+
+    out = Said()
+    if mapping is not None:
+        out.columns, out.settings, out.importer, out.options = saved_mapping(mapping)
+    out.importer = as_ or out.importer
+    complaints: list[InputError] = []
+    for text in set_:
+        key, equals, said = text.partition("=")
+        if not equals:
+            complaints.append(InputError(shown(text), "KEY=VALUE, such as axes.frame=CFD", column="--set"))
+            continue
+        try:
+            out.settings[key.strip()] = Setting(read_setting(key.strip(), said.strip()), "confirmed")
+        except InputError as why:
+            complaints.append(why)
+    try:
+        out.options |= options_of(option)
+    except InputError as why:
+        complaints += [why, *why.others]
+    if complaints:
+        raise together(complaints)
+    return out
+
+
+def options_of(texts: Sequence[str]) -> dict[str, Any]:
+    """Options of an importer from ``NAME=VALUE``; numbers where they read as such."""
+    from coeflab.core.errors import shown, together
+
+    wrong = [t for t in texts if "=" not in t]
+    if wrong:
+        raise together([InputError(shown(t), "NAME=VALUE, such as sheet=Drift", column="--option") for t in wrong])
+    pairs = (text.partition("=") for text in texts)
+    return {key.strip(): _number(said.strip()) for key, _, said in pairs}
+
+
+def of_runs(name: str, runs: Path | None, state: Path | None = None) -> list[str]:
+    """Options of collected runs as ``--option`` takes them."""
+    given = {"names": name, "run_list": runs, "state": state}
+    return [f"{option}={value}" for option, value in given.items() if value]
+
+
+def _number(text: str) -> Any:
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
+
+
+def _mapped(map_: Sequence[str], raw: RawTable) -> dict[str, ColumnMap]:
+    """What ``--map`` says, by the names of the file."""
+    from coeflab.core.errors import shown, together
+    from coeflab.tables.column_map import read_column_map
+    from coeflab.tables.mapping import known_as
+
+    names = {n: c.name for c in raw.columns for n in (c.name, *known_as(c))}
+    out: dict[str, ColumnMap] = {}
+    complaints: list[InputError] = []
+    for text in map_:
+        fits = [n for n in names if text.startswith(f"{n}=")]
+        name = max(fits, key=len) if fits else text.partition("=")[0].strip()
+        if name not in names:
+            have = ", ".join(c.name for c in raw.columns)
+            complaints.append(InputError(f"no column {shown(name)}", f"one of {have}", file=raw.path, column="--map"))
+            continue
+        try:
+            out[names[name]] = read_column_map(text[len(name) + 1 :])
+        except InputError as why:
+            complaints.append(InputError(why.found, why.expected, column=f"--map {text}", advice=why.advice))
+    if complaints:
+        raise together(complaints)
+    return out
+
+
+Settled = tuple[Mapping[str, "ColumnMap"], dict[str, "Setting"]]
+
+
+def _without_asking(file: Path, found: Understood, settings: Mapping[str, Setting], yes: bool) -> Settled:
+    """Everything that is settled; what is not, in one error."""
+    from coeflab.tables.questions import open_points
+
+    if points := open_points(found, yes):
+        raise OpenError(file, points)
+    taken = {q.key: _taken(q, q.default) for q in found.questions}
+    return found.mapping, {**settings, **taken}
+
+
+def _taken(question: Question, text: str) -> Setting:
+    from coeflab.tables.questions import Setting, read_setting
+
+    return Setting(read_setting(question.key, text), question.why if text == question.default else "confirmed")
+
+
+def _asked(
+    raw: RawTable, said: Mapping[str, ColumnMap], settings: Mapping[str, Setting], found: Understood, yes: bool
+) -> Settled:
+    """Everything, asked for where it is open; a default only where the file or clear evidence gives one."""
+    from coeflab.tables.questions import understood
+
+    answers = {**said, **_asked_columns(raw, found)}
+    settings = dict(settings)
+    shown = {e.text for e in found.shows}
+    while True:
+        now = understood(raw, answers, settings, yes)
+        _listed("The numbers show", [e.text for e in now.shows if e.text not in shown])
+        shown |= {e.text for e in now.shows}
+        if not now.questions:
+            return now.mapping, settings
+        one = now.questions[0]
+        if yes and one.default:
+            settings[one.key] = _taken(one, one.default)
+            continue
+        show.sentence(f"{one.asks}." + (f" Default: {one.why}." if one.default else ""))
+        while one.key not in settings:
+            try:
+                settings[one.key] = _taken(one, str(typer.prompt(f"  {one.key}", default=one.default or None)))
+            except InputError as why:
+                show.error(f"  {why}")
+
+
+def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
+    from coeflab.tables.column_map import read_column_map
+    from coeflab.tables.mapping import error_of, with_unit
+
+    out: dict[str, ColumnMap] = {}
+    whole = [(column, offer) for column, offer in found.open if offer.whole]
+    if whole:
+        show.sentence("Proposed by name and unit: " + "; ".join(f"{c.name} = {o.text}" for c, o in whole) + ".")
+        if typer.confirm("  All of them right?", default=None):
+            out = {column.name: read_column_map(offer.text) for column, offer in whole}
+    for column, offer in found.open:
+        if column.name in out or error_of(column, out):
+            continue
+        hint = f"{offer.text}: {offer.why}" if offer.text else offer.why
+        show.sentence(f'Column "{column.name}" ({hint}). Say Y [N], -beta [deg], r\' [-], label, ignore ...')
+        while column.name not in out:
+            try:
+                answer = read_column_map(str(typer.prompt(f"  {column.name}")))
+                if answer.name != "ignore":
+                    with_unit(raw, column, answer)
+                out[column.name] = answer
+            except InputError as why:
+                show.error(f"  {why.found}; expected {why.expected}. {why.advice}".rstrip())
+    return out
+
+
+def _written(out: Path, table: ForceTable, settings: Mapping[str, Setting]) -> None:
+    """What was written, what was taken without a question, and the next command."""
+    from coeflab.tables.questions import CONFIRMED
+
+    taken = [f"{k} = {s.value} ({s.origin})" for k, s in settings.items() if not s.origin.startswith(CONFIRMED)]
+    _listed("Taken as it stands", taken)
+    many = len(table.exclusions)
+    excluded = f", {many} cell{'s' * (many != 1)} excluded" if many else ""
+    show.text(f"Written: {out / 'table.csv'} ({len(table)} rows{excluded}), campaign.toml, mapping.toml")
+    show.sentence(f"  varies: {', '.join(table.varies) or 'nothing'}; in SI and FRD: {', '.join(table.forces)}")
+    show.text(f"Next: coeflab fit {shlex.quote(str(out))}")

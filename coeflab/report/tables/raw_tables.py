@@ -1,0 +1,108 @@
+"""A file before it is a campaign: its columns with what they may be, and what it says of itself."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from coeflab.core.table import Table
+from coeflab.report.printable import shortened
+from coeflab.tables.column_map import ColumnMap
+from coeflab.tables.mapping import known_as
+from coeflab.tables.proposals import Evidence, Proposal
+from coeflab.tables.raw_table import RawColumn, RawTable, Run
+
+NAME, UNIT = 20, 8
+MANY = 20  # columns, beyond which those that no fit uses stand in a note
+
+
+def limits(column: RawColumn) -> str:
+    """Smallest and largest number of a column, or how many texts it has."""
+    ok = column.values[np.isfinite(column.values)]
+    blank = len(column.values) - ok.size
+    if not ok.size:
+        return f"{len(set(column.texts))} texts" if column.texts else "blank"
+    low, high = float(ok.min()) + 0.0, float(ok.max()) + 0.0
+    out = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
+    return f"{out}, {blank} blank" if blank else out
+
+
+def columns(raw: RawTable, proposed: Sequence[Proposal], said: Mapping[str, ColumnMap] | None = None) -> Table:
+    """Every column that is used, with its unit, range and what it is, or may be.
+
+    Parameters
+    ----------
+    raw : RawTable
+    proposed : sequence of Proposal
+        One a column.
+    said : mapping of str to ColumnMap, optional
+        What is settled.
+    """
+    rows, unused = [], []
+    for column, proposal in zip(raw.columns, proposed, strict=True):
+        settled = next((str(said[n]) for n in (column.name, *known_as(column)) if said and n in said), "")
+        text = settled or (f"{proposal.text}?" if proposal.whole and not proposal.certain else proposal.text)
+        if text == "ignore" and len(raw.columns) > MANY:
+            unused.append(column.name)
+            continue
+        rows.append((shortened(column.name, NAME), shortened(column.unit, UNIT), limits(column), text or "?"))
+    notes = ("? what nobody has confirmed",) if any(row[3].endswith("?") or "?" in row[3] for row in rows) else ()
+    if unused:
+        notes = (*notes, *textwrap.wrap(f"{len(unused)} not used by fits: {', '.join(unused)}", 76))
+    title = f"{len(raw)} rows, {len(raw.columns)} columns"
+    return Table(title, ("column", "unit", "range", "is"), tuple(rows), notes, frozenset({0, 1, 2, 3}))
+
+
+def of_run(run: Run) -> tuple[Table, ...]:
+    """One run: its conditions with their places, and the columns of its history."""
+    said = [(name, _text(s.value), shortened(s.place, 40)) for name, s in run.conditions.items()]
+    rows = tuple((shortened(c.name, 34), shortened(c.unit, UNIT), limits(c), c.means) for c in run.history.columns)
+    return (
+        Table("Conditions", ("condition", "value", "where"), tuple(said), (), frozenset({0, 1, 2})),
+        Table(
+            "History", ("column", "unit", "range", "is"), rows, (f"{len(run.history)} rows",), frozenset({0, 1, 2, 3})
+        ),
+    )
+
+
+def as_json(raw: RawTable, importer: str, proposed: Sequence[Proposal], shows: Sequence[Evidence]) -> dict[str, Any]:
+    """All that is shown of a file, for machines.
+
+    Parameters
+    ----------
+    raw : RawTable
+    importer : str
+    proposed : sequence of Proposal
+    shows : sequence of Evidence
+    """
+    described = []
+    for column, proposal in zip(raw.columns, proposed, strict=True):
+        ok = column.values[np.isfinite(column.values)]
+        described.append({
+            "name": column.name, "unit": column.unit, "text": column.is_text, "numbers": int(ok.size),
+            "low": float(ok.min()) if ok.size else None, "high": float(ok.max()) if ok.size else None,
+            "proposed": proposal.text, "certain": proposal.certain, "why": proposal.why,
+        })  # fmt: skip
+    said = {
+        key: {"value": list(s.value) if isinstance(s.value, tuple) else s.value, "place": s.place}
+        for key, s in raw.stated.items()
+    }
+    return {
+        "path": str(raw.path), "importer": importer, "rows": len(raw), "dialect": dict(raw.dialect), "columns": described,
+        "stated": said, "remarks": list(raw.remarks), "shows": [e.text for e in shows],
+    }  # fmt: skip
+
+
+def stated(raw: RawTable) -> Table:
+    """What the file says of keys of campaign.toml, with its places."""
+    rows = tuple((key, shortened(_text(s.value), 24), shortened(s.place, 28)) for key, s in raw.stated.items())
+    return Table("Stated by the file", ("key", "value", "where"), rows, (), frozenset({0, 1, 2}))
+
+
+def _text(value: object) -> str:
+    if isinstance(value, tuple):
+        return "[" + ", ".join(f"{x:g}" for x in value) + "]"
+    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,177 @@
+"""What one column of a file is, in a few words of a person: ``Y [N]``, ``-beta [deg]``, ``N [coefficient A=1.2 m^2 L=4 m]``."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+from coeflab.core.declarations import Takes
+from coeflab.core.errors import InputError, UnitsError, shown
+from coeflab.core.units import factor, quantity
+from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, CONTROLS, LINEAR, MOMENTS
+
+WORDS = ("label", "point", "cells", "uncertain", "ignore")
+ANGLES = ("alpha", "beta")
+ROLES = {
+    **dict.fromkeys(ANGLES, "angle"),
+    "U": "speed",
+    "R": "radius",
+    "density": "density",
+    **dict.fromkeys((*LINEAR, *ANGULAR), "velocity"),
+    **dict.fromkeys(CONTROLS, "control"),
+    **dict.fromkeys(COMPONENTS, "force"),
+    **dict.fromkeys(WORDS, "word"),
+}
+DIMENSIONS = {
+    **dict.fromkeys((*ANGLES, *CONTROLS), "angle"),
+    **dict.fromkeys((*LINEAR, "U"), "speed"),
+    **dict.fromkeys(ANGULAR, "rate"),
+    "R": "length",
+    "density": "density",
+    **{c: "moment" if c in MOMENTS else "force" for c in COMPONENTS},
+}
+EXAMPLES = {
+    "angle": "deg", "speed": "m/s", "rate": "deg/s", "force": "N", "moment": "N*m", "length": "m", "density": "kg/m^3",
+}  # fmt: skip
+EXPECTED = (
+    'what the column is, such as "Y [N]", "-beta [deg]", "r\' [-]", "se_N [N*m]", "Y [coefficient A=1.2 m^2]", '
+    f"{', '.join(WORDS)}"
+)
+_ENTRY = re.compile(
+    r"(?P<sign>[-+\u2212]?)\s*(?P<error>se_)?(?P<name>[A-Za-z]\w*)(?P<prime>['\u2032\u2019]?)"
+    r"\s*(?:\[(?P<unit>[^\[\]]*)\])?"
+)
+_COEFFICIENT = re.compile(r"coefficient(?:[\s,]+A\s*=\s*(?P<area>.+?))?(?:[\s,]+L\s*=\s*(?P<length>.+?))?")
+_LONGEST = 120
+PER = {"force": "coefficient A=1.2 m^2", "moment": "coefficient A=1.2 m^2 L=4.26 m"}
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnMap:
+    """What one column is.
+
+    Attributes
+    ----------
+    name : str
+        One of alpha beta U R density u v w p q r dr ds db X Y Z K M N, or label, point, cells, uncertain, ignore.
+    unit : str
+        Of the column; empty for the one that its file states, ``-`` for a prime or a coefficient.
+    negative : bool
+        Whether the column has the opposite sign.
+    primed : bool
+        Made dimensionless by the campaign's length, density and speed.
+    error : bool
+        The standard error of the force or moment, not the force itself.
+    area : float
+        m^2, of a coefficient by 1/2 rho U^2 A (moments: A L); 0 for no coefficient.
+    length : float
+        m, of a coefficient of a moment.
+    """
+
+    name: str
+    unit: str = ""
+    negative: bool = False
+    primed: bool = False
+    error: bool = False
+    area: float = 0.0
+    length: float = 0.0
+
+    @property
+    def role(self) -> str:
+        """angle, speed, radius, density, velocity, control, force, error or word."""
+        return "error" if self.error else ROLES[self.name]
+
+    @property
+    def plain(self) -> str:
+        """Plain name, with ``se_`` for a standard error."""
+        return f"se_{self.name}" if self.error else self.name
+
+    @property
+    def dimension(self) -> str:
+        """Key of `coeflab.core.units.SI`."""
+        return DIMENSIONS.get(self.name, "none")
+
+    @property
+    def pure(self) -> bool:
+        """Whether its numbers have no unit: a prime or a coefficient."""
+        return self.primed or bool(self.area)
+
+    def __str__(self) -> str:
+        sign, prime = "-" if self.negative else "", "'" if self.primed else ""
+        unit = self.unit
+        if self.area:
+            unit = f"coefficient A={self.area!r} m^2" + (f" L={self.length!r} m" if self.length else "")
+        return f"{sign}{self.plain}{prime}" + (f" [{unit}]" if unit else "")
+
+
+def read_column_map(text: Any) -> ColumnMap:
+    """What a person says that a column is.
+
+    Raises
+    ------
+    InputError
+        No such name, or a unit that does not fit.
+    """
+    match = _ENTRY.fullmatch(text.strip()) if isinstance(text, str) and len(text) <= _LONGEST else None
+    if match is None:
+        raise InputError(shown(text), EXPECTED)
+    name = CONTROL_COLUMNS.get(match["name"], match["name"])
+    if name not in ROLES:
+        known = ", ".join(ROLES)
+        raise InputError(f"the unknown name {shown(match['name'])}", f"one of {known}, with ' for a prime")
+    out = ColumnMap(
+        name,
+        (match["unit"] or "").strip(),
+        match["sign"] in ("-", "\u2212"),
+        bool(match["prime"]),
+        bool(match["error"]),
+    )
+    return _checked(out, text)
+
+
+def _checked(said: ColumnMap, text: str) -> ColumnMap:
+    """The entry with its unit understood."""
+    if said.role == "word":
+        if said.unit or said.negative or said.primed:
+            raise InputError(shown(text), f"{said.name} without sign, prime and unit")
+        return said
+    if said.error and (said.name not in COMPONENTS or said.negative):
+        raise InputError(shown(text), "se_ before one of X Y Z K M N, without a sign")
+    if said.primed:
+        if said.name not in (*COMPONENTS, *LINEAR, *ANGULAR):
+            raise InputError(shown(text), "a prime of X Y Z K M N u v w p q r only")
+        if said.unit not in ("", "-"):
+            raise UnitsError(f"[{said.unit}]", f"[-] of {said.name}'", advice="Leave out ' for a dimensional column.")
+        return replace(said, unit="-")
+    if said.unit.startswith("coefficient"):
+        return _coefficient(said, text)
+    if said.unit == "-":
+        advice = f"For the prime by the campaign's length write {said.name}' [-]"
+        if said.name in COMPONENTS:
+            advice += f"; for a coefficient by an area {said.plain} [{PER[said.dimension]}]"
+        raise UnitsError("[-]", f"a unit of {said.dimension}, such as {EXAMPLES[said.dimension]}", advice=advice + ".")
+    if said.unit:
+        factor(said.unit, said.dimension)
+    return said
+
+
+def _coefficient(said: ColumnMap, text: str) -> ColumnMap:
+    match = _COEFFICIENT.fullmatch(said.unit)
+    moment = said.dimension == "moment"
+    if match is None or not match["area"] or said.name not in COMPONENTS or moment != bool(match["length"]):
+        expected = f"{said.plain} [{PER['moment' if moment else 'force']}]"
+        raise InputError(
+            shown(text), expected if said.name in COMPONENTS else "a coefficient of X Y Z K M N only",
+            advice="By 1/2 rho U^2 A, moments by 1/2 rho U^2 A L; L is no part of a force's.",
+        )  # fmt: skip
+    area, length = quantity(match["area"], "area"), quantity(match["length"], "length") if moment else 0.0
+    if area <= 0.0 or (moment and length <= 0.0):
+        raise InputError(shown(text), "an area and a length above zero")
+    return replace(said, unit="-", area=area, length=length)
+
+
+Entry = Annotated[
+    ColumnMap,
+    Takes(EXPECTED, lambda v, _: read_column_map(v), {"type": "string", "minLength": 1, "maxLength": _LONGEST}),
+]

@@ -1,0 +1,457 @@
+"""The condition of every run: what its files state, what a list of runs says, what its name says; never guessed.
+
+Each value keeps its origin. Where two origins contradict each other, both are named and nothing is taken.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+
+from coeflab.core.errors import InputError, UnitsError, shown, together
+from coeflab.core.text.delimited import read_cells
+from coeflab.core.text.toml import read_toml
+from coeflab.core.types import brief
+from coeflab.core.units import SI, Header, factor
+from coeflab.core.wording import listed, repeated
+from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, CONTROLS, LINEAR, MOTIONS
+from coeflab.tables.raw_table import Stated
+
+ANGLES = ("alpha", "beta", *CONTROLS)
+DIMENSIONS = {
+    **dict.fromkeys(ANGLES, "angle"),
+    **dict.fromkeys(("U", *LINEAR), "speed"),
+    **dict.fromkeys(ANGULAR, "rate"),
+    **{f"{m}'": "none" for m in MOTIONS},
+}
+SETTINGS = tuple(DIMENSIONS)
+TEXT = "text"
+RUN = "run"
+# Angles that files hold as a vector of six digits, and rates in other units, differ in their last digits.
+CLOSE, CLOSE_ANGLE = 1e-3, 1e-4
+MOST_NAMED = 10
+_FIELD = re.compile(r"\{([^{}]*)\}")
+_SPELLING = re.compile(r"([A-Za-z]{1,8})=([-+.])")
+_SCALE = re.compile(r"x([0-9]*\.?[0-9]+)")
+_QUANTITY = re.compile(r"([-+\u2212]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(\S.*)")
+_LONGEST = 300
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """One setting, number or label of one run.
+
+    Attributes
+    ----------
+    value : float or str
+        SI; a label as it is written.
+    written : float
+        The number in its unit; NaN for a label.
+    unit : str
+        As its origin writes it.
+    origins : tuple of str
+        Where it comes from: file and line, line of the list of runs, the name. The first one's value counts.
+    """
+
+    value: float | str
+    written: float
+    unit: str
+    origins: tuple[str, ...]
+
+    def __str__(self) -> str:
+        number = self.value if isinstance(self.value, str) else f"{self.written:.10g} {self.unit}".removesuffix(" -")
+        return f"{number} ({', '.join(self.origins)})"
+
+
+def _number(written: float, unit: str, name: str, origin: str) -> Condition:
+    dimension = DIMENSIONS.get(name)
+    value = written * (factor(unit, dimension) if dimension else 1.0)
+    return Condition(value, written, unit, (origin,))
+
+
+@dataclass(frozen=True, slots=True)
+class _Field:
+    name: str
+    unit: str
+    signs: Mapping[str, str]
+    scale: float
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class NamePattern:
+    """A pattern of names such as ``b{beta:deg}_r{r:rad/s}``.
+
+    ``{NAME:UNIT}`` is a number with a point for its decimals, ``*`` any text, ``{NAME:text}`` a label. Other spellings hold
+    only where the pattern has them, behind a further colon: ``{beta:deg:m=-,p=.}`` reads m2p5 as -2.5,
+    ``{beta:deg:P=-,S=+}`` P4 as -4, ``{r:rad/s:x0.01}`` 015 as 0.15.
+
+    Attributes
+    ----------
+    text : str
+        As written; with ``/`` it covers folders above the run too.
+    fields : tuple
+    expression : re.Pattern
+    """
+
+    text: str
+    fields: tuple[_Field, ...]
+    expression: re.Pattern[str] = field(repr=False)
+
+    def conditions(self, name: str) -> dict[str, Condition] | None:
+        """What a name says, or None where the pattern does not fit it.
+
+        Parameters
+        ----------
+        name : str
+            Path of the run from the folder of runs, with ``/``.
+        """
+        levels = _FIELD.sub("", self.text).count("/")
+        parts = name.split("/")[-levels - 1 :]
+        tail = "/".join(parts)
+        stem = tail.rpartition(".")[0] if "." in parts[-1] else ""
+        match = next(
+            (m for t in (tail, stem) if t and len(t) <= _LONGEST and (m := self.expression.fullmatch(t))), None
+        )
+        if match is None:
+            return None
+        out = {}
+        origin = f"name {tail}"
+        for f, text in zip(self.fields, match.groups(), strict=True):
+            if f.unit == TEXT:
+                out[f.name] = Condition(text, np.nan, "", (origin,))
+            else:
+                out[f.name] = _number(_spelt(text, f), f.unit, f.name, origin)
+        return out
+
+
+def _spelt(text: str, spelling: _Field) -> float:
+    """A number of a name; letters stand for what the pattern says."""
+    plain = text.replace("\u2212", "-")
+    for letters, mark in sorted(spelling.signs.items(), key=lambda s: -len(s[0])):
+        if mark == ".":
+            plain = plain.replace(letters, ".")
+        elif plain.startswith(letters):
+            plain = mark + plain.removeprefix(letters)
+    return float(plain) * spelling.scale
+
+
+def name_pattern(text: str) -> NamePattern:
+    """Read a pattern of names.
+
+    Raises
+    ------
+    InputError
+        No field, an unknown one, one twice, no unit or a wrong one, a spelling that is none, fields without text between.
+    """
+    fields: list[_Field] = []
+    pieces: list[str] = []
+    position = 0
+
+    def fail(found: str, expected: str, advice: str = "") -> InputError:
+        return InputError(found, expected, column=f"name pattern {shown(text)}", advice=advice)
+
+    if len(text) > _LONGEST or text.count("*") > 5:
+        raise fail("a very long pattern", f"at most {_LONGEST} letters and 5 asterisks")
+    for match in _FIELD.finditer(text):
+        between = text[position : match.start()]
+        if fields and between in ("", "*"):
+            raise fail("two numbers without text between them", "text between them, by which they can be told apart")
+        pieces.append(_literal(between))
+        one = _field(match[1], fail)
+        fields.append(one)
+        pieces.append(_number_expression(one))
+        position = match.end()
+    rest = text[position:]
+    if "{" in "".join(pieces) + rest and re.search(r"(?<!\\)[{}]", _FIELD.sub("", text)):
+        raise fail("a brace that is not closed", "{NAME:UNIT}")
+    if not fields:
+        raise fail("no {NAME:UNIT}", "at least one", "Such as 'b{beta:deg}_r{r:rad/s}'.")
+    if twice := repeated(f.name for f in fields):
+        raise fail(f"{listed(twice)} twice", "every name once")
+    return NamePattern(text, tuple(fields), re.compile("".join(pieces) + _literal(rest)))
+
+
+def _literal(text: str) -> str:
+    return "[^/]*?".join(map(re.escape, text.split("*")))
+
+
+def _field(text: str, fail: Callable[..., InputError]) -> _Field:
+    name, _, rest = (part.strip() for part in text.partition(":"))
+    unit, _, spelling = (part.strip() for part in rest.partition(":"))
+    name = CONTROL_COLUMNS.get(name, name)
+    if not unit:
+        raise fail(f"{{{text}}} without a unit", f"{{{name or 'beta'}:UNIT}}", "Angles deg or rad, r' and the like -.")
+    if unit == TEXT:
+        if not name or spelling:
+            raise fail(f"{{{text}}}", "{NAME:text}")
+        return _Field(name, TEXT, {}, 1.0)
+    if name not in DIMENSIONS and name not in ("cells", "y_plus"):
+        raise fail(shown(name), f"one of {', '.join(SETTINGS)}, cells, y_plus", f"For a label: {{{name}:text}}.")
+    try:
+        factor(unit, DIMENSIONS.get(name, "none"))
+    except UnitsError as why:
+        raise fail(why.found, why.expected, why.advice) from None
+    signs, scale = {}, 1.0
+    for word in filter(None, (w.strip() for w in spelling.split(","))):
+        if match := _SPELLING.fullmatch(word):
+            signs[match[1]] = match[2]
+        elif (match := _SCALE.fullmatch(word)) and float(match[1]) > 0.0:
+            scale = float(match[1])
+        else:
+            raise fail(shown(word), "spellings such as m=-, p=. or x0.01, with commas between them")
+    return _Field(name, unit, MappingProxyType(signs), scale)
+
+
+def _number_expression(f: _Field) -> str:
+    if f.unit == TEXT:
+        return "([^/]+?)"
+    marks = [re.escape(s) for s, mark in f.signs.items() if mark != "."]
+    points = "|".join([r"\.", *(re.escape(s) for s, mark in f.signs.items() if mark == ".")])
+    sign = "|".join(["[-+\u2212]", *marks])
+    return f"((?:{sign})?(?:[0-9]+(?:(?:{points})[0-9]+)?|(?:{points})[0-9]+))"
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class RunList:
+    """A list of runs that a person wrote.
+
+    Attributes
+    ----------
+    path : Path
+    runs : mapping of str to mapping of str to Condition
+        By the name of the run, in the order of the file.
+    """
+
+    path: Path
+    runs: Mapping[str, Mapping[str, Condition]]
+
+    def name_of(self, run: str) -> str | None:
+        """The name in the list that means this run: its whole path, or its last part."""
+        last = run.rpartition("/")[2]
+        return next((n for n in (run, last, last.rpartition(".")[0]) if n in self.runs), None)
+
+
+def read_run_list(path: Path) -> RunList:
+    """A list of runs: CSV with a column ``run`` and units in the headers, or TOML with ``[runs.NAME]`` and texts with units.
+
+    Raises
+    ------
+    InputError
+        No column ``run``, a run twice, a setting without its unit, a number that is none.
+    """
+    return _toml_list(path) if path.suffix.lower() == ".toml" else _csv_list(path)
+
+
+def _csv_list(path: Path) -> RunList:
+    cells = read_cells(path)
+    names = [h.name for h in cells.headers]
+    if RUN not in names:
+        raise InputError(f"columns {', '.join(names)}", f"a column {RUN}", file=path, line=cells.first_line - 1)
+    runs = [text.replace("\\", "/").strip("/") for text in cells.texts(RUN)]
+    for name in repeated(runs):
+        row = len(runs) - 1 - runs[::-1].index(name)
+        raise InputError(f"the run {shown(name)} twice", "every run once", file=path, line=cells.line(row), column=RUN)
+    out: dict[str, dict[str, Condition]] = {name: {} for name in runs}
+    for header in cells.headers:
+        name = CONTROL_COLUMNS.get(header.name, header.name)
+        if name == RUN:
+            continue
+        is_label = name not in DIMENSIONS and header.unit is None
+        if not is_label:
+            _require(header, name, path, cells.first_line - 1)
+        numbers = np.full(len(cells), np.nan) if is_label else cells.numbers(header.name)
+        for row, (run, text, number) in enumerate(zip(runs, cells.texts(header.name), numbers, strict=True)):
+            origin = f"{path.name}:{cells.line(row)}"
+            if is_label and text:
+                out[run][name] = Condition(text, np.nan, "", (origin,))
+            elif text:
+                out[run][name] = _number(float(number), header.unit or "", name, origin)
+    return RunList(path, out)
+
+
+def _require(header: Header, name: str, path: Path, line: int) -> None:
+    dimension = DIMENSIONS.get(name)
+    if dimension is None:
+        return
+    example = SI[dimension] or "-"
+    if header.unit is None:
+        raise UnitsError(
+            f"{header.text} without a unit", f"{name} [{'deg' if dimension == 'angle' else example}]", file=path, line=line,
+            column=header.text,
+        )  # fmt: skip
+    try:
+        factor(header.unit, dimension)
+    except UnitsError as why:
+        raise UnitsError(why.found, why.expected, file=path, line=line, column=header.text, advice=why.advice) from None
+
+
+def _toml_list(path: Path) -> RunList:
+    read = read_toml(path)
+    runs = read.content.get("runs")
+    if not isinstance(runs, Mapping) or not runs or set(read.content) != {"runs"}:
+        raise read.fail("runs", f"keys {', '.join(read.content)}", "tables [runs.NAME] and nothing else")
+    out: dict[str, dict[str, Condition]] = {}
+    for run, content in runs.items():
+        line = read.line(("runs", run))
+        origin = f"{path.name}:{line}" if line else path.name
+        if not isinstance(content, Mapping):
+            raise InputError(shown(content), "a table of conditions", file=path, line=line, key=f"runs.{run}")
+        out[run.replace("\\", "/").strip("/")] = {
+            plain: _toml_condition(plain, value, origin, path, line)
+            for plain, value in ((CONTROL_COLUMNS.get(str(name), str(name)), value) for name, value in content.items())
+        }
+    return RunList(path, out)
+
+
+def _toml_condition(name: str, value: object, origin: str, path: Path, line: int | None) -> Condition:
+    dimension = DIMENSIONS.get(name)
+    if dimension in (None, "none") and isinstance(value, (int, float)) and not isinstance(value, bool):
+        return Condition(float(value), float(value), "-", (origin,))
+    if dimension is None and isinstance(value, str):
+        return Condition(value, np.nan, "", (origin,))
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) and len(value) <= 60 else None
+    expected = f'a text with its unit, such as "4 {"deg" if dimension == "angle" else SI[dimension or "none"]}"'
+    if match is None:
+        raise UnitsError(shown(value), expected, file=path, line=line, key=name)
+    try:
+        return _number(float(match[1].replace("\u2212", "-")), match[2].strip(), name, origin)
+    except UnitsError as why:
+        raise UnitsError(why.found, why.expected, file=path, line=line, key=name, advice=why.advice) from None
+
+
+def of_files(stated: Mapping[str, Stated]) -> dict[str, Condition]:
+    """What the files of a run state of its condition, SI."""
+    out = {}
+    for name, one in stated.items():
+        if isinstance(one.value, str):
+            out[name] = Condition(one.value, np.nan, "", (one.place,))
+        elif not isinstance(one.value, tuple):
+            out[name] = Condition(
+                float(one.value), float(one.value), SI[DIMENSIONS.get(name, "none")] or "-", (one.place,)
+            )
+    return out
+
+
+def joined(
+    stated: Mapping[str, Mapping[str, Condition]], pattern: NamePattern | None, run_list: RunList | None
+) -> dict[str, dict[str, Condition]]:
+    """The conditions of every run from all their origins: files first, then the list of runs, then the name.
+
+    Parameters
+    ----------
+    stated : mapping of run to mapping of str to Condition
+        As `of_files` gives them.
+    pattern : NamePattern or None
+    run_list : RunList or None
+
+    Raises
+    ------
+    InputError
+        Two origins contradict each other; all that do are listed.
+    """
+    complaints: list[InputError] = []
+    out: dict[str, dict[str, Condition]] = {}
+    for run, from_files in stated.items():
+        found = dict(from_files)
+        in_list = run_list.name_of(run) if run_list else None
+        others = [run_list.runs[in_list]] if run_list and in_list is not None else []
+        others += [pattern.conditions(run) or {}] if pattern else []
+        for other in others:
+            for name, one in other.items():
+                if name not in found:
+                    found[name] = one
+                elif _same(name, found[name], one):
+                    found[name] = replace(found[name], origins=(*found[name].origins, *one.origins))
+                else:
+                    complaints.append(_contradiction(run, name, found[name], one))
+        out[run] = found
+        complaints += _other_incidence(run, found)
+    if complaints:
+        raise together(complaints)
+    return out
+
+
+def _same(name: str, a: Condition, b: Condition) -> bool:
+    if isinstance(a.value, str) or isinstance(b.value, str):
+        return a.value == b.value
+    floor = CLOSE_ANGLE if DIMENSIONS.get(name) == "angle" else 1e-9
+    return abs(a.value - b.value) <= max(CLOSE * max(abs(a.value), abs(b.value)), floor)
+
+
+def _contradiction(run: str, name: str, a: Condition, b: Condition) -> InputError:
+    advice = ""
+    if not isinstance(a.value, str) and not isinstance(b.value, str) and np.isclose(a.value, -b.value, rtol=CLOSE):
+        advice = (
+            f"If the two count {name} with opposite signs, leave {name} out of the list or the pattern: files count."
+        )
+    return InputError(f"{name} = {a} and {b}", "one value", file=run, advice=advice)
+
+
+def _other_incidence(run: str, found: dict[str, Condition]) -> list[InputError]:
+    """Velocities of the files beside angles: one of the two is a setting, and they must agree as far as axes let one say."""
+    flow = [found[c] for c in LINEAR if c in found and not isinstance(found[c].value, str)]
+    angles = [found[a] for a in ("alpha", "beta") if a in found and not isinstance(found[a].value, str)]
+    if not flow or not angles:
+        return []
+    if len(flow) == len(LINEAR):
+        velocity = np.array([f.value for f in flow], dtype=float)
+        speed = float(np.linalg.norm(velocity))
+        if speed > 0.0:
+            by_flow = float(np.arccos(np.max(np.abs(velocity)) / speed))
+            by_angle = float(np.arccos(np.clip(np.prod([np.cos(a.value) for a in angles]), -1.0, 1.0)))
+            if max(by_flow, by_angle) < np.pi / 4 and abs(by_flow - by_angle) > 0.002 + 0.01 * by_angle:
+                said = ", ".join(f"{c} = {found[c]}" for c in (*LINEAR, "alpha", "beta") if c in found)
+                return [
+                    InputError(
+                        f"{said}: {np.degrees(by_flow):.4g} and {np.degrees(by_angle):.4g} degrees to the axis of the flow",
+                        "one incidence", file=run,
+                    )
+                ]  # fmt: skip
+    for c in LINEAR:
+        if c in found:
+            found[f"{c} (beside angles)"] = found.pop(c)
+    return []
+
+
+def required(conditions: Mapping[str, Mapping[str, Condition]], pattern: NamePattern | None) -> list[InputError]:
+    """Complaints about settings that some runs have and others lack, and about runs without any setting.
+
+    Parameters
+    ----------
+    conditions : mapping of run to mapping of str to Condition
+        Of the runs that have forces.
+    pattern : NamePattern or None
+        Named in the complaint where a name does not fit it.
+    """
+    known = [s for s in SETTINGS if any(s in c for c in conditions.values())]
+    sources = "a list of runs or a pattern of names, such as --name 'b{beta:deg}_r{r:rad/s}'"
+    if conditions and not known:
+        return [InputError(f"no angle, rate or speed for {named(list(conditions))}", f"them in the files, {sources}",
+                           advice="Nothing is taken from names unless a pattern says what they mean.")]  # fmt: skip
+    lacking: dict[tuple[str, ...], list[str]] = {}
+    for name in known:
+        lacking.setdefault(tuple(run for run, c in conditions.items() if name not in c), []).append(name)
+    out = []
+    for runs, names in lacking.items():
+        if runs:
+            unfit = pattern and any(pattern.conditions(r) is None for r in runs)
+            why = f"The name does not fit {shown(pattern.text)}. " if pattern and unfit else ""
+            out.append(InputError(
+                f"no {listed(names)} for {named(runs)}", f"them in the files, {sources}, as for the other runs",
+                advice=f"{why}Where they are zero, a list of runs says so.",
+            ))  # fmt: skip
+    return out
+
+
+def named(runs: Sequence[str]) -> str:
+    """The first ten by name, the others counted."""
+    head = list(runs[:MOST_NAMED])
+    return listed(head) if len(runs) <= MOST_NAMED else f"{', '.join(head)} and {len(runs) - MOST_NAMED} more"

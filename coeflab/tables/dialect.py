@@ -1,0 +1,349 @@
+"""How other people write tables: numbers in their marks, words for no number, names with units, the rows above the data."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from coeflab.core.errors import shown
+from coeflab.core.types import Array
+from coeflab.core.units import parse_header
+from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, MOTIONS
+from coeflab.tables.raw_table import RawColumn
+
+SNIFFED = 1 << 16
+BLANKS = "\u00a0\u2007\u2009\u202f"  # no-break, figure, thin and narrow no-break space: marks between thousands
+_MINUS = dict.fromkeys(map(ord, "\u2010\u2011\u2012\u2013\u2014\u2212\ufe63\uff0d"), "-")
+_SWAPPED = str.maketrans(",.", ".,")
+_DASHES = frozenset({"", "-", "--", "---"})
+ERRORS = frozenset({"#div/0!", "#value!", "#ref!", "#name?", "#num!", "#null!", "#n/a", "#na", "#getting_data"})
+_NO_NUMBER = ERRORS | {
+    "nan", "+nan", "-nan", "nan(ind)", "-nan(ind)", "1.#qnan", "-1.#ind", "1.#ind", "na", "n.a.", "n/a", "null", "none", "nil",
+    "inf", "+inf", "-inf", "infinity", "+infinity", "-infinity", "1.#inf", "-1.#inf",
+}  # fmt: skip
+SAID = {".": "point", ",": "comma", " ": "blank", "'": "apostrophe", "": "none"}
+
+
+@dataclass(frozen=True)
+class Marks:
+    """The mark before the decimals and the mark between the thousands.
+
+    Attributes
+    ----------
+    decimal : {".", ","}
+    thousands : {"", " ", ".", ",", "'"}
+        A blank stands for every kind of blank.
+    """
+
+    decimal: str = "."
+    thousands: str = ""
+
+    @cached_property
+    def _form(self) -> re.Pattern[str]:
+        point = re.escape(self.decimal)
+        grouped = ""
+        if self.thousands:
+            mark = (
+                f"[ {BLANKS}]"
+                if self.thousands == " "
+                else "['’]"
+                if self.thousands == "'"
+                else re.escape(self.thousands)
+            )
+            grouped = rf"|[-+]?[1-9][0-9]{{0,2}}(?:{mark}[0-9]{{3}})+(?:{point}[0-9]*)?"
+        return re.compile(rf"[-+]?(?:[0-9]+(?:{point}[0-9]*)?|{point}[0-9]+)(?:[eEdD][-+]?[0-9]+)?{grouped}")
+
+    @cached_property
+    def _kept(self) -> dict[int, str | None]:
+        """Letters of a number as Python reads it: no marks between thousands, a point, e."""
+        away = f"{self.thousands}{BLANKS} '’" if self.thousands else ""
+        return {**dict.fromkeys(map(ord, away)), ord(self.decimal): ".", ord("d"): "e", ord("D"): "e"}
+
+    def number(self, cell: str) -> float | None:
+        """The number of a stripped cell: NaN where it says that there is none, None where it is text."""
+        if not cell.isascii():
+            cell = cell.translate(_MINUS)
+        if self._form.fullmatch(cell):
+            value = float(cell.translate(self._kept))
+            return value if math.isfinite(value) else math.nan
+        return math.nan if cell.lower() in _NO_NUMBER or cell in _DASHES or cell.startswith("Err:") else None
+
+
+def numeric(cells: Sequence[str], marks: Marks) -> int:
+    """How many cells are numbers, or say in letters that they are none."""
+    return sum(c not in _DASHES and marks.number(c) is not None for c in cells)
+
+
+_ATOM = (
+    r"(?:[kMm]?N(?:mm|m)?|lbf?|kgf|gf|[mck]?m|in|ft|ms|s|min|h|deg|degrees?|rad|radians?|°|kn|kts?|knots?|mph|mps|kph|rpm|rps|"
+    r"rev|[kM]?Hz|1|[km]?g|t|slug|[kM]?Pa|m?bar|psi|m?V|m?A|k?W|K|°C|%|‰)"
+)
+_POWER = r"(?:(?:\^|\*\*)?\(?-?[1-4]\)?|[²³⁻¹⁴]+)?"
+_UNIT = re.compile(rf"{_ATOM}{_POWER}(?:\s*[*/·.\- ]\s*\(?{_ATOM}{_POWER}\)?)*")
+_BRACKETS = re.compile(r"(?P<name>.*?\S)\s*\[(?P<unit>[^\[\]]*)\]")
+_PARENTHESES = re.compile(r"(?P<name>.*?\S)\s*\((?P<unit>[^()]*(?:\([^()]*\)[^()]*)*)\)")
+_BEHIND = re.compile(r"(?P<name>.*?[^\s,/])(?:\s*,\s*|\s+/\s+)(?P<unit>\S.*)")
+# The last letter of these is no unit: coefficients, standard errors and rudders are written so too.
+_NO_UNIT_BEHIND = re.compile(r"(?i)(c|se|k|d|delta|sd|std|err|sigma|max|min)_.{1,2}")
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit as tables write it, without brackets."""
+    return text in ("-", "–", "—") or (len(text) <= 24 and _UNIT.fullmatch(text) is not None)
+
+
+def name_and_unit(text: str) -> tuple[str, str]:
+    """Split ``Fy [N]``, ``Fy (N)``, ``Fy, N`` and ``Fy / N``; the unit is empty where none stands."""
+    clean = " ".join(text.split())
+    if m := _BRACKETS.fullmatch(clean):
+        return m["name"], m["unit"].strip()
+    if (m := _PARENTHESES.fullmatch(clean)) and is_unit(m["unit"].strip() or "-"):
+        return m["name"], m["unit"].strip()
+    if (m := _BEHIND.fullmatch(clean)) and is_unit(m["unit"]) and m["unit"] not in ("-", "1"):
+        return m["name"], m["unit"]
+    return clean, ""
+
+
+def _underscored(texts: Sequence[str]) -> list[tuple[str, str]]:
+    """Split ``Fy_N`` where at least half of the names, and two of them, end so and one of these ends is no single letter."""
+    parts = [t.rpartition("_")[::2] for t in texts]
+    ends = [bool(n) and is_unit(u) and u != "-" and not _NO_UNIT_BEHIND.fullmatch(t) for t, (n, u) in zip(texts, parts)]
+    sure = any(e and len(u) > 1 for e, (_, u) in zip(ends, parts))
+    if not sure or sum(ends) < 2 or 2 * sum(ends) < len(texts):
+        return [(t, "") for t in texts]
+    return [p if e else (t, "") for t, p, e in zip(texts, parts, ends)]
+
+
+def _bare(cell: str) -> str:
+    return cell[1:-1].strip() if cell[:1] + cell[-1:] in ("[]", "()", "<>") else cell
+
+
+def is_unit_row(cells: Sequence[str]) -> bool:
+    """Whether every cell is a unit or blank, and at least one is a unit."""
+    return any(cells) and all(not c or is_unit(_bare(c)) or c in ("[]", "()") for c in cells)
+
+
+def is_name_row(cells: Sequence[str], marks: Marks) -> bool:
+    """Whether no cell is a number and at least half of them hold a text."""
+    return not any(marks.number(c) is not None for c in cells if c not in _DASHES) and 2 * sum(map(bool, cells)) >= len(
+        cells
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Head:
+    """Names and units of the columns, and where they stand.
+
+    Attributes
+    ----------
+    names, units : tuple of str
+    line, unit_line : int
+        0 where there is none.
+    written : tuple of tuple of str
+        The rows of the head as written, to know them again.
+    units_stand : str
+        Where the units stand, as people read it.
+    remarks : tuple of str
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    line: int = 0
+    unit_line: int = 0
+    written: tuple[tuple[str, ...], ...] = ()
+    units_stand: str = "none"
+    remarks: tuple[str, ...] = ()
+
+
+Row = tuple[int, list[str]]
+
+
+def read_head(above: Sequence[Row], width: int, marks: Marks, named: int = 0, united: int = 0) -> Head:
+    """The names over a table's columns.
+
+    Parameters
+    ----------
+    above : sequence of (line, cells)
+        Rows over the data, the nearest last, each as wide as the table.
+    width : int
+    marks : Marks
+    named, united : int
+        Lines that a person says hold the names and the units; 0 to find them, -1 where there are none.
+    """
+    rows = list(above)
+    units: Row | None = next((r for r in rows if r[0] == united), None)
+    if (
+        united == 0
+        and len(rows) > 1
+        and is_unit_row(rows[-1][1])
+        and is_name_row(rows[-2][1], marks)
+        and named != rows[-1][0]
+    ):
+        units = rows[-1]
+    rows = [r for r in rows if r is not units]
+    names: Row | None = next((r for r in rows if r[0] == named), None)
+    if named == 0 and rows and is_name_row(rows[-1][1], marks):
+        names = rows[-1]
+    if names is None:
+        own = tuple(_bare(u) for u in units[1]) if units else ("",) * width
+        return Head(tuple(f"column {k + 1}" for k in range(width)), own, unit_line=units[0] if units else 0)
+    group = next((r for r in reversed(rows) if r[0] < names[0]), None)
+    return _head(names, units, group)
+
+
+def _head(names: Row, units: Row | None, group: Row | None) -> Head:
+    texts = [" ".join(t.split()) for t in names[1]]
+    stand = "none"
+    if units:
+        split = [(t, _bare(u)) for t, u in zip(texts, units[1])]
+        stand = f"row under the names (line {units[0]})"
+    else:
+        split = [name_and_unit(t) for t in texts]
+        if any(u for _, u in split):
+            stand = "in the header"
+        else:
+            split = _underscored(texts)
+            stand = "after an underscore" if any(u for _, u in split) else stand
+    found, remarks = _distinct([n or f"column {k}" for k, (n, _) in enumerate(split, start=1)], names[0], group)
+    written = tuple(tuple(r[1]) for r in (names, units) if r)
+    return Head(
+        tuple(found), tuple(u for _, u in split), names[0], units[0] if units else 0, written, stand, tuple(remarks)
+    )
+
+
+def _distinct(names: list[str], line: int, group: Row | None) -> tuple[list[str], list[str]]:
+    """Names that differ, the later ones numbered, and what stands over them: how far a group reaches no file says."""
+    seen: Counter[str] = Counter()
+    out = []
+    for name in names:
+        seen[name] += 1
+        out.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
+    again = [n for n, many in seen.items() if many > 1]
+    if not again:
+        return out, []
+    said = f"line {line}: {', '.join(map(shown, again[:8]))} stand over several columns; the later ones are numbered"
+    over = [f"{shown(' '.join(g.split()))} over {shown(n)}" for g, n in zip(group[1], out) if g] if group else []
+    return out, [said, f"line {group[0]}: {', '.join(over[:12])}"] if group and over else [said]
+
+
+@dataclass(slots=True)
+class Cells:
+    """What was met in a column on the way: words for no number, text, and where first.
+
+    Attributes
+    ----------
+    absent : dict of str to list of int
+        How often each word for no number stands there, and its first line.
+    text : list
+        How many cells are text, the first of them and its line.
+    """
+
+    absent: dict[str, list[int]] = field(default_factory=dict)
+    text: list[int | str] = field(default_factory=list)
+
+    def values(self, cells: Sequence[str], lines: Sequence[int], marks: Marks, plain: bool = False) -> Array:
+        """Numbers of stripped cells, one by one; what is none is noted.
+
+        Parameters
+        ----------
+        cells : sequence of str
+        lines : sequence of int
+        marks : Marks
+        plain : bool
+            No cell has an underscore, or a letter beyond ASCII: what Python takes for a number is one.
+        """
+        out = np.empty(len(cells))
+        point, mark = marks.decimal == ".", marks.thousands or "\n"
+        for i, cell in enumerate(cells):
+            value: float | None = math.nan
+            if plain and mark not in cell:
+                try:
+                    value = float(cell if point else cell.translate(_SWAPPED))
+                except ValueError:
+                    value = math.nan
+            if value is None or not math.isfinite(value):
+                value = marks.number(cell)
+                if value is None:
+                    self.text = [int(self.text[0]) + 1, *self.text[1:]] if self.text else [1, cell, lines[i]]
+                    value = math.nan
+                elif math.isnan(value):
+                    self.no_number(cell, lines[i])
+            out[i] = value
+        return out
+
+    def no_number(self, cell: str, line: int) -> None:
+        """Note a cell that says that there is no number."""
+        word = cell if len(cell) < 20 and not any(c in "123456789" for c in cell) else "beyond all numbers"
+        self.absent.setdefault(word, [0, line])[0] += 1
+
+    def remarks(self, name: str, rows: int) -> list[str]:
+        """What a person should know of the column."""
+        out = []
+        if self.text and int(self.text[0]) < rows / 2:
+            out.append(
+                f"column {shown(name)}: {_counted(int(self.text[0]))} text, first {shown(self.text[1])} in line {self.text[2]}"
+            )
+        elif not self.text and (absent := {w: n for w, n in self.absent.items() if n[0] < rows or w}):
+            words = ", ".join(
+                f"{shown(w) if w else 'blank'} {n[0]} times" if n[0] > 1 else shown(w) if w else "blank"
+                for w, n in absent.items()
+            )
+            total, first = sum(n[0] for n in absent.values()), min(n[1] for n in absent.values())
+            out.append(f"column {shown(name)}: {_counted(total)} without a number ({words}), first in line {first}")
+        return out
+
+
+def _counted(many: int) -> str:
+    return f"{many} cell{'s are' if many > 1 else ' is'}"
+
+
+def raw_columns(
+    head: Head, values: Iterable[Array], texts: Mapping[int, Sequence[str]], met: Sequence[Cells]
+) -> tuple[tuple[RawColumn, ...], list[str]]:
+    """The columns of a raw table and what is remarkable of them; columns without name and content are left out."""
+    columns, remarks = [], list(head.remarks)
+    for k, (name, unit, column) in enumerate(zip(head.names, head.units, values)):
+        if name == f"column {k + 1}" and k not in texts and np.all(np.isnan(column)) and set(met[k].absent) <= {""}:
+            continue
+        columns.append(RawColumn(name, unit, column, tuple(texts.get(k, ()))))
+        remarks += met[k].remarks(name, len(column))
+    return tuple(columns), remarks
+
+
+_HOUSE = frozenset({*COMPONENTS, *MOTIONS, *CONTROL_COLUMNS, "alpha", "beta", "U"})
+# OpenFOAM's forces; CFX; STAR-CCM+; Fluent's report files and force reports; SU2, as CSV and for Tecplot.
+_SOLVER = re.compile(
+    r"^\s*#\s*(?:Force|Moment|Forces|Force coefficients|Moment coefficients|CofR|liftDir|dragDir|magUInf)\b"
+    r"|^\s*#\s*Time\b.*(?:total_[xyz]|pressure_[xyz]|forces?\(|moments?\(|\(|\bC[mdls]\b)|^FoamFile\b"
+    r'|^\s*"ACCUMULATED TIMESTEP",'
+    r"|\S Monitor(?: \d+)?: \S|\b(Iteration|Time Step|Physical Time): \1\b"
+    r"|^\s*Zone\s+Pressure\s+Viscous\s+Total\b"
+    r'|^\s*\(?\s*"(?:[Ii]terations?|[Tt]ime[ -][Ss]tep|[Ff]low[ -][Tt]ime)"\s+"|^\s*\(title\s|^(?:Forces|Moments) - '
+    r'|"(?:Time|Outer|Inner)_Iter\s*"|"\s*(?:rms|bgs)\[|^"Iteration",.*"(?:CL|CD|CLift|CDrag)"|^\s*(?:TITLE|VARIABLES)\s*='
+)
+
+
+def is_of_a_solver(lines: Sequence[str]) -> bool:
+    """Whether the first lines are those of a table that a solver writes, which has its own importer."""
+    return any(_SOLVER.search(line[:2000]) for line in lines[:60])
+
+
+def is_house_table(path: Path) -> bool:
+    """Whether a file is a comma CSV whose names of columns are ours, each with its unit in brackets; never raises."""
+    try:
+        with path.open("rb") as stream:
+            sample = stream.read(SNIFFED)
+        text = sample[: sample.rfind(b"\n") + 1 if len(sample) == SNIFFED else None].decode("utf-8-sig")
+    except (OSError, UnicodeDecodeError):
+        return False
+    head = next((line for line in text.split("\n") if line.strip() and not line.lstrip().startswith("#")), "")
+    headers = [parse_header(cell.strip().strip('"')) for cell in head.split(",")]
+    united = [h.name.removeprefix("se_").removesuffix("'") in _HOUSE for h in headers if h.unit is not None]
+    return "\0" not in text and "\r" not in head.rstrip("\r") and bool(united) and all(united)

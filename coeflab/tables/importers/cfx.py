@@ -1,0 +1,81 @@
+"""Monitor data of Ansys CFX as ``cfx5mondata -out FILE.csv`` writes it.
+
+The first column is ACCUMULATED TIMESTEP, the others are ``USER POINT,NAME`` for monitors of an expression and other
+categories (``FORCE,...``, ``IMBALANCE,...``) in the same form. The file states neither units nor directions: what a column
+means has to be said by a person.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from coeflab.core.errors import InputError
+from coeflab.core.options import NoOptions, parse_options
+from coeflab.tables.monitor_files import decoded, files_of, head, kind_of, lines_of
+from coeflab.tables.monitors import how_ended, in_order, laid_out, raw_table, read_monitor
+from coeflab.tables.raw_table import Ended, RawTable, Run
+
+summary = "monitor data of Ansys CFX by cfx5mondata (CSV)"
+reads = "monitor CSV of CFX (cfx5mondata)"
+citations = ("Ansys Inc. (2024): Ansys CFX-Solver Manager User's Guide, Release 2024 R2: cfx5mondata.",)
+
+_POINT = "USER POINT,"
+
+
+def recognises(path: Path) -> bool:
+    """Whether a file is written by cfx5mondata, or a folder holds one such file and no other monitors."""
+    if path.is_dir():
+        return len(files_of(path, "cfx")) == 1
+    return path.is_file() and kind_of(head(path)) == "cfx"
+
+
+def run(path: Path, options: Mapping[str, Any] | None = None) -> Run:
+    """Read the monitors of a run.
+
+    Parameters
+    ----------
+    path : Path
+        The CSV file, or the folder that holds it.
+    options : mapping, optional
+        None are known.
+
+    Returns
+    -------
+    Run
+        Columns by their names, without unit and meaning but for the time step; no conditions.
+
+    Raises
+    ------
+    InputError
+        Another content, several files in a folder, broken lines, or another header amid the rows.
+    """
+    parse_options(NoOptions, options or {}, "importers.cfx")
+    file = path
+    if path.is_dir():
+        found = files_of(path, "cfx")
+        if len(found) != 1:
+            raise InputError(
+                f"{len(found)} monitor files", "the monitors of one run", file=path, advice="Name one file."
+            )
+        file = found[0]
+    raw = head(file)
+    if not raw.strip() and file.is_file():
+        return Run(path, path.stem, RawTable(path, (), files=(file,)), ended=Ended.EMPTY, why=f"{file.name}: empty")
+    if kind_of(raw) != "cfx":
+        wrong = "another content" if file.is_file() else "no such file"
+        raise InputError(wrong, 'a file of cfx5mondata ("ACCUMULATED TIMESTEP", ...)', file=file, line=1)
+    lines = lines_of(decoded(raw)[0])
+    at = next(n for n, line in enumerate(lines, start=1) if line.strip())
+    # Names hold quotation marks and commas of their own: "USER POINT,P1,D1,"x= 4.65E-02,y= 0.",Temperature".
+    names = [" ".join(name.split()) for name in lines[at - 1].strip().removeprefix('"').removesuffix('"').split('","')]
+    names = [n if names.index(n) == i else f"{n} ({names[:i].count(n) + 1})" for i, n in enumerate(names)]
+    monitor = in_order(read_monitor(file, laid_out(raw, file, at, names, ",", at)), 0)
+    ended, why = how_ended(monitor, range(len(names))[1:])
+    columns = [(j, name.removeprefix(_POINT), "", "" if j else "iteration") for j, name in enumerate(names)]
+    dialect = {"format": "CFX monitor data", "delimiter": "comma", "decimal mark": "point"}
+    remarks = (f"{file.name}: monitor data state no directions and no units",)
+    return Run(
+        path, path.stem, raw_table(monitor, path, columns, (file,), dialect, remarks=remarks), ended=ended, why=why
+    )

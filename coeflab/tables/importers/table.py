@@ -1,0 +1,282 @@
+"""Tables of any delimited text: what cannot be told from the file is asked for, and every row left out is named."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.limits import CSV_LINE, TABLE_CELLS, TABLE_CUT_LINES, TABLE_TEXTS
+from coeflab.core.options import parse_options
+from coeflab.core.types import Array
+from coeflab.core.wording import listed
+from coeflab.tables.dialect import Cells, Marks, is_house_table, is_of_a_solver, raw_columns
+from coeflab.tables.raw_table import RawTable
+from coeflab.tables.text_dialect import (
+    COMMENTS,
+    RULE,
+    AmbiguousError,
+    Options,
+    TextDialect,
+    encoding_of,
+    first_bytes,
+    first_lines,
+    is_comment,
+    sniff,
+    split_line,
+    undecoded,
+    unread,
+)
+
+summary = "any delimited text: delimiter, decimal mark, units and encoding found out and said"
+citations = ()
+reads = "tables of delimited text"
+
+_BLOCK = 1 << 20  # letters
+_COMMENT_BEGINS = frozenset(c[0] for c in COMMENTS)
+_PLAIN = re.compile(r"[-+]?[0-9][-+.,0-9eE]*")
+_PIECE = 32  # lines: where a block has a cell without number, most of its pieces have none
+
+
+def _blocks(path: Path, dialect: TextDialect) -> Iterator[tuple[int, list[str], bool]]:
+    """Lines from the first row on, many at a time: number of the first, lines, whether the last has an end."""
+    rest, line = "", 1
+    with path.open(encoding=dialect.encoding, newline=None) as stream:
+        while text := stream.read(_BLOCK):
+            *lines, rest = (rest + text).split("\n")
+            if len(rest) > CSV_LINE:
+                raise InputError(f"a line longer than {CSV_LINE} letters", "a table", file=path, line=line + len(lines))
+            skip = min(max(dialect.start - line, 0), len(lines))
+            if lines[skip:]:
+                yield line + skip, lines[skip:], True
+            line += len(lines)
+        if rest and line >= dialect.start:
+            yield line, [rest], False
+
+
+@dataclass(slots=True)
+class _Body:
+    """The rows as they are read."""
+
+    path: Path
+    dialect: TextDialect
+    keep: frozenset[int]
+    columns: list[list[Array]]
+    met: list[Cells]
+    texts: dict[int, list[str]]
+    lines: list[NDArray[np.int64]] = field(default_factory=list)
+    rows: int = 0
+    cut: list[tuple[int, str]] = field(default_factory=list)
+    again: list[int] = field(default_factory=list)
+    known: dict[str, str] = field(default_factory=dict)
+
+    def add(self, line: int, lines: list[str], ended: bool) -> None:
+        """Take some lines: at once where all are rows of plain numbers, else one by one."""
+        block = self._at_once(lines) if ended and not self.keep else None
+        if block is not None:
+            self._grow(np.arange(line, line + len(lines)))
+            for column, values in zip(self.columns, block.T):
+                column.append(np.ascontiguousarray(values))
+            return
+        if ended and not self.keep and not self.dialect.marks.thousands and len(lines) > _PIECE:
+            first, firsts = len(self.lines), [len(column) for column in self.columns]
+            for i in range(0, len(lines), _PIECE):
+                self.add(line + i, lines[i : i + _PIECE], ended)
+            self.lines[first:] = [np.concatenate(self.lines[first:])]
+            for start, column in zip(firsts, self.columns):
+                column[start:] = [np.concatenate(column[start:])] if column[start:] else []
+            return
+        numbers: list[int] = []
+        rows: list[list[str]] = []
+        for n, text in enumerate(lines, start=line):
+            if (row := self._cells(n, text, ended)) is not None:
+                numbers.append(n)
+                rows.append(row)
+        self._grow(np.array(numbers, dtype=np.int64))
+        plain = all(map(str.isascii, lines)) and not any("_" in text for text in lines)
+        for k, cells in enumerate(zip(*rows)):
+            self.columns[k].append(self._values(k, cells, numbers, plain))
+            if k in self.keep:
+                self.texts.setdefault(k, []).extend(self.known.setdefault(c, c) for c in cells)
+
+    def whole_columns(self) -> Iterator[Array]:
+        """The columns one after the other, their pieces given back to the memory."""
+        for pieces in self.columns:
+            whole = np.concatenate(pieces)
+            pieces.clear()
+            yield whole
+
+    def _grow(self, lines: NDArray[np.int64]) -> None:
+        self.rows += len(lines)
+        self.lines.append(lines)
+        most = min(
+            TABLE_CELLS // self.dialect.width, TABLE_TEXTS // max(len(self.keep), 1) if self.keep else TABLE_CELLS
+        )
+        if self.rows > most:
+            raise InputError(
+                f"more than {most:,} rows",
+                "a smaller table",
+                file=self.path,
+                line=int(lines[-1]),
+                advice="Average time series first.",
+            )
+
+    def _at_once(self, lines: list[str]) -> Array | None:
+        """All rows by numpy, or None where a line is anything but a row of plain numbers."""
+        d = self.dialect
+        if d.marks.thousands or '"' in lines[0]:
+            return None
+        if d.marks.decimal == ",":
+            if any("." in line for line in lines):
+                return None
+            lines = [line.replace(",", ".") for line in lines]
+        try:
+            block = (
+                np.loadtxt(lines, delimiter=d.delimiter.strip(" ") or None, comments=None, ndmin=2)
+                if any(lines)
+                else None
+            )
+        except ValueError:
+            return None
+        right = block is not None and block.shape == (len(lines), d.width) and bool(np.isfinite(block).all())
+        return block if right else None
+
+    def _cells(self, n: int, text: str, ended: bool) -> list[str] | None:
+        """The cells of one line, None where it is no row."""
+        d = self.dialect
+        if ended and d.numbers and text.lstrip()[:1] not in _COMMENT_BEGINS:
+            cells = split_line(text, d.delimiter)
+            if len(cells) == d.width and _PLAIN.fullmatch(cells[d.numbers[0]]):
+                return cells
+        stripped = text.strip()
+        if not stripped or is_comment(stripped, d.comments) or (stripped[0] in "-=+|:_" and RULE.fullmatch(stripped)):
+            return None
+        cells = split_line(text, d.delimiter)
+        while len(cells) > d.width and not cells[-1]:
+            cells.pop()
+        if tuple(cells) in d.head.written:
+            self.again.append(n)
+            return None
+        if len(cells) != d.width:
+            self._leave_out(n, f"{len(cells)} of {d.width} cells", ended)
+            return None
+        if not ended and (any(d.marks.number(cells[k]) is None for k in d.numbers) or self._is_short(cells[-1])):
+            self._leave_out(n, "the last number is not whole", ended)
+            return None
+        if len(d.numbers) > 1 and not self._any_number(cells):
+            raise InputError(
+                f"words among the rows ({shown(stripped)})", "rows of numbers under one header", file=self.path, line=n,
+                advice="Make a file of each table, or begin the line with #.",
+            )  # fmt: skip
+        return cells
+
+    def _any_number(self, cells: list[str]) -> bool:
+        """Whether a cell of the columns with numbers is none of letters only."""
+        wanted = [cells[k] for k in self.dialect.numbers]
+        return any(c[-1:].isdigit() for c in wanted) or any(self.dialect.marks.number(c) is not None for c in wanted)
+
+    def _is_short(self, cell: str) -> bool:
+        mark = self.dialect.marks.decimal
+        return 0 < self.dialect.decimals > len(cell.partition(mark)[2])
+
+    def _leave_out(self, n: int, why: str, ended: bool) -> None:
+        self.cut.append((n, why if ended else f"{why}, and the line has no end: the file is cut there"))
+        if len(self.cut) > TABLE_CUT_LINES and len(self.cut) > 0.01 * self.rows + TABLE_CUT_LINES:
+            first, said = self.cut[0]
+            raise InputError(
+                f"{said} here and in {len(self.cut) - 1} more lines", f"{self.dialect.width} cells in a row", file=self.path,
+                line=first, advice="Say delimiter, decimal or header by the options.",
+            )  # fmt: skip
+
+    def _values(self, k: int, cells: Sequence[str], lines: list[int], plain: bool) -> Array:
+        """A column's numbers; the quick way gives what `Marks.number` gives, or nothing."""
+        marks = self.dialect.marks
+        if plain and marks == Marks():
+            with suppress(ValueError):
+                values = np.array(list(map(float, cells)))
+                if np.isfinite(values).all():
+                    return values
+        return self.met[k].values(cells, lines, marks, plain)
+
+
+def _read(path: Path, dialect: TextDialect, keep: frozenset[int]) -> _Body:
+    empty = [Cells() for _ in range(dialect.width)]
+    body = _Body(path, dialect, keep, [[] for _ in empty], empty, {})
+    for line, lines, ended in _blocks(path, dialect):
+        body.add(line, lines, ended)
+    if not body.rows:
+        raise InputError("a header and no whole rows", "rows of numbers", file=path, line=dialect.start)
+    return body
+
+
+def _remarks(body: _Body) -> list[str]:
+    out = [f"line {n}: left out, {why}" for n, why in body.cut[:10]]
+    if len(body.cut) > 10:
+        out.append(f"{len(body.cut) - 10} more lines left out for the same reason")
+    if body.again:
+        said = listed([str(n) for n in body.again[:5]]) + (
+            f" and {len(body.again) - 5} more" if len(body.again) > 5 else ""
+        )
+        out.append(f"the head stands again in line {said}; left out")
+    return out
+
+
+def recognises(path: Path) -> bool:
+    """Whether the file is a table of text that no other importer knows, by its first 64 KiB."""
+    if is_house_table(path):
+        return False
+    try:
+        sample, whole = first_bytes(path)
+        encoding = encoding_of(sample, Options(), path)
+        lines, _ = first_lines(sample, whole, encoding, path)
+        if is_of_a_solver(lines):
+            return False
+        dialect = sniff(path, Options())
+    except AmbiguousError:
+        return True
+    except InputError:
+        return False
+    least = dialect.width / 2 + (0.1 if dialect.delimiter == " " else 0.0)
+    return dialect.width > 1 and len(dialect.numbers) >= least
+
+
+def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
+    """The table of a file as it stands there.
+
+    Parameters
+    ----------
+    path : Path
+    options : mapping
+        See `Options`.
+
+    Raises
+    ------
+    InputError
+        No table, rows of other lengths, numbers that can be read in two ways, or too many cells.
+    """
+    given = parse_options(Options, options, "table")
+    dialect = sniff(path, given)
+    try:
+        body = _read(path, dialect, dialect.words)
+        textual = frozenset(k for k, met in enumerate(body.met) if met.text)
+        if textual - dialect.words:
+            body = _read(path, dialect, textual)
+    except UnicodeDecodeError as why:
+        if dialect.encoding == "utf-8" and not given.encoding:
+            return raw(path, {**options, "encoding": "cp1252"})
+        raise undecoded(why, dialect.encoding, path) from None
+    except OSError as why:
+        raise unread(path, why) from None
+    texts = {k: t for k, t in body.texts.items() if k in textual}
+    columns, remarks = raw_columns(dialect.head, body.whole_columns(), texts, body.met)
+    return RawTable(
+        path, columns, dialect.head.line, np.concatenate(body.lines), files=(path,), dialect=dialect.said,
+        remarks=(*dialect.remarks, *_remarks(body), *remarks),
+    )  # fmt: skip

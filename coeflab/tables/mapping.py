@@ -1,0 +1,382 @@
+"""From a table as its file has it to columns in SI: what each column is, by the campaign, its format or nobody."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.errors import InputError, UnitsError, shown, together
+from coeflab.core.limits import LARGEST_NUMBER
+from coeflab.core.types import Array, brief
+from coeflab.core.units import factor
+from coeflab.core.wording import Verbatim, listed
+from coeflab.law.symbols import LINEAR
+from coeflab.tables.campaign import Campaign, TableDeclaration
+from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.to_frd import Columns, force_table, surge_column
+
+SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
+REMARKS = 5
+ALL = "all"
+MOST_NAMED = 20
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Assigned:
+    """A column of a file and what it is.
+
+    Attributes
+    ----------
+    column : RawColumn
+    said : ColumnMap
+        Its unit is known.
+    factor : float
+        Makes SI of the file's numbers, with the sign; of primes and coefficients the sign only.
+    """
+
+    column: RawColumn
+    said: ColumnMap
+    factor: float = 1.0
+
+    @property
+    def values(self) -> Array:
+        """SI, primes or coefficients; NaN where the file has no number, or one out of all bounds."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            out = self.column.values * self.factor
+            return np.where(np.abs(out) <= LARGEST_NUMBER, out, np.nan)
+
+
+def header(column: RawColumn) -> str:
+    """Name and unit of a column as messages write them."""
+    return f"{column.name} [{column.unit}]" if column.unit else column.name
+
+
+def known_as(column: RawColumn) -> tuple[str, ...]:
+    """By which keys a mapping may name the column: its name alone, or with its unit."""
+    name = " ".join(column.name.split())
+    return name, f"{name} [{column.unit}]", f"{name} ({column.unit})"
+
+
+def entry_of(column: RawColumn, mapping: Mapping[str, ColumnMap]) -> ColumnMap | None:
+    """What a mapping says of a column, else what its format fixes, else None."""
+    for name in (column.name, *known_as(column)):
+        if name in mapping:
+            return mapping[name]
+    if not column.means:
+        return error_of(column, mapping)
+    try:
+        return read_column_map(column.means)
+    except InputError:
+        return ColumnMap("label")  # the format knows what it is, and no fit uses it
+
+
+def error_of(column: RawColumn, mapping: Mapping[str, ColumnMap]) -> ColumnMap | None:
+    """What ``se_NAME`` is by what NAME is, as collected runs have them; None for any other column."""
+    of = mapping.get(column.name.removeprefix("se_")) if column.name.startswith("se_") else None
+    if of is None:
+        return None
+    return replace(of, error=True, negative=False) if of.role == "force" else ColumnMap("ignore")
+
+
+def declared_mapping(campaign: Campaign, table: TableDeclaration) -> Mapping[str, ColumnMap]:
+    """What a campaign says of the columns of a table: ``[columns]``, and labels, ignore and cells of the ``[[table]]``."""
+    words = {"label": table.labels, "ignore": table.ignore, "cells": (table.cells,) if table.cells else ()}
+    return {**campaign.columns, **{name: ColumnMap(word) for word, names in words.items() for name in names}}
+
+
+def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True) -> tuple[Assigned, ...]:
+    """What every column of a table is.
+
+    Parameters
+    ----------
+    raw : RawTable
+    mapping : mapping of str to ColumnMap
+        By the names of the file.
+    whole : bool
+        Refuse an entry whose column the file lacks.
+
+    Raises
+    ------
+    InputError
+        Every column that nothing is known of, that has no unit or an impossible one, or that another one doubles.
+    """
+    out: list[Assigned] = []
+    complaints: list[InputError] = []
+    taken: dict[str, str] = {}
+    for column in raw.columns:
+        said = entry_of(column, mapping)
+        if said is None:
+            complaints.append(_unmapped(raw, column))
+            continue
+        if said.name not in ("label", "ignore"):
+            if said.plain in taken:
+                found = f"{shown(taken[said.plain])} and {shown(column.name)} as {said.plain}"
+                complaints.append(fault(raw, found, "one of them", column))
+            taken[said.plain] = column.name
+        if said.name == "ignore":
+            continue
+        try:
+            out.append(with_unit(raw, column, said))
+        except InputError as why:
+            complaints.append(why)
+    names = {name for column in raw.columns for name in (column.name, *known_as(column))}
+    for name in (n for n in mapping if whole and n not in names):
+        near = difflib.get_close_matches(name, [c.name for c in raw.columns], n=1)
+        have = ", ".join(shown(c.name) for c in raw.columns[:MOST_NAMED])
+        complaints.append(
+            InputError(
+                f"no column {shown(name)}", f"one of {have}", file=raw.path, line=raw.header_line or None,
+                advice=f"Did you mean {shown(near[0])}?" if near else "",
+            )
+        )  # fmt: skip
+    if not any(a.said.role == "force" for a in out) and not complaints:
+        complaints.append(InputError("no force column", "at least one of X Y Z K M N", file=raw.path))
+    if complaints:
+        raise together(complaints)
+    return tuple(out)
+
+
+def fault(
+    raw: RawTable, found: str, expected: str, column: RawColumn, advice: str = "", row: int | None = None
+) -> InputError:
+    """An error about a column of the file, or one cell of it, to be raised by the caller."""
+    line = raw.header_line if row is None else int(raw.lines[row]) if len(raw.lines) else row + 1
+    return InputError(found, expected, file=raw.path, line=line or None, column=header(column), advice=advice)
+
+
+def _unmapped(raw: RawTable, column: RawColumn) -> InputError:
+    return fault(
+        raw, f"the column {shown(column.name)}, of which nothing is known", 'what it is, under [columns]', column,
+        f'Such as {shown(column.name)} = "Y [N]", "label" or "ignore"; `coeflab inspect` proposes.',
+    )  # fmt: skip
+
+
+def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
+    """The column with the unit that the mapping gives, else the file's own.
+
+    Raises
+    ------
+    InputError
+        No unit, an impossible one, or two that do not agree; no number in the column.
+    """
+    sign = -1.0 if said.negative else 1.0
+    if said.name == "cells" and (bad := np.flatnonzero(column.values <= 0.0)).size:
+        raise fault(raw, f"{column.values[bad[0]]:g} cells", "a count above zero", column, row=int(bad[0]))
+    if said.name in WORDS:
+        return Assigned(column, said)
+    if not np.any(np.isfinite(column.values)):
+        example = f", such as {shown(column.texts[0])}" if column.texts else ""
+        raise fault(raw, f"no number in the whole column{example}", "numbers", column)
+    if said.pure:
+        stated = column.unit.strip(" -1")
+        if stated and _factor(stated, said.dimension):
+            raise fault(raw, f"[{column.unit}] in the file", f"a pure number for {said}", column)
+        return Assigned(column, said, sign)
+    own = _factor(column.unit, said.dimension)
+    unit = said.unit or column.unit
+    if not unit or (unit == "-" and not said.unit):
+        example = EXAMPLES[said.dimension]
+        pure = f"; or {said.plain}' for a prime" if said.role in ("force", "velocity", "error") else ""
+        pure += f", {said.plain} [{PER[said.dimension]}] for a coefficient" if said.role in ("force", "error") else ""
+        raise fault(
+            raw, "no unit" if not unit else "[-]", f"a unit of {said.dimension}", column,
+            f'Write {shown(column.name)} = "{said} [{example}]" under [columns]{pure}.',
+        )  # fmt: skip
+    try:
+        size = factor(unit, said.dimension)
+    except UnitsError as why:
+        raise fault(raw, why.found, why.expected, column, why.advice) from None
+    if said.unit and own is not None and abs(own / size - 1.0) > 1e-9:
+        raise fault(
+            raw, f"[{column.unit}] in the file, [{said.unit}] in the mapping", "the same unit", column,
+            f'Leave the unit out to take the file\'s: "{replace(said, unit="")}".',
+        )  # fmt: skip
+    return Assigned(column, replace(said, unit=unit), sign * size)
+
+
+def _factor(unit: str, dimension: str) -> float | None:
+    """Factor of a unit that a file writes; None where it is no unit of the dimension."""
+    try:
+        return factor(unit, dimension)
+    except UnitsError:
+        return None
+
+
+def usable_rows(columns: Sequence[Assigned], rows: int) -> NDArray[np.int64]:
+    """Rows with a number in every setting."""
+    blank = [np.isnan(one.values) for one in columns if one.said.role in SETTINGS]
+    return np.flatnonzero(~np.logical_or.reduce([np.zeros(rows, dtype=bool), *blank]))
+
+
+def _left_out(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[str]:
+    """Rows without a setting, in a sentence for each column that lacks it."""
+    for one in columns:
+        if one.said.role not in SETTINGS:
+            continue
+        blank = np.flatnonzero(np.isnan(one.values))
+        if blank.size:
+            yield f"left out for want of {one.column.name}: {places(raw, blank)}"
+
+
+def places(raw: RawTable, rows: Sequence[int] | NDArray[np.int64]) -> str:
+    """Rows as a reader of the file finds them: lines, at most a few, and how many more."""
+    shown_ = [row_name(raw, int(row)) for row in rows[:REMARKS]]
+    more = [f"{len(rows) - REMARKS} more"] if len(rows) > REMARKS else []
+    return listed([*shown_, *more])
+
+
+def row_name(raw: RawTable, row: int) -> str:
+    """One row: its line, or its name, or its number."""
+    if len(raw.lines):
+        return f"line {raw.lines[row]}"
+    return raw.row_labels[row] if raw.row_labels else f"row {row + 1}"
+
+
+def texts_of(column: RawColumn) -> list[str]:
+    """A column as texts; numbers as they read best."""
+    if column.texts:
+        return [Verbatim(text) for text in column.texts]
+    return [Verbatim("" if np.isnan(x) else f"{x:.12g}") for x in column.values.tolist()]
+
+
+def columns_of(raw: RawTable, mapping: Mapping[str, ColumnMap], campaign: Campaign, table: TableDeclaration) -> Columns:
+    """The columns of a file in SI, by their plain names, in the axes that the campaign declares.
+
+    Rows without a number in a setting are left out; forces without one are excluded.
+
+    Parameters
+    ----------
+    raw : RawTable
+    mapping : mapping of str to ColumnMap
+        What each column is, by its name in the file.
+    campaign : Campaign
+    table : TableDeclaration
+        Its labels and ignored columns join the mapping.
+
+    Raises
+    ------
+    InputError
+        All that is wrong with the columns, by file, line and column.
+    """
+    return _columns(
+        raw, assigned(raw, {**declared_mapping(campaign, table), **mapping}, len(campaign.tables) == 1), campaign
+    )
+
+
+def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Columns:
+    rows = usable_rows(known, len(raw))
+    if not rows.size:
+        raise InputError("no row with a number in every setting", "rows of numbers", file=raw.path)
+    given: dict[str, dict[str, Array]] = {r: {} for r in (*SETTINGS, "error", "force")}
+    primes: dict[str, Array] = {}
+    for one in known:
+        if one.said.role in given:
+            values = one.values[rows]
+            given[one.said.role][one.said.name] = values
+            if one.said.primed and one.said.role == "velocity":
+                primes[one.said.name] = values
+    speed = _speed(given, primes, campaign, len(rows))
+    density = given["density"].get("density", np.full(len(rows), campaign.conditions.density))
+    for one in known:
+        if one.said.pure:
+            unit = campaign.scaling.unit(one.said.name, density, speed)
+            if one.said.area:
+                unit = 0.5 * density * speed**2 * one.said.area * (one.said.length or 1.0)
+            given[one.said.role][one.said.name] = given[one.said.role][one.said.name] * unit
+    lines = raw.lines[rows] if len(raw.lines) else rows + 1
+    point = next((texts_of(one.column) for one in known if one.said.name == "point"), list(raw.row_labels))
+    if not point and not len(raw.lines):
+        point = [f"row {row + 1}" for row in range(len(raw))]
+    numbered = {one.said.name: one.values[rows] for one in known if one.said.role == "force"}
+    blank = {name: np.isnan(values) for name, values in numbered.items()}
+    said = doubtful(raw, known)
+    return Columns(
+        file=raw.path,
+        header_line=raw.header_line,
+        lines=tuple(int(line) for line in lines),
+        headers={one.said.plain: header(one.column) for one in known if one.said.name not in WORDS},
+        angles=given["angle"],
+        velocity=given["velocity"],
+        controls=given["control"],
+        speed=speed,
+        forces=given["force"],
+        errors=given["error"],
+        labels={one.column.name: _taken(texts_of(one.column), rows) for one in known if one.said.name == "label"},
+        doubtful=tuple(frozenset(n for n, mask in blank.items() if mask[i]) | said[row] for i, row in enumerate(rows)),
+        row_labels=tuple(_taken(point, rows)) if point else (),
+        files=raw.files,
+        radius=given["radius"].get("R"),
+        density=given["density"].get("density"),
+    )
+
+
+def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
+    """For every row of the file the plain names that its column ``uncertain`` names; ``all`` are all forces and moments.
+
+    Raises
+    ------
+    InputError
+        A word that is the name of no column.
+    """
+    column = next((one.column for one in known if one.said.name == "uncertain"), None)
+    if column is None:
+        return [frozenset()] * len(raw)
+    names = {one.said.name for one in known if one.said.name not in WORDS}
+    forces = {one.said.name for one in known if one.said.role == "force"}
+    out = []
+    for row, text in enumerate(texts_of(column)):
+        words = {word.removesuffix("'") for word in text.replace(";", " ").replace(",", " ").split()}
+        words = words - {ALL} | forces if ALL in words else words
+        if strange := sorted(words - names):
+            raise fault(raw, shown(strange[0]), f"{ALL}, or of {', '.join(sorted(names))}", column, row=row)
+        out.append(frozenset(words))
+    return out
+
+
+def _taken(texts: Sequence[str], rows: NDArray[np.int64]) -> list[str]:
+    return [texts[row] for row in rows]
+
+
+def _speed(given: Mapping[str, Mapping[str, Array]], primes: Mapping[str, Array], campaign: Campaign, n: int) -> Array:
+    """U: its column, else the length of a full velocity vector, else the campaign's."""
+    if "U" in given["speed"]:
+        return given["speed"]["U"]
+    velocity = given["velocity"]
+    if surge_column(campaign) not in velocity or given["angle"] or set(LINEAR) & set(velocity) <= set(primes):
+        return np.full(n, campaign.conditions.speed)
+    squares: Array = np.sum([velocity[c] ** 2 for c in LINEAR if c in velocity and c not in primes], axis=0)
+    # v' = v / U, so the dimensional part is U^2 (1 - v'^2).
+    shares = [values**2 for name, values in primes.items() if name in LINEAR]
+    rest = 1.0 - np.sum(shares, axis=0) if shares else np.ones(n)
+    whole = np.broadcast_to(squares, (n,))
+    return np.asarray(np.sqrt(np.divide(whole, rest, out=np.zeros(n), where=rest > 0.0)))
+
+
+def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> ForceTable:
+    """A table in SI and FRD from its file and the ``[columns]`` of its campaign; what was left out stands in its notes.
+
+    Raises
+    ------
+    InputError
+        All that is wrong with the columns; then a cell that cannot be, or what campaign.toml leaves open.
+    """
+    known = assigned(raw, declared_mapping(campaign, table), len(campaign.tables) == 1)
+    columns = _columns(raw, known, campaign)
+    out = force_table(columns, campaign, table)
+    rows = usable_rows(known, len(raw))
+    exclusions = tuple(
+        replace(e, reason="no number in the source") if e.component and not e.uncertain else e for e in out.exclusions
+    )
+    said = [*_left_out(raw, known), *raw.remarks]
+    more = [f"{len(said) - REMARKS} more remarks; coeflab inspect lists them"] if len(said) > REMARKS else []
+    cells = next((one.values[rows] for one in known if one.said.name == "cells"), None)
+    notes = (*out.notes, *said[:REMARKS], *more)
+    out = replace(out, exclusions=exclusions, notes=notes, cells=cells, uncertainty=campaign.uncertainty)
+    return out if cells is None else out.on_finest_grids()

@@ -1,0 +1,307 @@
+"""What the columns of an unknown file probably are, by their names; and what their numbers show of axes and signs.
+
+Proposals are confirmed by a person, evidence is shown to one: nothing here decides.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from coeflab.core.axes import Axes
+from coeflab.core.errors import InputError
+from coeflab.core.types import Array
+from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS
+from coeflab.tables.column_map import EXAMPLES, ROLES, WORDS, ColumnMap, read_column_map
+from coeflab.tables.mapping import Assigned
+from coeflab.tables.raw_table import RawColumn, RawTable
+
+OPEN = "?"
+OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore"}  # names that coeflab's own tables have
+CLEAR = 0.8  # correlation beyond which a slope has a sign
+_SAID = {
+    "X": "fx forcex xforce surgeforce longitudinalforce axialforce laengskraft langskraft forcelongitudinale fxtotal",
+    "Y": "fy forcey yforce swayforce sideforce lateralforce transverseforce querkraft seitenkraft forcelaterale "
+    "efforttransversal fytotal",
+    "Z": "fz forcez zforce heaveforce verticalforce normalforce vertikalkraft forceverticale fztotal",
+    "K": "mx momentx xmoment rollmoment rollingmoment rollmoment momentderoulis",
+    "M": "my momenty ymoment pitchmoment pitchingmoment trimmoment nickmoment momentdetangage",
+    "N": "mz momentz zmoment yawmoment yawingmoment giermoment momentdelacet",
+    "alpha": "alpha α aoa angleofattack attack attackangle pitchangle incidence anstellwinkel angledattaque",
+    "beta": "beta β drift driftangle sideslip sideslipangle yawangle driftwinkel schiebewinkel derive angledederive",
+    "U": "speed velocity towingspeed carriagespeed towspeed freestreamvelocity uinf vinf umag vmag vitesse "
+    "geschwindigkeit schleppgeschwindigkeit",
+    "u": "surgevelocity surgespeed longitudinalvelocity",
+    "v": "swayvelocity swayspeed lateralvelocity transversevelocity",
+    "w": "heavevelocity heavespeed verticalvelocity",
+    "p": "rollrate omegax rollgeschwindigkeit",
+    "q": "pitchrate omegay nickgeschwindigkeit",
+    "r": "yawrate omegaz turnrate turningrate giergeschwindigkeit gierrate vitessedelacet",
+    "R": "radius turningradius armradius radiusofturn armlength",
+    "density": "rho density waterdensity dichte densite",
+    "dr": "rudder rudderangle deltar ruder ruderwinkel barre",
+    "ds": "sternplane sternplaneangle elevator elevatorangle deltas hoehenruder",
+    "db": "bowplane bowplaneangle deltab",
+    "cells": "cells ncells cellcount meshcells numberofcells elements gridcells zellen",
+    "point": "run runno runnumber runid case caseno casename test testno testid point pointno id no nr number "
+    "versuch versuchsnr messung fall lauf essai",
+    "ignore": "comment comments remark remarks note notes bemerkung bemerkungen kommentar commentaire date datum time "
+    "iteration iterations residual residuals",
+}
+NAMES = {word: name for name, words in _SAID.items() for word in words.split()}
+COEFFICIENTS = {
+    **{f"c{c.casefold()}": c for c in COMPONENTS},
+    **dict(zip(("cmx", "cmy", "cmz"), MOMENTS, strict=True)),
+    **dict(zip(("cfx", "cfy", "cfz"), COMPONENTS, strict=False)),
+    **dict(zip(("cmroll", "cmpitch", "cmyaw"), MOMENTS, strict=True)),
+    "croll": "K", "cpitch": "M", "cyaw": "N", "cside": "Y", "cs": "Y",
+}  # fmt: skip
+WIND = {"drag": "drag", "lift": "lift", "cd": "drag", "cl": "lift", "fd": "drag", "fl": "lift",
+        "widerstand": "drag", "auftrieb": "lift", "trainee": "drag", "portance": "lift"}  # fmt: skip
+UNITS = {"grad": "deg", "degree": "deg", "degrees": "deg", "°": "deg", "1/s": "rad/s", "s^-1": "rad/s", "n.m": "N*m",
+         "n-m": "N*m", "knots": "kn", "kts": "kn", "newton": "N", "newtons": "N", "°/s": "deg/s"}  # fmt: skip
+_ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """What a column may be.
+
+    Attributes
+    ----------
+    text : str
+        As ``--map`` takes it, with ? for what has to be said; empty where nothing is known.
+    why : str
+        What it rests on.
+    certain : bool
+        The format itself fixes it, or the file uses coeflab's own names and a unit.
+    """
+
+    text: str
+    why: str
+    certain: bool = False
+
+    @property
+    def whole(self) -> bool:
+        """Whether nothing has to be added."""
+        return bool(self.text) and OPEN not in self.text
+
+
+def folded(name: str) -> str:
+    """Letters and digits of a name, small, without accents."""
+    plain = unicodedata.normalize("NFKD", name.casefold())
+    return "".join(c for c in plain if c.isalnum())
+
+
+def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> Proposal:
+    """What a column may be, by what its format fixes, else by its name and unit.
+
+    Parameters
+    ----------
+    column : RawColumn
+    stated : mapping, optional
+        What the file says of itself; ``coefficients.area`` and ``coefficients.length`` complete a coefficient.
+    """
+    name, why, certain = _name(column)
+    if not name:
+        if column.is_text:
+            return Proposal("label", "text")
+        return Proposal("", why)
+    said = read_column_map(name)
+    if said.name in WORDS:
+        return Proposal(name, why, certain)
+    if column.is_text and not np.any(np.isfinite(column.values)):
+        return Proposal("label", "text")
+    said_of = stated or {}
+    by = (said_of.get("coefficients.area"), said_of.get("coefficients.length", said_of.get("scaling.length")))
+    return _with_unit(column, said, why, certain, by)
+
+
+def _name(column: RawColumn) -> tuple[str, str, bool]:
+    """Plain name, what it rests on, and whether it is certain."""
+    if column.means:
+        try:
+            return str(read_column_map(column.means)), "its format says so", True
+        except InputError:
+            return "label", f"its format says that it is {column.means}, which no fit uses", True
+    own = column.name.strip()
+    short = own.replace("′", "'").replace("’", "'")
+    plain = short.removeprefix("se_").removesuffix("'")
+    if plain in OWN:
+        try:
+            return str(read_column_map(short)), "its name", True
+        except InputError:
+            pass
+    bare = folded(own)
+    error = _ERROR.search(bare)
+    bare = _ERROR.sub("", bare) if error else bare
+    prefix, prime = "se_" if error else "", ""
+    if bare.endswith("prime") or short.endswith("'"):
+        bare, prime = bare.removesuffix("prime"), "'"
+    if bare in WIND and not error:
+        return "", f"{WIND[bare]} is along or across the flow: turn it to body axes X and Z first, or ignore it", False
+    single = {c.casefold(): c for c in COMPONENTS} if prime or error else {}
+    single |= {c: c for c in (*LINEAR, *ANGULAR)} if prime else {}
+    name = NAMES.get(bare) or single.get(bare) or (COEFFICIENTS.get(bare, "") if not prime else "")
+    if not name:
+        return "", "no known name", False
+    if error and name not in COMPONENTS:
+        return "", "no known name", False
+    return f"{prefix}{name}{prime}", "its name", False
+
+
+def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: tuple[object, object]) -> Proposal:
+    unit = " ".join(column.unit.split())
+    name = str(said).partition(" [")[0]
+    if said.primed:
+        return Proposal(f"{name} [-]", why, certain)
+    unit = UNITS.get(unit.casefold(), unit)
+    moment = said.name in MOMENTS
+    is_coefficient = said.name in COMPONENTS and (
+        unit in ("-", "1") or (not unit and folded(column.name) in COEFFICIENTS and not certain)
+    )
+    if is_coefficient:
+        area, length = (
+            f"{float(str(x))!r} m{u}" if x is not None else OPEN for x, u in zip(by, ("^2", ""), strict=True)
+        )
+        text = f"{name} [coefficient A={area}" + (f" L={length}]" if moment else "]")
+        return Proposal(text, f"{why}, no unit: by 1/2 rho U^2 A{' L' * moment}, or {name}' for primes", certain)
+    try:
+        whole = read_column_map(f"{name} [{unit}]") if unit else None
+    except InputError:
+        return Proposal(f"{name} [{OPEN}]", f"{why}; its unit [{column.unit}] is none of {said.dimension}")
+    if whole is not None:
+        return Proposal(str(whole), f"{why} and unit", certain)
+    if said.dimension == "angle" and np.nanmax(np.abs(column.values), initial=0.0) > np.pi:
+        return Proposal(f"{name} [deg]", f"{why}; beyond half a turn in radians")
+    return Proposal(f"{name} [{OPEN}]", f"{why}; no unit is stated, such as {EXAMPLES[said.dimension]}")
+
+
+def proposals(raw: RawTable) -> tuple[Proposal, ...]:
+    """What every column of a table may be; of several that may be the same, or name the rows, only the first keeps it."""
+    stated = {key: s.value for key, s in raw.stated.items()}
+    out: list[Proposal] = []
+    taken: dict[str, str] = {}
+    for column in raw.columns:
+        one = proposed(column, stated)
+        said = read_column_map(one.text.partition(" [")[0]) if one.text else None
+        if said is not None and said.name not in ("label", "ignore"):
+            if said.name == "point" and (said.plain in taken or _repeats(column)):
+                one = Proposal("label", f"{one.why}, but rows share it" if _repeats(column) else one.why, one.certain)
+            elif said.plain in taken:
+                one = Proposal("", f"{said.plain} is {taken[said.plain]} already")
+            else:
+                taken[said.plain] = column.name
+        out.append(one)
+    return tuple(out)
+
+
+def _repeats(column: RawColumn) -> bool:
+    cells = column.texts or tuple(column.values.tolist())
+    return len(set(cells)) < len(cells)
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What the numbers show.
+
+    Attributes
+    ----------
+    text : str
+    key, value : str
+        What of campaign.toml follows from it for a slender body; empty where nothing does.
+    """
+
+    text: str
+    key: str = ""
+    value: str = ""
+
+
+def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Evidence, ...]:
+    """What the numbers of a table show of axes and signs.
+
+    Parameters
+    ----------
+    columns : sequence of Assigned
+    frame : Axes, optional
+        Of the file, once it is known; without it the sign of an angle stays open.
+    """
+    data = {one.said.name: one.values for one in columns if one.said.role not in ("word", "error")}
+    angles = [one.said.name for one in columns if one.said.role == "angle"]
+    out: list[Evidence] = []
+    for angle, component, flow, side, other in (
+        ("beta", "Y", "v", "starboard", "port"), ("alpha", "Z", "w", "down", "up"),
+    ):  # fmt: skip
+        force = _frd(data, component, frame) if frame else data.get(component)
+        if angle not in angles or force is None or not (sign := trend(force, data, angle)):
+            continue
+        as_pointed = f"{flow} = {'-' if sign > 0 else '+'}U sin({angle})"
+        turned = f"{flow} = {'+' if sign > 0 else '-'}U sin({angle})"
+        have = f"{component} and {angle} have {'the same sign' if sign > 0 else 'opposite signs'}"
+        if frame is None:
+            axis = "yz"[component == "Z"]
+            out.append(Evidence(f"{have}: {as_pointed} if {axis} points {side}, {turned} if {axis} points {other}"))
+        else:
+            of = "" if frame.name == "FRD" else f" to {side}"
+            said = f"{component}{of} and {angle}" + have.removeprefix(f"{component} and {angle}")
+            out.append(Evidence(f"{said}, and a slender body has {component}{flow}' < 0", f"axes.{angle}", as_pointed))
+    for component, rate in (("Y", "v"), ("Z", "w"), ("K", "p"), ("M", "q"), ("N", "r")):
+        if component in data and rate in data and (sign := trend(data[component], data, rate)):
+            if sign < 0:
+                out.append(Evidence(f"{component} and {rate} have opposite signs, as damping has in one set of axes"))
+            else:
+                out.append(Evidence(
+                    f"{component} and {rate} have the same sign: no damping of a slender body; one of them has the "
+                    f'other sign (-{rate} or -{component}), or the force contains inertia'
+                ))  # fmt: skip
+    out += _levers(data)
+    if "X" in data and (x := data["X"][np.isfinite(data["X"])]).size and (np.all(x > 0) or np.all(x < 0)):
+        out.append(Evidence(f"X is {'positive' if x[0] > 0 else 'negative'} throughout: drag, if x points "
+                            f"{'aft' if x[0] > 0 else 'forward'}"))  # fmt: skip
+    return tuple(out)
+
+
+def _frd(data: Mapping[str, Array], component: str, frame: Axes) -> Array | None:
+    group = COMPONENTS[:3] if component in COMPONENTS[:3] else COMPONENTS[3:]
+    row = frame.rotation[group.index(component)]
+    own = group[int(np.argmax(np.abs(row)))]
+    return data[own] * float(row[group.index(own)]) if own in data else None
+
+
+def _levers(data: Mapping[str, Array]) -> list[Evidence]:
+    """Where along x the forces act, which M of a left-handed triad contradicts."""
+    found = {}
+    for moment, force, sign in (("N", "Y", 1.0), ("M", "Z", -1.0)):
+        if moment in data and force in data:
+            ok = np.isfinite(data[moment]) & np.isfinite(data[force])
+            m, f = data[moment][ok], data[force][ok]
+            if m.size >= 3 and np.any(f) and np.any(m) and abs(np.dot(m, f)) > CLEAR * np.sqrt((m @ m) * (f @ f)):
+                found[moment, force] = sign * float(m @ f) / float(f @ f)
+    out = [
+        Evidence(f"{m} / {f}: the force acts toward {'+' if arm > 0 else '-'}x of the reference point")
+        for (m, f), arm in found.items()
+    ]
+    if len(found) == 2 and len({np.sign(arm) for arm in found.values()}) == 2:
+        out.append(Evidence("N / Y and M / Z disagree on the side: a left-handed triad, or a sign of Y, Z, M or N"))
+    return out
+
+
+def trend(force: Array, data: Mapping[str, Array], setting: str) -> int:
+    """Sign of a force's slope over a setting while the others rest; 0 where it is not clear."""
+    x = data[setting]
+    ok = np.isfinite(force) & np.isfinite(x)
+    still = ok.copy()
+    for name, values in data.items():
+        if name in ("alpha", "beta", "v", "w", "p", "q", "r", "dr", "ds", "db") and name != setting:
+            still &= np.abs(values) <= 1e-6 * max(float(np.nanmax(np.abs(values), initial=0.0)), 1e-12)
+    ok = still if np.unique(x[still]).size >= 3 else ok
+    if np.unique(x[ok]).size < 3:
+        return 0
+    dx, df = x[ok] - np.mean(x[ok]), force[ok] - np.mean(force[ok])
+    size = np.sqrt(np.dot(dx, dx) * np.dot(df, df))
+    shared = float(np.dot(dx, df) / size) if size > 0.0 else 0.0
+    return int(np.sign(shared)) if abs(shared) >= CLEAR else 0

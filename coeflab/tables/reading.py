@@ -1,0 +1,225 @@
+"""From a path that a person names to tables: which importer knows it, what its file holds, what its campaign makes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.text.delimited import read_cells
+from coeflab.tables.campaign import FILE, Campaign, InputUncertainty, TableDeclaration, read_campaign
+from coeflab.tables.collect import collect
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import IMPORTERS, Importer, PlannedTable
+from coeflab.tables.mapping import mapped_table
+from coeflab.tables.raw_table import RawTable
+from coeflab.tables.runs import find_runs
+
+Progress = Callable[[str], None]
+GENERAL = "table"  # any delimited text: those of one tool come first
+OF_RUNS = ("names", "run_list", "state")
+
+
+def recognised(path: Path) -> tuple[str, ...]:
+    """Importers of raw tables or runs that know a file or folder by its content; a tool's own before the general one."""
+    known = []
+    for name in IMPORTERS.usable():
+        importer = IMPORTERS.load(name)
+        with IMPORTERS.guarded(name):
+            if (importer.raw or importer.run) and importer.recognises(path):
+                known.append(name)
+    known = [n for n in known if n != GENERAL] or known
+    return tuple(known or ([GENERAL] if _is_of_a_campaign(path) else ()))
+
+
+def _is_of_a_campaign(path: Path) -> bool:
+    """Whether an importer of campaigns knows a text whose campaign.toml is not there yet."""
+    for name in IMPORTERS.usable():
+        importer = IMPORTERS.load(name)
+        with IMPORTERS.guarded(name):
+            if importer.read and not (importer.raw or importer.run) and path.is_file() and importer.recognises(path):
+                return True
+    return False
+
+
+def importer_of(path: Path, name: str = "") -> str:
+    """The one importer of a path.
+
+    Parameters
+    ----------
+    path : Path
+    name : str, optional
+        The one that a person names.
+
+    Raises
+    ------
+    InputError
+        None or several know the path; or the named one reads neither tables nor runs.
+    """
+    readers = [n for n in IMPORTERS.usable() if IMPORTERS.load(n).raw or IMPORTERS.load(n).run]
+    if name:
+        importer = IMPORTERS.load(name)
+        if not (importer.raw or importer.run):
+            raise InputError(f"the importer {name}", f"one of {', '.join(readers)}", column="--as")
+        return name
+    if not path.exists():
+        raise InputError("no such file or folder", "a path that exists", file=path)
+    known = recognised(path)
+    if not known and path.is_dir():
+        return find_runs(path)[0]
+    if len(known) == 1:
+        return known[0]
+    found = f"something that {' and '.join(known)} read" if known else "nothing that an importer knows by its content"
+    each = "; ".join(f"{n}: {IMPORTERS.load(n).reads or IMPORTERS.load(n).summary}" for n in known or readers)
+    raise InputError(found, f"--as {' or --as '.join(known or readers)}", file=path, advice=f"{each}.")
+
+
+def read_raw(
+    path: Path, name: str, options: Mapping[str, Any] | None = None, progress: Progress | None = None
+) -> RawTable:
+    """A table as its file has it, or the runs of a folder as one table.
+
+    Parameters
+    ----------
+    path : Path
+    name : str
+        Of the importer.
+    options : mapping, optional
+        Of the importer; of collected runs also ``names``, ``run_list`` and ``state``, see `coeflab.tables.collect.collect`.
+    progress : callable, optional
+        Is handed a line now and then.
+
+    Raises
+    ------
+    InputError
+        By file and line; or an option that is not known.
+    """
+    importer = IMPORTERS.load(name)
+    given = dict(options or {})
+    with IMPORTERS.guarded(name):
+        if importer.raw is not None:
+            return importer.raw(path, given)
+        names, runs, state = (str(given.pop(option, "")) for option in OF_RUNS)
+        return collect(
+            path, name, options=given, names=names, run_list=Path(runs) if runs else None, progress=progress,
+            state=Path(state) if state else None,
+        ).table  # fmt: skip
+
+
+def with_declarations(
+    table: ForceTable, file: Path, cells: str = "", uncertainty: InputUncertainty | None = None
+) -> ForceTable:
+    """A table with its cell counts and input uncertainty.
+
+    Parameters
+    ----------
+    table : ForceTable
+        As its importer read it, row for row.
+    file : Path
+        The table's own file.
+    cells : str
+        Column of the cell counts, or empty.
+    uncertainty : InputUncertainty, optional
+
+    Raises
+    ------
+    InputError
+        No such column, or a count that is not above zero.
+    """
+    if not cells:
+        return replace(table, uncertainty=uncertainty)
+    read = read_cells(file)
+    if cells not in [h.name for h in read.headers]:
+        raise InputError(
+            f"no column {cells}", "the column of cell counts that [[table]] cells names", file=file,
+            line=read.first_line - 1, column=cells,
+        )  # fmt: skip
+    counts = read.numbers(cells)
+    bad = np.flatnonzero(counts <= 0.0)
+    if bad.size:
+        raise InputError(
+            f"{counts[bad[0]]:g} cells", "a count above zero", file=file, line=read.line(int(bad[0])), column=cells
+        )
+    return replace(table, cells=counts, uncertainty=uncertainty).on_finest_grids()
+
+
+def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTable, ...]:
+    """The tables of a campaign with what its campaign.toml declares about them."""
+    columns = {f"{campaign.name}/{t.file}": t for t in campaign.tables}
+    out = []
+    for table in tables:
+        t = columns[table.name]
+        out.append(with_declarations(table, campaign.path.parent / t.file, t.cells, campaign.uncertainty))
+    return tuple(out)
+
+
+def _declaration(path: Path) -> Path:
+    return path / FILE if path.is_dir() else path if path.suffix == ".toml" else path.parent / FILE
+
+
+def suited_fit(path: Path) -> str:
+    """The fit that the tables of a campaign are for, as its importer says; the usual one where none can be asked."""
+    declaration = _declaration(path)
+    name = read_campaign(declaration).importer if declaration.exists() else "csv"
+    return IMPORTERS.load(name).fit if name in IMPORTERS.names() else Importer.fit
+
+
+def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
+    """The tables of a planned campaign: a folder, its campaign.toml, or one table beside it.
+
+    Raises
+    ------
+    InputError
+        By file, line and column.
+    """
+    path = planned.campaign
+    declaration = _declaration(path)
+    if not declaration.exists():
+        raise InputError(
+            f"no {FILE} in {declaration.parent}",
+            f"a {FILE} that declares axes, angle sign, reference point and scaling",
+            file=path,
+            advice="`coeflab import PATH --out DIR` asks and writes one; `coeflab new DIR` writes an example.",
+        )
+    campaign = read_campaign(declaration)
+    importer = IMPORTERS.load(campaign.importer)
+    if importer.read is not None:
+        if campaign.columns:
+            raise InputError(
+                f"[columns] with importer = {shown(campaign.importer)}", 'importer = "table" or another raw one',
+                file=declaration, column="columns",
+                advice=f"{campaign.importer} reads headers such as Y [N] as they stand.",
+            )  # fmt: skip
+        with IMPORTERS.guarded(campaign.importer):
+            return declared(importer.read(campaign, planned.only, campaign.options), campaign)
+    if not (importer.raw or importer.run):
+        raise InputError(
+            f"the importer {campaign.importer}", "one that reads tables", file=declaration, column="campaign.importer"
+        )
+    return tuple(_mapped(campaign, table) for table in wanted(campaign, planned.only))
+
+
+def wanted(campaign: Campaign, only: str | None) -> tuple[TableDeclaration, ...]:
+    """The tables of a campaign, or the one of that file name.
+
+    Raises
+    ------
+    InputError
+        No [[table]] has it.
+    """
+    out = tuple(t for t in campaign.tables if only is None or Path(t.file).name == only)
+    if not out:
+        known = ", ".join(t.file for t in campaign.tables)
+        raise InputError(f"no [[table]] for {shown(only)}", f"one of {known}", file=campaign.path, column="table")
+    return out
+
+
+def _mapped(campaign: Campaign, table: TableDeclaration) -> ForceTable:
+    folder = campaign.path.parent
+    options = dict(campaign.options)
+    options |= {name: folder / str(options[name]) for name in ("run_list", "state") if options.get(name)}
+    return mapped_table(read_raw(folder / table.file, campaign.importer, options), campaign, table)

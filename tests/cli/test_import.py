@@ -1,0 +1,333 @@
+"""``coeflab import`` and ``coeflab inspect`` of files that nobody has explained yet."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import re
+import shlex
+import subprocess
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import Result
+from typer.testing import CliRunner
+
+from coeflab.cli import app
+from coeflab.core.errors import CoeflabError
+from coeflab.core.provenance import sha256_of
+from coeflab.tables.campaign import read_campaign
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import PlannedTable
+from coeflab.tables.reading import read_tables
+from tests.cli.conftest import COEFLAB, Run
+from tests.tables.runs_as_text import FILE, write_run
+from tests.tables.test_collect import stub
+
+__all__ = ["stub"]
+
+DOC = Path(__file__).parents[2] / "docs" / "data_in.md"
+DRIFT = """# tank
+Run,Yaw angle (deg),Fx (N),Fy (N),Mz (Nm),Comment
+1,-8,12.3,-29.4,10.4,
+2,-4,12.9,-11.8,5.7,
+3,0,13.07,-0.72,0.1,wire
+4,4,13,11.8,-5.8,
+5,8,12.5,nan,-10.4,
+"""
+SAID = {
+    "axes.frame": "CFD", "axes.datum": "nose", "axes.reference_point": "-2,0,0", "scaling.length": "4 m",
+    "scaling.length_name": "LOA", "conditions.density": "998.2", "conditions.speed": "2.0", "source.kind": "experiment",
+}  # fmt: skip
+
+
+def sets(**more: str) -> list[str]:
+    said = SAID | {k.replace("__", "."): v for k, v in more.items()}
+    return [a for k, v in said.items() for a in ("--set", f"{k}={v}")]
+
+
+def invoke(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(a) for a in arguments])
+
+
+def refused(result: Result) -> tuple[str, ...]:
+    assert isinstance(result.exception, CoeflabError), result.output
+    return result.exception.lines
+
+
+def table_of(folder: Path) -> ForceTable:
+    return read_tables(PlannedTable(folder, ()))[0]
+
+
+@pytest.fixture
+def drift(tmp_path: Path) -> Path:
+    file = tmp_path / "drift.csv"
+    file.write_text(DRIFT)
+    return file
+
+
+def test_everything_open_comes_in_one_error_with_its_arguments(drift: Path, tmp_path: Path) -> None:
+    lines = refused(invoke("import", drift, "--out", tmp_path / "out"))
+    assert "found 15 open points" in lines[0]
+    arguments = [line.strip() for line in lines if line.startswith("  --")]
+    assert arguments == [
+        "--map Run=point", "--map 'Yaw angle=beta [deg]'", "--map 'Fx=X [N]'", "--map 'Fy=Y [N]'", "--map 'Mz=N [Nm]'",
+        "--map Comment=ignore", "--set axes.frame=FRAME", "--set axes.beta=SIGN", "--set axes.datum=POINT",
+        "--set axes.reference_point=X,Y,Z", "--set scaling.length=METRES", "--set scaling.length_name=NAME",
+        "--set conditions.density=DENSITY", "--set conditions.speed=SPEED", "--set source.kind=KIND",
+        "--yes takes those with values.",
+    ]  # fmt: skip
+    assert all(len(line) <= 80 for line in lines[1:])
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_arguments_of_the_error_settle_it(drift: Path, tmp_path: Path) -> None:
+    lines = refused(invoke("import", drift, "--out", tmp_path / "out", *sets()))
+    given = [word for line in lines if line.startswith("  --map") for word in shlex.split(line)]
+    assert [line.strip() for line in lines if line.startswith("  --set")] == [
+        "--set 'axes.beta=v = -U sin(beta)'"
+    ]  # Y to starboard grows with beta, which is evidence, no decision
+    done = invoke("import", drift, "--out", tmp_path / "out", *sets(axes__beta="-"), *given)
+    assert done.exit_code == 0, done.output
+    assert done.output.rstrip().endswith(f"Next: coeflab fit {tmp_path / 'out'}")
+    table = table_of(tmp_path / "out")
+    assert table.forces["X"].tolist() == [-12.3, -12.9, -13.07, -13.0, -12.5]
+    assert table.forces["Y"].tolist()[:4] == [-29.4, -11.8, -0.72, 11.8]
+    assert table.motion["v"][0] > 0.0
+    assert [(e.component, e.line) for e in table.exclusions] == [("Y", 7)]
+    assert table.labels == ("1", "2", "3", "4", "5")
+
+
+def test_yes_takes_what_has_a_value_and_says_so(drift: Path, tmp_path: Path) -> None:
+    done = invoke("import", drift, "--out", tmp_path / "out", "--yes", *sets())
+    assert done.exit_code == 0, done.output
+    assert "axes.beta = v = -U sin(beta) (Y to starboard and beta have the same sign" in done.output
+    text = (tmp_path / "out" / "campaign.toml").read_text()
+    assert re.search(r'beta = "v = -U sin\(beta\)" +# Y to starboard and beta have the same sign', text)
+    assert re.search(r'frame = "CFD" +# confirmed', text)
+    assert f'source_sha256 = "{sha256_of(drift)}"' in text
+    assert "Yaw angle = beta [deg]" in read_campaign(tmp_path / "out" / "campaign.toml").source.how_obtained
+    still_open = refused(invoke("import", drift, "--out", tmp_path / "two", "--yes"))
+    assert not any("--map" in line or "--yes" in line for line in still_open)
+    assert any("--set axes.beta=SIGN" in line for line in still_open)  # no axes, no evidence of a sign
+
+
+def test_a_saved_mapping_serves_the_next_file(drift: Path, tmp_path: Path) -> None:
+    invoke("import", drift, "--out", tmp_path / "one", "--yes", *sets(axes__beta="+"))
+    second = tmp_path / "second.csv"
+    second.write_text(DRIFT.replace("13.07", "14.07"))
+    done = invoke("import", second, "--out", tmp_path / "two", "--mapping", tmp_path / "one" / "mapping.toml")
+    assert done.exit_code == 0, done.output
+    assert table_of(tmp_path / "two").forces["X"][2] == -14.07
+    assert read_campaign(tmp_path / "two" / "campaign.toml").source.citation == "second.csv"
+    saved = tmp_path / "one" / "mapping.toml"
+    saved.write_text(saved.read_text().replace('"X [N]"', '"X [deg]"').replace('"CFD"', '"DFC"'))
+    lines = refused(invoke("import", second, "--out", tmp_path / "three", "--mapping", saved))
+    assert len(lines) == 2
+    assert all(re.search(r"mapping.toml, line \d+", line) for line in lines)
+
+
+def test_an_existing_folder_is_replaced_only_by_force(drift: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert invoke("import", drift, "--out", out, "--yes", *sets()).exit_code == 0
+    before = (out / "table.csv").read_bytes()
+    drift.write_text(DRIFT.replace("13.07", "14.07"))
+    assert "replace it with --force" in refused(invoke("import", drift, "--out", out, "--yes", *sets()))[0]
+    assert (out / "table.csv").read_bytes() == before
+    assert invoke("import", drift, "--out", out, "--yes", "--force", *sets()).exit_code == 0
+    assert b"14.07" in (out / "table.csv").read_bytes()
+
+
+def test_wrong_arguments_are_refused_together_and_nothing_is_written(drift: Path, tmp_path: Path) -> None:
+    wrong = (
+        "--set",
+        "axes.frame=XYZ",
+        "--set",
+        "conditions.density=-1",
+        "--set",
+        "what=1",
+        "--set",
+        "axes.datum=POINT",
+    )
+    lines = refused(invoke("import", drift, "--out", tmp_path / "out", *wrong, "--option", "sheet"))
+    assert len(lines) == 5
+    lines = refused(invoke("import", drift, "--out", tmp_path / "out", "--map", "Fz=Z [N]", "--map", "Fy=Y [deg]"))
+    assert len(lines) == 2
+    assert 'no column "Fz"' in lines[0]
+    assert "unit of another dimension" in lines[1]
+    ask = ("import", drift, "--out", tmp_path / "out", "--yes")
+    lines = refused(invoke(*ask, *sets(conditions__viscosity="thick", table__labels="Run")))
+    assert [line.partition(":")[0] for line in lines] == ['"conditions.viscosity"', '"table[0].labels"']
+    assert '"source.wat"' not in refused(invoke(*ask, *sets(source__wat="1")))[0].partition("expected")[2]
+    assert [p.name for p in tmp_path.iterdir()] == ["drift.csv"]
+
+
+def test_a_rotating_table_has_to_say_what_it_contains(tmp_path: Path) -> None:
+    file = tmp_path / "arm.csv"
+    file.write_text("r (rad/s),Fy (N),Mz (Nm)\n-0.4,-10,13\n-0.2,-5,7\n0.2,5,-7\n0.4,10,-13\n")
+    ask = ("import", file, "--out", tmp_path / "out", "--yes")
+    lines = refused(invoke(*ask, *sets(axes__frame="FRD")))
+    assert [line.strip() for line in lines if "--set" in line] == ["--set table.contains_inertia=TRUE_OR_FALSE"]
+    lines = refused(invoke(*ask, *sets(axes__frame="FRD", table__contains_inertia="yes")))
+    assert sum("--set inertia." in line for line in lines) == 3
+    inside = {"table.contains_inertia": "true", "inertia.mass": "40 kg", "inertia.centre_of_gravity": "-2,0,0"}
+    more = {k.replace(".", "__"): v for k, v in inside.items()}
+    done = invoke(*ask, *sets(axes__frame="FRD", inertia__inertia="[1, 9, 9]", **more))
+    assert done.exit_code == 0, done.output
+    assert table_of(tmp_path / "out").forces["Y"][3] == pytest.approx(10.0 + 40.0 * 2.0 * 0.4)
+
+
+def test_the_list_of_commands_says_what_they_do() -> None:
+    listed = " ".join(invoke("--help").output.split())
+    assert "import Make a campaign of a table or a folder of runs" in listed
+    assert "inspect Show a force table in SI and FRD" in listed
+
+
+def test_inspect_of_an_unknown_file(drift: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(drift.parent)
+    done = invoke("inspect", drift.name)
+    assert done.exit_code == 0, done.output
+    for part in ("read by table", "Yaw angle  deg   -8 to 8", "beta [deg]?", "Missing to read it as a campaign",
+                 "--set axes.frame=FRAME", "Next: coeflab import"):  # fmt: skip
+        assert part in done.output
+    assert max(map(len, done.output.splitlines())) <= 80
+    content = json.loads(invoke("inspect", drift, "--json").stdout)
+    assert content["importer"] == "table"
+    assert content["columns"][1]["proposed"] == "beta [deg]"
+    assert content["columns"][1]["low"] == -8.0
+    assert len(content["missing"]) == 15
+
+
+def test_a_table_in_our_own_names_is_imported_as_it_reads(tmp_path: Path) -> None:
+    """What `coeflab import` writes is what it reads: the same bytes but for the first line, the same force table."""
+    template = Path(str(files("coeflab.cli") / "template" / "campaign" / "drift.csv")).read_text()
+    (tmp_path / "own.csv").write_text(template.replace("-51.1930,-13.6577,", "-51.1930,,N"))
+    said = sets(axes__frame="FRD", axes__beta="-")
+    for source, out in (("own.csv", "one"), ("one/table.csv", "two")):
+        done = invoke("import", tmp_path / source, "--out", tmp_path / out, *said)
+        assert done.exit_code == 0, done.output + str(done.exception)
+    one, two = ((tmp_path / n / "table.csv").read_text().splitlines()[1:] for n in ("one", "two"))
+    assert one == two
+    table = table_of(tmp_path / "one")
+    assert [(e.row, e.component) for e in table.exclusions] == [(0, "N")]
+    assert table.forces["Y"][0] == -51.193
+
+
+def test_inspect_of_what_no_importer_knows(tmp_path: Path) -> None:
+    (tmp_path / "noise.bin").write_bytes(bytes(range(256)) * 20)
+    lines = refused(invoke("inspect", tmp_path / "noise.bin"))
+    assert "found nothing that an importer knows by its content; expected --as" in lines[0]
+    assert "table" in lines[0]
+    assert "one of" in refused(invoke("inspect", tmp_path / "noise.bin", "--as", "csv"))[0]
+
+
+def test_inspect_of_a_run_whose_condition_nobody_states(stub: Path, tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "alone", {"X": 13.0, "Y": 2.0})
+    done = invoke("inspect", folder)
+    assert done.exit_code == 0, done.output
+    for part in (
+        "a run, read by stub; ended whole",
+        "200 rows",
+        "Missing to read it as a row of a table",
+    ):
+        assert part in " ".join(done.output.split())
+    content = json.loads(invoke("inspect", folder, "--json").stdout)
+    assert content["ended"] == "whole"
+    assert [c["is"] for c in content["History"]] == ["iteration", "X", "Y"]
+    assert content["missing"]
+
+
+RUNS = {f"b{beta}".replace("-", "m"): beta for beta in (0, 4, 8, -4, -8)}
+
+
+@pytest.fixture
+def runs(stub: Path, tmp_path: Path) -> Path:
+    """A folder of runs whose names hold the drift angle, about a speed that their files state."""
+    folder = tmp_path / "runs"
+    for seed, (name, beta) in enumerate(RUNS.items()):
+        forces = {"X": 13.0, "Y": 3.0 * beta + 0.5}
+        stated = {"conditions.density": 998.2, "conditions.speed": 2.0, "axes.reference_point": [1.2, 0.0, 0.0]}
+        write_run(folder / name, forces, seed=seed, stated=stated, patches={"sail": 0.2})
+    return folder
+
+
+def test_a_folder_of_runs_becomes_a_campaign_that_weighs_its_points(runs: Path, tmp_path: Path) -> None:
+    ask = ("import", runs, "--out", tmp_path / "out", "--name", "b{beta:deg:m=-}", "--yes")
+    lines = refused(invoke(*ask))
+    assert "The file has (1.2, 0, 0) in its own axes from its own origin" in " ".join(" ".join(lines).split())
+    assert not any("conditions." in line for line in lines)
+    said = {k: v for k, v in SAID.items() if not k.startswith("conditions.")}
+    done = invoke(*ask, *[a for k, v in said.items() for a in ("--set", f"{k}={v}")])
+    assert done.exit_code == 0, done.output
+    table = table_of(tmp_path / "out")
+    assert table.labels == tuple(RUNS)
+    assert np.degrees(np.arcsin(table.motion["v"] / table.speed)) == pytest.approx([-b for b in RUNS.values()])
+    assert table.forces["Y"] == pytest.approx([3.0 * b + 0.5 for b in RUNS.values()], rel=2e-3)
+    assert set(table.errors) == {"X", "Y"}
+    text = (tmp_path / "out" / "campaign.toml").read_text()
+    assert re.search(r"density = 998.2 +# stated: \w+/setup:7", text)
+    # in place: the same campaign.toml on the folder itself, with the conditions by the same pattern
+    head = '[campaign]\ntitle = "T"\nbody = "b"\nimporter = "stub"\n\n[importer]\nnames = "b{beta:deg:m=-}"\n\n'
+    sections = "".join(re.findall(r"^\[(?:axes|scaling|conditions|source)\]\n(?:[^\[\n].*\n)+", text, re.MULTILINE))
+    (tmp_path / "campaign.toml").write_text(head + sections + '\n[[table]]\nfile = "runs"\n', encoding="utf-8")
+    in_place = table_of(tmp_path)
+    for name, values in table.forces.items():
+        assert in_place.forces[name].tolist() == values.tolist()
+        assert in_place.errors[name].tolist() == table.errors[name].tolist()
+    assert in_place.files[1].sha256 == sha256_of(runs, [runs / n / FILE for n in RUNS])
+
+
+def on_a_terminal(folder: Path, command: list[str], answers: str) -> tuple[int, str]:
+    """Run a command on a pseudo-terminal with everything typed ahead."""
+    ours, theirs = pty.openpty()
+    with subprocess.Popen(command, cwd=folder, stdin=theirs, stdout=theirs, stderr=theirs, close_fds=True) as process:
+        os.close(theirs)
+        os.write(ours, answers.encode())
+        seen = b""
+        while True:
+            try:
+                block = os.read(ours, 4096)
+            except OSError:  # the terminal of a process that ended
+                break
+            if not block:
+                break
+            seen += block
+    os.close(ours)
+    return process.returncode, seen.decode().replace("\r\n", "\n")
+
+
+@pytest.mark.slow
+def test_questions_on_a_terminal(drift: Path, tmp_path: Path) -> None:
+    """Proposals at once, a wrong answer asked again, a default by evidence, none without."""
+    answers = ["y", "XYZ", "CFD", "", "nose", "", "-2, 0, 0", "4", "LOA", "998.2", "2", "experiment", ""]
+    command = [str(COEFLAB), "import", drift.name, "--out", "mine"]
+    code, said = on_a_terminal(tmp_path, command, "\n".join(answers) + "\n")
+    assert code == 0, said
+    for part in (
+        "All of them right?", 'found "XYZ"; expected "FRD", "FLU", "CFD"', "axes.beta [v = -U sin(beta)]",
+        "Y to starboard and beta have the same sign", "source.citation [drift.csv]", "Next: coeflab fit mine",
+    ):  # fmt: skip
+        assert part in said.replace("\n", " "), (part, said)
+    assert table_of(tmp_path / "mine").forces["Y"].tolist()[:2] == [-29.4, -11.8]
+
+
+@pytest.mark.slow
+def test_the_example_of_the_documentation(coeflab: Run, tmp_path: Path) -> None:
+    """The commands of docs/data_in.md, in order, as processes; then its [columns]."""
+    text = DOC.read_text(encoding="utf-8")
+    blocks = dict(reversed(re.findall(r"^```(\w+)\n(.*?)^```", text, re.MULTILINE | re.DOTALL)))
+    (tmp_path / "drift_tests.csv").write_text(blocks["csv"], encoding="utf-8")
+    said = [coeflab(*shlex.split(line)[1:]) for line in blocks["sh"].splitlines()]
+    assert [d.returncode for d in said] == [0, 0, 0], said
+    assert re.search(r"Yv' = -0\.03\d+ \+- ", said[1].stdout)
+    made = table_of(tmp_path / "cfd_data" / "series_12")
+    campaign = (tmp_path / "cfd_data" / "series_12" / "campaign.toml").read_text()
+    sections = "".join(re.findall(r"^\[(?:axes|scaling|conditions|source)\]\n(?:[^\[\n].*\n)+", campaign, re.MULTILINE))
+    whole = blocks["toml"] + "\n" + sections + '\n[[table]]\nfile = "drift_tests.csv"\n'
+    (tmp_path / "campaign.toml").write_text(whole, encoding="utf-8")
+    in_place = table_of(tmp_path)
+    for name, values in made.forces.items():
+        assert in_place.forces[name].tolist() == pytest.approx(values.tolist(), rel=1e-14, nan_ok=True)

@@ -1,0 +1,347 @@
+"""What a column is, in words; and one physical table that many people wrote down differently."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from coeflab.cli import app
+from coeflab.core.axes import FRAMES, Axes, parse_axes
+from coeflab.core.errors import InputError
+from coeflab.tables.column_map import read_column_map
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.importers import PlannedTable
+from coeflab.tables.mapping import assigned
+from coeflab.tables.proposals import evidence, proposed
+from coeflab.tables.raw_table import RawColumn
+from coeflab.tables.reading import importer_of, read_tables, recognised
+from tests.conftest import SECTIONS
+from tests.tables.raw_files import NAME, plain_stub, raw
+
+__all__ = ["plain_stub"]
+FOOT, POUND_FORCE, POUND, KNOT = 0.3048, 4.4482216152605, 0.45359237, 1852.0 / 3600.0
+RHO, SPEED, LENGTH, AREA = 1000.0, 2.0, 4.0, 0.31
+MOTIONS, FORCES = "uvwpqr", "XYZKMN"
+PLANTED = {  # primed, about (-2, 0, 0) m from the nose: linear, cubic
+    "Yv": (-0.0278, -0.19), "Nv": (-0.0136, 0.041), "Yr": (0.0052, 0.011), "Nr": (-0.0044, -0.006),
+    "Zw": (-0.0139, -0.23), "Mw": (0.0104, -0.035), "Zq": (-0.0076, -0.012), "Mq": (-0.0037, -0.004),
+}  # fmt: skip
+SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
+POINTS = (0.0, 0.37)  # how far the table's point lies forward of the planted one
+AXES = {**FRAMES, "odd": ("starboard", "aft", "down")}
+SYSTEMS = ("SI", "US", "primes", "coefficients")
+
+
+def physics(forward: float) -> np.ndarray:
+    """u v w p q r X Y Z K M N, SI and FRD, about a point so far forward of the planted one."""
+    sweep = np.linspace(-0.21, 0.21, 9)
+    rows = np.zeros((36, 12))
+    for k, column in enumerate((1, 2, 4, 5)):
+        rows[9 * k : 9 * k + 9, column] = sweep * SPEED / (LENGTH if column > 2 else 1.0)
+    rows[:, 0] = np.sqrt(SPEED**2 - rows[:, 1] ** 2 - rows[:, 2] ** 2)
+    force, moment = 0.5 * RHO * SPEED**2 * LENGTH**2, 0.5 * RHO * SPEED**2 * LENGTH**3
+    rows[:, 6] = -0.0012 * force * (1.0 - 0.4 * rows[:, 1] ** 2)
+    rows[:, 9] = 0.0003 * moment * rows[:, 1]
+    for symbol, (linear, cubic) in PLANTED.items():
+        x = rows[:, MOTIONS.index(symbol[1])] / SPEED * (LENGTH if symbol[1] in "qr" else 1.0)
+        column = 6 + FORCES.index(symbol[0])
+        rows[:, column] += (linear * x + cubic * x**3) * (moment if symbol[0] in "MN" else force)
+    at = rows.copy()
+    at[:, 1] += rows[:, 5] * forward
+    at[:, 2] -= rows[:, 4] * forward
+    at[:, 11] -= rows[:, 7] * forward
+    at[:, 10] += rows[:, 8] * forward
+    return at
+
+
+def in_axes(rows: np.ndarray, directions: tuple[str, str, str]) -> np.ndarray:
+    turn = Axes(directions).rotation
+    return np.hstack([rows[:, 3 * i : 3 * i + 3] @ turn for i in range(4)])
+
+
+def written(folder: Path, axes: str, system: str, forward: float) -> tuple[Path, dict[str, str], dict[str, str]]:
+    """A file as a tool might write it, what its columns are, and sections of its campaign.toml."""
+    frd = physics(forward)
+    own = in_axes(frd, AXES[axes])
+    speed = np.linalg.norm(frd[:, :3], axis=1)
+    beta, alpha = np.arcsin(frd[:, 1] / speed), np.arctan2(frd[:, 2], frd[:, 0])
+    sign = -1.0 if axes in ("FRD", "odd") else 1.0
+    dynamic = 0.5 * RHO * speed**2
+    names = [f"F{i}" for i in "xyz"] + [f"M{i}" for i in "xyz"]
+    columns: dict[str, tuple[np.ndarray, str, str]] = {"Run": (np.arange(36.0), "", "point")}
+    if system == "SI":
+        columns |= {f"vel {m}": (own[:, i], "m/s" if i < 3 else "rad/s", m) for i, m in enumerate(MOTIONS)}
+        columns |= {n: (own[:, 6 + i], "N" if i < 3 else "Nm", FORCES[i]) for i, n in enumerate(names)}
+    elif system == "US":
+        columns["Speed"] = (speed / KNOT, "kn", "U")
+        columns["Drift"] = (np.degrees(sign * beta), "deg", "beta")
+        columns["Attack"] = (-np.degrees(alpha), "deg", "-alpha")
+        columns |= {f"rate {m}": (np.degrees(own[:, 3 + i]), "deg/s", m) for i, m in enumerate("pqr")}
+        columns |= {
+            n: (
+                own[:, 6 + i] / POUND_FORCE / (1.0 if i < 3 else FOOT),
+                "",
+                f"{FORCES[i]} [{'lbf' if i < 3 else 'ft*lbf'}]",
+            )
+            for i, n in enumerate(names)
+        }
+    else:
+        columns["U"] = (speed, "m/s", "U")
+        columns |= {
+            f"{m}*": (own[:, i] / speed * (LENGTH if i > 2 else 1.0), "", f"{m}' [-]") for i, m in enumerate(MOTIONS)
+        }
+        area = AREA if system == "coefficients" else LENGTH**2
+        for i, n in enumerate(names):
+            by = f"coefficient A={AREA} m^2" + f" L={LENGTH / FOOT!r} ft" * (i > 2)
+            said = f"{FORCES[i]} [{by}]" if system == "coefficients" else f"{FORCES[i]}'"
+            turned = -1.0 if n == "Fz" else 1.0
+            columns[f"C{n}"] = (
+                turned * own[:, 6 + i] / (dynamic * area * (LENGTH if i > 2 else 1.0)), "", f"{'-' * (turned < 0)}{said}"
+            )  # fmt: skip
+    lines = [",".join(f"{n} ({u})" if u else n for n, (_, u, _) in columns.items())]
+    lines += [",".join(repr(float(v[row])) for v, _, _ in columns.values()) for row in range(36)]
+    file = folder / "test.raw"
+    file.write_text("# a tool\n" + "\n".join(lines) + "\n", encoding="utf-8")
+    frame = repr(list(AXES[axes])).replace("'", '"') if axes == "odd" else f'"{axes}"'
+    at = -2.0 + forward
+    point = f'["{at / FOOT!r} ft", 0.0, 0.0]' if system == "US" else f"[{at!r}, 0.0, 0.0]"
+    settings = {
+        "axes.frame": frame, "axes.datum": '"nose"', "axes.reference_point": point, "scaling.length_name": '"LBP"',
+        "scaling.length": f'"{LENGTH / FOOT!r} ft"' if system == "US" else repr(LENGTH),
+        "conditions.density": f'"{RHO * FOOT**3 / POUND!r} lb/ft^3"' if system == "US" else repr(RHO),
+        "conditions.speed": "2.0", "source.kind": '"synthetic"', "source.citation": '"synthetic"',
+        "table.contains_inertia": "false",
+    }  # fmt: skip
+    if system == "US":
+        settings |= {"axes.beta": f'"v = {"-" if sign < 0 else "+"}U sin(beta)"', "axes.alpha": '"w = +U sin(alpha)"'}
+    return file, {n: said for n, (_, _, said) in columns.items()}, settings
+
+
+def by_columns(file: Path, said: Mapping[str, str], settings: Mapping[str, str]) -> ForceTable:
+    sections: dict[str, list[str]] = {"campaign": [f'title = "T"\nbody = "b"\nimporter = "{NAME}"']}
+    for key, text in settings.items():
+        section, _, name = key.partition(".")
+        sections.setdefault(section, []).append(f"{name} = {text}")
+    table = f'[[table]]\nfile = "{file.name}"\n' + "\n".join(sections.pop("table"))
+    text = "".join(f"[{name}]\n" + "\n".join(keys) + "\n\n" for name, keys in sections.items())
+    text += "[columns]\n" + "\n".join(f'"{n}" = "{s}"' for n, s in said.items()) + "\n\n" + table + "\n"
+    (file.parent / "campaign.toml").write_text(text, encoding="utf-8")
+    return read_tables(PlannedTable(file.parent, ()))[0]
+
+
+def by_import(file: Path, said: Mapping[str, str], settings: Mapping[str, str]) -> ForceTable:
+    out = file.parent / "imported"
+    arguments = [a for n, s in said.items() for a in ("--map", f"{n}={s}")]
+    arguments += [a for k, s in settings.items() for a in ("--set", f"{k}={s}")]
+    done = CliRunner().invoke(app, ["import", str(file), "--out", str(out), *arguments])
+    assert done.exit_code == 0, done.output + str(done.exception)
+    return read_tables(PlannedTable(out, ()))[0]
+
+
+def derivatives(table: ForceTable) -> dict[str, float]:
+    """Linear parts, primed, about the planted point, by least squares of the planted form."""
+    about = table.about(np.array([-2.0, 0.0, 0.0]))
+    out = {}
+    for component, motions in (("Y", "vr"), ("N", "vr"), ("Z", "wq"), ("M", "wq")):
+        basis = [about.motion[m] ** power for m in motions for power in (1, 3)]
+        fitted = np.linalg.lstsq(np.column_stack(basis), about.forces[component], rcond=None)[0]
+        for m, slope in zip(motions, fitted[::2], strict=True):
+            unit = 0.5 * RHO * SPEED * LENGTH ** (2 + (component in "MN") + (m in "qr"))
+            out[component + m] = slope / unit
+    return out
+
+
+CASES = [pytest.param(*case, id="-".join(map(str, case))) for case in itertools.product(AXES, SYSTEMS, POINTS)]
+
+
+@pytest.mark.parametrize(("axes", "system", "forward"), CASES)
+def test_one_physical_table_has_one_set_of_derivatives(tmp_path: Path, axes: str, system: str, forward: float) -> None:
+    """Four axes, three unit systems and coefficients by an area, two points; in place by [columns], and imported."""
+    file, said, settings = written(tmp_path, axes, system, forward)
+    for table in (by_columns(file, said, settings), by_import(file, said, settings)):
+        found = derivatives(table)
+        assert len(table) == 36
+        for symbol in SIX:
+            assert found[symbol] == pytest.approx(PLANTED[symbol][0], rel=1e-10), symbol
+
+
+def test_a_sign_word_turns_a_column(tmp_path: Path) -> None:
+    file, said, settings = written(tmp_path, "FRD", "SI", 0.0)
+    found = derivatives(by_columns(file, said | {"Fy": "-Y [N]"}, settings))
+    assert found["Yv"] == pytest.approx(-PLANTED["Yv"][0], rel=1e-10)
+    assert found["Nv"] == pytest.approx(PLANTED["Nv"][0], rel=1e-10)
+
+
+FORMS = ["Y [N]", "-Y [lbf]", "r' [-]", "se_N [ft*lbf]", "Y [coefficient A=1.2 m^2]", "label", "beta [deg]", "R [m]",
+         "N [coefficient A=1.2 m^2 L=4.0 m]", "U [kn]", "density [kg/m^3]", "dr [deg]", "beta"]  # fmt: skip
+
+
+@pytest.mark.parametrize("text", FORMS)
+def test_what_a_column_is_reads_as_it_is_written(text: str) -> None:
+    assert str(read_column_map(text)) == text
+
+
+@pytest.mark.parametrize(("text", "said"), [
+    ("Y [deg]", "found [deg], a unit of another dimension; expected a unit of force"),
+    ("Q [N]", 'the unknown name "Q"'),
+    ("label [N]", "label without sign, prime and unit"),
+    ("beta' [-]", "a prime of X Y Z K M N u v w p q r only"),
+    ("Y' [N]", "Leave out ' for a dimensional column"),
+    ("Y [-]", "Y [coefficient A=1.2 m^2]"),
+    ("N [coefficient A=1 m^2]", "N [coefficient A=1.2 m^2 L=4.26 m]"),
+    ("Y [coefficient A=1 m^2 L=3 m]", "L is no part of a force's"),
+    ("Y [coefficient A=-1 m^2]", "above zero"),
+    ("se_beta [deg]", "se_ before one of X Y Z K M N"),
+    ("2*Y [N]", "expected what the column is"),
+    ("", "expected what the column is"),
+])  # fmt: skip
+def test_what_no_column_is(text: str, said: str) -> None:
+    with pytest.raises(InputError) as why:
+        read_column_map(text)
+    assert said in str(why.value)
+
+
+SIMPLE = {
+    "axes.frame": '"FRD"', "axes.beta": '"v = -U sin(beta)"', "axes.datum": '"nose"', "axes.reference_point": "[-2, 0, 0]",
+    "scaling.length": "4.0", "scaling.length_name": '"LBP"', "conditions.density": "1000.0", "conditions.speed": "2.0",
+    "source.kind": '"synthetic"', "source.citation": '"synthetic"', "table.contains_inertia": "false",
+}  # fmt: skip
+
+
+def read_raw_text(folder: Path, text: str, said: Mapping[str, str], **more: str) -> ForceTable:
+    file = folder / "test.raw"
+    file.write_text(text, encoding="utf-8")
+    return by_columns(file, said, SIMPLE | more)
+
+
+def test_all_complaints_about_columns_come_at_once(tmp_path: Path) -> None:
+    text = "# x\nDrift,Fy (N),Fz,Mz (N),My (Nm),Cx (-),K\n1,2,3,4,5,6,7\n"
+    said = {"Drift": "beta", "Fy": "Y [lbf]", "Fz": "Z", "Mz": "N", "My": "M", "Fx": "X [N]", "Cx": "M [Nm]"}
+    with pytest.raises(InputError) as why:
+        read_raw_text(tmp_path, text, said)
+    lines = str(why.value).splitlines()
+    assert len(lines) == 7
+    assert all("test.raw, line 2" in line for line in lines)
+    for part in (
+        'column "Drift": found no unit; expected a unit of angle. Write "Drift" = "beta [deg]" under [columns].',
+        'column "Fy [N]": found [N] in the file, [lbf] in the mapping',
+        'column "Fz": found no unit; expected a unit of force',
+        'column "Mz [N]": found [N], a unit of another dimension',
+        'column "Cx [-]": found "My" and "Cx" as M; expected one of them',
+        'column "K": found the column "K", of which nothing is known',
+        'found no column "Fx"; expected one of "Drift", "Fy"',
+    ):
+        assert any(part in line for line in lines), part
+
+
+def test_entries_of_columns_that_are_none_come_with_their_lines(tmp_path: Path) -> None:
+    with pytest.raises(InputError) as why:
+        read_raw_text(tmp_path, "a,b\n1,2\n", {"a": "beta [N]", "b": "Q [N]"})
+    lines = str(why.value).splitlines()
+    toml = (tmp_path / "campaign.toml").read_text().splitlines()
+    at = toml.index('"a" = "beta [N]"') + 1
+    assert f'campaign.toml, line {at}, "columns.a": found [N], a unit of another dimension' in lines[0]
+    assert f'line {at + 1}, "columns.b": found the unknown name "Q"' in lines[1]
+
+
+def test_cells_without_a_number_are_excluded_and_rows_without_a_setting_left_out(tmp_path: Path) -> None:
+    text = "Drift (deg),Fy (N),Mz (Nm)\n-4,-1,2\n0,nan,0\n2,1e30,0\n4,diverged,nan\n,7,8\n8,2,-4\n"
+    table = read_raw_text(tmp_path, text, {"Drift": "beta", "Fy": "Y", "Mz": "N"})
+    assert [(e.line, e.component) for e in table.exclusions] == [(3, "Y"), (4, "Y"), (5, "Y"), (5, "N")]
+    assert {e.reason for e in table.exclusions} == {"no number in the source"}
+    assert table.usable["Y"].tolist() == [True, False, False, False, True]
+    assert table.lines == (2, 3, 4, 5, 7)
+    assert "left out for want of Drift: line 6" in table.notes
+
+
+def test_cells_and_labels_and_standard_errors(tmp_path: Path) -> None:
+    text = "Case,Set,Drift (deg),Fy (N),SE (N),Grid\na,A,-4,-1,0.1,1e6\nb,B,4,1,0.1,2e6\n"
+    said = {"Case": "point", "Set": "label", "Drift": "beta", "Fy": "Y", "SE": "se_Y", "Grid": "cells"}
+    table = read_raw_text(tmp_path, text, said, **{"table.select": '{ Set = "A", reason = "other grid" }'})
+    assert table.labels == ("a", "b")
+    assert table.cells is not None
+    assert table.cells.tolist() == [1e6, 2e6]
+    assert table.errors["Y"].tolist() == [0.1, 0.1]
+    assert [(e.row, e.reason) for e in table.exclusions] == [(1, "Set B: other grid")]
+
+
+def test_columns_belong_to_raw_importers_only(write_campaign: object) -> None:
+    folder = write_campaign(columns='Fy = "Y [N]"')  # type: ignore[operator]
+    with pytest.raises(InputError, match=r'\[columns\] with importer = "csv"'):
+        read_tables(PlannedTable(folder, ()))
+    assert SECTIONS
+
+
+PROPOSED = [
+    ("Fy", "N", "Y [N]"), ("Fx", "lbf", "X [lbf]"), ("Force Z", "kN", "Z [kN]"), ("Mz", "N-m", "N [N*m]"),
+    ("Moment_x", "N m", "K [N m]"), ("Yaw moment", "Nm", "N [Nm]"), ("Querkraft", "N", "Y [N]"), ("CY", "-", "Y [coefficient A=?]"),
+    ("CN", "", "N [coefficient A=? L=?]"), ("Y'", "", "Y' [-]"), ("r'", "-", "r' [-]"), ("N_prime", "", "N' [-]"),
+    ("Beta", "°", "beta [deg]"), ("Drift angle", "deg", "beta [deg]"), ("β", "Grad", "beta [deg]"), ("Angle d'attaque", "deg", "alpha [deg]"),
+    ("yaw rate", "1/s", "r [rad/s]"), ("Speed", "kn", "U [kn]"), ("Fy", "", "Y [?]"), ("Fy", "m", "Y [?]"), ("Drag", "N", ""),
+    ("CL", "", ""), ("se_Fy", "N", "se_Y [N]"), ("Fy std", "N", ""), ("Cells", "", "cells"), ("Run", "", "point"), ("Comment", "", "ignore"),
+    ("Rudder angle", "deg", "dr [deg]"), ("what", "", ""), ("y+", "", ""), ("x", "m", ""),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "unit", "text"), PROPOSED)
+def test_proposals_by_the_names_that_people_use(name: str, unit: str, text: str) -> None:
+    assert proposed(RawColumn(name, unit, np.array([1.0, 2.0]))).text == text
+
+
+def test_proposals_are_certain_only_where_nobody_can_mean_otherwise() -> None:
+    one = np.array([0.1, 2.0])
+    assert proposed(RawColumn("Y", "N", one)).certain
+    assert proposed(RawColumn("Force on hull", "N", one, means="Y")).certain
+    assert not proposed(RawColumn("Fy", "N", one)).certain
+    assert not proposed(RawColumn("Y", "", one)).whole
+    assert proposed(RawColumn("drift", "", np.array([-12.0, 12.0]))).text == "beta [deg]"
+    assert proposed(RawColumn("drift", "", one)).text == "beta [?]"
+    assert proposed(RawColumn("Fy mean", "N", np.array([np.nan]), ("diverged",))).text == "label"
+
+
+@pytest.mark.parametrize("axes", AXES)
+def test_evidence_finds_the_signs_of_angles_once_the_axes_are_known(tmp_path: Path, axes: str) -> None:
+    file, said, settings = written(tmp_path, axes, "US", 0.0)
+    table = raw(file, {})
+    known = assigned(table, {name: read_column_map(what) for name, what in said.items()})
+    shows = evidence(known, parse_axes(list(AXES[axes])))
+    assert {e.key: f'"{e.value}"' for e in shows if e.key} == {k: settings[k] for k in ("axes.alpha", "axes.beta")}
+    assert not any(e.key for e in evidence(known))
+    texts = " | ".join(e.text for e in shows)
+    assert "disagree" not in texts
+    damped = {"M and q", "N and r"} if axes != "odd" else {"K and p", "N and r"}
+    assert all(f"{pair} have opposite signs, as damping has" in texts for pair in damped)
+    flipped = assigned(
+        table, {name: read_column_map("-N [ft*lbf]" if what.startswith("N ") else what) for name, what in said.items()}
+    )
+    texts = " | ".join(e.text for e in evidence(flipped, parse_axes(list(AXES[axes]))))
+    assert "N and r have the same sign: no damping of a slender body" in texts
+
+
+def test_a_general_reader_gives_way_and_two_claims_are_a_question(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "test.raw"
+    file.write_text("beta (deg),Y (N)\n1,2\n2,3\n3,4\n")
+    assert recognised(file) == (NAME,)
+    monkeypatch.setattr("coeflab.tables.reading.GENERAL", "nobody")
+    with pytest.raises(InputError, match=f"something that {NAME} and table read; expected --as {NAME} or --as table"):
+        importer_of(file)
+    assert importer_of(file, "table") == "table"
+
+
+@settings(max_examples=200)
+@given(st.text(max_size=30) | st.from_regex(r"-?(se_)?[A-Za-z]{1,5}'?( \[[A-Za-z0-9^*/=. ]{0,20}\])?", fullmatch=True))
+def test_any_text_is_a_column_or_a_clear_refusal(text: str) -> None:
+    try:
+        said = read_column_map(text)
+    except InputError:
+        return
+    assert read_column_map(str(said)) == said
