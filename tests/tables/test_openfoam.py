@@ -318,6 +318,7 @@ def test_rates_as_they_are_written(case: Callable[[str], Path], old: str, new: s
         ("type freestream; freestreamValue uniform $nowhere;", None),
         ('type fixedValue; value #calc "vector(1,0,0)";', None),
         ("type zeroGradient;", None),
+        ("type fixedValue; value uniform (1 0 0) uniform (1 0 0);", None),
         ("type uniformFixedValue; uniformValue table ((0 (1 0 0)));", None),
         ("type fixedValue; value nonuniform List<vector> 2((1 0 0)(2 0 0));", None),
         ("type fixedValue; value uniform (1 0 0); } outlet { type inletOutlet; inletValue uniform (2 0 0);", None),

@@ -7,6 +7,7 @@ case brings (``#calc``, ``#codeStream``, ``#eval``) is never run: its value stay
 
 from __future__ import annotations
 
+import math
 import re
 import warnings
 from collections.abc import Iterator
@@ -264,8 +265,7 @@ def _named(part: Foam, name: str) -> tuple[Entry, Foam] | None:
 @lru_cache(maxsize=1000)
 def _value(text: str) -> Any:
     """A value through foamlib; None where it is none. Cases of one folder share most of theirs."""
-    import numpy as np
-    from foamlib import Dimensioned, FoamFile
+    from foamlib import FoamFile
 
     depth = deepest = 0
     for letter in text:
@@ -281,16 +281,25 @@ def _value(text: str) -> Any:
             value = value.get("x") if hasattr(value, "get") else None
     except (ValueError, KeyError, TypeError, AssertionError, RecursionError, IndexError, OverflowError):
         return None
+    value = _plain(value)
     if isinstance(value, tuple) and len(value) == 2 and value[0] in ("uniform", "constant"):
         value = value[1]
-    if isinstance(value, Dimensioned):
-        value = value.value
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
     if turns is not None:
-        factors = {"rpm": np.pi / 30.0, "deg/s": np.pi / 180.0, "rad/s": 1.0}
+        factors = {"rpm": math.pi / 30.0, "deg/s": math.pi / 180.0, "rad/s": 1.0}
         return value * factors[turns[1]] if isinstance(value, (int, float)) else None
     return value
+
+
+def _plain(value: Any) -> Any:
+    """Arrays as lists and dimensions taken off, all the way down."""
+    import numpy as np
+    from foamlib import Dimensioned
+
+    if isinstance(value, Dimensioned):
+        return _plain(value.value)
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return type(value)(map(_plain, value)) if isinstance(value, (list, tuple)) else value
 
 
 class _Walk:
