@@ -45,10 +45,6 @@ CSV_LINE = 1 << 16
 CSV_CELLS = 2_000_000
 CSV_BLANK_LINES = 1000
 
-# Monitors of solvers: 2 million lines of 25 columns are 400 MB of doubles.
-MONITOR_NUMBERS = 50_000_000
-MONITOR_COLUMNS = 2_000
-MONITOR_FILES = 200  # that a folder of one run may hold
 # Tables of other people's tools, as numbers 8 bytes a cell: 2,000,000 lines of 15 columns take 240 MB. A text takes 60 bytes.
 TABLE_CELLS = 30_000_000
 TABLE_TEXTS = 3_000_000
@@ -58,6 +54,11 @@ TABLE_CUT_LINES = 20  # left out and said; beyond, and beyond one in a hundred, 
 SHEET_BYTES = 64 << 20
 SHEET_UNPACKED = 256 << 20
 SHEET_CELLS = 3_000_000
+
+# Monitors of solvers: 2 million lines of 25 columns are 400 MB of doubles.
+MONITOR_NUMBERS = 50_000_000
+MONITOR_COLUMNS = 2_000
+MONITOR_FILES = 200  # that a folder of one run may hold
 
 # Scenes. Where a mesh stands is found by walking from each node to the root: nodes times depth. Exporters nest 10 deep.
 GLB_NODES = 10_000
