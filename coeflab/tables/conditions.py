@@ -39,7 +39,7 @@ _FIELD = re.compile(r"\{([^{}]*)\}")
 _SPELLING = re.compile(r"([A-Za-z]{1,8})=([-+.])")
 _SCALE = re.compile(r"x([0-9]*\.?[0-9]+)")
 _QUANTITY = re.compile(r"([-+\u2212]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(\S.*)")
-_LONGEST = 300
+_LONGEST, MOST_OPEN = 200, 3  # letters of a name, and asterisks and labels: each may end anywhere
 
 
 @brief
@@ -157,8 +157,9 @@ def name_pattern(text: str) -> NamePattern:
     def fail(found: str, expected: str, advice: str = "") -> InputError:
         return InputError(found, expected, column=f"name pattern {shown(text)}", advice=advice)
 
-    if len(text) > _LONGEST or text.count("*") > 5:
-        raise fail("a very long pattern", f"at most {_LONGEST} letters and 5 asterisks")
+    many = text.count("*") + sum(match[1].strip().endswith(TEXT) for match in _FIELD.finditer(text))
+    if len(text) > _LONGEST or many > MOST_OPEN:
+        raise fail(f"{len(text)} letters, {many} asterisks and labels", f"at most {_LONGEST} and {MOST_OPEN}")
     for match in _FIELD.finditer(text):
         between = text[position : match.start()]
         if fields and between in ("", "*"):

@@ -248,6 +248,13 @@ def test_bad_patterns(pattern: str, said: str) -> None:
     assert said in str(caught.value)
 
 
+def test_a_pattern_takes_no_time() -> None:
+    began = time.process_time()
+    assert name_pattern("*_*_*_{beta:deg}").conditions("_" * 199 + "x") is None
+    assert name_pattern("*_{beta:deg}").conditions("_" * 5000 + "4") is None
+    assert time.process_time() - began < 1.0
+
+
 def test_nothing_is_guessed(tmp_path: Path) -> None:
     write_run(tmp_path / "b4_r0.1")
     with pytest.raises(InputError, match="Nothing is taken from names unless"):

@@ -11,7 +11,7 @@ from coeflab.tables.importers import IMPORTERS
 
 SAMPLES = Path(__file__).parent / "samples"
 READERS = [n for n in IMPORTERS.names() if (i := IMPORTERS.load(n)).raw is not None or i.run is not None]
-ENTRIES = sorted(p for n in READERS if (SAMPLES / n).is_dir() for p in (SAMPLES / n).iterdir())
+ENTRIES = sorted(p for n in READERS if (SAMPLES / n).is_dir() for p in (SAMPLES / n).iterdir() if p.suffix != ".md")
 
 
 def test_there_are_samples_of_the_solvers() -> None:
