@@ -203,6 +203,8 @@ class _Body:
                 values = np.array(list(map(float, cells)))
                 if np.isfinite(values).all():
                     return values
+        elif (found := marks.numbers(cells)) is not None:
+            return found
         return self.met[k].values(cells, lines, marks, plain)
 
 
