@@ -97,10 +97,7 @@ def _sweep(
         at_rest = (float(curve[1, NODES // 2]), float(curve[2, NODES // 2]))
     middle = None if se is None or not np.any(se > 0.0) else float(np.median(se[se > 0.0]))
     value, u95, moved = slopes.determined(origin, target, middle, at_rest)
-    single = ""
-    if target != "1" and (origin.design is not None or variable in ANGULAR):
-        single = one_size(x, variable, rows.table.speed[rows.rows])
-    if single:
+    if single := _one_size(rows, variable, target, x, origin):
         value, u95, moved = None, None, np.zeros_like(moved)
     by_row = np.zeros(len(x))
     by_row[origin.used] = moved
@@ -161,6 +158,13 @@ def _sweep(
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces else "",
     )
     return made, origin
+
+
+def _one_size(rows: SweepRows, variable: str, target: str, x: Array, origin: OriginSlope) -> str:
+    """Why the settings determine neither slope nor curvature; a force at rest needs no second size."""
+    if target == "1" or (origin.design is None and variable not in ANGULAR):
+        return ""
+    return one_size(x, variable, rows.table.speed[rows.rows])
 
 
 def _moved(shift: float) -> dict[str, str]:
