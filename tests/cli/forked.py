@@ -1,0 +1,110 @@
+"""Runs of ``coeflab`` in processes of their own, forked from an interpreter that has imported it once.
+
+A fresh interpreter spends a second and a half on imports, a forked one none; arguments, folder, output, exit code and the
+way out are those of the console script. `test_forked` runs every command both ways.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from select import select
+
+COEFLAB = Path(sys.executable).with_name("coeflab")
+PATIENCE = 120.0
+SERVER = """
+import gc, importlib, json, os, pkgutil, sys
+import coeflab.cli
+os.environ.update(dict.fromkeys(coeflab.cli.THREADS, "1"))
+for module in pkgutil.walk_packages(coeflab.__path__, "coeflab."):
+    importlib.import_module(module.name)
+import manifold3d, rich.console, scipy.interpolate, scipy.spatial, scipy.stats, trimesh  # which commands import late
+answers = os.dup(1)
+gc.collect()
+gc.freeze()
+for line in sys.stdin:
+    sys.argv, folder, *files = json.loads(line)
+    child = os.fork()
+    if not child:
+        break
+    os.write(answers, b"%d\\n" % child)
+    os.write(answers, b"%d\\n" % os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+else:
+    sys.exit()
+os.close(answers)
+for number, file in enumerate((os.devnull, *files)):
+    opened = os.open(file, os.O_RDWR)
+    os.dup2(opened, number)
+    os.close(opened)
+os.chdir(folder)
+sys.path[0] = os.path.dirname(sys.argv[0])
+sys.stdin = open(0)
+sys.exit(coeflab.cli.main())
+"""
+
+
+class Forks:
+    """Starts processes of ``coeflab``; one at a time."""
+
+    def __init__(self) -> None:
+        self._server: subprocess.Popen[bytes] | None = None
+        self._environment: dict[str, str] = {}
+
+    def run(self, arguments: Sequence[str | Path], folder: Path) -> subprocess.CompletedProcess[str]:
+        """A process with these arguments in a folder; a fresh interpreter where the environment is another one.
+
+        Raises
+        ------
+        subprocess.TimeoutExpired
+            After two minutes.
+        """
+        command = [str(COEFLAB), *map(str, arguments)]
+        if self._server is None:
+            self._environment = _environment()
+            self._server = subprocess.Popen(
+                [sys.executable, "-c", SERVER],
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0,
+            )  # fmt: skip
+        if _environment() != self._environment:
+            return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=PATIENCE)
+        with tempfile.NamedTemporaryFile() as out, tempfile.NamedTemporaryFile() as err:
+            self._say(json.dumps([command, str(folder), out.name, err.name]))
+            child = int(self._heard())
+            try:
+                code = int(self._heard(PATIENCE))
+            except TimeoutError:
+                os.kill(child, 9)
+                self._heard()
+                raise subprocess.TimeoutExpired(command, PATIENCE) from None
+            return subprocess.CompletedProcess(command, code, _text(out.name), _text(err.name))
+
+    def close(self) -> None:
+        """End the interpreter that waits."""
+        if self._server is not None:
+            self._server.communicate(timeout=10)
+
+    def _say(self, line: str) -> None:
+        assert self._server
+        assert self._server.stdin
+        self._server.stdin.write(f"{line}\n".encode())
+
+    def _heard(self, patience: float | None = None) -> bytes:
+        assert self._server
+        assert self._server.stdout
+        if not select([self._server.stdout], [], [], patience)[0]:
+            raise TimeoutError
+        return self._server.stdout.readline()
+
+
+def _environment() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+
+
+def _text(file: str) -> str:
+    """As a pipe that is read as text gives it."""
+    return Path(file).read_text()
