@@ -7,7 +7,6 @@ import pymupdf
 import pytest
 
 from coeflab.core.errors import OutputError
-from coeflab.core.files import shipped
 from coeflab.core.table import Table
 from coeflab.core.version import VERSION
 from coeflab.published import validation
@@ -16,8 +15,6 @@ from coeflab.report.content import document
 from coeflab.report.document import Document, Figure, Section
 from coeflab.report.formats import REPORTERS, Renderer, pdf
 from coeflab.report.sections import acceptance as acceptance_document
-from coeflab.study.plan import read_plan
-from coeflab.workbench import run
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
 
 LONG = "".join(chr(ord("a") + i % 26) for i in range(5000))
@@ -234,9 +231,8 @@ def test_a_summary_of_a_small_study_has_one_page():
 
 
 @pytest.mark.slow
-def test_the_validation_is_printed_whole():
-    study = run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
-    whole = document(study)
+def test_the_validation_is_printed_whole(suboff, suboff_document):
+    whole = suboff_document
     made = opened(whole)
     assert flaws(made) == []
     assert len(made) < 110
@@ -247,7 +243,7 @@ def test_the_validation_is_printed_whole():
     assert f"Table{len(tables)}" in text
     assert len(elsewhere) > 10
     assert all(f"atableof{t['count']}rows,intheHTMLofthisreport" in text for t in elsewhere)
-    short = opened(summary.study_summary(study))
+    short = opened(summary.study_summary(suboff))
     assert len(short) == 1
     assert flaws(short) == []
 
