@@ -22,7 +22,10 @@ import gc, importlib, json, os, pkgutil, sys
 import coeflab.cli
 os.environ.update(dict.fromkeys(coeflab.cli.THREADS, "1"))
 for module in pkgutil.walk_packages(coeflab.__path__, "coeflab."):
-    importlib.import_module(module.name)
+    try:
+        importlib.import_module(module.name)
+    except ImportError:
+        pass  # of a library that is not installed; the command that needs it says so
 import manifold3d, rich.console, scipy.interpolate, scipy.spatial, scipy.stats, trimesh  # which commands import late
 answers = os.dup(1)
 gc.collect()

@@ -25,21 +25,29 @@ def files_in(folder: Path) -> set[str]:
     return {str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file()}
 
 
-def test_both_formats_are_written(coeflab, study, tmp_path):
-    done = coeflab("report", study, "--to", "html,pdf", "--out", "made")
+@pytest.fixture(scope="module")
+def reported(forks, tmp_path_factory):
+    """A folder with that study and its report in both formats, and what the command said."""
+    folder = tmp_path_factory.mktemp("reported")
+    assert forks.run(("new", "boat"), folder).returncode == 0
+    return folder, forks.run(("report", folder / "boat", "--to", "html,pdf", "--out", "made"), folder)
+
+
+def test_both_formats_are_written(reported):
+    folder, done = reported
     assert done.returncode == 0, done.stderr
-    assert files_in(tmp_path / "made") == {"report.html", "report.pdf"}
+    assert files_in(folder / "made") == {"report.html", "report.pdf"}
     assert "made/report.pdf" in done.stdout
     assert done.stderr == ""
-    made = pymupdf.open(tmp_path / "made" / "report.pdf")
-    assert made.metadata["title"] in (tmp_path / "made" / "report.html").read_text()
+    made = pymupdf.open(folder / "made" / "report.pdf")
+    assert made.metadata["title"] in (folder / "made" / "report.html").read_text()
 
 
-def test_a_plan_and_its_folder_give_the_same_bytes(coeflab, study, tmp_path):
-    coeflab("report", study, "--out", "a")
-    coeflab("report", study / "plan.toml", "--out", "b")
+def test_a_plan_and_its_folder_give_the_same_bytes(coeflab, reported):
+    folder, _ = reported
+    coeflab("report", folder / "boat" / "plan.toml", "--out", "b", cwd=folder)
     for name in ("report.html", "report.pdf"):
-        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+        assert (folder / "made" / name).read_bytes() == (folder / "b" / name).read_bytes()
 
 
 def test_the_summary_has_one_page_and_a_name_of_its_own(coeflab, study, tmp_path):
