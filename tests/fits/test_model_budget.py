@@ -84,6 +84,7 @@ def test_a_reference_point_further_ahead_adds_the_force_to_the_moment() -> None:
     assert not found["Yv"].inputs
 
 
+@pytest.mark.slow
 def test_linear_and_monte_carlo_agree_where_the_model_is_nearly_linear() -> None:
     """One input by itself, whose percentiles the strata of the draws pin; then several for the linear sum."""
     _, alone = budgeted(exact_table(force=0.01), draws=1000)
