@@ -17,8 +17,9 @@ from select import select
 
 COEFLAB = Path(sys.executable).with_name("coeflab")
 PATIENCE = 120.0
+AT_IMPORT = ("PYTHON", "NUMBA", "MPL")  # variables that are read when an interpreter starts or a library is imported
 SERVER = """
-import gc, importlib, json, os, pkgutil, sys
+import atexit, gc, importlib, json, os, pkgutil, sys, threading
 import coeflab.cli
 os.environ.update(dict.fromkeys(coeflab.cli.THREADS, "1"))
 for module in pkgutil.walk_packages(coeflab.__path__, "coeflab."):
@@ -31,7 +32,7 @@ answers = os.dup(1)
 gc.collect()
 gc.freeze()
 for line in sys.stdin:
-    sys.argv, folder, *files = json.loads(line)
+    sys.argv, folder, environment, *files = json.loads(line)
     child = os.fork()
     if not child:
         break
@@ -45,9 +46,20 @@ for number, file in enumerate((os.devnull, *files)):
     os.dup2(opened, number)
     os.close(opened)
 os.chdir(folder)
+os.environ.clear()
+os.environ.update(environment)
 sys.path[0] = os.path.dirname(sys.argv[0])
 sys.stdin = open(0)
-sys.exit(coeflab.cli.main())
+try:
+    sys.exit(coeflab.cli.main())
+except SystemExit as ended:
+    if not isinstance(ended.code, int | None):
+        raise
+    threading._shutdown()
+    atexit._run_exitfuncs()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(ended.code or 0)  # without taking all modules apart, which copies the whole memory
 """
 
 
@@ -56,10 +68,10 @@ class Forks:
 
     def __init__(self) -> None:
         self._server: subprocess.Popen[bytes] | None = None
-        self._environment: dict[str, str] = {}
+        self._at_import: dict[str, str] = {}
 
     def run(self, arguments: Sequence[str | Path], folder: Path) -> subprocess.CompletedProcess[str]:
-        """A process with these arguments in a folder; a fresh interpreter where the environment is another one.
+        """A process with these arguments in a folder; a fresh interpreter where the environment asks for one.
 
         Raises
         ------
@@ -68,15 +80,15 @@ class Forks:
         """
         command = [str(COEFLAB), *map(str, arguments)]
         if self._server is None:
-            self._environment = _environment()
+            self._at_import = _at_import()
             self._server = subprocess.Popen(
                 [sys.executable, "-c", SERVER],
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0,
             )  # fmt: skip
-        if _environment() != self._environment:
+        if _at_import() != self._at_import:
             return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=PATIENCE)
         with tempfile.NamedTemporaryFile() as out, tempfile.NamedTemporaryFile() as err:
-            self._say(json.dumps([command, str(folder), out.name, err.name]))
+            self._say(json.dumps([command, str(folder), dict(os.environ), out.name, err.name]))
             child = int(self._heard())
             try:
                 code = int(self._heard(PATIENCE))
@@ -104,8 +116,8 @@ class Forks:
         return self._server.stdout.readline()
 
 
-def _environment() -> dict[str, str]:
-    return {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+def _at_import() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if name.startswith(AT_IMPORT)}
 
 
 def _text(file: str) -> str:

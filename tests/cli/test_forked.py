@@ -51,7 +51,14 @@ def test_a_command_forked_and_from_a_fresh_interpreter(
     assert written(folders[0]) == written(folders[1])
 
 
-def test_another_environment_gets_a_fresh_interpreter(coeflab: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_environment_is_that_of_the_test(coeflab: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "99")
+    assert max(map(len, coeflab("--help").stdout.splitlines())) > 60
+    monkeypatch.setenv("COLUMNS", "60")
+    assert max(map(len, coeflab("--help").stdout.splitlines())) <= 60
+
+
+def test_what_an_interpreter_reads_at_its_start_gets_a_fresh_one(coeflab: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "import time" not in coeflab("--version").stderr
     monkeypatch.setenv("PYTHONPROFILEIMPORTTIME", "1")
     assert "import time" in coeflab("--version").stderr
