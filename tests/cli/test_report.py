@@ -33,6 +33,7 @@ def reported(forks, tmp_path_factory):
     return folder, forks.run(("report", folder / "boat", "--to", "html,pdf", "--out", "made"), folder)
 
 
+@pytest.mark.slow
 def test_both_formats_are_written(reported):
     folder, done = reported
     assert done.returncode == 0, done.stderr
@@ -43,6 +44,7 @@ def test_both_formats_are_written(reported):
     assert made.metadata["title"] in (folder / "made" / "report.html").read_text()
 
 
+@pytest.mark.slow
 def test_a_plan_and_its_folder_give_the_same_bytes(coeflab, reported):
     folder, _ = reported
     coeflab("report", folder / "boat" / "plan.toml", "--out", "b", cwd=folder)
@@ -91,6 +93,7 @@ def test_one_error_and_nothing_written(coeflab, study, tmp_path, arguments, word
     assert files_in(tmp_path) == before
 
 
+@pytest.mark.slow
 def test_open_hands_the_file_to_the_browser(study, tmp_path):
     browser = tmp_path / "browser"
     browser.write_text(f'#!/bin/sh\necho "$1" > {tmp_path}/shown\n')
@@ -133,6 +136,7 @@ def commands_in(page: Path) -> list[str]:
     ]
 
 
+@pytest.mark.slow
 def test_the_stated_command_makes_the_same_report(coeflab, study, tmp_path):
     plan = (study / "plan.toml").rename(study / "my plan.toml")
     assert coeflab("report", plan, "--to", "html", "--out", "a").returncode == 0
