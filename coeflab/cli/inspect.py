@@ -25,6 +25,7 @@ def command(
     axes: str = typer.Option("", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
     density: float = typer.Option(1000.0, "--density", help="Of the water that a body displaces, kg/m^3."),
+    rows: int = typer.Option(60, "--rows", min=0, help="Most rows of a table that are shown; 0 shows all."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
@@ -41,7 +42,7 @@ def command(
         raise InputError(
             "--unit, --axes or --repair", "a mesh file with them", advice="A campaign.toml says these itself."
         )
-    _tables(table, json, strict)
+    _tables(table, json, strict, rows)
 
 
 def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: bool) -> None:
@@ -64,7 +65,7 @@ def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: b
     show.text("  next: coeflab added-mass for the 6 x 6 matrix, coeflab simplify for cylinders and plates")
 
 
-def _tables(table: str, json: bool, strict: bool) -> None:
+def _tables(table: str, json: bool, strict: bool, rows: int) -> None:
     from coeflab.cli.as_json import finding
     from coeflab.cli.run import findings
     from coeflab.core.files import located
@@ -102,18 +103,19 @@ def _tables(table: str, json: bool, strict: bool) -> None:
             }
         )
     else:
-        _print(read)
+        _print(read, rows)
         findings(found)
     if strict and any(c.severity is Severity.WARN for c in found):
         raise typer.Exit(1)
 
 
-def _print(read: Sequence[ForceTable]) -> None:
+def _print(read: Sequence[ForceTable], rows: int) -> None:
     from coeflab.core.provenance import work
+    from coeflab.report.tables import data_quality
     from coeflab.report.tables import results as tables
 
     for t in read:
-        show.table(tables.inspected(t))
+        show.table(tables.inspected(t, rows))
         point = ", ".join(f"{x:g}" for x in t.reference_point)
         show.text(f"  {t.title}; body {t.body}; {t.source.kind}; {work(t.source.citation)}")
         show.text(f"  varies: {', '.join(t.varies) or 'nothing'}; moments about ({point}) m from: {t.datum}")
@@ -121,3 +123,5 @@ def _print(read: Sequence[ForceTable]) -> None:
         for note in t.notes:
             show.text(f"  {note}")
         show.text()
+    for quality in data_quality.of_tables(read):
+        show.table(quality)

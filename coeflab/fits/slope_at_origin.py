@@ -23,6 +23,7 @@ from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Swe
 from coeflab.fits.rows.sweeps import INCIDENCE, SweepRows, arm_shift, collect_points, sweep_rows
 from coeflab.fits.statistics import origin_slope, slopes
 from coeflab.fits.statistics.diagnostics import levels
+from coeflab.fits.statistics.many_rows import condensed_rows
 from coeflab.fits.statistics.origin_slope import OriginSlope
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.scaling import Scaling
@@ -34,6 +35,7 @@ ODD = {"v": "YNK", "w": "ZM", "r": "YNK", "q": "ZM", "p": "K", "dr": "YNK", "ds"
 EVEN = {"v": "X", "w": "X", "r": "X", "q": "X"}
 ANGLE_CAPS = (10.0, 12.0, 18.0)
 RATE_CAPS = (0.5, 0.75, 1.0)
+MOST_NAMED = 12  # rows that do not fit their neighbours
 NODES = 41  # of the recommended curve, odd: one is at rest
 
 
@@ -77,7 +79,17 @@ def _sweep(
     if last is not None and np.array_equal(last[0].x, x) and np.array_equal(last[0].y, y):
         origin, curve, fitted, at_rest = last[1], last[0].curve, last[0].fitted, last[0].at_rest
     else:
-        origin = origin_slope.estimate(x, y, se)
+        few = condensed_rows(x, y, se)
+        if few is None:
+            origin = origin_slope.estimate(x, y, se)
+        else:
+            origin = origin_slope.estimate_condensed(few)
+            far += tuple(
+                LeftOut(float(x[i]), float(y[i]), labels[i], "does not fit its neighbours")
+                for i in np.flatnonzero(few.strip < 0)[:MOST_NAMED]
+            )
+            x, y, se = few.x, few.y, origin.noise * np.sqrt(few.variance)
+            labels = tuple(f"mean of {n} rows" for n in np.bincount(few.strip[few.strip >= 0]))
         over = float(np.max(np.abs(x), initial=0.0)) * np.linspace(-1.0, 1.0, NODES)
         mean, halves = origin_slope.curve(origin, np.concatenate([x, over]))
         fitted, curve = mean[: len(x)], np.stack([over, mean[len(x) :], halves[len(x) :]])
@@ -99,7 +111,7 @@ def _sweep(
     reach = float(np.max(np.abs(x), initial=0.0))
     caps = [float(np.sin(np.radians(c))) for c in ANGLE_CAPS] if is_angle else [c * reach for c in RATE_CAPS]
     caps = [c for c in caps if c <= reach * 1.03] if parity == "odd" and reach else []
-    shorter = origin_slope.by_largest(x, y, [w for c in caps if (w := c * (1.0 + slopes.SAME_LEVEL)) < reach], se)
+    shorter = slopes.by_largest(x, y, [w for c in caps if (w := c * (1.0 + slopes.SAME_LEVEL)) < reach], se)
     ended = [s for _, s in shorter] + [origin] * (len(caps) - len(shorter))
     made = Sweep(
         symbol=symbol,

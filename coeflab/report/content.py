@@ -29,8 +29,9 @@ from coeflab.report.document import Document, Section, digest_of, reproduction
 from coeflab.report.figures.svg import settings
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.body import added_mass_sections, body_sections
-from coeflab.report.sections.campaign import anchor, budget_sections, campaign_section, filled, quality_sections
+from coeflab.report.sections.campaign import anchor, budget_sections, campaign_section, filled
 from coeflab.report.sections.conventions import conventions_section
+from coeflab.report.sections.data_quality import quality_sections
 from coeflab.report.sections.parameter_file import export_sections, in_words, manoeuvre_sections, stability_sections
 from coeflab.report.tables import formats as format_tables
 from coeflab.report.tables import models as model_tables

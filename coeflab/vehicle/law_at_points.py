@@ -275,11 +275,13 @@ def with_scatter(measured: Sequence[MeasuredTable], force: Force, length: float)
     return tuple(out)
 
 
-def _dominant(primes: Mapping[str, Array], row: int) -> str:
-    """The motion of a row that goes furthest in its own range; empty at rest."""
-    shares = {v: abs(x[row]) / max(float(np.abs(x).max()), AT_REST) for v, x in primes.items()}
-    moved = {v: s for v, s in shares.items() if abs(primes[v][row]) > AT_REST}
-    return max(moved, key=lambda v: moved[v]) if moved else ""
+def _dominant(primes: Mapping[str, Array]) -> list[str]:
+    """The motion of every row that goes furthest in its own range; empty at rest."""
+    sizes = np.array([np.abs(x) for x in primes.values()])
+    shares = sizes / np.maximum(sizes.max(axis=1, keepdims=True), AT_REST)
+    furthest = np.where(sizes > AT_REST, shares, -1.0)
+    names = list(primes)
+    return [names[i] if far else "" for i, far in zip(furthest.argmax(0), furthest.max(0) >= 0.0, strict=True)]
 
 
 def caps(
@@ -304,11 +306,12 @@ def caps(
     cap: dict[tuple[str, str], float] = {}
     for m in measured:
         primes, by = m.primes(length), force(*m.states)
+        dominant = _dominant(primes)
         for f in m.forces:
             missed = np.abs(_misses(f, by))
             allowed = allowed_miss(f.scatter, _largest(f))
             for row in map(int, np.flatnonzero(np.isfinite(missed))):
-                v = _dominant(primes, row)
+                v = dominant[row]
                 if not v:
                     continue
                 at = float(abs(primes[v][row]))

@@ -16,13 +16,13 @@ from coeflab.fits.statistics.origin_slope import (
     SIZES,
     OriginSlope,
     Status,
-    by_largest,
     curve,
     estimate,
     estimate_many,
     next_points,
     prepare,
 )
+from coeflab.fits.statistics.slopes import by_largest
 
 SLOPE = -0.028
 NOISE = 1e-4

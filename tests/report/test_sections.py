@@ -19,8 +19,8 @@ from coeflab.report.figures.surface import surface_scene
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.formats.html import panels_json, scene_json
 from coeflab.report.sections.body import FACES, Mark, hull_marks, hull_scene
-from coeflab.report.sections.campaign import quality_sections
 from coeflab.report.sections.conventions import AXES, axes_figures
+from coeflab.report.sections.data_quality import quality_sections
 from coeflab.study.checks.symmetry import check as symmetry_check
 from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import read_body, read_tables

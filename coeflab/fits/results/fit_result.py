@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from math import isinf, isnan
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.table import html_by, plus_minus
 from coeflab.core.types import Array, brief, locked
@@ -222,7 +223,7 @@ class Sweep:
     random: float | None
     reason: str
     notes: tuple[str, ...]
-    used: Array
+    used: NDArray[np.bool_]
     wrong: Index
     with_all: float | None
     curve: Array

@@ -16,10 +16,12 @@ from enum import StrEnum
 from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special
 
 from coeflab.core.types import Array, remembered
 from coeflab.fits.statistics.least_squares import Index
+from coeflab.fits.statistics.many_rows import by_neighbours
 
 SIZES = (1.0, 3.0, 1e1, 3e1, 1e2, 3e2, 1e3, 3e3, 1e4, 3e4, 1e5)
 # Part of the other parity, in units of the noise, with its prior share.
@@ -279,8 +281,8 @@ class Screened:
     expected: Array
     scatter: Array
     probability: Array
-    wrong: Array
-    open_end: Array
+    wrong: NDArray[np.bool_]
+    open_end: NDArray[np.bool_]
 
 
 def screen(gate: Gate, y: Array, parity: Parity, limit: float) -> Screened:
@@ -319,6 +321,20 @@ def screen(gate: Gate, y: Array, parity: Parity, limit: float) -> Screened:
         )
     wrong &= probability < limit
     return Screened(expected, scatter, probability, wrong, ends)
+
+
+def screen_many(x: Array, y: Array, limit: float) -> Screened:
+    """The same of very many rows, each by its neighbours along x alone.
+
+    Parameters
+    ----------
+    x, y : (n,) array
+    limit : float
+        Probability below which a reading fails.
+    """
+    near = by_neighbours(x, y)
+    wrong = np.asarray(near.probability < limit)
+    return Screened(near.expected, near.scatter, near.probability, wrong, np.zeros_like(wrong))
 
 
 def _by_setting(x: Array, curves: Array) -> tuple[Array, Array, Index]:

@@ -18,17 +18,19 @@ processes, kinks, onsets, saturation, even parts) and the families of ``tests/co
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import product
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special
 
 from coeflab.core.types import Array, remembered
+from coeflab.fits.statistics.diagnostics import mixture_quantiles
 from coeflab.fits.statistics.least_squares import Index
+from coeflab.fits.statistics.many_rows import Condensed, Rows, Strips, condensed_rows, rows_of
 
 # Sizes in units of the noise; pairs and products with them are prior odds.
 NOTHING = 0.1
@@ -47,11 +49,10 @@ POWER, TAIL, TAIL_PER_DECADE, TAILS = 0.63, 0.016, -0.0085, (0.01, 0.025)
 # Prior probability that a row is wrong, and the posterior one (flattened by the power) at which it is left out: 10 of
 # 960 clean campaigns lost a row, 97 % of 901 readings that were off by over five standard deviations were named.
 WRONG, REMOVE = 0.005, 0.1
-# Smallest noise (of the largest force), leverage that is rounding, members kept for the quantiles.
-ROUNDING, WEIGHTLESS, KEPT = 3e-8, 1e-10, 256
+# Smallest noise (of the largest force), leverage that is rounding.
+ROUNDING, WEIGHTLESS = 3e-8, 1e-10
 DECAY, ORDERS, STATED_FREEDOM, FEWEST, MOST_LIKELY = 0.8, 16, 2.0, 5, 100
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
-TABLE = np.sin(0.5 * np.pi * np.linspace(-1.0, 1.0, 2001)[1:-1])
 
 
 class Status(StrEnum):
@@ -95,6 +96,8 @@ class Design:
         Noise variance of each row, relative.
     flat : int
         Columns without a prior.
+    strips : Strips or None
+        Of what the rows are means.
     """
 
     x: Array
@@ -104,6 +107,7 @@ class Design:
     settings: Index
     terms: Array
     members: tuple[_Member, ...]
+    strips: Strips | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -174,7 +178,7 @@ class OriginSlope:
     pure_error: float
     wrong: Array
     without: Array
-    used: Array
+    used: NDArray[np.bool_]
     with_all: float
     shares: dict[str, float]
     design: Design | None
@@ -217,11 +221,24 @@ def _log_prior(remainder: Array | None, curved: Array, odds: float) -> Array:
     return np.asarray(np.log(odds * weight))
 
 
-def _specifications(t: Array, even: bool, settings: Index, stated: bool) -> list[Any]:
+def _covariance(name: str, odd: bool, to: Array | None, t: Array, strips: Strips | None) -> Array:
+    """Of a remainder at ``to`` (the rows themselves without it) and at the rows."""
+    nodes = t if strips is None else strips.nodes.ravel()
+    found = _remainder(name, odd, nodes if to is None else to, nodes)
+    if strips is None:
+        return found
+    return strips.mean(found, 1) if to is not None else strips.mean(strips.mean(found, 1), 0)
+
+
+def _specifications(t: Array, even: bool, settings: Index, stated: bool, strips: Strips | None) -> list[Any]:
     same = settings[:, None] == settings[None, :]
     out = [("none", True, np.zeros(1), np.zeros((len(t), len(t))), NO_REMAINDER)]
-    out += [(name, True, np.array(REMAINDER), _remainder(name, True, t, t), w) for name, w in ODD.items()]
-    out += [(name, False, np.array(REMAINDER), _remainder(name, False, t, t), w) for name, w in SIDES.items() if even]
+    out += [(name, True, np.array(REMAINDER), _covariance(name, True, None, t, strips), w) for name, w in ODD.items()]
+    out += [
+        (name, False, np.array(REMAINDER), _covariance(name, False, None, t, strips), w)
+        for name, w in SIDES.items()
+        if even
+    ]
     out += [(f"scatter beyond {c}", True, np.array(BEYOND), np.diag(np.abs(t) > c).astype(float), LOOSE) for c in FAR]
     out.append(("growing scatter", True, np.array(SCATTER), np.diag(t * t), GROWING))
     if same.sum() > len(t):
@@ -233,7 +250,12 @@ def _specifications(t: Array, even: bool, settings: Index, stated: bool) -> list
 
 @remembered(12)  # the components of a sweep share their settings
 def prepare(
-    x: Array, variance: Array | None = None, *, symmetric: bool = False, settings: Array | None = None
+    x: Array,
+    variance: Array | None = None,
+    *,
+    symmetric: bool = False,
+    settings: Array | None = None,
+    strips: Strips | None = None,
 ) -> Design:
     """Factorise a sweep.
 
@@ -246,6 +268,8 @@ def prepare(
         No even part.
     settings : (n,) array, optional
         Rows of one label are replicates of one setting; equal x without it.
+    strips : Strips, optional
+        Rows are means over several settings.
 
     Returns
     -------
@@ -254,14 +278,15 @@ def prepare(
     x = np.asarray(x, float)
     largest = float(np.abs(x).max())
     t, n = x / largest, len(x)
+    strips = strips and strips.over(largest)
     ratios = np.ones(n) if variance is None else variance
     labels = np.unique(np.round(t, 9) if settings is None else settings, return_inverse=True)[1].astype(np.int64)
     one_sided = not t.min() < 0.0 < t.max()
     even = not symmetric and not one_sided
-    terms = _terms(t, even)
+    terms = _terms(t, even) if strips is None else strips.mean(_terms(strips.nodes.ravel(), even), 0)
     p = terms.shape[1]
     members = []
-    specifications = _specifications(t, even, labels, variance is not None)
+    specifications = _specifications(t, even, labels, variance is not None, strips)
     total = sum(s[4] for s in specifications)
     for name, odd, sizes, kernel, odds in specifications:
         polynomial = SIZES if name == "none" else COARSE
@@ -298,36 +323,7 @@ def prepare(
                 log_det, leverage, c[:, :, 1], leverage > WEIGHTLESS * (root * root).sum(1)[:, None],
             )
         )  # fmt: skip
-    return Design(x, largest, ratios, 1 if one_sided else 2, labels, terms, tuple(members))
-
-
-def _quantiles(log_weight: Array, mean: Array, scale: Array, freedom: Array, tail: Array) -> tuple[Array, Array]:
-    """Lower, median, upper (b, 3) and standard deviation (b,) of Student mixtures (b, c); tail (b,)."""
-    keep = np.argpartition(-log_weight, min(KEPT, mean.shape[1]) - 1, axis=1)[:, :KEPT]
-    log_weight, mean, scale, freedom = (np.take_along_axis(z, keep, 1) for z in (log_weight, mean, scale, freedom))
-    w = special.softmax(log_weight, axis=1)
-    middle = (w * mean).sum(1)
-    sd = np.sqrt((w * (scale**2 + (mean - middle[:, None]) ** 2)).sum(1))
-    goal = np.stack([tail, np.full(len(tail), 0.5), 1.0 - tail], 1)
-    reach = 12.0 * np.maximum(1.0, special.stdtrit(freedom.min(), 1.0 - tail) / 4.0) * sd
-    low, high = np.repeat((middle - reach)[:, None], 3, 1), np.repeat((middle + reach)[:, None], 3, 1)
-    most = freedom.max()
-    tables = [special.stdtr(nu, TABLE * np.sqrt(nu / (1.0 - TABLE**2))) for nu in (most, most - 1.0)]
-    first = (freedom == most)[:, None]
-
-    def below(z: Array) -> Array:
-        u = (z[..., None] - mean[:, None]) / scale[:, None]
-        u /= np.sqrt(freedom[:, None] + u * u)
-        share = np.interp(u, TABLE, tables[0])
-        if not first.all():
-            share = np.where(first, share, np.interp(u, TABLE, tables[1]))
-        return np.asarray((w[:, None] * share).sum(2))
-
-    for _ in range(22):
-        z = 0.5 * (low + high)
-        right = below(z) < goal
-        low, high = np.where(right, z, low), np.where(right, high, z)
-    return 0.5 * (low + high), sd
+    return Design(x, largest, ratios, 1 if one_sided else 2, labels, terms, tuple(members), strips)
 
 
 def _log_density(freedom: float) -> float:
@@ -419,7 +415,7 @@ def estimate_many(design: Design, y: Array, stated: float | None = None, *, dele
         weight = np.concatenate([weight - evidence[:, None] + odds[:, :1], flat[0]], 1)
         mean, scale = np.concatenate([mean, flat[1]], 1), np.concatenate([scale, np.sqrt(flat[2])], 1)
         freedom = np.concatenate([freedom, np.full(flat[1].shape, nu - 1.0)], 1)
-    ends, sd = _quantiles(weight, mean, scale, freedom, tail)
+    ends, sd = mixture_quantiles(weight, mean, scale, freedom, tail)
     unit = size / design.largest
     low, value, high = ends.T * unit
     return Slopes(value, low, high, sd * unit, noise * size, middle * unit, wrong, without, weights)
@@ -430,7 +426,8 @@ def _joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, 
     t, to = design.x / design.largest, np.asarray(at, float) / design.largest
     p, nu = design.terms.shape[1], len(t) - design.flat
     basis = np.vstack([np.eye(p)[1], _terms(to, p == 5)])
-    ends, known = np.cumsum([m.log_prior.size for m in design.members]), dict[int, list[Array]]()
+    ends = np.cumsum([m.log_prior.size for m in design.members])
+    known: dict[int, tuple[Array, Array]] = {}  # covariances of the remainders, alike for all sizes
     best = np.argsort(weights)[::-1][:MOST_LIKELY]
     mean, second, terms = np.zeros(len(basis)), np.zeros((len(basis), len(basis))), np.zeros(p)
     for share, c in zip(weights[best] / weights[best].sum(), best):
@@ -439,9 +436,11 @@ def _joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, 
         root, columns, precision = m.root[j], m.columns[j].T, m.precision[k]
         cross, own = np.zeros((len(basis), len(t))), np.zeros((len(basis), len(basis)))
         if m.name in ODD or m.name in SIDES:
-            known[i] = known.get(i) or [_remainder(m.name, m.odd, to, z) for z in (t, to)]
+            if i not in known:
+                known[i] = _covariance(m.name, m.odd, to, t, design.strips), _remainder(m.name, m.odd, to, to)
             cross[1:], own[1:, 1:] = (m.sizes[j] ** 2 * z for z in known[i])
-        cross, b = cross @ root.T, np.zeros(p)
+        cross = cross @ root.T
+        b = np.zeros(p)
         for _ in range(2):
             b = b + m.inverse[j, k] @ (columns.T @ (root @ y - columns @ b) - precision * b)
         left = root @ y - columns @ b
@@ -465,16 +464,6 @@ def _shares(design: Design, y: Array, weights: Array) -> dict[str, float]:
     parts = [mean[0], terms[-2], terms[-1], secant - mean[0] - terms[-2] - terms[-1]]
     names = ("linear", "v|v|", "cubic", "remainder")
     return {n: float(v / secant) if secant else np.nan for n, v in zip(names, parts)}
-
-
-def _copies(rows: Array) -> tuple[Array, bool]:
-    """Rows that repeat an earlier one exactly; whether every row off zero has its exact mirror image."""
-    first = np.unique(rows, axis=0, return_index=True)[1]
-    again = np.ones(len(rows), bool)
-    again[first] = False
-    seen = {(float(r[0]), float(r[1])) for r in rows}
-    off = rows[rows[:, 0] != 0.0]
-    return again, len(off) > 2 and all((-float(r[0]), -float(r[1])) in seen for r in off)
 
 
 @remembered(24)
@@ -503,22 +492,25 @@ def estimate(
     ValueError
         Lengths differ or a number is not finite.
     """
-    x, y = np.asarray(x, float), np.asarray(y, float)
-    if x.shape != y.shape or x.ndim != 1 or not np.isfinite([x, y]).all():
-        raise ValueError(f"x and y must be finite and of one length, found shapes {x.shape} and {y.shape}")
-    variance, stated = None, None
-    if se is not None and (usable := np.isfinite(se) & (np.asarray(se) > 0.0)).any():
-        middle = float(np.median(np.asarray(se)[usable]))
-        variance, stated = np.clip(np.where(usable, se, middle) / middle, 1e-2, 1e2) ** 2, middle**2
-    again, mirrored = _copies(np.stack([x, y] if variance is None else [x, y, variance], 1))
-    used = np.logical_not(again)
-    notes = []
-    if again.any():
-        notes.append(f"{int(again.sum())} rows repeat an earlier row exactly and count once")
-    if mirrored:
-        notes.append("every row has its exact mirror image: the mirrored half is no new data, U95 widened by sqrt 2")
-    if not len(x) or not x.min() < 0.0 < x.max():
-        notes.append("one-sided sweep: even and odd parts cannot be told apart")
+    rows = rows_of(x, y, se)
+    few = condensed_rows(x, y, se)
+    if few is None:
+        return _estimate(rows, symmetric, groups)
+    found = estimate_condensed(few, symmetric=symmetric)
+    used, wrong = few.rows(found.used.astype(float), 0.0) > 0.5, few.rows(found.wrong, 1.0)
+    return replace(found, used=used, wrong=wrong, without=np.full(len(rows.x), np.nan))
+
+
+def estimate_condensed(few: Condensed, *, symmetric: bool = False) -> OriginSlope:
+    """Slope of one campaign of very many rows, every array by the strips."""
+    used = np.ones(len(few.x), dtype=bool)
+    rows = Rows(few.x, few.y, few.variance, few.stated, used, few.mirrored, few.notes, few.strips)
+    return replace(_estimate(rows, symmetric, None), pure_error=few.scatter)
+
+
+def _estimate(rows: Rows, symmetric: bool, groups: Array | None) -> OriginSlope:
+    x, y, variance, stated, notes = rows.x, rows.y, rows.variance, rows.stated, rows.notes
+    used, mirrored, strips = rows.used.copy(), rows.mirrored, rows.strips
     wrong, without, with_all, reason = np.zeros(len(x)), np.full(len(x), np.nan), np.nan, ""
     left_out: list[int] = []
     while True:
@@ -526,12 +518,12 @@ def estimate(
         if len(np.unique(x[kept])) < 3 or not np.any(x):
             nan, reason = float("nan"), f"{len(np.unique(x[kept]))} different settings, at least 3 are needed"
             return OriginSlope(
-                nan, nan, nan, nan, nan, Status.TOO_FEW, reason, tuple(notes), nan, nan, wrong, without, used, nan,
+                nan, nan, nan, nan, nan, Status.TOO_FEW, reason, notes, nan, nan, wrong, without, used, nan,
                 {}, None, y[kept], np.zeros(0),
             )  # fmt: skip
         design = prepare(
             x[kept], None if variance is None else variance[kept], symmetric=symmetric,
-            settings=None if groups is None else np.asarray(groups)[kept],
+            settings=None if groups is None else np.asarray(groups)[kept], strips=strips and strips.of(kept),
         )  # fmt: skip
         many = estimate_many(design, y[kept], stated)
         wrong[kept], without[kept] = many.wrong[0], many.without[0]
@@ -547,7 +539,8 @@ def estimate(
     lower, upper = (float(value + widen * (end[0] - value)) for end in (many.lower, many.upper))
     status = Status.WRONG_POINT if left_out else Status.OPEN if lower < 0.0 < upper else Status.OK
     if left_out:
-        reason = f"rows {', '.join(map(str, left_out))} (from 0) do not fit the others; with them the value is {with_all:.4g}"
+        what = "rows" if strips is None else "strips"
+        reason = f"{what} {', '.join(map(str, left_out))} (from 0) do not fit the others; with them the value is {with_all:.4g}"
     elif status is Status.OPEN:
         reason = "the 95 % interval contains zero"
     replicate = np.bincount(design.settings)
@@ -555,7 +548,7 @@ def estimate(
     freedom = len(kept) - len(replicate)
     pure = float(np.sqrt(np.sum((y[kept] - means[design.settings]) ** 2) / freedom)) if freedom else float("nan")
     return OriginSlope(
-        value, lower, upper, 0.5 * (upper - lower), widen * float(many.sd[0]), status, reason, tuple(notes),
+        value, lower, upper, 0.5 * (upper - lower), widen * float(many.sd[0]), status, reason, notes,
         float(many.noise[0]), pure, wrong, without, used, with_all if left_out else value,
         _shares(design, y[kept], many.weights[0]), design, y[kept], many.weights[0],
     )  # fmt: skip
@@ -590,11 +583,3 @@ def next_points(slope: OriginSlope, count: int, candidates: Array | None = None)
         chosen.append(at[i - 1])
         after.append(slope.u95 * np.sqrt(max(c[0, 0], 0.0) / start))
     return np.array(chosen), np.array(after)
-
-
-def by_largest(
-    x: Array, y: Array, caps: Sequence[float], se: Array | None = None, *, symmetric: bool = False
-) -> tuple[tuple[float, OriginSlope], ...]:
-    """The slope had the sweep ended at each of ``caps`` (largest |x|)."""
-    inside = [(c, np.abs(x) <= c * (1.0 + 1e-9)) for c in caps]
-    return tuple((c, estimate(x[i], y[i], None if se is None else se[i], symmetric=symmetric)) for c, i in inside)

@@ -7,7 +7,7 @@ The even coefficients of that model, the force at rest and the curvature there, 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -205,3 +205,13 @@ def rest_and_curvature(x: Array, y: Array) -> tuple[float | None, float | None]:
     mean, half = origin_slope.curve(origin, np.zeros(1))
     at_rest = float(mean[0]), float(half[0])
     return at_rest[0], determined(origin, "x2", None, at_rest)[0]
+
+
+def by_largest(
+    x: Array, y: Array, caps: Sequence[float], se: Array | None = None, *, symmetric: bool = False
+) -> tuple[tuple[float, OriginSlope], ...]:
+    """The slope had the sweep ended at each of ``caps`` (largest |x|)."""
+    inside = [(c, np.abs(x) <= c * (1.0 + 1e-9)) for c in caps]
+    return tuple(
+        (c, origin_slope.estimate(x[i], y[i], None if se is None else se[i], symmetric=symmetric)) for c, i in inside
+    )

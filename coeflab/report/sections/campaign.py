@@ -1,7 +1,5 @@
 """One section a campaign, one part of it a coefficient.
 
-Quality of the data: forces at rest, rejected and doubtful cells, and how far repeated runs agree.
-
 The uncertainty budget in a report: what U95 holds, what a validation concludes, how it carries on.
 
 The figure of one budget: parts as bars, the largest on top.
@@ -16,10 +14,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from coeflab.core.provenance import work
-from coeflab.core.table import ABSENT, Table, coefficient, number, percent, plus_minus, with_u95
+from coeflab.core.table import Table, coefficient, percent, plus_minus, with_u95
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
-from coeflab.fits.statistics.diagnostics import replicate_groups
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import COVERS
 from coeflab.law.symbols import primed
@@ -165,104 +162,6 @@ def _caveats(sweep: Sweep) -> list[str]:
         each = "; ".join(f"{', '.join(labels)} ({why})" for why, labels in reasons.items())
         out.append(f"Left out: {each}.")
     return out
-
-
-TEXT = (
-    "A symmetric body has no side force at no angle; what a curve has there is misalignment, an asymmetry of the model, or an "
-    "offset of the balance. Beside it stands the angle at which the recommended slope would give as much.",
-    "Repeats are usable points of one table at one setting. Their scatter is what the measurement itself gives, and no fit can be "
-    "better than it.",
-)
-AT_REST = (
-    "of the curve: the recommended curve at no angle; of largest: its size over the largest force of the sweep.",
-)
-SAME_SETTING = 1e-6
-
-
-def quality_sections(study: Study) -> tuple[Section, ...]:
-    """One section, or none where the study has no tables."""
-    if not study.tables:
-        return ()
-    shown = filled(_at_rest(study), _repeats(study.tables), _counts(study.tables), _cells(study.tables))
-    text = TEXT if len(shown) else ()
-    if not any(t.exclusions for t in study.tables):
-        text = (*text, "No row and no cell is rejected or doubtful.")
-    return (Section("data-quality", "Data quality", text, shown),)
-
-
-def _at_rest(study: Study) -> Table:
-    """Forces at no angle of the odd sweeps, from the recommended curves, as force and as angle."""
-    rows = []
-    for s in (s for fit in study.fits for s in fit.sweeps if s.target == "x" and s.value is not None):
-        value, half = s.at_rest
-        angle = ABSENT if not s.value or not s.is_angle else f"{np.degrees(value / s.value):+.2f}"
-        largest = float(np.max(np.abs(s.y)))
-        measured = [y for x, y in zip(s.x, s.y, strict=True) if abs(x) <= SAME_SETTING]
-        at_zero = ABSENT if not measured else coefficient(float(np.mean(measured)))
-        share = f"{100.0 * abs(value) / largest:.1f} %" if largest > 0.0 else ABSENT
-        rows.append((s.campaign, f"{s.component}'", s.variable + "'", *with_u95(value, half), at_zero, share, angle))
-    headers = ("campaign", "force", "over", "of the curve", "U95", "measured", "of largest", "as angle deg")
-    return Table("Forces at rest", headers, tuple(rows), AT_REST, frozenset({0, 1, 2}))
-
-
-def _repeats(tables: tuple[ForceTable, ...]) -> Table:
-    """Pooled standard deviation of repeated settings, per table and force."""
-    rows = []
-    for t in tables:
-        names = [*t.varies] or ["v"]
-        length = t.scaling.length
-        settings = np.column_stack([t.primed_motion(v, length) for v in names] + [t.speed / float(np.max(t.speed))])
-        for component, usable in t.usable.items():
-            kept = np.flatnonzero(usable & np.isfinite(t.forces[component]))
-            groups = _groups(settings[kept])
-            if not groups:
-                continue
-            y = t.primed_force(component, length)[kept]
-            freedom = sum(len(g) - 1 for g in groups)
-            pooled = np.sqrt(sum(float(np.sum((y[g] - y[g].mean()) ** 2)) for g in groups) / freedom)
-            largest = float(np.max(np.abs(y)))
-            share = f"{100.0 * pooled / largest:.2g} %" if largest else ABSENT
-            rows.append((t.name, f"{component}'", str(len(groups)), str(freedom), number(float(pooled), 3), share))
-    headers = ("table", "force", "settings repeated", "degrees of freedom", "standard deviation", "of largest")
-    return Table("Repeatability", headers, tuple(rows), (), frozenset({0, 1}))
-
-
-def _groups(settings: np.ndarray) -> list[np.ndarray]:
-    """Rows of equal settings, of two and more."""
-    if not len(settings):
-        return []
-    _, key = np.unique(np.round(settings / SAME_SETTING), axis=0, return_inverse=True)
-    return replicate_groups(np.asarray(key, dtype=float).ravel(), 0.5)
-
-
-def _counts(tables: tuple[ForceTable, ...]) -> Table:
-    """Rows, cells, and what is not used of them."""
-    rows = []
-    for t in tables:
-        cells = sum(mask.size for mask in t.usable.values())
-        used = sum(int(mask.sum()) for mask in t.usable.values())
-        whole = sum(not e.component for e in t.exclusions)
-        doubtful = sum(e.uncertain for e in t.exclusions)
-        rejected = len(t.exclusions) - whole - sum(e.uncertain and bool(e.component) for e in t.exclusions)
-        counts = (len(t), cells, used, rejected, doubtful, whole)
-        rows.append((t.name, *map(str, counts)))
-    headers = ("table", "rows", "force cells", "usable", "rejected cells", "doubtful", "rejected rows")
-    return Table("Rows and cells", headers, tuple(rows), (), frozenset({0}))
-
-
-def _cells(tables: tuple[ForceTable, ...]) -> Table:
-    """Cells and rows that are not used, gathered by table and reason."""
-    places: dict[tuple[str, str, str], dict[str, list[str]]] = {}
-    for t in tables:
-        for e in t.exclusions:
-            what = places.setdefault((t.name, "doubtful" if e.uncertain else "rejected", e.reason), {})
-            what.setdefault(e.component or "whole row", []).append(t.labels[e.row])
-    rows = tuple(
-        (*key, "; ".join(f"{force}: {', '.join(labels)}" for force, labels in what.items()))
-        for key, what in places.items()
-    )
-    headers = ("table", "what", "reason", "points")
-    return Table("Cells that the fits do not use", headers, rows, (), frozenset(range(4)))
 
 
 WIDTH, LEFT, RIGHT, BOTTOM, TOP = 340.0, 112.0, 44.0, 34.0, 8.0

@@ -242,21 +242,28 @@ def works(study: Study) -> tuple[tuple[str, str], ...]:
     return tuple((k, work(k)) for k in dict.fromkeys(keys))
 
 
-def inspected(table: ForceTable) -> Table:
-    """What a force table holds, row by row, in SI and FRD."""
+def inspected(table: ForceTable, most: int = 0) -> Table:
+    """What a force table holds, row by row, in SI and FRD; of more than ``most`` rows the first and last."""
     motions = [m for m in ("u", "v", "w", "p", "q", "r") if m == "u" or m in table.varies]
     headers = ["", *(f"{m} [{'m/s' if m in 'uvw' else 'rad/s'}]" for m in motions)]
     headers += [f"{c} [rad]" for c in table.controls]
     headers += [f"{c} [{'N*m' if c in 'KMN' else 'N'}]" for c in table.forces]
     rows = []
-    for i in range(len(table)):
+    left_out = range(most - most // 3, len(table) - most // 3) if 0 < most < len(table) else range(0)
+    for i in (i for i in range(len(table)) if i not in left_out):
         cells = [table.labels[i], *(number(float(table.motion[m][i]), 5) for m in motions)]
         cells += [number(float(a[i]), 4) for a in table.controls.values()]
         for c, values in table.forces.items():
             text = number(float(values[i]), 5)
             cells.append(text if table.usable[c][i] else f"({text})")
         rows.append(tuple(cells))
-    notes = tuple(f"line {e.line}, {e.component or 'row'}: excluded, {e.reason}" for e in table.exclusions)
+    excluded = [f"line {e.line}, {e.component or 'row'}: excluded, {e.reason}" for e in table.exclusions]
+    notes = [
+        *excluded[: most or None],
+        *([f"{len(excluded) - most} more are excluded"] if 0 < most < len(excluded) else []),
+    ]
+    if left_out:
+        notes.insert(0, f"{len(left_out)} of {len(table)} rows are not shown; --rows 0 shows all")
     return Table(
         f"{table.name}: SI, FRD", tuple(headers), tuple(rows), ("(...) excluded from fits", *notes), frozenset({0})
     )

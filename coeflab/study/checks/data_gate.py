@@ -110,9 +110,7 @@ def _sweeps(table: ForceTable, kept: NDArray[np.bool_]) -> Iterator[_Sweep]:
                 n: float(np.abs(settings[n][rows]).max(initial=0.0)) <= SAME for n in names if n not in (name, "speed")
             }
             lateral = all(still for n, still in rest.items() if n in LATERAL)
-            parts = -(-len(rows) // LARGEST_SWEEP)
-            for p in range(parts):
-                yield _Sweep(name, rows[p::parts], x[p::parts], all(rest.values()), lateral)
+            yield _Sweep(name, rows, x, all(rest.values()), lateral)
 
 
 def _copies(table: ForceTable) -> NDArray[np.bool_]:
@@ -153,11 +151,13 @@ def _screened(table: ForceTable, kept: NDArray[np.bool_], limit: float) -> dict[
             known = errors is not None and bool(np.all(np.isfinite(errors[rows]) & (errors[rows] > 0.0)))
             variance = table.primed_force(component, length, errors)[rows] ** 2 if known else None
             parity = sweep.parity(component)
-            gate = data_gate.prepare(x, parity, variance)
             y = table.primed_force(component, length)[rows]
             if not np.any(y):
                 continue
-            seen = data_gate.screen(gate, y, parity, limit)
+            if len(rows) > LARGEST_SWEEP:
+                seen = data_gate.screen_many(x, y, limit)
+            else:
+                seen = data_gate.screen(data_gate.prepare(x, parity, variance), y, parity, limit)
             for at, row in enumerate(rows):
                 best = cells.get((int(row), component))
                 if best is None or seen.scatter[at] < best.seen.scatter[best.at]:
@@ -221,7 +221,8 @@ def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows:
     """Rows whose components depart together as a wrong setting makes them, and which setting would suit all of them."""
     sweeps: dict[tuple[str, bytes], dict[str, _Cell]] = {}
     for (_, component), cell in cells.items():
-        sweeps.setdefault((cell.sweep.variable, cell.sweep.rows.tobytes()), {})[component] = cell
+        if len(cell.sweep.rows) <= LARGEST_SWEEP:
+            sweeps.setdefault((cell.sweep.variable, cell.sweep.rows.tobytes()), {})[component] = cell
     for (name, _), by_component in sweeps.items():
         if len(by_component) < 2:
             continue
@@ -334,6 +335,30 @@ def _as_check(table: ForceTable, row: int, said: _Row, readings: int) -> Check:
     )
 
 
+def _together(table: ForceTable, tables: Sequence[ForceTable], length: float, rows: dict[int, _Row]) -> Check:
+    """One finding on more rows than a person compares one by one."""
+    values = []
+    for _, component, symbol, index, x, y, se, found in _estimates(table, tables, length):
+        failed = np.array([int(row) in rows and component in rows[int(row)].components for row in index])
+        if failed.any() and np.isfinite(found.value):
+            without = _without(x, y, se, failed)
+            values.append(
+                f"{primed(symbol)} = {number(found.with_all, 3)} with these rows, "
+                f"{_value(without.value, without.u95)} without them"
+            )
+    components = listed([c for c in table.forces if any(c in said.components for said in rows.values())])
+    where = [str(table.lines[i]) if table.lines else table.labels[i] for i in sorted(rows)]
+    return Check(
+        "data_gate", table.name, Severity.WARN,
+        "; ".join([f"{len(rows)} rows do not belong to their sweep, in {components}: line {_some(where)}", *values]),
+        "at most one reading in fifty campaigns that are clean", ADVICE,
+    )  # fmt: skip
+
+
+def _some(where: Sequence[str]) -> str:
+    return listed(list(where)) if len(where) <= MOST_LINES else f"{', '.join(where[:MOST_LINES])} ..."
+
+
 ADVICE = "Compare the row with its source; name the cell under uncertain to leave it out."
 INFLUENTIAL = "Repeat the run."
 
@@ -355,11 +380,10 @@ def _pasted(table: ForceTable, again: NDArray[np.bool_]) -> list[Check]:
     out = []
     if again.any():
         where = [str(table.lines[i]) if table.lines else table.labels[i] for i in np.flatnonzero(again)]
-        shown = listed(where) if len(where) <= MOST_LINES else f"{', '.join(where[:MOST_LINES])} ..."
         several = again.sum() > 1 or len(table.forces) > 1
         out.append(
             Check("data_gate", table.name, Severity.WARN if several else Severity.NOTE,
-                  f"{int(again.sum())} rows repeat an earlier row to the last digit: line {shown}", "rows differ",
+                  f"{int(again.sum())} rows repeat an earlier row to the last digit: line {_some(where)}", "rows differ",
                   "Copies are no repeats: they narrow intervals without new data. Delete them.")
         )  # fmt: skip
     if _is_mirrored(table, again):
@@ -391,10 +415,10 @@ def _astern(table: ForceTable, ahead: NDArray[np.bool_]) -> list[Check]:
     """Rows that run astern in a table that runs ahead."""
     if not 0 < np.count_nonzero(~ahead) <= 0.2 * len(table):
         return []
+    where = [str(table.lines[i]) if table.lines else table.labels[i] for i in np.flatnonzero(~ahead)]
     return [
-        Check("data_gate", _where(table, int(i)), Severity.WARN, "the row does not run ahead (u <= 0), the others do", "u > 0",
-              "An angle beyond 90 degrees: a slip of the decimal point?")
-        for i in np.flatnonzero(~ahead)
+        Check("data_gate", f"{table.name} line {_some(where)}", Severity.WARN, "does not run ahead (u <= 0), the others do",
+              "u > 0", "An angle beyond 90 degrees: a slip of the decimal point?")
     ]  # fmt: skip
 
 
@@ -455,9 +479,12 @@ def findings(tables: Sequence[ForceTable], length: float) -> tuple[Check, ...]:
                 said.cells.append(_cell_text(table, component, row, cell))
                 said.components.append(component)
         _shared_errors(table, cells, rows, SHARED / sum(map(len, tables)))
-        _slopes(about, turned, length, again, rows)
-        _curvatures(table, cells, length, rows)
-        out += [_as_check(table, row, said, readings) for row, said in sorted(rows.items())]
+        if len(rows) > MOST_LINES or (rows and len(table) > LARGEST_SWEEP):
+            out.append(_together(about, turned, length, rows))
+        else:
+            _slopes(about, turned, length, again, rows)
+            _curvatures(table, cells, length, rows)
+            out += [_as_check(table, row, said, readings) for row, said in sorted(rows.items())]
         out += _open_ends(table, cells, rows)
         out += _pasted(table, again)
         out += _astern(table, ahead)
