@@ -60,7 +60,7 @@ def test(arguments: list[str]) -> int:
         [str(PYTHON), "-m", "ruff", "format", "--check", *sources],
         [str(PYTHON), "-m", "mypy"],
         [str(BIN / "lint-imports")],
-        [str(PYTHON), "-m", "pytest", *(arguments or ["-n", "2"])],
+        [str(PYTHON), "-m", "pytest", *(arguments or ["-n", "2", "--dist", "worksteal"])],
     ]
     for gate in gates:
         code = subprocess.run(gate, cwd=ROOT, env=environment, check=False).returncode

@@ -11,6 +11,9 @@ import pytest
 from hypothesis import settings
 
 from coeflab.core.files import shipped
+from coeflab.report.content import document
+from coeflab.report.document import Document
+from coeflab.report.formats import REPORTERS
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
@@ -84,3 +87,15 @@ def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest
 def suboff() -> Study:
     """The SUBOFF study, run once."""
     return run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
+
+
+@pytest.fixture(scope="session")
+def suboff_document(suboff: Study) -> Document:
+    """Its report, whole, drawn once."""
+    return document(suboff)
+
+
+@pytest.fixture(scope="session")
+def suboff_page(suboff_document: Document) -> bytes:
+    """Its report as a page."""
+    return REPORTERS.load("html").render(suboff_document)["report.html"]

@@ -114,6 +114,7 @@ def test_remade_for_a_solver(whole: TriangleMesh) -> None:
     assert coarse.discretisation_error / fine.discretisation_error == pytest.approx(steps, rel=0.1)
 
 
+@pytest.mark.slow
 def test_panels_on_aff8_hold_those_of_four_times_as_many() -> None:
     """Reference: this method from 24,280, 5,732 and 1,504 panels, within 0.2 %; roll and surge within 2 %."""
     fine = np.array([27.152, 703.47, 663.27, 1.982, 634.84, 666.52])

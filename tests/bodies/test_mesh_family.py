@@ -76,6 +76,7 @@ def rod(sections: int, length: float) -> TriangleMesh:
     return TriangleMesh(vertices, np.concatenate([np.stack(r, axis=1) for r in rows]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sections", [48, 600])
 def test_long_facets_of_cad_become_compact(sections: int) -> None:
     mesh = rod(sections, 8.0)

@@ -10,7 +10,6 @@ import pytest
 from coeflab.core.files import shipped
 from coeflab.report.content import document
 from coeflab.report.formats import REPORTERS
-from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan
 from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import run
@@ -45,8 +44,6 @@ def browser():
 
 
 def _study(kind: str):
-    if kind == "suboff":
-        return run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
     if kind == "models":
         planned = [("huuv_synthetic", "surface"), ("thauv_case_01_synthetic", "glide_polar"),
                    ("suboff_cfd_barehull", "manoeuvring_model")]  # fmt: skip
@@ -63,14 +60,19 @@ def address(request, written):
 
 
 @pytest.fixture(scope="session")
-def written(tmp_path_factory):
+def written(tmp_path_factory, request):
     """Address of the report of a kind of study, written once."""
     known = {}
+
+    def page_of(kind: str) -> bytes:
+        if kind == "suboff":
+            return request.getfixturevalue("suboff_page")
+        return REPORTERS.load("html").render(document(_study(kind)))["report.html"]
 
     def address_of(kind: str) -> str:
         if kind not in known:
             path = tmp_path_factory.mktemp("report") / "report.html"
-            path.write_bytes(REPORTERS.load("html").render(document(_study(kind)))["report.html"])
+            path.write_bytes(page_of(kind))
             known[kind] = path.as_uri()
         return known[kind]
 

@@ -3,22 +3,41 @@
 from __future__ import annotations
 
 import subprocess
-import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
-COEFLAB = Path(sys.executable).with_name("coeflab")
+from tests.cli.forked import COEFLAB, Forks
+
+__all__ = ["COEFLAB", "Run"]
 Run = Callable[..., subprocess.CompletedProcess[str]]
 
 
+@pytest.fixture(scope="session")
+def forks() -> Iterator[Forks]:
+    """Processes of ``coeflab`` that need not import it again."""
+    forks = Forks()
+    yield forks
+    forks.close()
+
+
 @pytest.fixture
-def coeflab(tmp_path: Path) -> Run:
-    """Run ``coeflab`` in an empty folder."""
+def fresh(tmp_path: Path) -> Run:
+    """Run ``coeflab`` as a user does: an interpreter of its own, which imports what the command imports and no more."""
 
     def run(*arguments: str | Path, cwd: Path = tmp_path) -> subprocess.CompletedProcess[str]:
         command = [str(COEFLAB), *map(str, arguments)]
         return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False, timeout=120)
+
+    return run
+
+
+@pytest.fixture
+def coeflab(tmp_path: Path, forks: Forks) -> Run:
+    """Run ``coeflab`` in an empty folder."""
+
+    def run(*arguments: str | Path, cwd: Path = tmp_path) -> subprocess.CompletedProcess[str]:
+        return forks.run(arguments, cwd)
 
     return run

@@ -56,8 +56,8 @@ def test_csv_and_json_tell_the_same(coeflab: Run, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_without_out_nothing_is_written(coeflab: Run, tmp_path: Path) -> None:
-    assert coeflab("glide", "slocum").returncode == 0
+def test_without_out_nothing_is_written(fresh: Run, tmp_path: Path) -> None:
+    assert fresh("glide", "slocum").returncode == 0
     assert list(tmp_path.iterdir()) == []
 
 

@@ -93,11 +93,11 @@ def test_one_error_and_exit_code_2(
 
 
 @pytest.mark.slow
-def test_nothing_identified_is_exit_code_1(coeflab: Run, params: Path, tmp_path: Path) -> None:
+def test_nothing_identified_is_exit_code_1(fresh: Run, params: Path, tmp_path: Path) -> None:
     """At rest there is no force: every term stays open."""
     lines = [f"{0.05 * k:g},0,{1e-3 * (-1) ** k:g}" for k in range(2000)]
     (tmp_path / "rest.csv").write_text("\n".join(["t [s],u [m/s],v [m/s]", *lines]) + "\n")
-    done = coeflab("identify", "rest.csv", "--params", params, "--json", "--window", "3 s")
+    done = fresh("identify", "rest.csv", "--params", params, "--json", "--window", "3 s")
     assert done.returncode == 1, done.stderr
     content = json.loads(done.stdout)
     assert {t["outcome"] for t in content["terms"]} == {"not identifiable"}

@@ -25,21 +25,31 @@ def files_in(folder: Path) -> set[str]:
     return {str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file()}
 
 
-def test_both_formats_are_written(coeflab, study, tmp_path):
-    done = coeflab("report", study, "--to", "html,pdf", "--out", "made")
+@pytest.fixture(scope="module")
+def reported(forks, tmp_path_factory):
+    """A folder with that study and its report in both formats, and what the command said."""
+    folder = tmp_path_factory.mktemp("reported")
+    assert forks.run(("new", "boat"), folder).returncode == 0
+    return folder, forks.run(("report", folder / "boat", "--to", "html,pdf", "--out", "made"), folder)
+
+
+@pytest.mark.slow
+def test_both_formats_are_written(reported):
+    folder, done = reported
     assert done.returncode == 0, done.stderr
-    assert files_in(tmp_path / "made") == {"report.html", "report.pdf"}
+    assert files_in(folder / "made") == {"report.html", "report.pdf"}
     assert "made/report.pdf" in done.stdout
     assert done.stderr == ""
-    made = pymupdf.open(tmp_path / "made" / "report.pdf")
-    assert made.metadata["title"] in (tmp_path / "made" / "report.html").read_text()
+    made = pymupdf.open(folder / "made" / "report.pdf")
+    assert made.metadata["title"] in (folder / "made" / "report.html").read_text()
 
 
-def test_a_plan_and_its_folder_give_the_same_bytes(coeflab, study, tmp_path):
-    coeflab("report", study, "--out", "a")
-    coeflab("report", study / "plan.toml", "--out", "b")
+@pytest.mark.slow
+def test_a_plan_and_its_folder_give_the_same_bytes(coeflab, reported):
+    folder, _ = reported
+    coeflab("report", folder / "boat" / "plan.toml", "--out", "b", cwd=folder)
     for name in ("report.html", "report.pdf"):
-        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+        assert (folder / "made" / name).read_bytes() == (folder / "b" / name).read_bytes()
 
 
 def test_the_summary_has_one_page_and_a_name_of_its_own(coeflab, study, tmp_path):
@@ -83,6 +93,7 @@ def test_one_error_and_nothing_written(coeflab, study, tmp_path, arguments, word
     assert files_in(tmp_path) == before
 
 
+@pytest.mark.slow
 def test_open_hands_the_file_to_the_browser(study, tmp_path):
     browser = tmp_path / "browser"
     browser.write_text(f'#!/bin/sh\necho "$1" > {tmp_path}/shown\n')
@@ -125,6 +136,7 @@ def commands_in(page: Path) -> list[str]:
     ]
 
 
+@pytest.mark.slow
 def test_the_stated_command_makes_the_same_report(coeflab, study, tmp_path):
     plan = (study / "plan.toml").rename(study / "my plan.toml")
     assert coeflab("report", plan, "--to", "html", "--out", "a").returncode == 0

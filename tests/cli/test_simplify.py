@@ -208,13 +208,13 @@ def test_json_agrees_with_the_text(coeflab: Run) -> None:
 
 
 @pytest.mark.slow
-def test_a_bracket_is_split_on_request(coeflab: Run, tmp_path: Path) -> None:
+def test_a_bracket_is_split_on_request(fresh: Run, tmp_path: Path) -> None:
     """Two arms of 100 mm by 30 mm by 10 mm and 70 mm by 30 mm by 10 mm; without --split it is like nothing."""
     trimesh.Trimesh(*surface(BRACKET), process=False).export(tmp_path / "bracket.stl")
     declared = ("bracket.stl", "--unit", "mm", "--axes", "FRD", "--json")
-    whole = json.loads(coeflab("simplify", *declared, "--out", "whole").stdout)
+    whole = json.loads(fresh("simplify", *declared, "--out", "whole").stdout)
     assert [p["class"] for p in whole["parts"]] == ["other"]
-    split = json.loads(coeflab("simplify", *declared, "--out", "split", "--split", "convex").stdout)
+    split = json.loads(fresh("simplify", *declared, "--out", "split", "--split", "convex").stdout)
     assert [p["class"] for p in split["parts"]] == ["box", "box"]
     assert split["volume"] == pytest.approx(51e-6, rel=5e-3)
     scene = trimesh.load_scene(tmp_path / "split" / "overlay.glb")

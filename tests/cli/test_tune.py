@@ -49,8 +49,8 @@ def test_tables_and_files(coeflab: Run, plan: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_json(coeflab: Run, plan: Path, tmp_path: Path) -> None:
-    done = coeflab("tune", plan, "--json", "--out", "here")
+def test_json(fresh: Run, plan: Path, tmp_path: Path) -> None:
+    done = fresh("tune", plan, "--json", "--out", "here")
     assert (done.returncode, done.stderr) == (0, "")
     found = json.loads(done.stdout)
     assert found["converged"] is True

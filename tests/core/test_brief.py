@@ -16,7 +16,7 @@ import coeflab
 from coeflab.core.files import shipped
 from coeflab.core.types import brief
 from coeflab.motion.simulation import simulate
-from coeflab.report.content import document
+from coeflab.report.document import Document
 from coeflab.study.study import Study
 from coeflab.tables.campaign import read_campaign
 from coeflab.workbench.glide import fly
@@ -56,9 +56,9 @@ def longest(roots: list[Any]) -> dict[str, int]:
     return out
 
 
-def test_nouns_of_a_study_and_its_report_are_short(suboff: Study) -> None:
+def test_nouns_of_a_study_and_its_report_are_short(suboff: Study, suboff_document: Document) -> None:
     campaign = read_campaign(shipped("cfd_data") / "suboff_cfd_barehull" / "campaign.toml")
-    found = longest([suboff, campaign, document(suboff)])
+    found = longest([suboff, campaign, suboff_document])
     assert {k: n for k, n in found.items() if n > LONGEST} == {}
     kinds = {k.rpartition(".")[2] for k in found}
     assert kinds >= {

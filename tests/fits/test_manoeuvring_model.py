@@ -345,6 +345,7 @@ def test_a_value_that_only_an_equation_gives_says_so_and_has_no_window() -> None
         assert any(s.startswith(f"The data {verb} Mw = -Nv with Mw = {value}") for s in both)
 
 
+@pytest.mark.slow
 def test_true_equations_are_rejected_as_often_as_the_level_says() -> None:
     """Errors of one run correlated between the responses: 1,500 seeded campaigns at 5 %."""
     x = np.linspace(-0.3, 0.3, 15)
@@ -452,6 +453,7 @@ def test_equations_read_back_to_the_last_digit(weights: dict[str, float], right:
     assert read_equation(str(equation), "constraints") == equation
 
 
+@pytest.mark.slow
 @given(st.text(max_size=20))
 def test_no_text_breaks_the_readers(text: str) -> None:
     for read in (read_term, read_equation):

@@ -38,11 +38,14 @@ def exact_table(**declared: float) -> ForceTable:
     )  # fmt: skip
 
 
-def budgeted(table: ForceTable, fit: str = "polynomial", **options: object) -> tuple[FitResult, dict[str, Budget]]:
+def budgeted(
+    table: ForceTable, fit: str = "polynomial", *, draws: int = 100, **options: object
+) -> tuple[FitResult, dict[str, Budget]]:
+    """A fit with its budgets; the linear parts do not ask for draws, a thousand of them are for `Budget.monte_carlo`."""
     plugin = FITS.load(fit)
     chosen = options or {"variable": "v", "degree": 3}
     result = plugin.fit([table], LENGTH, chosen)
-    result, found = with_model_budgets(result, [table], LENGTH, lambda t, s: plugin.fit(t, s, chosen), draws=1000)
+    result, found = with_model_budgets(result, [table], LENGTH, lambda t, s: plugin.fit(t, s, chosen), draws=draws)
     return result, {b.symbol: b for b in found}
 
 
@@ -81,9 +84,10 @@ def test_a_reference_point_further_ahead_adds_the_force_to_the_moment() -> None:
     assert not found["Yv"].inputs
 
 
+@pytest.mark.slow
 def test_linear_and_monte_carlo_agree_where_the_model_is_nearly_linear() -> None:
     """One input by itself, whose percentiles the strata of the draws pin; then several for the linear sum."""
-    _, alone = budgeted(exact_table(force=0.01))
+    _, alone = budgeted(exact_table(force=0.01), draws=1000)
     total = alone["Yv"].monte_carlo
     assert total is not None
     assert total.draws == 1000

@@ -105,6 +105,7 @@ def test_rows_in_which_something_else_moves_are_left_out_and_counted():
     np.testing.assert_allclose(model.fit.coefficients, PLANTED, rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("parity", ["full", "odd"])
 def test_random_intervals_cover_the_truth_as_often_as_they_say(parity):
     """1,200 seeded campaigns (six components in each of 200 tables) whose noise grows with the angle."""

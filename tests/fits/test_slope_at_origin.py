@@ -138,6 +138,7 @@ def test_the_shares_of_rows_are_those_of_the_mixture() -> None:
     assert slope @ y == pytest.approx(estimate_many(here.design, y, deletions=False).mean[0], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_same_input_same_result() -> None:
     used = tables("suboff_roddy_2")
     fit = FITS.load("slope_at_origin").fit
@@ -161,6 +162,7 @@ def test_estimators_about_another_point_are_the_transferred_ones(
         assert plain(there.sweep(moment), *which).value == pytest.approx(wanted, rel=1e-10)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("configuration", [1, 2, 3])
 def test_recommended_values_about_another_point_agree_within_their_u95(configuration: int) -> None:
     """The mixture weighs forms anew for another moment, so the two ways differ by less than they claim to know."""

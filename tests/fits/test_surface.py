@@ -162,6 +162,7 @@ def test_interaction_is_found_where_there_is_one_and_not_elsewhere():
             assert word in text
 
 
+@pytest.mark.slow
 def test_the_interaction_test_is_right_as_often_as_it_says():
     """Without interaction its probability is even between 0 and 1: 200 seeded campaigns."""
     rng = np.random.default_rng(5)

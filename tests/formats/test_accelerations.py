@@ -212,6 +212,7 @@ def test_motions_without_a_known_inertia_have_no_number(suboff: Study) -> None:
     assert written(nothing, "mss", "measured").loss.accelerations is None
 
 
+@pytest.mark.slow
 def test_the_choice_is_named_in_every_file() -> None:
     file = accelerating()
     for target in (*TARGETS, "stonefish"):

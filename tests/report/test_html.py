@@ -9,12 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.core.files import shipped
 from coeflab.report.content import document
 from coeflab.report.document import Document, Section
 from coeflab.report.formats import REPORTERS, Renderer
-from coeflab.study.plan import read_plan
-from coeflab.workbench import run
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
@@ -175,9 +172,8 @@ def test_no_path_of_this_machine_is_in_it():
 
 
 @pytest.mark.slow
-def test_the_validation_makes_a_page_of_moderate_size():
-    study = run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
-    text = text_of(study)
+def test_the_validation_makes_a_page_of_moderate_size(suboff, suboff_page):
+    study, text = suboff, suboff_page.decode()
     assert len(text.encode()) < 3_000_000
     drawings = re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)
     budgeted = [c for c in study.coefficients if c.symbol in study.plan.wanted and c.value is not None]

@@ -100,6 +100,7 @@ def test_letters_from_right_to_left_stay_and_are_isolated():
     assert "bdi" not in html("Größe, β, −1")
 
 
+@pytest.mark.slow
 @given(st.text())
 def test_no_text_of_a_user_becomes_markup(text):
     for made in (html(text), cell_html(text), unit_html(text)):

@@ -2,12 +2,12 @@ from __future__ import annotations
 
 import unicodedata
 from dataclasses import replace
+from functools import cache
 
 import pymupdf
 import pytest
 
 from coeflab.core.errors import OutputError
-from coeflab.core.files import shipped
 from coeflab.core.table import Table
 from coeflab.core.version import VERSION
 from coeflab.published import validation
@@ -16,8 +16,6 @@ from coeflab.report.content import document
 from coeflab.report.document import Document, Figure, Section
 from coeflab.report.formats import REPORTERS, Renderer, pdf
 from coeflab.report.sections import acceptance as acceptance_document
-from coeflab.study.plan import read_plan
-from coeflab.workbench import run
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
 
 LONG = "".join(chr(ord("a") + i % 26) for i in range(5000))
@@ -36,6 +34,13 @@ NAMES = {
 
 def opened(what: Document) -> pymupdf.Document:
     return pymupdf.open(stream=pdf.render(what)["report.pdf"], filetype="pdf")
+
+
+@cache
+def small(published: bool = False) -> tuple[Document, pymupdf.Document]:
+    """The report of one small study and its pages, typeset once for all who read in it."""
+    whole = document(small_study(FULL, published=published))
+    return whole, opened(whole)
 
 
 def text_of(made: pymupdf.Document) -> str:
@@ -83,7 +88,7 @@ def test_equal_studies_give_equal_bytes():
 
 
 def test_metadata_names_the_study_and_no_time():
-    made = opened(document(small_study(FULL)))
+    _, made = small()
     assert made.metadata["title"] == "Study tow"
     assert made.metadata["author"] == f"coeflab {VERSION}"
     assert not made.metadata["creationDate"]
@@ -91,21 +96,21 @@ def test_metadata_names_the_study_and_no_time():
 
 
 def test_it_is_tagged_and_in_english():
-    made = opened(document(small_study(FULL)))
+    _, made = small()
     catalog = made.xref_object(made.pdf_catalog())
     assert "/StructTreeRoot" in catalog
     assert "/Lang (en)" in catalog
 
 
 def test_all_sections_are_bookmarks_in_order():
-    whole = document(small_study(FULL))
-    titles = [title for _, title, _ in opened(whole).get_toc()]
+    whole, made = small()
+    titles = [title for _, title, _ in made.get_toc()]
     at = [next(i for i, t in enumerate(titles) if t.endswith(s.title)) for s in whole.sections]
     assert at == sorted(at)
 
 
 def test_text_is_found_by_a_search():
-    text = text_of(opened(document(small_study(FULL, published=True))))
+    text = text_of(small(published=True)[1])
     assert "Yv′" in text
     assert "−0.0" in text
     assert "Modelsandvelocitiesrefertothepoint" not in text
@@ -122,8 +127,7 @@ def test_a_hash_is_copied_as_it_is():
 
 
 def test_every_page_says_what_it_belongs_to():
-    whole = document(small_study(FULL))
-    made = opened(whole)
+    whole, made = small()
     assert len(whole.digest) == 16
     for page in made:
         text = squeezed(page.get_text())
@@ -141,8 +145,8 @@ def tables_of(section: Section) -> list[Table]:
 
 
 def test_every_figure_and_table_is_there_and_numbered():
-    whole = document(small_study(FULL, published=True))
-    text = text_of(opened(whole))
+    whole, made = small(published=True)
+    text = text_of(made)
     figures = [f for s in whole.sections for f in figures_of(s)]
     tables, elsewhere = on_paper(whole)
     assert len(tables) + len(elsewhere) == sum(1 for s in whole.sections for _ in tables_of(s))
@@ -154,7 +158,7 @@ def test_every_figure_and_table_is_there_and_numbered():
 
 
 def test_figures_are_vectors():
-    made = opened(document(small_study(FULL)))
+    _, made = small()
     assert sum(len(page.get_images()) for page in made) == 0
     assert max(len(page.get_drawings()) for page in made) > 30
 
@@ -234,9 +238,8 @@ def test_a_summary_of_a_small_study_has_one_page():
 
 
 @pytest.mark.slow
-def test_the_validation_is_printed_whole():
-    study = run(read_plan(shipped("cfd_data") / "suboff" / "plan.toml"))
-    whole = document(study)
+def test_the_validation_is_printed_whole(suboff, suboff_document):
+    whole = suboff_document
     made = opened(whole)
     assert flaws(made) == []
     assert len(made) < 110
@@ -247,7 +250,7 @@ def test_the_validation_is_printed_whole():
     assert f"Table{len(tables)}" in text
     assert len(elsewhere) > 10
     assert all(f"atableof{t['count']}rows,intheHTMLofthisreport" in text for t in elsewhere)
-    short = opened(summary.study_summary(study))
+    short = opened(summary.study_summary(suboff))
     assert len(short) == 1
     assert flaws(short) == []
 

@@ -138,6 +138,7 @@ def test_a_drawing_alone() -> None:
     assert "<tspan" in drawn, "our own symbols are set"
 
 
+@pytest.mark.slow
 def test_from_the_files_of_a_user(write_campaign: Callable[..., Path], tmp_path: Path) -> None:
     """Titles, body, datum, length, row labels and file names of real files, all through; the terminal prints them raw."""
     folder = write_campaign(

@@ -78,6 +78,7 @@ def test_imperial_cfd_axes_give_the_same_derivatives(tmp_path: Path, at: float) 
         assert theirs[symbol].u95 == pytest.approx(c.u95, rel=1e-8), symbol
 
 
+@pytest.mark.slow
 def test_a_study_renders_the_same_bytes_twice(tmp_path: Path) -> None:
     plan = read_plan(write_template(tmp_path))
     assert rendered(run(plan)) == rendered(run(plan))

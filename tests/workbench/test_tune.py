@@ -148,6 +148,7 @@ def test_priors_and_bounds(plan: Write) -> None:
     assert parts["mass"].prior_share > 0.9
 
 
+@pytest.mark.slow
 def test_errors_from_the_residuals(plan: Write) -> None:
     tuned = tune(read_tuning_plan(plan(csv=table(noise=1.0), measured='errors = "from residuals"\n')))
     assert tuned.tuning.statements[0].startswith("Standard errors are those of the residuals")

@@ -426,16 +426,19 @@ def _joint(design: Design, y: Array, weights: Array, at: Array) -> tuple[Array, 
     t, to = design.x / design.largest, np.asarray(at, float) / design.largest
     p, nu = design.terms.shape[1], len(t) - design.flat
     basis = np.vstack([np.eye(p)[1], _terms(to, p == 5)])
-    where = [(m, j, k) for m in design.members for j in range(len(m.log_prior)) for k in range(m.log_prior.shape[1])]
+    ends = np.cumsum([m.log_prior.size for m in design.members])
+    known: dict[int, tuple[Array, Array]] = {}  # covariances of the remainders, alike for all sizes
     best = np.argsort(weights)[::-1][:MOST_LIKELY]
     mean, second, terms = np.zeros(len(basis)), np.zeros((len(basis), len(basis))), np.zeros(p)
     for share, c in zip(weights[best] / weights[best].sum(), best):
-        m, j, k = where[c]
+        m = design.members[i := int(np.searchsorted(ends, c, "right"))]
+        j, k = divmod(int(c - ends[i]) + m.log_prior.size, m.log_prior.shape[1])
         root, columns, precision = m.root[j], m.columns[j].T, m.precision[k]
         cross, own = np.zeros((len(basis), len(t))), np.zeros((len(basis), len(basis)))
         if m.name in ODD or m.name in SIDES:
-            cross[1:] = m.sizes[j] ** 2 * _covariance(m.name, m.odd, to, t, design.strips)
-            own[1:, 1:] = m.sizes[j] ** 2 * _remainder(m.name, m.odd, to, to)
+            if i not in known:
+                known[i] = _covariance(m.name, m.odd, to, t, design.strips), _remainder(m.name, m.odd, to, to)
+            cross[1:], own[1:, 1:] = (m.sizes[j] ** 2 * z for z in known[i])
         cross = cross @ root.T
         b = np.zeros(p)
         for _ in range(2):

@@ -13,7 +13,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError
 from coeflab.core.text.yaml import parse_yaml
-from coeflab.core.types import Array
+from coeflab.core.types import Array, remembered
 from coeflab.core.units import STANDARD_GRAVITY
 from coeflab.core.wording import identifier, one_line
 from coeflab.formats.export import missing_water
@@ -25,7 +25,7 @@ from coeflab.formats.exported_law import (
     written_controls,
     written_terms,
 )
-from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, HERE, RIGID, xdyn_body
+from coeflab.formats.xdyn.law import ADDED, BUOYANCY, DAMPING, HERE, RIGID, XdynBody, xdyn_body
 from coeflab.law.added_mass import definiteness
 from coeflab.law.force_law import ForceTerm
 from coeflab.law.rigid_body import about_another, rigid_body_inertia
@@ -225,16 +225,19 @@ def force(files: Mapping[str, bytes], nu: Array) -> Array:
 
     The reference point is the origin of the manoeuvring model's frame.
     """
-    name, content = next((n, c) for n, c in files.items() if n.endswith(".yml"))
-    body = xdyn_body(parse_yaml(content.decode(), name), name)
+    body = _read(*next((n, c) for n, c in files.items() if n.endswith(".yml")))
     shift = body.manoeuvring[0].point - body.centre
     return np.asarray(body.force(nu @ velocity_transfer(-shift).T) @ force_transfer(shift).T)
 
 
+@remembered(2)  # a loss report evaluates one file at many motions
+def _read(name: str, content: bytes) -> XdynBody:
+    return xdyn_body(parse_yaml(content.decode(), name), name)
+
+
 def added_mass(files: Mapping[str, bytes]) -> Array:
     """The added mass matrix about the centre of gravity, moved to the reference point."""
-    name, content = next((n, c) for n, c in files.items() if n.endswith(".yml"))
-    body = xdyn_body(parse_yaml(content.decode(), name), name)
+    body = _read(*next((n, c) for n, c in files.items() if n.endswith(".yml")))
     return moved(body.added, body.manoeuvring[0].point - body.centre)
 
 
