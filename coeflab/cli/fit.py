@@ -29,7 +29,9 @@ def command(
         show_default=False,
     ),
     fit: str = typer.Option(
-        "", help="Name of the fit (see coeflab formats); slope_at_origin unless the tables need another.", show_default=False
+        "",
+        help="Name of the fit (see coeflab formats); slope_at_origin unless the tables need another.",
+        show_default=False,
     ),
     constraint: list[str] = typer.Option(
         [], metavar="EQUATION", help='Equation between coefficients, "Mw = -Nv"; repeatable.'

@@ -87,7 +87,9 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
         filled(tables.coefficients(study, fit.campaign), joint_tables.campaigns((fit,))),
         tuple(
             incidence_figure(t, rate, study.body, anchor(f"{place} {t.name} {rate}", taken))
-            for t in mine for rate in ACROSS if rate in t.varies and not _shown_before(study, fit)
+            for t in mine
+            for rate in ACROSS
+            if rate in t.varies and not _shown_before(study, fit)
         ),
         subsections=(
             *(_sweep_section(study, fit, s, anchor(f"{place} {s.symbol}", taken)) for s in fit.sweeps),
