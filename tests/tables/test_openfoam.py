@@ -289,6 +289,7 @@ def test_a_rotor_is_not_the_motion_of_the_body(case: Callable[[str], Path]) -> N
         ("constant 0.25", "omega [0 0 -1 0 0 0 0] -0.5", -0.5),
         ("constant 0.25", "$rate", -0.125),
         ("constant 0.25", "table ((0 0) (1 2))", None),
+        ("constant 0.25", "[0 0 -1 0 0 0 0]", None),
         ("constant 0.25", '#calc "1.0/4.0"', None),
         ("constant 0.25", "#eval{ 1/4 }", None),
         ("active          yes", "active no", None),

@@ -299,7 +299,8 @@ def _plain(value: Any) -> Any:
         return _plain(value.value)
     if isinstance(value, np.ndarray):
         return value.tolist()
-    return type(value)(map(_plain, value)) if isinstance(value, (list, tuple)) else value
+    # A DimensionSet is a tuple too, of its own making.
+    return type(value)(map(_plain, value)) if type(value) in (list, tuple) else value
 
 
 class _Walk:
