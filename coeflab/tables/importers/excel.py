@@ -14,6 +14,7 @@ from lzma import LZMAError
 from pathlib import Path
 from statistics import median
 from typing import Any
+from xml.parsers import expat
 
 import numpy as np
 
@@ -40,7 +41,7 @@ Cell = str | float
 Value = Any  # what calamine hands out: str, float, int, bool, date, time, datetime, timedelta
 PLAIN = Marks()
 _BROKEN = (
-    zipfile.BadZipFile, zlib.error, LZMAError, EOFError, ValueError, NotImplementedError, RuntimeError, struct.error, IndexError,
+    expat.ExpatError, zipfile.BadZipFile, zlib.error, LZMAError, EOFError, ValueError, NotImplementedError, RuntimeError, struct.error, IndexError,
 )  # fmt: skip
 
 
@@ -156,6 +157,8 @@ def _checked(path: Path, kind: str) -> list[str]:
         else:
             with zipfile.ZipFile(path) as packed:
                 found = _too_much(packed, packed.infolist())
+                if not found:
+                    _require_whole_xml(packed)
                 if not found and kind == "ods":
                     cells = _cells_of_ods(packed)
                 elif not found:
@@ -260,6 +263,14 @@ def _cells_of_xls(content: bytes) -> int:
             rows, columns = max(rows, row + 1), max(columns, column + 1, last + 1)
         at += 4 + length
     return total + rows * columns
+
+
+def _require_whole_xml(packed: zipfile.ZipFile) -> None:
+    """Refuse parts that are no whole XML: in an ods that is cut the reader looks for the end for ever."""
+    for name in packed.namelist():
+        if name.endswith((".xml", ".rels")):
+            with packed.open(name) as stream:
+                expat.ParserCreate().ParseFile(stream)
 
 
 def _too_much(packed: zipfile.ZipFile, parts: list[zipfile.ZipInfo]) -> str:
