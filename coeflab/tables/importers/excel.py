@@ -41,6 +41,7 @@ Cell = str | float
 Value = Any  # what calamine hands out: str, float, int, bool, date, time, datetime, timedelta
 PLAIN = Marks()
 _BROKEN = (
+    LookupError,
     expat.ExpatError, zipfile.BadZipFile, zlib.error, LZMAError, EOFError, ValueError, NotImplementedError, RuntimeError, struct.error, IndexError,
 )  # fmt: skip
 
