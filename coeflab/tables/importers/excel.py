@@ -168,7 +168,7 @@ def _checked(path: Path, kind: str) -> list[str]:
                         cells += many
                         blank += [f"{place} of {part.rpartition('/')[2]}" for place in errors]
     except (*_BROKEN, OSError) as why:
-        raise _refused(f"a broken workbook ({why})", path) from None
+        raise _refused(f"a broken workbook ({shown(why, 200)[1:-1]})", path) from None
     if cells > SHEET_CELLS:
         found = f"{cells:,} cells between the first and the last"
     if found:
@@ -312,11 +312,11 @@ def _sheets(path: Path) -> dict[str, list[list[Value]]]:
     except python_calamine.PasswordError:
         raise _refused("a locked workbook", path, advice="Save it without a password.") from None
     except (python_calamine.CalamineError, OSError, ValueError) as why:
-        raise _refused(f"a broken workbook ({why})", path) from None
+        raise _refused(f"a broken workbook ({shown(why, 200)[1:-1]})", path) from None
     except BaseException as why:  # a panic of the reader in Rust is no Exception
         if type(why).__name__ != "PanicException":
             raise
-        raise _refused(f"a broken workbook ({why})", path) from None
+        raise _refused(f"a broken workbook ({shown(why, 200)[1:-1]})", path) from None
     return out
 
 
