@@ -158,7 +158,8 @@ def test_hostile_workbooks_are_refused_before_they_are_opened(tmp_path: Path, mo
     with zipfile.ZipFile(ods, "w") as out:
         out.writestr("mimetype", "application/vnd.oasis.opendocument.spreadsheet")
         out.writestr(
-            "content.xml", f"<table:table table:name='a'><table:table-row>{cell}</table:table-row></table:table>"
+            "content.xml",
+            f"<a xmlns:table='t' xmlns:office='o'><table:table table:name='a'><table:table-row>{cell}</table:table-row></table:table></a>",
         )
     assert "2,000,000,000 cells" in refusal(ods)
 
@@ -171,6 +172,14 @@ def test_a_chain_of_sectors_that_bites_its_tail(tmp_path: Path) -> None:
     path = tmp_path / "a.xls"
     path.write_bytes(content)
     assert "a chain of sectors without end" in refusal(path)
+
+
+def test_an_ods_that_is_cut_inside(tmp_path: Path) -> None:
+    """The reader would look for its end for ever."""
+    with zipfile.ZipFile(SAMPLES / "heave.ods") as old, zipfile.ZipFile(tmp_path / "a.ods", "w") as new:
+        for name in old.namelist():
+            new.writestr(name, old.read(name)[: -300 if name == "content.xml" else None])
+    assert "a broken workbook (" in refusal(tmp_path / "a.ods")
 
 
 def test_a_panic_of_the_reader_is_an_input_error(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,7 @@ from lzma import LZMAError
 from pathlib import Path
 from statistics import median
 from typing import Any
+from xml.parsers import expat
 
 import numpy as np
 
@@ -40,7 +41,8 @@ Cell = str | float
 Value = Any  # what calamine hands out: str, float, int, bool, date, time, datetime, timedelta
 PLAIN = Marks()
 _BROKEN = (
-    zipfile.BadZipFile, zlib.error, LZMAError, EOFError, ValueError, NotImplementedError, RuntimeError, struct.error, IndexError,
+    LookupError,
+    expat.ExpatError, zipfile.BadZipFile, zlib.error, LZMAError, EOFError, ValueError, NotImplementedError, RuntimeError, struct.error, IndexError,
 )  # fmt: skip
 
 
@@ -156,6 +158,8 @@ def _checked(path: Path, kind: str) -> list[str]:
         else:
             with zipfile.ZipFile(path) as packed:
                 found = _too_much(packed, packed.infolist())
+                if not found:
+                    _require_whole_xml(packed)
                 if not found and kind == "ods":
                     cells = _cells_of_ods(packed)
                 elif not found:
@@ -164,7 +168,7 @@ def _checked(path: Path, kind: str) -> list[str]:
                         cells += many
                         blank += [f"{place} of {part.rpartition('/')[2]}" for place in errors]
     except (*_BROKEN, OSError) as why:
-        raise _refused(f"a broken workbook ({why})", path) from None
+        raise _refused(f"a broken workbook ({shown(why, 200)[1:-1]})", path) from None
     if cells > SHEET_CELLS:
         found = f"{cells:,} cells between the first and the last"
     if found:
@@ -262,6 +266,14 @@ def _cells_of_xls(content: bytes) -> int:
     return total + rows * columns
 
 
+def _require_whole_xml(packed: zipfile.ZipFile) -> None:
+    """Refuse parts that are no whole XML: in an ods that is cut the reader looks for the end for ever."""
+    for name in packed.namelist():
+        if name.endswith((".xml", ".rels")):
+            with packed.open(name) as stream:
+                expat.ParserCreate().ParseFile(stream)
+
+
 def _too_much(packed: zipfile.ZipFile, parts: list[zipfile.ZipInfo]) -> str:
     """Why a workbook unpacks to too much, by its directory and by itself; empty where it does not."""
     left = SHEET_UNPACKED
@@ -300,11 +312,11 @@ def _sheets(path: Path) -> dict[str, list[list[Value]]]:
     except python_calamine.PasswordError:
         raise _refused("a locked workbook", path, advice="Save it without a password.") from None
     except (python_calamine.CalamineError, OSError, ValueError) as why:
-        raise _refused(f"a broken workbook ({why})", path) from None
+        raise _refused(f"a broken workbook ({shown(why, 200)[1:-1]})", path) from None
     except BaseException as why:  # a panic of the reader in Rust is no Exception
         if type(why).__name__ != "PanicException":
             raise
-        raise _refused(f"a broken workbook ({why})", path) from None
+        raise _refused(f"a broken workbook ({shown(why, 200)[1:-1]})", path) from None
     return out
 
 
