@@ -236,6 +236,7 @@ def _joined(case: FoamCase, files: Sequence[tuple[str, Path]]) -> History:
     return out
 
 
+@np.errstate(invalid="ignore", over="ignore")
 def moved(history: History, old: tuple[Sequence[float], str], new: tuple[Sequence[float], str]) -> None:
     """Moments about another point; the points in m, each with its place."""
     turn = force_transfer(np.array(new[0]) - np.array(old[0]))[3:, :3]
@@ -248,6 +249,7 @@ def moved(history: History, old: tuple[Sequence[float], str], new: tuple[Sequenc
     history.remarks.append(f"moments of {history.name} were moved from the point of {old[1]} to that of {new[1]}")
 
 
+@np.errstate(invalid="ignore", over="ignore")
 def _turned(history: History, axes: Array) -> None:
     """Forces and moments from local axes (rows of the matrix) to the solver's."""
     for share in ["", *history.shares]:

@@ -406,6 +406,14 @@ def test_divergence_is_found_with_its_line(case: Callable[[str], Path], written:
     assert len(run.history) == 3
 
 
+def test_a_diverged_part_is_moved_without_a_warning(case: Callable[[str], Path]) -> None:
+    folder = case("com_v2212")
+    edit(folder / "postProcessing/sail/0/force.dat", ("1.393750e+01", "inf"))
+    run = read(folder)
+    assert run.ended is Ended.WHOLE
+    assert not np.all(np.isfinite(forces(run.patches["sail"])))
+
+
 def test_a_header_without_rows_is_an_empty_run(case: Callable[[str], Path]) -> None:
     folder = case("org_v10")
     file = folder / "postProcessing/forcesHull/0/forces.dat"
