@@ -16,7 +16,7 @@ from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.table import ABSENT, Table
 from coeflab.core.types import Array, brief
 from coeflab.core.units import SI
-from coeflab.law.symbols import COMPONENTS
+from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR
 from coeflab.tables.conditions import (
     DIMENSIONS,
     SETTINGS,
@@ -165,6 +165,7 @@ def collect(
     chosen, found = find_runs(path, importer)
     summaries, again = read_all(path, chosen, found, options or {}, progress, workers, state)
     conditions = joined({s.name: of_files(s.stated_conditions) for s in summaries}, pattern, listed_runs)
+    conditions = _with_straight_runs(conditions)
     summaries = [replace(s, conditions=conditions[s.name]) for s in summaries]
     if complaints := required({s.name: s.conditions for s in summaries if s.status.has_numbers}, pattern):
         raise together(complaints)
@@ -177,6 +178,16 @@ def collect(
     remarks = _remarks(summaries, rows, missing, duplicates, copies, grids)
     table = _table(path, chosen, rows, known, copies, remarks)
     return Collected(table, tuple(summaries), missing, duplicates, chosen, again)
+
+
+def _with_straight_runs(stated: Mapping[str, dict[str, Condition]]) -> dict[str, dict[str, Condition]]:
+    """Rates of zero for runs whose files state a velocity and no rotating frame, where other runs of the folder turn."""
+    if not any(set(ANGULAR) <= set(c) for c in stated.values()):
+        return dict(stated)
+    still = {rate: Condition(0.0, 0.0, SI["rate"], ("no rotating frame in its files",)) for rate in ANGULAR}
+    return {
+        run: c if set(ANGULAR) & set(c) or not set(LINEAR) <= set(c) else {**c, **still} for run, c in stated.items()
+    }
 
 
 def _point(run: RunSummary, known: Sequence[str]) -> tuple[Any, ...]:
