@@ -174,6 +174,17 @@ def test_a_chain_of_sectors_that_bites_its_tail(tmp_path: Path) -> None:
     assert "a chain of sectors without end" in refusal(path)
 
 
+def test_an_extent_that_ends_before_it_begins(tmp_path: Path) -> None:
+    """The reader would ask for 687 GB: the record DIMENSIONS of a sheet, and a cell at a place that is none."""
+    content = (SAMPLES / "yaw.xls").read_bytes()
+    at = content.index(b"\x00\x02\x0e\x00" + (0).to_bytes(4, "little")) + 4
+    (tmp_path / "a.xls").write_bytes(content[:at] + b"\xb3" + content[at + 1 :])
+    assert "a sheet that ends before it begins" in refusal(tmp_path / "a.xls")
+    assert 'a cell at "Baaaa5"' in refusal(
+        workbook(tmp_path / "b.xlsx", s='<row r="1"><c r="Baaaa5"><v>1</v></c></row>')
+    )
+
+
 def test_an_ods_that_is_cut_inside(tmp_path: Path) -> None:
     """The reader would look for its end for ever."""
     with zipfile.ZipFile(SAMPLES / "heave.ods") as old, zipfile.ZipFile(tmp_path / "a.ods", "w") as new:

@@ -32,7 +32,8 @@ reads = "sheets of xlsx, xls and ods files"
 
 ZIP, OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"
 _BOOK, _LOCKED = "Workbook".encode("utf-16-le"), "EncryptedPackage".encode("utf-16-le")
-_PLACE = re.compile(rb"""\sr\s*=\s*["']([A-Z]{0,3})([0-9]{1,9})["']""")
+_PLACE = re.compile(rb"""<(?:\w+:)?(?:c|row)\s(?:[^>]*?\s)?r\s*=\s*["']([^"'>]*)["']""")
+_PLACED = re.compile(rb"([A-Z]{0,3})([0-9]{1,7})")
 _ERROR = re.compile(rb"""<c\b(?=[^>]*\st\s*=\s*["']e["'])[^>]*\sr\s*=\s*["']([A-Z]+[0-9]+)["']""")
 _ODS = re.compile(rb"<table:(?:table-row|table-cell|covered-table-cell|table)\b[^>]*>")
 _REPEATED = re.compile(rb"""table:number-(?:rows|columns)-repeated\s*=\s*["']([0-9]+)["']""")
@@ -122,8 +123,10 @@ def _scan_of_xlsx(packed: zipfile.ZipFile, name: str) -> tuple[int, list[str]]:
     rows = columns = 0
     blank: list[str] = []
     for piece in _pieces(packed, name):
-        for letters, digits in _PLACE.findall(piece):
-            rows, columns = max(rows, int(digits)), max(columns, _column(letters))
+        for place in _PLACE.findall(piece):
+            if not (m := _PLACED.fullmatch(place)):
+                raise ValueError(f"a cell at {shown(place.decode('utf-8', 'replace'), 20)}")
+            rows, columns = max(rows, int(m[2])), max(columns, _column(m[1]))
         if len(blank) < 1000:
             blank += [m[1].decode("ascii", "replace") for m in _ERROR.finditer(piece)]
     return rows * max(columns, 1), blank
@@ -184,7 +187,7 @@ def _checked(path: Path, kind: str) -> list[str]:
 
 _END, _FREE = 0xFFFFFFFE, 0xFFFFFFFA  # end of a chain of sectors; from here on no sector
 _CELLS = frozenset({0x0006, 0x00BD, 0x00BE, 0x00FD, 0x0201, 0x0203, 0x0204, 0x0205, 0x027E})
-_SHEET_BEGINS, _MANY = 0x0809, frozenset({0x00BD, 0x00BE})
+_SHEET_BEGINS, _EXTENT, _MANY = 0x0809, 0x0200, frozenset({0x00BD, 0x00BE})
 
 
 def _chain(first: int, table: Sequence[int]) -> list[int]:
@@ -258,6 +261,11 @@ def _cells_of_xls(content: bytes) -> int:
         body = stream[at + 4 : at + 4 + length]
         if kind == _SHEET_BEGINS:
             total, rows, columns = total + rows * columns, 0, 0
+        elif kind == _EXTENT and len(body) in (10, 14):
+            top, bottom, left, right = struct.unpack_from("<IIHH" if len(body) == 14 else "<HHHH", body)
+            if top > bottom or left > right:
+                raise ValueError("a sheet that ends before it begins")
+            rows, columns = max(rows, bottom), max(columns, right)
         elif kind in _CELLS and len(body) >= 6:
             row, column = struct.unpack_from("<HH", body)
             last = struct.unpack_from("<H", body, len(body) - 2)[0] if kind in _MANY else column
