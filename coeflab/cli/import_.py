@@ -29,17 +29,19 @@ EXAMPLE = "coeflab import drift.csv --out cfd_data/mine"
 class OpenError(InputError):
     """What nobody has said yet, with the arguments that say it."""
 
-    def __init__(self, path: Path, points: Sequence[tuple[str, str]]) -> None:
+    def __init__(self, path: Path, points: Sequence[tuple[str, str]], wrong: Sequence[InputError] = ()) -> None:
         many = f"{len(points)} open point" + "s" * (len(points) != 1)
         super().__init__(many, "these arguments, with values for words in capitals", file=path)
         self.points = points
+        self.wrong = tuple(str(one) for one in wrong)
 
     @property
     def lines(self) -> tuple[str, ...]:
         """The arguments, each with its question below."""
         points = getattr(self, "points", ())
         proposed = any(open_value(argument) is None for argument, _ in points)
-        return (*super().lines, *point_lines(points), *["  --yes takes those with values."] * proposed)
+        taken = ["  --yes takes those with values."] * proposed
+        return (*super().lines, *point_lines(points), *taken, *getattr(self, "wrong", ()))
 
 
 def open_value(argument: str) -> str | None:
@@ -246,7 +248,7 @@ def _without_asking(file: Path, found: Understood, settings: Mapping[str, Settin
     from coeflab.tables.questions import open_points
 
     if points := open_points(found, yes):
-        raise OpenError(file, points)
+        raise OpenError(file, points, found.complaints)
     taken = {q.key: _taken(q, q.default) for q in found.questions}
     return found.mapping, {**settings, **taken}
 

@@ -49,6 +49,7 @@ class Table:
 
 
 ABSENT = "-"
+LARGEST_SHARE = 1000.0  # per cent; beyond, the value is nothing beside its uncertainty
 TINY, HUGE, LONGEST = 5e-5, 1e6, 12  # of numbers with a fixed point, and their decimals
 
 
@@ -111,7 +112,8 @@ def percent(part: float | None, of: float | None) -> str:
     """A half-width in per cent of its value."""
     if part is None or not of or isnan(part):
         return ABSENT
-    return f"{100.0 * abs(part / of):.1f} %"
+    share = 100.0 * abs(part / of)
+    return f"{share:.1f} %" if share <= LARGEST_SHARE else f"> {LARGEST_SHARE:.0f} %"
 
 
 def probability(value: float) -> str:

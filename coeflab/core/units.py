@@ -42,6 +42,8 @@ _WRITTEN = {
     **{n: f"{n.removesuffix('m')}*m" for n in ("Nm", "kNm")},
     **dict.fromkeys(("ft-lbf", "lbf-ft"), "ft*lbf"),
 }
+# Degrees in German, gon elsewhere, and by prefix a thousand million radians.
+_TWO_MEANINGS = ("Grad", "grad", "GRAD", "Grd", "grd")
 _LONGEST = 40
 # Exponents are single digits: the units library would compute 9^9^9 for ever.
 _NAME = r"[A-Za-zµμ°]+(?:\s*(?:\^|\*\*)\s*-?\s*[1-9])?"
@@ -95,6 +97,8 @@ def factor(unit: str, dimension: str) -> float:
         if dimension == "none":
             return 1.0
         raise UnitsError(f"[{unit}]", expected)
+    if unit in _TWO_MEANINGS:
+        raise UnitsError(f"[{unit}], which is degrees or gon", expected, advice="Write deg or gon.")
     plain = unit.replace("(", " ").replace(")", " ")
     if unit not in _WRITTEN and (len(unit) > _LONGEST or not _UNIT.fullmatch(plain)):
         raise UnitsError(f"the unreadable unit {shown(unit)}", expected)

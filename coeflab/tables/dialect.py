@@ -94,7 +94,7 @@ def numeric(cells: Sequence[str], marks: Marks) -> int:
 
 
 _ATOM = (
-    r"(?:[kMm]?N(?:mm|m)?|lbf?|kgf|gf|[mck]?m|in|ft|ms|s|min|h|deg|degrees?|rad|radians?|°|kn|kts?|knots?|mph|mps|kph|rpm|rps|"
+    r"(?:[kMm]?N(?:mm|m)?|lbf?|kgf|gf|[mck]?m|in|ft|ms|s|sec|min|h|deg\.?|degrees?|[Gg]rad|[Gg]rd|rad|radians?|°|kn|kts?|knots?|mph|mps|kph|rpm|rps|"
     r"rev|[kM]?Hz|1|[km]?g|t|slug|[kM]?Pa|m?bar|psi|m?V|m?A|k?W|K|°C|%|‰)"
 )
 _POWER = r"(?:(?:\^|\*\*)?\(?-?[1-4]\)?|[²³⁻¹⁴]+)?"
@@ -330,21 +330,15 @@ def raw_columns(
 
 
 _HOUSE = frozenset({*COMPONENTS, *MOTIONS, *CONTROL_COLUMNS, "alpha", "beta", "U"})
-# OpenFOAM's forces; CFX; STAR-CCM+; Fluent's report files and force reports; SU2, as CSV and for Tecplot.
-_SOLVER = re.compile(
+_OPENFOAM = re.compile(
     r"^\s*#\s*(?:Force|Moment|Forces|Force coefficients|Moment coefficients|CofR|liftDir|dragDir|magUInf)\b"
     r"|^\s*#\s*Time\b.*(?:total_[xyz]|pressure_[xyz]|forces?\(|moments?\(|\(|\bC[mdls]\b)|^FoamFile\b"
-    r'|^\s*"ACCUMULATED TIMESTEP",'
-    r"|\S Monitor(?: \d+)?: \S|\b(Iteration|Time Step|Physical Time): \1\b"
-    r"|^\s*Zone\s+Pressure\s+Viscous\s+Total\b"
-    r'|^\s*\(?\s*"(?:[Ii]terations?|[Tt]ime[ -][Ss]tep|[Ff]low[ -][Tt]ime)"\s+"|^\s*\(title\s|^(?:Forces|Moments) - '
-    r'|"(?:Time|Outer|Inner)_Iter\s*"|"\s*(?:rms|bgs)\[|^"Iteration",.*"(?:CL|CD|CLift|CDrag)"|^\s*(?:TITLE|VARIABLES)\s*='
 )
 
 
-def is_of_a_solver(lines: Sequence[str]) -> bool:
-    """Whether the first lines are those of a table that a solver writes, which has its own importer."""
-    return any(_SOLVER.search(line[:2000]) for line in lines[:60])
+def is_of_openfoam(lines: Sequence[str]) -> bool:
+    """Whether the first lines are those of forces or a dictionary of OpenFOAM, whose importer takes the folder of a case."""
+    return any(_OPENFOAM.search(line[:2000]) for line in lines[:60])
 
 
 def is_house_table(path: Path) -> bool:

@@ -62,7 +62,7 @@ COEFFICIENTS = {
 }  # fmt: skip
 WIND = {"drag": "drag", "lift": "lift", "cd": "drag", "cl": "lift", "fd": "drag", "fl": "lift",
         "widerstand": "drag", "auftrieb": "lift", "trainee": "drag", "portance": "lift"}  # fmt: skip
-UNITS = {"grad": "deg", "degree": "deg", "degrees": "deg", "°": "deg", "1/s": "rad/s", "s^-1": "rad/s", "n.m": "N*m",
+UNITS = {"grad": "deg", "grd": "deg", "deg.": "deg", "sec": "s", "degree": "deg", "degrees": "deg", "°": "deg", "1/s": "rad/s", "s^-1": "rad/s", "n.m": "N*m",
          "n-m": "N*m", "knots": "kn", "kts": "kn", "newton": "N", "newtons": "N", "°/s": "deg/s"}  # fmt: skip
 _ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shlex
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -31,7 +31,7 @@ from coeflab.tables.campaign import (
     TowedInertia,
 )  # fmt: skip
 from coeflab.tables.column_map import ColumnMap, read_column_map
-from coeflab.tables.mapping import Assigned, assigned, error_of, known_as
+from coeflab.tables.mapping import Assigned, assigned, entry_of, error_of, known_as, with_unit
 from coeflab.tables.proposals import OPEN, Evidence, Proposal, evidence, proposals
 from coeflab.tables.raw_table import RawColumn, RawTable
 
@@ -299,6 +299,8 @@ class Understood:
         As they would be if all whole proposals are right.
     shows : tuple of Evidence
     questions : tuple of Question
+    complaints : tuple of InputError
+        What is said of columns and cannot be.
     """
 
     proposals: tuple[Proposal, ...]
@@ -307,6 +309,7 @@ class Understood:
     columns: tuple[Assigned, ...]
     shows: tuple[Evidence, ...]
     questions: tuple[Question, ...]
+    complaints: tuple[InputError, ...] = ()
 
 
 def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, accept: bool = False) -> Understood:
@@ -333,12 +336,28 @@ def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings,
         else:
             mapping[column.name] = one
     tentative = {c.name: read_column_map(o.text) if o.whole else ColumnMap("ignore") for c, o in still}
+    said_of = mapping | tentative
+    complaints: tuple[InputError, ...] = ()
     try:
-        columns = assigned(raw, mapping | tentative, whole=False)
-    except InputError:  # said where it is final, in `assigned` of the mapping alone
-        columns = ()
+        columns = assigned(raw, said_of, whole=False)
+    except InputError as why:
+        complaints = (why, *why.others)
+        columns = tuple(_possible(raw, said_of))
     shows = evidence(columns, frame_of(settings))
-    return Understood(offers, mapping, tuple(still), columns, shows, questions(raw, columns, settings, shows))
+    asked = questions(raw, columns, settings, shows)
+    return Understood(offers, mapping, tuple(still), columns, shows, asked, complaints)
+
+
+def _possible(raw: RawTable, said: Mapping[str, ColumnMap]) -> Iterator[Assigned]:
+    """Columns of which what is said of them is possible."""
+    for column in raw.columns:
+        one = entry_of(column, said)
+        if one is None or one.name == "ignore":
+            continue
+        try:
+            yield with_unit(raw, column, one)
+        except InputError:  # among the complaints
+            continue
 
 
 def argument(option: str, key: str, text: str) -> str:

@@ -1,18 +1,22 @@
-"""Whether densities are those of water, and the declared Reynolds number that of speed, length and viscosity."""
+"""Whether densities are those of water, the Reynolds number that of speed, length and viscosity, and inertia is taken out."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from coeflab.core.table import Check, Severity
+from coeflab.law.symbols import ANGULAR
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
+from coeflab.tables.to_frd import TAKEN_OUT
 
-summary = "density of water, Reynolds number against speed, length and viscosity"
+summary = "density of water, Reynolds number against speed, length and viscosity, inertia of a model that turns"
 citations = ("ittc_water",)
 
 WATER = (985.0, 1040.0)  # kg/m^3: fresh at 55 deg C to the Red Sea
-LIQUID = 100.0  # kg/m^3; below, the tests are in air
+AIR = (0.5, 1.6)  # kg/m^3: hot and high, cold and dense
 REYNOLDS = 0.05  # what LOA in the place of LBP makes
 
 
@@ -20,16 +24,30 @@ def check(study: Study) -> Sequence[Check]:
     """Findings on every campaign that was run in water or states viscosity and Reynolds number."""
     found = [c for t in {t.campaign: t for t in study.tables}.values() for c in _found(t)]
     rows = [(t.name, t.density) for t in study.tables if t.density is not None]
+    found += [c for t in study.tables for c in _carried(t)]
     return found + [c for name, by_row in rows for c in _water(name, float(by_row.min()), float(by_row.max()))]
 
 
 def _water(name: str, low: float, high: float) -> Iterator[Check]:
-    if low > LIQUID:
+    if not (AIR[0] <= low and high <= AIR[1]):
         good = WATER[0] <= low and high <= WATER[1]
         found = f"{low:.5g} kg/m^3" if low == high else f"{low:.5g} to {high:.5g} kg/m^3"
+        slugs = " 1.94 slug/ft^3 and 62.4 lb/ft^3 are 1000 kg/m^3: write the unit." if low < WATER[0] / 10.0 else ""
         yield Check(
             "conditions", f"{name} density", Severity.PASS if good else Severity.WARN, found,
-            f"{WATER[0]:g} to {WATER[1]:g} kg/m^3, water", "" if good else "Coefficients of dimensional forces go with 1/density.",
+            f"{WATER[0]:g} to {WATER[1]:g} kg/m^3, water",
+            "" if good else f"Coefficients of dimensional forces go with 1/density.{slugs}",
+        )  # fmt: skip
+
+
+def _carried(t: ForceTable) -> Iterator[Check]:
+    """A balance that turns with its model and is said not to carry it."""
+    turns = any(np.any(np.asarray(t.motion[m]) != 0.0) for m in ANGULAR)
+    if turns and t.source.kind == "experiment" and not any(n.startswith(TAKEN_OUT) for n in t.notes):
+        yield Check(
+            "conditions", f"{t.name} inertia", Severity.WARN, "contains_inertia = false in an experiment that turns",
+            "a balance on a rotating arm carries the model's inertia",
+            "If the forces hold it, Yr' and Nr' are wrong, often in sign: contains_inertia = true and [inertia] take it out.",
         )  # fmt: skip
 
 

@@ -396,14 +396,16 @@ def _pasted(table: ForceTable, again: NDArray[np.bool_]) -> list[Check]:
 
 def _is_mirrored(table: ForceTable, again: NDArray[np.bool_]) -> bool:
     columns = dict(table.motion) | dict(table.controls) | dict(table.forces)
-    columns = {n: c for n, c in columns.items() if np.all(np.isfinite(c))}
+    read = ~again & np.all([np.isfinite(c) for c in columns.values()], axis=0)
     side = [n for n in columns if n in PORT_STARBOARD]
-    matrix = np.column_stack([*columns.values(), table.speed])[~again]
+    matrix = np.column_stack([*columns.values(), table.speed])[read]
+    if not len(matrix):
+        return False
     sign = np.array([-1.0 if n in PORT_STARBOARD else 1.0 for n in columns] + [1.0])
     size = np.where(np.abs(matrix).max(0) > 0.0, np.abs(matrix).max(0), 1.0)
     digits = np.round(matrix / size, 12) + 0.0
     moved = (
-        np.any(np.column_stack([columns[n] for n in side])[~again] != 0.0, axis=1)
+        np.any(np.column_stack([columns[n] for n in side])[read] != 0.0, axis=1)
         if side
         else np.zeros(len(matrix), bool)
     )

@@ -368,7 +368,7 @@ def _chosen(sheets: Mapping[str, list[list[Value]]], options: Options, path: Pat
     if len(full) != 1:
         raise InputError(
             f"{len(full) or 'no'} sheets with rows of numbers", "one, or the option sheet", file=path,
-            advice=f"The sheets are {known}.",
+            advice=f"The sheets are {known}. Say which with --option sheet=NAME, or sheet = under [importer].",
         )  # fmt: skip
     return full[0]
 

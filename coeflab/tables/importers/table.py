@@ -17,7 +17,8 @@ from coeflab.core.limits import CSV_LINE, TABLE_CELLS, TABLE_CUT_LINES, TABLE_TE
 from coeflab.core.options import parse_options
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
-from coeflab.tables.dialect import Cells, Marks, is_house_table, is_of_a_solver, raw_columns
+from coeflab.tables.dialect import Cells, Marks, is_house_table, is_of_openfoam, raw_columns
+from coeflab.tables.monitor_files import head, kind_of
 from coeflab.tables.raw_table import RawTable
 from coeflab.tables.text_dialect import (
     COMMENTS,
@@ -238,7 +239,7 @@ def recognises(path: Path) -> bool:
         sample, whole = first_bytes(path)
         encoding = encoding_of(sample, Options(), path)
         lines, _ = first_lines(sample, whole, encoding, path)
-        if is_of_a_solver(lines):
+        if is_of_openfoam(lines) or kind_of(head(path)):
             return False
         dialect = sniff(path, Options())
     except AmbiguousError:
