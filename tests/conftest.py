@@ -24,6 +24,8 @@ from coeflab.workbench import read_tables, run
 settings.register_profile("unhurried", deadline=None)
 settings.load_profile("unhurried")
 
+# Peak memory of a process itself in kB: ru_maxrss holds that of the process which it was forked from, too.
+PEAK_KILOBYTES = "int(next(line for line in open('/proc/self/status') if line.startswith('VmHWM')).split()[1])"
 SECTIONS = {
     "campaign": 'title = "Synthetic"\nbody = "synthetic_body"',
     "axes": (

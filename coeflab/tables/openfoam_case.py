@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.limits import FOAM_FIELD_BYTES
+from coeflab.core.limits import FOAM_FIELD_BYTES, LARGEST_NUMBER
 from coeflab.core.text.foam import Foam, FoamCase
 from coeflab.core.text.series import opened
 from coeflab.core.types import Array
@@ -266,7 +266,7 @@ def _frame(case: FoamCase, part: Foam, speeds: Foam, what: str) -> Frame:
 
 def is_number(value: Any) -> bool:
     """Whether a value of a dictionary is a finite number."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < LARGEST_NUMBER
 
 
 def motion(

@@ -138,7 +138,7 @@ def test_links_inside_the_page_lead_somewhere():
 def test_every_figure_is_described():
     text = text_of(small_study(FULL))
     figures = re.findall(r"<figure.*?</figure>", text, flags=re.DOTALL)
-    assert len(figures) == 9
+    assert len(figures) == 10
     for figure in figures:
         assert 'role="img"' in figure
         for element in ("title", "desc"):
@@ -180,8 +180,9 @@ def test_the_validation_makes_a_page_of_moderate_size(suboff, suboff_page):
     hulls = {h.body.name for h in study.hulls.values()}
     assert hulls == {"suboff_aff8", "suboff_bare_hull"}
     planes, sketches, motions = 4, 3, 2 * 4
+    settings = len(study.tables) + 1  # of every table, and the local incidence of the one that turns
     sweeps = 2 * sum(len(f.sweeps) for f in study.fits)
-    assert len(drawings) == sweeps + len(budgeted) + len(hulls) + planes + sketches + motions
+    assert len(drawings) == sweeps + len(budgeted) + len(hulls) + planes + sketches + motions + settings
     assert text.count('class="space" hidden') == len(hulls)
     assert max(len(d.encode()) for d in drawings) < 60_000
     assert Page(text).crossed == []

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from coeflab.tables.importers import IMPORTERS
+from tests.conftest import PEAK_KILOBYTES
 from tests.tables.mutated_inputs import SAMPLES, SLOWEST_S, Tally, attempt, fuzz, of_foreign_files, with_samples
 
 COUNT = int(os.environ.get("COEFLAB_MUTATED_INPUTS", "2000"))
@@ -26,7 +27,7 @@ def test_spoilt_inputs_are_read_or_refused(name: str) -> None:
     program = (
         "import resource,sys;resource.setrlimit(resource.RLIMIT_AS,(1500<<20,)*2);"
         "from tests.tables.mutated_inputs import fuzz;t=fuzz(sys.argv[1],int(sys.argv[2]));"
-        "print(t.inputs,t.errors,t.read,t.slowest_ms,t.slowest_seed,resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
+        "print(t.inputs,t.errors,t.read,t.slowest_ms,t.slowest_seed," + PEAK_KILOBYTES + ")"
     )
     done = subprocess.run(
         [sys.executable, "-c", program, name, str(COUNT)], capture_output=True, text=True, cwd=Path(__file__).parents[2],

@@ -17,6 +17,7 @@ from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.importers.table import raw, recognises
 from coeflab.tables.raw_table import RawTable
 from coeflab.tables.text_dialect import AmbiguousError
+from tests.conftest import PEAK_KILOBYTES
 
 SAMPLES = Path(__file__).parent / "samples"
 BETA = [-8.0, -4.0, 0.0, 4.0, 8.0]
@@ -299,8 +300,8 @@ def test_rows_at_once_and_one_by_one_are_equal_and_memory_is_bounded(tmp_path: P
     np.testing.assert_array_equal(quick.lines, slow.lines)
     program = (
         "import resource,sys;from pathlib import Path;from coeflab.tables.importers.table import raw,sniff,Options;"
-        "sniff(Path(sys.argv[1]),Options());before=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss;"
-        "raw(Path(sys.argv[1]),{});print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss-before)"
+        "sniff(Path(sys.argv[1]),Options());before=" + PEAK_KILOBYTES + ";"
+        "raw(Path(sys.argv[1]),{});print(" + PEAK_KILOBYTES + "-before)"
     )
     done = subprocess.run([sys.executable, "-c", program, str(path)], capture_output=True, text=True, check=True)
     assert float(done.stdout) / 1024.0 < 40.0

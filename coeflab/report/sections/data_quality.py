@@ -17,7 +17,7 @@ TEXT = (
     "offset of the balance; the last column gives the angle at which the recommended slope gives as much.",
     "Repeats are usable points of one table at one setting. No fit can be better than their scatter.",
 )
-WIDTH, LEFT, RIGHT, TOP, STRIP = 460.0, 190.0, 18.0, 6.0, 34.0
+WIDTH, LEFT, RIGHT, TOP, STRIP = 340.0, 84.0, 14.0, 6.0, 34.0
 
 
 def quality_sections(study: Study) -> tuple[Section, ...]:

@@ -28,7 +28,7 @@ def settings_of(table: ForceTable) -> dict[str, Array]:
         if name in table.controls:
             out[f"{name} [deg]"] = np.degrees(primes)
         elif name in LINEAR:
-            out[f"asin({name}'), deg"] = np.degrees(np.arcsin(np.clip(primes, -1.0, 1.0)))
+            out[f"asin({name}') [deg]"] = np.degrees(np.arcsin(np.clip(primes, -1.0, 1.0)))
         else:
             out[f"{name}'"] = primes
     if np.ptp(table.speed) > SAME_SETTING * table.speed.max():
