@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.limits import FOAM_BYTES, FOAM_DEEPEST, FOAM_FIELD_BYTES, FOAM_FILES, FOAM_VALUE
+from coeflab.core.limits import FOAM_BYTES, FOAM_DEEPEST, FOAM_FIELD_BYTES, FOAM_FILES, FOAM_VALUE, LARGEST_NUMBER
 from coeflab.core.text.series import opened
 
 _TOKEN = re.compile(
@@ -298,7 +298,9 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Dimensioned):
         return _plain(value.value)
     if isinstance(value, np.ndarray):
-        return value.tolist()
+        return _plain(value.tolist())
+    if isinstance(value, int) and abs(value) > LARGEST_NUMBER:
+        return math.copysign(math.inf, value)
     # A DimensionSet is a tuple too, of its own making.
     return type(value)(map(_plain, value)) if type(value) in (list, tuple) else value
 
