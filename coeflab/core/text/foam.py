@@ -300,7 +300,7 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return _plain(value.tolist())
     if isinstance(value, int) and abs(value) > LARGEST_NUMBER:
-        return math.copysign(math.inf, value)
+        return math.inf if value > 0 else -math.inf
     # A DimensionSet is a tuple too, of its own making.
     return type(value)(map(_plain, value)) if type(value) in (list, tuple) else value
 
