@@ -19,6 +19,7 @@ from scipy.signal import lfilter
 
 from coeflab.core.errors import InputError
 from coeflab.fits import FITS
+from coeflab.report.tables.results import inspected, unused
 from coeflab.tables.collect import Collected, collect
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.conditions import name_pattern, read_run_list
@@ -482,6 +483,7 @@ def test_a_folder_of_runs_is_a_table_of_a_campaign(tmp_path: Path) -> None:
         write_run(tmp_path / "runs" / f"b{k}", {"X": -40.0, "Y": 10.0 * k + 0.01}, seed=k + 8, rows=400)
     write_run(tmp_path / "runs" / "b12", {"X": -40.0 + np.zeros(400), "Y": np.linspace(100.0, 120.0, 400)})
     write_run(tmp_path / "runs" / "b16", ended="crashed", why="log:3")
+    write_run(tmp_path / "runs" / "b20", {"X": -40.0, "Y": histories(1, {"Y": 0.05}, rows=400)["Y"]}, rows=400)
     sections = {
         **SECTIONS,
         "campaign": f'{SECTIONS["campaign"]}\nimporter = "stub"',
@@ -490,8 +492,18 @@ def test_a_folder_of_runs_is_a_table_of_a_campaign(tmp_path: Path) -> None:
     text = "".join(f"[{name}]\n{content}\n" for name, content in sections.items() if content)
     (tmp_path / "campaign.toml").write_text(f'{text}[[table]]\nfile = "runs"\n')
     (table,) = read_tables(PlannedTable(tmp_path, ()))
-    kept = np.array([label not in ("b12", "b16") for label in table.labels])
-    assert len(kept) == 7
+    kept = np.array([label not in ("b12", "b16", "b20") for label in table.labels])
+    assert len(kept) == 8
+    assert table.usable["X"].tolist() == [label not in ("b12", "b16") for label in table.labels]
+    marked = 'marked "uncertain" in the source'
+    assert inspected(table).notes[1:4] == (
+        f"b12, row: excluded, drifting, {marked}",
+        "b16, row: excluded, crashed, no number in the source",
+        f"b20, Y: excluded, too short, {marked}",
+    )
+    assert unused([table]) == "Left out: b12 drifting, b16 crashed, b20 too short in Y."
+    assert unused([table] * 3) == "Left out: 3 drifting, 3 crashed, 3 too short in Y."
+    assert unused([table.with_uncertain_cells()]) == "Left out: b16 crashed."
     assert table.usable["Y"].tolist() == kept.tolist()
     assert np.all(table.errors["Y"][kept] > 0.0)
     assert any("b12 (" in n for n in table.notes)

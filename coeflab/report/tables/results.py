@@ -247,10 +247,10 @@ def _of(components: Sequence[str], table: ForceTable) -> str:
     return "row" if whole else " ".join(components)
 
 
-def unused(study: Study) -> str:
+def unused(tables: Sequence[ForceTable]) -> str:
     """In one line what the tables say of runs that no fit uses, or not whole, by their status; empty without such."""
     by: dict[str, list[str]] = {}
-    for t in study.tables:
+    for t in tables:
         rows: dict[int, list[Exclusion]] = {}
         for e in t.exclusions:
             if e.status:
@@ -278,13 +278,14 @@ def inspected(table: ForceTable, most: int = 0) -> Table:
             text = number(float(values[i]), 5)
             cells.append(text if table.usable[c][i] else f"({text})")
         rows.append(tuple(cells))
-    whole: dict[tuple[int, int, str], list[str]] = {}
+    by_row: dict[tuple[int, int], dict[str, list[str]]] = {}
     for e in table.exclusions:
-        whole.setdefault((e.row, e.line, e.reason), []).append(e.component)
+        by_row.setdefault((e.row, e.line), {}).setdefault(e.reason, []).append(e.component)
     excluded = []
-    for (row, line, reason), components in whole.items():
-        place = table.labels[row] + f" (line {line})" * (bool(line) and table.labels[row] != f"line {line}")
-        excluded.append(f"{place}, {_of(components, table)}: excluded, {reason}")
+    for (row, line), reasons in by_row.items():
+        place = table.labels[row] + f" (line {line})" * (table.labels.count(table.labels[row]) > 1)
+        said = "; ".join(f"{_of(components, table)}: excluded, {reason}" for reason, components in reasons.items())
+        excluded.append(f"{place}, {said}")
     notes = [
         *excluded[: most or None],
         *([f"{len(excluded) - most} more are excluded"] if 0 < most < len(excluded) else []),
