@@ -213,6 +213,8 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
     from coeflab.report.tables import uncertainty as budget_tables
 
     show.sentence(tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits))
+    if left_out := tables.unused(study.tables):
+        show.sentence(left_out)
     show.text()
     show.table(tables.coefficients(study))
     models = tuple(m for f in study.fits for m in f.models)

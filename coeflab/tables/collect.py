@@ -29,14 +29,21 @@ from coeflab.tables.conditions import (
     required,
 )
 from coeflab.tables.histories import ORDER, Convergence
-from coeflab.tables.raw_table import RawColumn, RawTable, Stated
+from coeflab.tables.raw_table import NO_FORCES, RawColumn, RawTable, Stated
 from coeflab.tables.runs import Progress, RunSummary, find_runs, read_all
 
 FULL, FEWEST = 0.75, 6  # a matrix of settings: share that is there, and its least size
 ONE_FOR_ALL = ("axes.", "scaling.", "conditions.density", "conditions.viscosity", "table.contains_inertia")
-START, STATUS, ORIGIN = "plateau start", "status", "condition from"
+ITERATIONS, START, STATUS, ORIGIN = "iterations", "plateau start", "status", "condition from"
 DOUBTFUL, ALL, LABEL, IGNORE = "uncertain", "all", "label", "ignore"
 MOST_REMARKS = 20
+KEPT = {
+    Convergence.TOO_SHORT: "of which what is too short is marked as uncertain",
+    Convergence.DRIFTING: "which are kept but marked as uncertain",
+}
+SAME = 1e-5  # relative: speeds come from vectors of six digits
+EARLY = 0.6  # of the median end of all runs: what ends before it may have crashed
+FINE = 0.01  # of the largest mean of a component: a standard error below it is small enough, however short the history
 
 
 @brief
@@ -102,11 +109,12 @@ def runs_shown(table: RawTable, most: int = 0) -> Table | None:
     if most and len(chosen) > most:
         chosen = sorted(sorted(chosen, key=lambda i: -ORDER.index(Convergence(texts[STATUS][i])))[:most])
     settings = [c for c in table.columns if c.means in SETTINGS]
-    start = table.column(START).values
+    start, iterations = table.column(START).values, table.column(ITERATIONS).values
     rows = [
         (
             table.row_labels[i],
-            *(f"{c.values[i]:.10g} {c.unit}".removesuffix(" -") for c in settings),
+            *(f"{c.values[i]:.5g} {c.unit}".removesuffix(" -") for c in settings),
+            ABSENT if math.isnan(iterations[i]) else f"{iterations[i]:.10g}",
             ABSENT if math.isnan(start[i]) else f"{start[i]:g}",
             texts[STATUS][i],
             texts[ORIGIN][i],
@@ -115,7 +123,7 @@ def runs_shown(table: RawTable, most: int = 0) -> Table | None:
     ]
     counts = ", ".join(f"{n} {s}" for s in ORDER if (n := texts[STATUS].count(s)))
     more = f"; {len(table) - len(rows)} are not shown" if len(rows) < len(table) else ""
-    heads = ("run", *(c.name for c in settings), "plateau from", STATUS, ORIGIN)
+    heads = ("run", *(c.name for c in settings), ITERATIONS, "plateau from", STATUS, ORIGIN)
     return Table("Runs", heads, tuple(rows), (f"{counts}{more}.",), frozenset({0, len(heads) - 2, len(heads) - 1}))
 
 
@@ -163,7 +171,9 @@ def collect(
     pattern = name_pattern(names) if names else None
     listed_runs = read_run_list(run_list) if run_list is not None else None
     chosen, found = find_runs(path, importer)
+    matched = set((listed_runs.matches(list(found)) if listed_runs else {}).values())
     summaries, again = read_all(path, chosen, found, options or {}, progress, workers, state)
+    summaries = _broken_off(summaries)
     conditions = joined({s.name: of_files(s.stated_conditions) for s in summaries}, pattern, listed_runs)
     conditions = _with_straight_runs(conditions)
     summaries = [replace(s, conditions=conditions[s.name]) for s in summaries]
@@ -171,13 +181,40 @@ def collect(
         raise together(complaints)
     known = [s for s in SETTINGS if any(s in r.conditions for r in summaries)]
     rows = [s for s in summaries if all(k in s.conditions for k in known)]
-    matched = {listed_runs.name_of(s.name) for s in summaries} if listed_runs else set()
     absent = [f"{n} of {listed_runs.path.name}" for n in listed_runs.runs if n not in matched] if listed_runs else []
     duplicates, copies, grids = _duplicates(rows, known)
     missing = (*absent, *_holes(rows, known))
-    remarks = _remarks(summaries, rows, missing, duplicates, copies, grids)
-    table = _table(path, chosen, rows, known, copies, remarks)
+    doubtful = _doubtful(rows, copies)
+    remarks = _remarks(summaries, rows, missing, duplicates, copies, grids, doubtful)
+    table = _table(path, chosen, rows, known, doubtful, remarks)
     return Collected(table, tuple(summaries), missing, duplicates, chosen, again)
+
+
+def _broken_off(runs: Sequence[RunSummary]) -> list[RunSummary]:
+    """The runs, those as crashed that end early among runs that go on, which their format cannot show.
+
+    A run ends early at less than `EARLY` of the median of all, within a line where others end with one, or not converged where
+    all others reach one and the same end.
+    """
+    ended = [r for r in runs if r.status.has_numbers and math.isfinite(r.last)]
+    middle = EARLY * float(np.median([r.last for r in ended])) if len(ended) > 2 else -math.inf
+    others = [r for r in ended if r.last >= middle]
+    ends = {r.last for r in others}
+    cut_is_news = not all(r.is_cut for r in others)
+
+    def judged(r: RunSummary) -> RunSummary:
+        is_early = r.status.has_numbers and r.last < middle
+        alone = len(ends) == 1 and r.status is not Convergence.CONVERGED
+        if not is_early or not (alone or (r.is_cut and cut_is_news)):
+            return r
+        end = f"{max(ends):g}" if len(ends) == 1 else f"{min(ends):g} to {max(ends):g}"
+        why = f"ends at {r.last:g}{' within a line' * (r.is_cut and cut_is_news)}, the others at {end}"
+        return replace(
+            r, status=Convergence.CRASHED, why=why, means={}, errors={}, units={}, headers={}, by_name=False, beside={},
+            unsure={}, patches={}, start=math.nan, start_unit="", window=0,
+        )  # fmt: skip
+
+    return [judged(r) for r in runs]
 
 
 def _with_straight_runs(stated: Mapping[str, dict[str, Condition]]) -> dict[str, dict[str, Condition]]:
@@ -222,6 +259,32 @@ def _duplicates(
     return tuple(duplicates), copies, tuple(grids)
 
 
+def _doubtful(rows: Sequence[RunSummary], copies: Mapping[str, str]) -> dict[str, str]:
+    """By run, what no fit uses: ``all``, or the columns that are too short, with semicolons between them."""
+    largest: dict[str, float] = {}
+    for r in rows:
+        if r.status in (Convergence.CONVERGED, Convergence.TOO_SHORT):
+            for c, mean in r.means.items():
+                largest[c] = max(largest.get(c, 0.0), abs(mean))
+
+    def of(r: RunSummary) -> str:
+        if r.name in copies or r.status not in (Convergence.CONVERGED, Convergence.TOO_SHORT):
+            return ALL
+        short = [c for c, enough in r.unsure.items() if not (enough and r.errors[c] < FINE * largest[c])]
+        heads = [r.headers[c] if r.by_name else c for c in short]
+        return ALL if any(";" in h for h in heads) or len(short) == len(r.means) else "; ".join(heads)
+
+    return {r.name: of(r) for r in rows}
+
+
+def _lacks_forces(run: RunSummary) -> bool:
+    return run.status is Convergence.EMPTY and NO_FORCES in run.why
+
+
+def _with_reasons(runs: Sequence[RunSummary]) -> str:
+    return named([f"{s.name} ({s.why})" if s.why else s.name for s in runs])
+
+
 def _holes(rows: Sequence[RunSummary], known: Sequence[str]) -> tuple[str, ...]:
     """Conditions that a matrix of settings lacks, where at least three quarters of it are there."""
     # Of a velocity, u follows from the speed and the cross flow.
@@ -243,20 +306,30 @@ def _holes(rows: Sequence[RunSummary], known: Sequence[str]) -> tuple[str, ...]:
 
 def _remarks(
     summaries: Sequence[RunSummary], rows: Sequence[RunSummary], missing: Sequence[str], duplicates: Sequence[Sequence[str]],
-    copies: Mapping[str, str], grids: Sequence[Sequence[str]],
+    copies: Mapping[str, str], grids: Sequence[Sequence[str]], doubtful: Mapping[str, str],
 ) -> tuple[str, ...]:  # fmt: skip
     """What a person has to know of the runs, a sentence each; many runs of one kind in one sentence."""
     out = []
     in_table = {r.name for r in rows}
+    if bare := [s.name for s in summaries if _lacks_forces(s)]:
+        advice = "" if any(s.means for s in summaries) else next(f" ({s.why})" for s in summaries if _lacks_forces(s))
+        out.append(f"{len(bare)} case{'s' * (len(bare) > 1)} without forces: {named(bare)}{advice}")
     for status in ORDER[1:]:
-        alike = [s for s in summaries if s.status is status]
+        alike = [s for s in summaries if s.status is status and not _lacks_forces(s)]
+        if status is Convergence.TOO_SHORT:
+            fine = [s for s in alike if not doubtful.get(s.name)]
+            alike = [s for s in alike if doubtful.get(s.name)]
+            if fine:
+                out.append(
+                    f"{len(fine)} {status} and used, as every error, the range of the plateau in it, is below {100 * FINE:g} % of "
+                    f"the largest mean of its component: {_with_reasons(fine)}."
+                )
         if not alike:
             continue
-        what = "are kept but marked as uncertain" if status.has_numbers else "have no numbers"
+        what = KEPT.get(status, "which have no numbers")
         outside = sum(s.name not in in_table for s in alike)
         what += f"; {outside} without a known condition are left out" if outside else ""
-        named_runs = [f"{s.name} ({s.why})" if s.why else s.name for s in alike]
-        out.append(f"{len(alike)} {status}, which {what}: {named(named_runs)}.")
+        out.append(f"{len(alike)} {status}, {what}: {_with_reasons(alike)}.")
     if missing:
         out.append(f"{len(missing)} missing: {named([f'[{m}]' for m in missing])}.")
     if duplicates:
@@ -280,7 +353,7 @@ def _remarks(
 
 
 def _table(
-    path: Path, importer: str, rows: Sequence[RunSummary], known: Sequence[str], copies: Mapping[str, str],
+    path: Path, importer: str, rows: Sequence[RunSummary], known: Sequence[str], doubtful: Mapping[str, str],
     remarks: tuple[str, ...],
 ) -> RawTable:  # fmt: skip
     columns = [_setting(rows, name) for name in known]
@@ -305,16 +378,15 @@ def _table(
         for k in ("cells", "y_plus", *(o for o in others if o not in ("cells", "y_plus")))
         if k in others
     ]
-    columns.append(RawColumn("iterations", "-", _numbers([r.iterations for r in rows]), means=IGNORE))
+    columns.append(RawColumn(ITERATIONS, "-", _numbers([r.iterations for r in rows]), means=IGNORE))
     unit = next((r.start_unit for r in rows if r.start_unit), "-")
     columns.append(RawColumn(START, unit, _numbers([r.start for r in rows]), means=IGNORE))
     columns.append(_text(STATUS, [str(r.status) for r in rows]))
     columns.append(_text(ORIGIN, [_origin(r, known) for r in rows]))
-    marked = [r.status is not Convergence.CONVERGED or r.name in copies for r in rows]
-    columns.append(_text(DOUBTFUL, [ALL if m else "" for m in marked], means=DOUBTFUL))
+    columns.append(_text(DOUBTFUL, [doubtful[r.name] for r in rows], means=DOUBTFUL))
     columns += _beside([r.patches for r in rows], IGNORE) + _beside([r.beside for r in rows], "" if by_name else IGNORE)
     stated, differing = _stated(rows)
-    more += [f"{k} differs between runs and is left out." for k in differing]
+    more += [f"{k} differs between runs ({text}) and is left out." for k, text in differing.items()]
     versions = sorted({v for r in rows if (v := r.dialect.get("version"))})
     return RawTable(
         path=path,
@@ -398,23 +470,23 @@ def _unit_of(rows: Sequence[RunSummary], component: str) -> str:
 
 
 def _alike(a: object, b: object) -> bool:
-    """Whether two stated values are one; speeds come from vectors of six digits."""
+    """Whether two stated values are one, but for rounding."""
     if isinstance(a, (float, tuple)) and isinstance(b, (float, tuple)):
-        return np.shape(a) == np.shape(b) and bool(np.allclose(a, b, rtol=1e-6, atol=1e-9))
+        return np.shape(a) == np.shape(b) and bool(np.allclose(a, b, rtol=SAME, atol=1e-9))
     return a == b
 
 
-def _stated(rows: Sequence[RunSummary]) -> tuple[dict[str, Stated], list[str]]:
-    """What all runs state alike; axes, points and densities must not differ."""
+def _stated(rows: Sequence[RunSummary]) -> tuple[dict[str, Stated], dict[str, str]]:
+    """What all runs state alike, and of what differs two values; axes, points and densities must not differ."""
     first: dict[str, tuple[str, Stated]] = {}
-    differing: dict[str, None] = {}
+    differing: dict[str, str] = {}
     complaints = []
     for r in rows:
         for key, one in r.stated.items():
             name, before = first.setdefault(key, (r.name, one))
             if _alike(before.value, one.value) or key in differing:
                 continue
-            differing[key] = None
+            differing[key] = f"{_five(before.value)} in {name}, {_five(one.value)} in {r.name}"
             if key.startswith(ONE_FOR_ALL):
                 complaints.append(InputError(
                     f"{before.value} in {name} ({before.place}) and {one.value} in {r.name} ({one.place})",
@@ -422,4 +494,10 @@ def _stated(rows: Sequence[RunSummary]) -> tuple[dict[str, Stated], list[str]]:
                 ))  # fmt: skip
     if complaints:
         raise together(complaints)
-    return {k: s for k, (_, s) in first.items() if k not in differing}, list(differing)
+    return {k: s for k, (_, s) in first.items() if k not in differing}, differing
+
+
+def _five(value: str | float | bool | tuple[float, ...]) -> str:
+    if isinstance(value, tuple):
+        return f"({', '.join(f'{x:.5g}' for x in value)})"
+    return str(value) if isinstance(value, (str, bool)) else f"{value:.5g}"

@@ -6,8 +6,10 @@ Each value keeps its origin. Where two origins contradict each other, both are n
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import takewhile
 from pathlib import Path
 from types import MappingProxyType
 
@@ -39,6 +41,7 @@ _FIELD = re.compile(r"\{([^{}]*)\}")
 _SPELLING = re.compile(r"([A-Za-z]{1,8})=([-+.])")
 _SCALE = re.compile(r"x([0-9]*\.?[0-9]+)")
 _QUANTITY = re.compile(r"([-+\u2212]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(\S.*)")
+_EXTENSION = re.compile(r"\.[A-Za-z]\w*$")
 _LONGEST, MOST_OPEN = 200, 3  # letters of a name, and asterisks and labels: each may end anywhere
 
 
@@ -234,10 +237,42 @@ class RunList:
     path: Path
     runs: Mapping[str, Mapping[str, Condition]]
 
-    def name_of(self, run: str) -> str | None:
-        """The name in the list that means this run: its whole path, or its last part."""
-        last = run.rpartition("/")[2]
-        return next((n for n in (run, last, last.rpartition(".")[0]) if n in self.runs), None)
+    def matches(self, runs: Sequence[str]) -> dict[str, str]:
+        """By run the name in the list that means it: its path, its last part, that without its extension or a common end.
+
+        Without its extension, and without what all runs end in behind ``_``, ``-`` or ``.``, a name counts where it means
+        one run alone.
+
+        Raises
+        ------
+        InputError
+            No name of the list is a run.
+        """
+        lasts = {run: run.rpartition("/")[2] for run in runs}
+        out = {run: n for run, last in lasts.items() for n in (last, run) if n in self.runs}
+        stems = {run: _EXTENSION.sub("", last) for run, last in lasts.items()}
+        for shorter in (stems, _without_common_end(stems)):
+            times, taken = Counter(shorter.values()), set(out.values())
+            out |= {
+                run: name
+                for run, name in shorter.items()
+                if run not in out and name in self.runs and name not in taken and times[name] == 1
+            }
+        if not out and self.runs and runs:
+            raise InputError(
+                f"none of its {len(self.runs)} names is a run" if len(self.runs) > 1 else f"{next(iter(self.runs))}, which is no run",
+                f"names of runs: {named(runs)}", file=self.path,
+            )  # fmt: skip
+        return out
+
+
+def _without_common_end(names: Mapping[str, str]) -> dict[str, str]:
+    """Names without what all of them end in, from a ``_``, ``-`` or ``.`` on."""
+    backwards = zip(*(reversed(name) for name in names.values()), strict=False)
+    alike = "".join(letters[0] for letters in takewhile(lambda letters: len(set(letters)) == 1, backwards))
+    end = alike[::-1] if len(names) > 1 else ""
+    match = re.search(r"[-_.]", end)
+    return {key: name.removesuffix(end[match.start() :]) for key, name in names.items()} if match else {}
 
 
 def read_run_list(path: Path) -> RunList:
@@ -360,10 +395,10 @@ def joined(
     """
     complaints: list[InputError] = []
     out: dict[str, dict[str, Condition]] = {}
+    in_lists = run_list.matches(list(stated)) if run_list else {}
     for run, from_files in stated.items():
         found = dict(from_files)
-        in_list = run_list.name_of(run) if run_list else None
-        others = [run_list.runs[in_list]] if run_list and in_list is not None else []
+        others = [run_list.runs[in_lists[run]]] if run_list and run in in_lists else []
         others += [pattern.conditions(run) or {}] if pattern else []
         for other in others:
             for name, one in other.items():

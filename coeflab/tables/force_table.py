@@ -47,6 +47,8 @@ class Exclusion:
     reason : str
     uncertain : bool
         True when the source marks the value as doubtful, so that a reader may choose to use it after all.
+    status : str
+        What a label column ``status`` says of the row, such as ``too short``; empty without one.
     """
 
     row: int
@@ -54,6 +56,7 @@ class Exclusion:
     component: str
     reason: str
     uncertain: bool = False
+    status: str = ""
 
 
 @brief

@@ -17,7 +17,7 @@ value by more than a share of it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
@@ -30,6 +30,9 @@ BATCH = 5  # of MSER-5
 LATEST = 0.5  # share of a history that may be left out
 NO_PLATEAU = 0.48  # MSER-5 at its own limit, half of the history
 LEAST_ROWS, LEAST_BATCHES, MOST_BATCHES = 40, 8, 30
+CALIBRATED_ROWS = (
+    100  # on the plateau: the least for which docs/data_in_runs.md has the coverage of too short histories
+)
 TIMES_A_BATCH = 4.0  # autocorrelation times
 SHARE = 0.01  # of a value: a drift below it, or a whole window within it, does not matter
 OF_THE_WHOLE = 0.05  # a component counts as at least this share of the whole force, or of the whole moment
@@ -102,6 +105,9 @@ class Plateau:
         The worst of the components.
     why : str
         What shows it; empty for a converged one.
+    unsure : mapping of str to bool
+        Components that are too short, where this is all that is wrong: whether their error is calibrated all the same, as that
+        of at least `CALIBRATED_ROWS` rows is.
     """
 
     start: int
@@ -109,6 +115,7 @@ class Plateau:
     means: Mapping[str, Mean]
     status: Convergence
     why: str = ""
+    unsure: Mapping[str, bool] = field(default_factory=dict)
 
 
 def plateau_start(values: Array) -> tuple[int, bool]:
@@ -210,7 +217,7 @@ def mean_of(values: Array, tolerance: float, floor: float, significance: float =
     around = values - value - line * at
     noise, time = long_run_variance(around, 2)
     time = max(time, autoregressive_time(around))
-    batches = int(min(MOST_BATCHES, m // int(np.ceil(TIMES_A_BATCH * time))))
+    batches = int(min(MOST_BATCHES, m // _least_batch(time)))
     if m < LEAST_ROWS or batches < LEAST_BATCHES:
         steady = within <= tolerance and m >= LEAST_ROWS
         status = Convergence.CONVERGED if steady else Convergence.TOO_SHORT
@@ -292,10 +299,14 @@ def plateau(forces: Mapping[str, Array], at: Array | None = None, groups: Mappin
         if not found and np.ptp(row) > tolerance[c] and _is_a_line(row)
     ]
     status = max((m.status for m in means.values()), key=ORDER.index)
-    why = _why(means, status, window.shape[1] * block)
+    why = _why(means, status, window.shape[1], block)
     if unsettled and status is not Convergence.DRIFTING:
         status, why = Convergence.DRIFTING, f"{', '.join(unsettled)} settles to the end: no plateau in the second half"
-    return Plateau(skipped + n % block * (start > 0) + start * block, window.shape[1] * block, means, status, why)
+    enough = window.shape[1] >= CALIBRATED_ROWS
+    short = [c for c, m in means.items() if m.status is Convergence.TOO_SHORT]
+    unsure = dict.fromkeys(short, enough) if status is Convergence.TOO_SHORT else {}
+    first = skipped + n % block * (start > 0) + start * block
+    return Plateau(first, window.shape[1] * block, means, status, why, unsure)
 
 
 def _is_a_line(values: Array) -> bool:
@@ -328,7 +339,7 @@ def _equal(columns: Array, at: Array | None) -> Array:
     return np.array([np.interp(even, at, row) for row in columns])
 
 
-def _why(means: Mapping[str, Mean], status: Convergence, rows: int) -> str:
+def _why(means: Mapping[str, Mean], status: Convergence, rows: int, block: int) -> str:
     if status is Convergence.CONVERGED:
         return ""
     of = {c: m for c, m in means.items() if m.status is status}
@@ -338,5 +349,14 @@ def _why(means: Mapping[str, Mean], status: Convergence, rows: int) -> str:
     longest = max((m.correlation for m in of.values() if np.isfinite(m.correlation)), default=np.nan)
     if rows < LEAST_ROWS or not np.isfinite(longest):
         return f"{rows} row{'s' * (rows != 1)} on the plateau, {LEAST_ROWS} needed"
-    needed = LEAST_BATCHES * TIMES_A_BATCH * longest
-    return f"{', '.join(of)} correlated over {longest:.0f} rows: {rows} on the plateau, about {needed:.0f} needed"
+    needed = LEAST_BATCHES * _least_batch(longest) * block
+    one = len(of) == 1
+    return (
+        f"{', '.join(of)} span{'s' * one} more than {100 * SHARE:g} % and {'is' if one else 'are'} correlated over "
+        f"{longest * block:.3g} rows: {rows * block} on the plateau, {needed} needed"
+    )
+
+
+def _least_batch(time: float) -> int:
+    """Rows of a batch, whole, for an autocorrelation time in rows."""
+    return int(np.ceil(TIMES_A_BATCH * time))

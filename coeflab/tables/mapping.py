@@ -19,7 +19,7 @@ from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.to_frd import Columns, force_table, surge_column
+from coeflab.tables.to_frd import BLANK, Columns, force_table, surge_column
 
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
 REMARKS = 5
@@ -320,6 +320,8 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
 def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
     """For every row of the file the plain names that its column ``uncertain`` names; ``all`` are all forces and moments.
 
+    A column may go by its name in the file, between semicolons where it has blanks; one that nobody uses counts for nothing.
+
     Raises
     ------
     InputError
@@ -330,9 +332,16 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
         return [frozenset()] * len(raw)
     names = {one.said.name for one in known if one.said.name not in WORDS}
     forces = {one.said.name for one in known if one.said.role == "force"}
+    used = {one.column.name for one in known}
+    own = {c.name: "" for c in raw.columns if c.name not in used | names | {ALL}}
+    own |= {one.column.name: one.said.name for one in known if one.said.name in names and not one.said.error}
     out = []
     for row, text in enumerate(texts_of(column)):
-        words = {word.removesuffix("'") for word in text.replace(";", " ").replace(",", " ").split()}
+        words: set[str] = set()
+        for part in map(str.strip, text.split(";")):
+            single = [part] if part in own else part.replace(",", " ").split()
+            words |= {own.get(word, word.removesuffix("'")) for word in single}
+        words.discard("")
         words = words - {ALL} | forces if ALL in words else words
         if strange := sorted(words - names):
             raise fault(raw, shown(strange[0]), f"{ALL}, or of {', '.join(sorted(names))}", column, row=row)
@@ -372,7 +381,8 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
     out = force_table(columns, campaign, table)
     rows = usable_rows(known, len(raw))
     exclusions = tuple(
-        replace(e, reason="no number in the source") if e.component and not e.uncertain else e for e in out.exclusions
+        replace(e, reason=e.reason.replace(BLANK, "no number in the source")) if e.component and not e.uncertain else e
+        for e in out.exclusions
     )
     said = [*_left_out(raw, known), *raw.remarks]
     more = [f"{len(said) - REMARKS} more remarks; coeflab inspect lists them"] if len(said) > REMARKS else []

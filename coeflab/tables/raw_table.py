@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from coeflab.core.types import Array, brief, locked
 
+NO_FORCES = "a case without forces"  # what an importer says to have found where a case was never run
+
 
 @dataclass(frozen=True, slots=True)
 class Stated:

@@ -35,11 +35,11 @@ from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.conditions import Condition
 from coeflab.tables.histories import Convergence, plateau
 from coeflab.tables.importers import IMPORTERS
-from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run, Stated
+from coeflab.tables.raw_table import NO_FORCES, Ended, RawColumn, RawTable, Run, Stated
 
 Progress = Callable[[str], None]
 STATE = "collected_runs.jsonl"
-STATE_KIND = "coeflab collected runs 1"
+STATE_KIND = "coeflab collected runs 2"
 DEEPEST, MOST_ENTRIES = 12, 500_000
 SHALLOW, MOST_SHALLOW = 2, 2_000  # levels of a run's folder, and their entries, that tell whether it changed
 STILL_WRITTEN = 2_000_000_000  # ns; what changed so shortly before it was read may change again unseen
@@ -76,6 +76,8 @@ class RunSummary:
         The format does not say which column is which component: means and errors go by the names of the columns.
     beside : mapping of str to (float, str)
         Mean and unit of the columns that are none of these.
+    unsure : mapping of str to bool
+        As `coeflab.tables.histories.Plateau` has it.
     start : float
         Time or iteration at which the plateau begins; NaN without one.
     start_unit : str
@@ -83,6 +85,10 @@ class RunSummary:
         Of the history and of the plateau.
     iterations : float
         The last iteration where the history counts them, else the rows.
+    last : float
+        The last time or iteration, else the rows.
+    is_cut : bool
+        A file of the history ends within a line.
     stated_conditions : mapping of str to Stated
         As the files have them.
     patches : mapping of str to (float, str)
@@ -106,11 +112,14 @@ class RunSummary:
     headers: Mapping[str, str] = field(default_factory=dict)
     by_name: bool = False
     beside: Mapping[str, tuple[float, str]] = field(default_factory=dict)
+    unsure: Mapping[str, bool] = field(default_factory=dict)
     start: float = math.nan
     start_unit: str = ""
     rows: int = 0
     window: int = 0
     iterations: float = math.nan
+    last: float = math.nan
+    is_cut: bool = False
     stated_conditions: Mapping[str, Stated] = field(default_factory=dict)
     patches: Mapping[str, tuple[float, str]] = field(default_factory=dict)
     files: tuple[str, ...] = ()
@@ -241,6 +250,8 @@ def summarised(run: Run, name: str) -> RunSummary:
         common = replace(common, iterations=float(at.values[-1]))
     else:
         common = replace(common, iterations=float(len(history)))
+    last = float(at.values[-1]) if at is not None and len(at.values) else common.iterations
+    common = replace(common, last=last, is_cut=any(map(_ends_within_a_line, history.files or (history.path,))))
     if run.ended in ENDED:
         return common
     columns, by_name = deciding(history)
@@ -263,12 +274,21 @@ def summarised(run: Run, name: str) -> RunSummary:
         units={c: k.unit for c, k in columns.items()},
         headers={c: k.name for c, k in columns.items()},
         by_name=by_name,
+        unsure=found.unsure,
         beside={c.name: (float(np.mean(c.values[found.start :])), c.unit) for c in others},
         start=start,
         start_unit=at.unit if at is not None else "",
         window=found.rows,
         patches=_patches(run, start),
     )
+
+
+def _ends_within_a_line(file: Path) -> bool:
+    with suppress(OSError), file.open("rb") as stream:
+        if stream.seek(0, os.SEEK_END):
+            stream.seek(-1, os.SEEK_END)
+            return stream.read(1) not in b"\r\n"
+    return False
 
 
 def deciding(history: RawTable) -> tuple[dict[str, RawColumn], bool]:
@@ -319,6 +339,8 @@ def read_run(path: Path, name: str, importer: str, options: Mapping[str, Any]) -
             summary = summarised(plugin.run(path, options), name)
     except (InputError, OSError) as why:
         text = why.lines[0] if isinstance(why, InputError) else str(why)
+        if isinstance(why, InputError) and why.found == NO_FORCES:
+            return RunSummary(name, Convergence.EMPTY, text), []
         return RunSummary(name, Convergence.UNREADABLE, text, files=(str(path.absolute()),) * path.is_file()), []
     mark = fingerprint(path, summary.files)
     fresh = not mark or max(m[2] for m in mark) > began - STILL_WRITTEN

@@ -144,6 +144,7 @@ def _first(where: NDArray[np.bool_]) -> int | None:
     return int(rows[0]) if rows.size else None
 
 
+BLANK, MARKED = "blank in the source", 'marked "uncertain" in the source'
 SYMMETRIC = ("X", "Z", "M")
 TAKEN_OUT = "inertia of the model taken out"
 
@@ -352,6 +353,7 @@ def _exclusions(
     have = {c: column for c, column in frd.items() if column in columns.forces}
     usable = {c: np.ones(len(columns), dtype=bool) for c in have}
     settings = {*columns.settings, "U", "R", "density"}
+    status = [text if text != "converged" else "" for text in columns.labels.get("status", [""] * len(columns))]
     out: list[Exclusion] = []
     for label in table.selected:
         if label not in columns.labels:
@@ -364,8 +366,9 @@ def _exclusions(
             value = columns.forces[column][row]
             if column in doubtful or settings & doubtful:
                 usable[component][row] = False
-                reason = "blank in the source" if np.isnan(value) else 'digit doubtful in the source ("uncertain")'
-                out.append(Exclusion(row, line, component, reason, uncertain=not np.isnan(value)))
+                reason = BLANK if np.isnan(value) else 'digit doubtful in the source ("uncertain")'
+                reason = f"{status[row]}, {BLANK if np.isnan(value) else MARKED}" if status[row] else reason
+                out.append(Exclusion(row, line, component, reason, not np.isnan(value), status[row]))
             elif np.isnan(value):
                 raise columns.fail(
                     "a blank cell", "a number", row=row, name=column,

@@ -48,7 +48,7 @@ def run(path, options):
         import time
         time.sleep(about["slow"])
     if about.get("broken"):
-        raise InputError("a line of letters", "numbers", file=file, line=9)
+        raise InputError(about["broken"] if isinstance(about["broken"], str) else "a line of letters", "numbers", file=file, line=9)
     rows = np.array([[float(c) for c in line.split()] for line in text]).reshape(len(text), len(names) + 1)
     parts = about.get("patches", {})
     return Run(path, path.name, table(file, about, names, rows, None),

@@ -9,20 +9,24 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from coeflab.core.errors import InputError
 from coeflab.fits import FITS
+from coeflab.report.tables.results import inspected, unused
 from coeflab.tables.collect import Collected, collect
 from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.conditions import name_pattern, read_run_list
 from coeflab.tables.histories import Convergence
 from coeflab.tables.importers import IMPORTERS, PlannedTable
-from coeflab.tables.mapping import assigned
+from coeflab.tables.mapping import assigned, doubtful
+from coeflab.tables.raw_table import RawTable
 from coeflab.tables.reading import read_tables
 from coeflab.tables.runs import find_runs, natural
 from tests.conftest import SECTIONS
@@ -114,12 +118,12 @@ def test_every_kind_of_end_is_listed(collected: Collected) -> None:
 
 def test_origin_of_every_condition_is_shown(collected: Collected) -> None:
     shown = collected.shown()
-    assert shown.headers == ("run", "beta", "r", "plateau from", "status", "condition from")
+    assert shown.headers == ("run", "beta", "r", "iterations", "plateau from", "status", "condition from")
     assert shown.rows[[r[0] for r in shown.rows].index("sweep/b10_r0p2")] == (
-        "sweep/b10_r0p2", "10 deg", "0.2 rad/s", "1", "converged", "name b10_r0p2",
+        "sweep/b10_r0p2", "10 deg", "0.2 rad/s", "200", "1", "converged", "name b10_r0p2",
     )  # fmt: skip
     few = collected.shown(most=5)
-    assert {r[4] for r in few.rows} == {"crashed", "diverged", "empty", "unreadable", "drifting"}
+    assert {r[5] for r in few.rows} == {"crashed", "diverged", "empty", "unreadable", "drifting"}
     assert few.notes[0].endswith("8 are not shown.")
 
 
@@ -128,6 +132,122 @@ def test_files_have_their_hashes(collected: Collected, matrix: Path) -> None:
     name = f"sweep/b0_r0/{FILE}"
     assert inputs[name] == hashlib.sha256((matrix / name).read_bytes()).hexdigest()
     assert len(inputs) == len(collected.runs) - 1  # one could not be read
+
+
+def histories(seed: int, noise: dict[str, float], rows: int = 300, phi: float = 0.95) -> dict[str, Any]:
+    """X = -1, Y = 50, N = 90 with correlated noise, too long for so few rows; as shares of each."""
+    rng = np.random.default_rng(seed)
+    out = {}
+    for c, mean in {"X": -1.0, "Y": 50.0, "N": 90.0}.items():
+        steps = np.sqrt(1.0 - phi**2) * rng.normal(size=rows)
+        walk = lfilter([1.0], [1.0, -phi], steps)
+        out[c] = mean * (1.0 + (noise[c] * walk if c in noise else 1e-4 * rng.normal(size=rows)))
+    return out
+
+
+def test_only_the_component_that_is_too_short_is_marked(tmp_path: Path) -> None:
+    """One whose error is small beside the largest mean of its component is used all the same."""
+    write_run(tmp_path / "b0", histories(1, {}))
+    write_run(tmp_path / "b2", histories(2, {"X": 0.05}))
+    write_run(tmp_path / "b4", histories(3, {"X": 0.05, "Y": 0.003}))
+    write_run(tmp_path / "b6", histories(4, {"Y": 0.004}))
+    write_run(tmp_path / "b8", histories(5, {"X": 0.05, "Y": 0.05, "N": 0.05}))
+    found = collect(tmp_path, names="b{beta:deg}")
+    assert [str(r.status) for r in found.runs] == ["converged", *["too short"] * 4]
+    assert found.table.column("uncertain").texts == ("", "X", "X", "", "all")
+    error = found.table.column("se_Y").values
+    assert max(error[2:4]) < 0.5 < error[4]
+    said = "\n".join(found.table.remarks)
+    assert (
+        "1 too short and used, as every error, the range of the plateau in it, is below 1 % of the largest mean" in said
+    )
+    assert "3 too short, of which what is too short is marked as uncertain: b2 (X spans more than 1 %" in said
+
+
+def test_errors_of_fewer_rows_than_were_calibrated_are_not_trusted(tmp_path: Path) -> None:
+    write_run(tmp_path / "b2", histories(6, {"Y": 0.006}, rows=90))
+    write_run(tmp_path / "b4", histories(6, {}, rows=90))
+    table = collect(tmp_path, names="b{beta:deg}").table
+    assert table.column("se_Y").values[0] < 0.5
+    assert table.column("uncertain").texts == ("Y", "")
+
+
+def test_uncertain_may_name_columns_as_the_file_does(tmp_path: Path) -> None:
+    """Monitors have blanks in their names; what is no force of the table counts for nothing."""
+    for k, noise in ((2, {"X": 0.05}), (4, {"Y": 0.05}), (6, {})):
+        read = histories(k, noise)
+        forces = {"X": read["X"], "side": read["Y"], "N": read["N"]}
+        write_run(tmp_path / f"b{k}", forces, prefix="My-", unnamed=True)
+    raw = collect(tmp_path, names="b{beta:deg}").table
+    assert raw.column("uncertain").texts == ("My-X", "My-side", "")
+    spaced = RawTable(raw.path, tuple(
+        replace(c, name=c.name.replace("My-", "Monitor of "), texts=tuple(t.replace("My-", "Monitor of ") for t in c.texts))
+        for c in raw.columns
+    ))  # fmt: skip
+    said = {"Monitor of X": ColumnMap("ignore"), "Monitor of side": ColumnMap("Y"), "Monitor of N": ColumnMap("Z")}
+    assert doubtful(spaced, assigned(spaced, said)) == [frozenset(), frozenset({"Y"}), frozenset()]
+
+
+def test_a_crash_that_a_format_cannot_show(tmp_path: Path) -> None:
+    for k in range(5):
+        write_run(tmp_path / "runs" / f"b{k}", seed=k)
+    write_run(tmp_path / "runs" / "b8", histories(1, {"Y": 0.05}, rows=115))
+    write_run(tmp_path / "runs" / "b9", histories(1, {"Y": 0.05}, rows=125))
+    early = write_run(tmp_path / "runs" / "b10", seed=5, rows=90)
+    found = {r.name: r for r in collect(tmp_path / "runs", names="b{beta:deg}").runs}
+    assert [str(found[n].status) for n in ("b8", "b9", "b10")] == ["too short", "too short", "converged"]
+    write_run(tmp_path / "runs" / "b9", seed=9)
+    first = collect(tmp_path / "runs", names="b{beta:deg}", state=tmp_path / "state.jsonl")
+    found = {r.name: r for r in first.runs}
+    assert (str(found["b8"].status), found["b8"].why) == ("crashed", "ends at 115, the others at 200")
+    assert found["b8"].means == {}
+    assert str(found["b10"].status) == "converged"  # it may have met its criterion
+    (early / FILE).write_bytes((early / FILE).read_bytes().rstrip())
+    again = collect(tmp_path / "runs", names="b{beta:deg}", state=tmp_path / "state.jsonl")
+    assert again.runs[-1].why == "ends at 90 within a line, the others at 200"
+    assert [r.name for r in again.runs if r.status is Convergence.CRASHED] == ["b8", "b10"]
+    assert again.again == 1
+    shown = again.shown()
+    assert [r[shown.headers.index("iterations")] for r in shown.rows[-3:]] == ["115", "200", "90"]
+
+
+def test_cases_that_were_never_run_take_one_line(tmp_path: Path) -> None:
+    write_run(tmp_path / "b2")
+    write_run(tmp_path / "_template", broken="a case without forces")
+    found = collect(tmp_path, names="b{beta:deg}")
+    assert "1 case without forces: _template" in found.table.remarks
+    assert found.table.row_labels == ("b2",)
+    (tmp_path / "b2" / FILE).unlink()
+    (said,) = collect(tmp_path, names="b{beta:deg}").table.remarks
+    assert said.startswith("1 case without forces: _template (")
+    assert "expected numbers" in said  # what to do about it, where no run has forces
+
+
+def test_rounding_is_no_difference(tmp_path: Path) -> None:
+    for k, speed in ((2, 3.3), (4, 3.300006)):
+        write_run(tmp_path / f"b{k}", stated={"conditions.speed": speed})
+    assert collect(tmp_path, names="b{beta:deg}").table.stated["conditions.speed"].value == 3.3
+    write_run(tmp_path / "b6", stated={"conditions.speed": 3.2912345})
+    said = collect(tmp_path, names="b{beta:deg}").table.remarks
+    assert "conditions.speed differs between runs (3.3 in b2, 3.2912 in b6) and is left out." in said
+
+
+@pytest.mark.parametrize("names", ["{}_force.csv", "{}_force", "{}", "set/{}_force.csv"])
+def test_names_of_a_list_need_no_extension(tmp_path: Path, names: str) -> None:
+    runs = [f"set/{n}_force.csv" for n in ("drift_0", "drift_m3", "rot_p0.1")]
+    file = tmp_path / "list.csv"
+    file.write_text("run,beta [deg]\n" + "".join(f"{names.format(n)},1\n" for n in ("drift_0", "drift_m3", "rot_p0.1")))
+    found = read_run_list(file).matches(runs)
+    assert found == {f"set/{n}_force.csv": names.format(n) for n in ("drift_0", "drift_m3", "rot_p0.1")}
+
+
+def test_a_short_name_that_means_two_runs_means_none(tmp_path: Path) -> None:
+    file = tmp_path / "list.csv"
+    file.write_text("run,beta [deg]\nb2,2\nrot_r0,0\nother.csv,1\n")
+    read = read_run_list(file)
+    assert read.matches(["b2.csv", "b2.dat", "rot_r0.1", "other.csv"]) == {"other.csv": "other.csv"}
+    with pytest.raises(InputError, match=r"none of its 3 names is a run; expected names of runs: b2\.csv and b2\.dat"):
+        read.matches(["b2.csv", "b2.dat"])
 
 
 def test_hole_in_a_matrix_is_missing(tmp_path: Path) -> None:
@@ -163,7 +283,7 @@ def test_run_list_as_toml(tmp_path: Path) -> None:
     read = read_run_list(file)
     assert read.runs["one"]["beta"].value == pytest.approx(np.radians(4.0))
     assert str(read.runs["b/two"]["r"]) == "0.2 rad/s (list.toml:5)"
-    assert read.name_of("x/one") == "one"
+    assert read.matches(["x/one"]) == {"x/one": "one"}
 
 
 @pytest.mark.parametrize(
@@ -363,6 +483,7 @@ def test_a_folder_of_runs_is_a_table_of_a_campaign(tmp_path: Path) -> None:
         write_run(tmp_path / "runs" / f"b{k}", {"X": -40.0, "Y": 10.0 * k + 0.01}, seed=k + 8, rows=400)
     write_run(tmp_path / "runs" / "b12", {"X": -40.0 + np.zeros(400), "Y": np.linspace(100.0, 120.0, 400)})
     write_run(tmp_path / "runs" / "b16", ended="crashed", why="log:3")
+    write_run(tmp_path / "runs" / "b20", {"X": -40.0, "Y": histories(1, {"Y": 0.05}, rows=400)["Y"]}, rows=400)
     sections = {
         **SECTIONS,
         "campaign": f'{SECTIONS["campaign"]}\nimporter = "stub"',
@@ -371,8 +492,18 @@ def test_a_folder_of_runs_is_a_table_of_a_campaign(tmp_path: Path) -> None:
     text = "".join(f"[{name}]\n{content}\n" for name, content in sections.items() if content)
     (tmp_path / "campaign.toml").write_text(f'{text}[[table]]\nfile = "runs"\n')
     (table,) = read_tables(PlannedTable(tmp_path, ()))
-    kept = np.array([label not in ("b12", "b16") for label in table.labels])
-    assert len(kept) == 7
+    kept = np.array([label not in ("b12", "b16", "b20") for label in table.labels])
+    assert len(kept) == 8
+    assert table.usable["X"].tolist() == [label not in ("b12", "b16") for label in table.labels]
+    marked = 'marked "uncertain" in the source'
+    assert inspected(table).notes[1:4] == (
+        f"b12, row: excluded, drifting, {marked}",
+        "b16, row: excluded, crashed, no number in the source",
+        f"b20, Y: excluded, too short, {marked}",
+    )
+    assert unused([table]) == "Left out: b12 drifting, b16 crashed, b20 too short in Y."
+    assert unused([table] * 3) == "Left out: 3 drifting, 3 crashed, 3 too short in Y."
+    assert unused([table.with_uncertain_cells()]) == "Left out: b16 crashed."
     assert table.usable["Y"].tolist() == kept.tolist()
     assert np.all(table.errors["Y"][kept] > 0.0)
     assert any("b12 (" in n for n in table.notes)

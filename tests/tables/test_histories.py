@@ -9,7 +9,18 @@ from scipy.special import stdtrit
 
 from coeflab.core.provenance import WORKS
 from coeflab.core.types import Array
-from coeflab.tables.histories import CITATIONS, Convergence, Plateau, long_run_variance, mean_of, plateau, plateau_start
+from coeflab.tables.histories import (
+    CALIBRATED_ROWS,
+    CITATIONS,
+    LEAST_BATCHES,
+    TIMES_A_BATCH,
+    Convergence,
+    Plateau,
+    long_run_variance,
+    mean_of,
+    plateau,
+    plateau_start,
+)
 
 MEAN = 0.7
 TRUTH = 30.0  # times the noise; a drift within 1 % of it is small
@@ -185,3 +196,24 @@ def test_long_histories_are_averaged_in_blocks() -> None:
 
 def test_works_are_known() -> None:
     assert set(CITATIONS) <= set(WORKS)
+
+
+def test_what_a_short_history_lacks_is_what_decides() -> None:
+    """The rows said to be needed are the least that the rule takes: eight whole batches."""
+    smooth = lfilter(np.ones(6) / 6.0, [1.0], np.random.default_rng(12).normal(size=1000))[6:]
+    ends = set()
+    for rows in range(150, 700, 10):
+        found = plateau({"Y": 1.0 + smooth[:rows]})
+        time = found.means["Y"].correlation
+        needed = LEAST_BATCHES * int(np.ceil(TIMES_A_BATCH * time))
+        if found.status is Convergence.TOO_SHORT:
+            assert found.why == (
+                f"Y spans more than 1 % and is correlated over {time:.3g} rows: {found.rows} on the plateau, {needed} needed"
+            )
+            assert found.rows < needed
+            assert found.unsure == {"Y": found.rows >= CALIBRATED_ROWS}
+        else:
+            assert found.rows >= needed
+            assert not found.unsure
+        ends.add(found.status)
+    assert len(ends) == 2

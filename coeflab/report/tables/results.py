@@ -12,7 +12,7 @@ from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.study.study import Study
-from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import Exclusion, ForceTable
 from coeflab.vehicle.reference import Relation
 
 VERDICTS = {True: "pass", False: "fail", None: "no verdict"}
@@ -242,6 +242,27 @@ def works(study: Study) -> tuple[tuple[str, str], ...]:
     return tuple((k, work(k)) for k in dict.fromkeys(keys))
 
 
+def _of(components: Sequence[str], table: ForceTable) -> str:
+    whole = "" in components or (len(components) > 1 and set(components) >= set(table.forces))
+    return "row" if whole else " ".join(components)
+
+
+def unused(tables: Sequence[ForceTable]) -> str:
+    """In one line what the tables say of runs that no fit uses, or not whole, by their status; empty without such."""
+    by: dict[str, list[str]] = {}
+    for t in tables:
+        rows: dict[int, list[Exclusion]] = {}
+        for e in t.exclusions:
+            if e.status:
+                rows.setdefault(e.row, []).append(e)
+        for row, found in rows.items():
+            of = _of(list(dict.fromkeys(e.component for e in found)), t)
+            part = "" if of == "row" else f" in {of}"
+            by.setdefault(f"{found[0].status}{part}", []).append(t.labels[row])
+    said = [f"{', '.join(rows) if len(rows) < 3 else len(rows)} {status}" for status, rows in by.items()]
+    return f"Left out: {', '.join(said)}." if said else ""
+
+
 def inspected(table: ForceTable, most: int = 0) -> Table:
     """What a force table holds, row by row, in SI and FRD; of more than ``most`` rows the first and last."""
     motions = [m for m in ("u", "v", "w", "p", "q", "r") if m == "u" or m in table.varies]
@@ -257,7 +278,14 @@ def inspected(table: ForceTable, most: int = 0) -> Table:
             text = number(float(values[i]), 5)
             cells.append(text if table.usable[c][i] else f"({text})")
         rows.append(tuple(cells))
-    excluded = [f"line {e.line}, {e.component or 'row'}: excluded, {e.reason}" for e in table.exclusions]
+    by_row: dict[tuple[int, int], dict[str, list[str]]] = {}
+    for e in table.exclusions:
+        by_row.setdefault((e.row, e.line), {}).setdefault(e.reason, []).append(e.component)
+    excluded = []
+    for (row, line), reasons in by_row.items():
+        place = table.labels[row] + f" (line {line})" * (table.labels.count(table.labels[row]) > 1)
+        said = "; ".join(f"{_of(components, table)}: excluded, {reason}" for reason, components in reasons.items())
+        excluded.append(f"{place}, {said}")
     notes = [
         *excluded[: most or None],
         *([f"{len(excluded) - most} more are excluded"] if 0 < most < len(excluded) else []),

@@ -25,7 +25,7 @@ from coeflab.tables.openfoam_forces import (
     moved,
     oriented,
 )
-from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run, Stated
+from coeflab.tables.raw_table import NO_FORCES, Ended, RawColumn, RawTable, Run, Stated
 
 summary = "a case of OpenFOAM (.com and .org): forces, forceCoeffs, inflow, MRF and SRF, restarts"
 citations = (
@@ -152,7 +152,7 @@ def run(path: Path, options: Mapping[str, Any]) -> Run:
         found.setdefault(name, []).append((kind, file))
     if not found:
         raise InputError(
-            "a case without forces", "postProcessing/NAME/TIME/force.dat, forces.dat, coefficient.dat or forceCoeffs.dat",
+            NO_FORCES, "postProcessing/NAME/TIME/force.dat, forces.dat, coefficient.dat or forceCoeffs.dat",
             file=case.root,
             advice='Add to functions of system/controlDict: forces { type forces; libs ("libforces.so"); '
             "patches (hull); rho rhoInf; rhoInf 998; CofR (0 0 0); writeControl timeStep; } and run the solver again.",
