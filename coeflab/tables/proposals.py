@@ -117,7 +117,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     if not name:
         if column.is_text:
             return Proposal("label", "text")
-        return Proposal("", why + allowed(column.unit) * (why == UNKNOWN))
+        return Proposal("", why + allowed(column.unit, column.name.startswith("se_")) * (why == UNKNOWN))
     said = read_column_map(name)
     if said.name in WORDS:
         return Proposal(name, why, certain)
@@ -128,11 +128,13 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     return _with_unit(column, said, why, certain, by)
 
 
-def allowed(unit: str) -> str:
-    """What a column may be by its unit alone, to follow a text; empty where the unit says nothing."""
+def allowed(unit: str, error: bool = False) -> str:
+    """What a column, or a standard error, may be by its unit alone, to follow a text; empty where the unit says nothing."""
     words = " ".join(unit.split())
     plain = UNITS.get(words.casefold(), words)
     names = next((said for dimension, said in ALLOWED.items() if _fits(plain, dimension)), "")
+    if error and names[:1] in COMPONENTS:
+        names = ", ".join(f"se_{name}" for name in names.split(", "))
     return f"; {words}: {names}, or ignore" if names else ""
 
 

@@ -394,8 +394,10 @@ def _possible(raw: RawTable, said: Mapping[str, ColumnMap]) -> Iterator[Assigned
 
 
 def argument(option: str, key: str, text: str) -> str:
-    """An argument of the command line as a shell takes it."""
-    return f"{option} {shlex.quote(f'{key}={text}')}"
+    """An argument of the command line as a shell takes it; primes in double quotes."""
+    said = f"{key}={text}"
+    plain = "'" in said and not set(said) & set('"$`\\!\n')
+    return f'{option} "{said}"' if plain else f"{option} {shlex.quote(said)}"
 
 
 def open_points(found: Understood, accept: bool = False) -> tuple[tuple[str, str], ...]:

@@ -267,6 +267,9 @@ def test_a_rate_whose_sign_the_numbers_contradict_stays_open(tmp_path: Path) -> 
     assert "1 open point;" in lines[0]
     assert lines[1].strip() == "--map 'r=-r [rad/s]' or --map 'r=r [rad/s]'"
     assert "N and r have the same sign" in lines[2]
+    file.write_text(file.read_text().replace("r (rad/s)", "r' (-)"))
+    assert refused(invoke(*ask))[1].strip() == """--map "r'=-r' [-]" or --map "r'=r' [-]\""""
+    file.write_text(file.read_text().replace("r' (-)", "r (rad/s)"))
     for word, sign in (("-r", -1.0), ("r", 1.0)):
         done = invoke(*ask, "--force", "--map", f"r={word} [rad/s]")
         assert done.exit_code == 0, done.output

@@ -325,6 +325,7 @@ def test_a_capital_v_is_the_speed_beside_an_angle_or_a_radius_alone() -> None:
     assert offer(
         ("what", "widgets"),
     ) == ("", "no known name")
+    assert offer(("se_Fx Monitor", "N"))[1] == "no known name; N: se_X, se_Y, se_Z, or ignore"
     assert "z up (CFD, FLU), to port" in offer(("yaw rate", "deg/s"))[1]
 
 
