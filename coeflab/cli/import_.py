@@ -282,8 +282,8 @@ def _asked(
         now = understood(raw, answers, settings, yes)
         _listed("The numbers show", [e.text for e in now.shows if e.text not in shown])
         shown |= {e.text for e in now.shows}
+        _possible(now)
         if not now.questions:
-            _possible(now)
             return now.mapping, settings
         one = now.questions[0]
         if yes and one.default:

@@ -363,7 +363,7 @@ def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings,
     names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
     asked = questions(raw, columns, settings, shows, names)
     if frame and (back := astern(columns, frame)):
-        complaints += (_astern(raw, back),)
+        complaints += (_astern(raw, back, frame),)
     if "conditions.density" in settings:
         other = another_density(raw, columns, quantity(settings["conditions.density"].value, "density"))
         complaints += (other,) if other else ()
@@ -374,10 +374,11 @@ def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings,
     return Understood(offers, mapping, tuple(still), columns, shows, asked, complaints, tuple(doubts))
 
 
-def _astern(raw: RawTable, back: Assigned) -> InputError:
+def _astern(raw: RawTable, back: Assigned, frame: Axes) -> InputError:
+    other = "CFD (x aft)" if frame.rotation[0][0] > 0.0 else "FRD or FLU (x forward)"
     return fault(
         raw, "u is below zero in every row: in these axes the body moves astern", "u above zero", back.column,
-        "Is the frame CFD (x aft)? A test astern is read in place, by [columns] of its campaign.toml.",
+        f"Is the frame {other}? A test astern is read in place, by [columns] of its campaign.toml.",
     )  # fmt: skip
 
 

@@ -254,6 +254,7 @@ def test_a_frame_in_which_the_body_moves_astern_is_refused(tmp_path: Path) -> No
     assert done.exit_code == 0, done.output
     assert "thrust" not in done.output
     file.write_text(file.read_text().replace("-2,", "2,"))
+    assert "Is the frame FRD or FLU (x forward)?" in refused(invoke(*ask, "--force", *sets(axes__frame="CFD")))[0]
     done = invoke(*ask, "--force", *sets(axes__frame="FRD"))
     assert "warning: X is above zero in every row: in FRD that is thrust, not drag" in " ".join(done.output.split())
 
