@@ -279,6 +279,7 @@ def test_a_rate_whose_sign_the_numbers_contradict_stays_open(tmp_path: Path) -> 
 
 @pytest.mark.parametrize(("arguments", "said"), [
     (("--set", "axes.reference_point=L/2"), 'found "L/2"'),
+    (("--set", "axes.reference_point=-1,2,0,0"), 'found "-1,2,0,0"; expected a point [x, y, z] in metres, FRD, from the datum. Write a decimal point.'),
     (("--set", "scaling.length=2,5"), 'found "2,5"; expected a number in m or a text with its unit, such as "2.5 m". Write a decimal point.'),
     (("--map", "Fy=Y [coefficient A=6.25]"), 'found "A=6.25"; expected A with its unit, such as 6.25 m^2'),
     (("--map", "Fy=Y [coefficient A=6,25 m^2]"), 'found "A=6,25 m^2"'),
