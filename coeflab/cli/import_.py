@@ -45,7 +45,9 @@ class OpenError(InputError):
 
 
 def open_value(argument: str) -> str | None:
-    """The word in capitals of an argument; None where it has a value."""
+    """The word in capitals of an argument, or ``or`` between two ways; None where it has a value."""
+    if " or --map " in argument:
+        return "or"
     word = re.search(r"\b(?:FRAME|POINT|NAME|SOURCE|KIND|SIGN|SIDE|METRES|DENSITY|SPEED|X,Y,Z|IX,IY,IZ|MASS|TRUE_OR_FALSE|"
                      r"UNIT|SIZE|WHAT)\b", argument.partition("=")[2])  # fmt: skip
     return word[0] if word else None
@@ -249,8 +251,16 @@ def _without_asking(file: Path, found: Understood, settings: Mapping[str, Settin
 
     if points := open_points(found, yes):
         raise OpenError(file, points, found.complaints)
+    _possible(found)
     taken = {q.key: _taken(q, q.default) for q in found.questions}
     return found.mapping, {**settings, **taken}
+
+
+def _possible(found: Understood) -> None:
+    from coeflab.core.errors import together
+
+    if found.complaints:
+        raise together(list(found.complaints))
 
 
 def _taken(question: Question, text: str) -> Setting:
@@ -272,6 +282,7 @@ def _asked(
         now = understood(raw, answers, settings, yes)
         _listed("The numbers show", [e.text for e in now.shows if e.text not in shown])
         shown |= {e.text for e in now.shows}
+        _possible(now)
         if not now.questions:
             return now.mapping, settings
         one = now.questions[0]
@@ -289,14 +300,16 @@ def _asked(
 def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
     from coeflab.tables.column_map import read_column_map
     from coeflab.tables.mapping import error_of, with_unit
+    from coeflab.tables.proposals import Proposal
 
     out: dict[str, ColumnMap] = {}
-    whole = [(column, offer) for column, offer in found.open if offer.whole]
+    doubts = {column.name: (column, Proposal(str(said), why)) for column, said, why in found.doubts}
+    whole = [(column, offer) for column, offer in found.open if offer.whole and column.name not in doubts]
     if whole:
         show.sentence("Proposed by name and unit: " + "; ".join(f"{c.name} = {o.text}" for c, o in whole) + ".")
         if typer.confirm("  All of them right?", default=None):
             out = {column.name: read_column_map(offer.text) for column, offer in whole}
-    for column, offer in found.open:
+    for column, offer in ({c.name: (c, o) for c, o in found.open} | doubts).values():
         if column.name in out or error_of(column, out):
             continue
         hint = f"{offer.text}: {offer.why}" if offer.text else offer.why

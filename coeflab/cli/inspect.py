@@ -53,9 +53,10 @@ def command(
         raise InputError(
             "--unit, --axes or --repair", "a mesh file with them", advice="A campaign.toml says these itself."
         )
-    option = [*option, *of_runs(name, runs)]
-    if as_ or option or _is_raw(table):
-        _raw(table, as_, option, json)
+    every = [*option, *of_runs(name, runs)]
+    if as_ or every or _is_raw(table):
+        given = [("--as", as_), ("--name", name), ("--runs", str(runs or "")), *(("--option", o) for o in option)]
+        _raw(table, as_, every, json, [(flag, said) for flag, said in given if said])
         return
     _tables(table, json, strict, rows)
 
@@ -74,8 +75,11 @@ def _is_raw(table: str) -> bool:
     }
 
 
-def _raw(table: str, importer: str, option: Sequence[str], json: bool) -> None:
-    """What a file is before anybody said what it means, and what is missing to read it as a campaign."""
+def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Sequence[tuple[str, str]]) -> None:
+    """What a file is before anybody said what it means, and what is missing to read it as a campaign.
+
+    The next command repeats what was given, as it was given.
+    """
     import shlex
 
     from coeflab.cli.import_ import described, options_of, point_lines
@@ -99,7 +103,7 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool) -> None:
     points = open_points(found)
     out = f"cfd_data/{identifier(path.resolve().stem)}"
     following = " ".join(
-        ["coeflab import", shlex.quote(table), *(f"--option {shlex.quote(o)}" for o in option), f"--out {out}"]
+        ["coeflab import", shlex.quote(table), *(f"{flag} {shlex.quote(said)}" for flag, said in given), f"--out {out}"]
     )
     if json:
         from coeflab.report.tables.raw_tables import as_json

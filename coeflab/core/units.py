@@ -49,6 +49,7 @@ _LONGEST = 40
 _NAME = r"[A-Za-zµμ°]+(?:\s*(?:\^|\*\*)\s*-?\s*[1-9])?"
 _UNIT = re.compile(rf"\s*(?:1\s*/\s*)?{_NAME}(?:(?:\s*[*/·]\s*|\s+){_NAME})*\s*")
 _HEADER = re.compile(r"^(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]$")
+_COMMA = re.compile(r",\s*\d")
 _NUMBER = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
 
 
@@ -150,6 +151,8 @@ def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key:
         match = _NUMBER.match(value) if len(value) <= 2 * _LONGEST else None
         if not match:
             raise InputError(shown(value), expected, file=file, column=key)
+        if _COMMA.match(match[2]):
+            raise InputError(shown(value), expected, file=file, column=key, advice="Write a decimal point.")
         try:
             number = float(match[1]) * factor(match[2], dimension)
         except UnitsError as why:

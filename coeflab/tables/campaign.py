@@ -113,13 +113,15 @@ class TowedInertia(takes.Declaration):
         kg.
     centre_of_gravity : (3,) array
         m, FRD, from the datum.
-    inertia : tuple of 3 floats
-        Ix Iy Iz about the centre of gravity, kg m^2.
+    inertia : tuple of 3 floats or None
+        Ix Iy Iz about the centre of gravity, kg m^2; may be absent where every row turns about one axis of the body alone.
     """
 
     mass: Annotated[takes.Mass, takes.ABOVE_ZERO]
     centre_of_gravity: takes.Point
-    inertia: Annotated[tuple[float, ...], takes.numbers(3, "inertia", "three numbers [x, y, z] of inertia")]
+    inertia: Annotated[tuple[float, ...], takes.numbers(3, "inertia", "three numbers [x, y, z] of inertia")] | None = (
+        None
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

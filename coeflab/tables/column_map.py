@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from coeflab.core.declarations import Takes
 from coeflab.core.errors import InputError, UnitsError, shown
-from coeflab.core.units import factor, quantity
+from coeflab.core.units import SI, factor, quantity
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, CONTROLS, LINEAR, MOMENTS
 
 WORDS = ("label", "point", "cells", "uncertain", "ignore")
@@ -165,10 +165,22 @@ def _coefficient(said: ColumnMap, text: str) -> ColumnMap:
             shown(text), expected if said.name in COMPONENTS else "a coefficient of X Y Z K M N only",
             advice="By 1/2 rho U^2 A, moments by 1/2 rho U^2 A L; L is no part of a force's.",
         )  # fmt: skip
-    area, length = quantity(match["area"], "area"), quantity(match["length"], "length") if moment else 0.0
+    area, length = _size("A", match["area"], "area"), _size("L", match["length"], "length") if moment else 0.0
     if area <= 0.0 or (moment and length <= 0.0):
         raise InputError(shown(text), "an area and a length above zero")
     return replace(said, unit="-", area=area, length=length)
+
+
+def _size(name: str, typed: str, dimension: str) -> float:
+    """A size of a coefficient with its unit; complaints quote what was typed."""
+    try:
+        return quantity(typed, dimension)
+    except InputError as why:
+        bare = typed.strip().replace(".", "", 1).isdigit()
+        example = f"{typed.strip() if bare else 2.5} {SI[dimension]}"
+        raise type(why)(
+            shown(f"{name}={typed}"), f"{name} with its unit, such as {example}", advice=why.advice
+        ) from None
 
 
 Entry = Annotated[

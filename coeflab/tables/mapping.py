@@ -25,6 +25,7 @@ SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
 REMARKS = 5
 ALL = "all"
 MOST_NAMED = 20
+SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 
 
 @brief
@@ -368,6 +369,29 @@ def _speed(given: Mapping[str, Mapping[str, Array]], primes: Mapping[str, Array]
     return np.asarray(np.sqrt(np.divide(whole, rest, out=np.zeros(n), where=rest > 0.0)))
 
 
+def another_density(raw: RawTable, known: Sequence[Assigned], density: float) -> InputError | None:
+    """The complaint where forces were computed with a density that the file states, and another one is declared.
+
+    Primes divide by the declared density: with rhoInf 1 of a solver and 998.2 here they would be 1/998 of what they are.
+    """
+    said = raw.stated.get("conditions.density")
+    own = any(one.said.name == "density" for one in known)
+    in_newton = any(one.said.role == "force" and not one.said.pure for one in known)
+    if said is None or not isinstance(said.value, float) or own or not in_newton:
+        return None
+    if abs(density - said.value) <= SAME_DENSITY * abs(said.value):
+        return None
+    advice = f"Leave conditions.density at {said.value:g}: primes are right with the density of the forces."
+    if raw.dialect.get("importer") == "openfoam":
+        advice = (
+            f"Leave it out, primes are right with {said.value:g}; or turn the forces: --option density={density:g}."
+        )
+    return InputError(
+        f"conditions.density = {density:g} kg/m^3", f"{said.value:g}, the density that the forces were computed with "
+        f"({said.place})", file=raw.path, column="conditions.density", advice=advice,
+    )  # fmt: skip
+
+
 def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> ForceTable:
     """A table in SI and FRD from its file and the ``[columns]`` of its campaign; what was left out stands in its notes.
 
@@ -377,6 +401,8 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
         All that is wrong with the columns; then a cell that cannot be, or what campaign.toml leaves open.
     """
     known = assigned(raw, declared_mapping(campaign, table), len(campaign.tables) == 1)
+    if why := another_density(raw, known, campaign.conditions.density):
+        raise why
     columns = _columns(raw, known, campaign)
     out = force_table(columns, campaign, table)
     rows = usable_rows(known, len(raw))

@@ -13,15 +13,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.axes import Axes
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.types import Array
+from coeflab.core.units import factor
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS
 from coeflab.tables.column_map import EXAMPLES, ROLES, WORDS, ColumnMap, read_column_map
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
 
 OPEN = "?"
+UNKNOWN = "no known name"
 OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore"}  # names that coeflab's own tables have
+ALLOWED = {
+    "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
+    "length": "R", "density": "density",
+}  # fmt: skip
+TURN = "counts about the z axis of the frame: z down, r > 0 turns to starboard; z up (CFD, FLU), to port"
 CLEAR = 0.8  # correlation beyond which a slope has a sign
 _SAID = {
     "X": "fx forcex xforce surgeforce longitudinalforce axialforce laengskraft langskraft forcelongitudinale fxtotal",
@@ -30,11 +37,11 @@ _SAID = {
     "Z": "fz forcez zforce heaveforce verticalforce normalforce vertikalkraft forceverticale fztotal",
     "K": "mx momentx xmoment rollmoment rollingmoment rollmoment momentderoulis",
     "M": "my momenty ymoment pitchmoment pitchingmoment trimmoment nickmoment momentdetangage",
-    "N": "mz momentz zmoment yawmoment yawingmoment giermoment momentdelacet",
+    "N": "mz momentz zmoment yawmoment yawmom yawingmoment giermoment momentdelacet",
     "alpha": "alpha α aoa angleofattack attack attackangle pitchangle incidence anstellwinkel angledattaque",
     "beta": "beta β drift driftangle sideslip sideslipangle yawangle driftwinkel schiebewinkel derive angledederive",
     "U": "speed velocity towingspeed carriagespeed towspeed freestreamvelocity uinf vinf umag vmag vitesse "
-    "geschwindigkeit schleppgeschwindigkeit",
+    "geschwindigkeit geschw schleppgeschwindigkeit",
     "u": "surgevelocity surgespeed longitudinalvelocity",
     "v": "swayvelocity swayspeed lateralvelocity transversevelocity",
     "w": "heavevelocity heavespeed verticalvelocity",
@@ -49,7 +56,7 @@ _SAID = {
     "cells": "cells ncells cellcount meshcells numberofcells elements gridcells zellen",
     "point": "run runno runnumber runid case caseno casename test testno testid point pointno id no nr number "
     "versuch versuchsnr messung fall lauf essai",
-    "ignore": "comment comments remark remarks note notes bemerkung bemerkungen kommentar commentaire date datum time "
+    "ignore": "comment comments remark remarks note notes bemerkung bemerkungen kommentar commentaire date datum time zeit "
     "iteration iterations residual residuals",
 }
 NAMES = {word: name for name, words in _SAID.items() for word in words.split()}
@@ -110,7 +117,7 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     if not name:
         if column.is_text:
             return Proposal("label", "text")
-        return Proposal("", why)
+        return Proposal("", why + allowed(column.unit, column.name.startswith("se_")) * (why == UNKNOWN))
     said = read_column_map(name)
     if said.name in WORDS:
         return Proposal(name, why, certain)
@@ -119,6 +126,23 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     said_of = stated or {}
     by = (said_of.get("coefficients.area"), said_of.get("coefficients.length", said_of.get("scaling.length")))
     return _with_unit(column, said, why, certain, by)
+
+
+def allowed(unit: str, error: bool = False) -> str:
+    """What a column, or a standard error, may be by its unit alone, to follow a text; empty where the unit says nothing."""
+    words = " ".join(unit.split())
+    plain = UNITS.get(words.casefold(), words)
+    names = next((said for dimension, said in ALLOWED.items() if _fits(plain, dimension)), "")
+    if error and names[:1] in COMPONENTS:
+        names = ", ".join(f"se_{name}" for name in names.split(", "))
+    return f"; {words}: {names}, or ignore" if names else ""
+
+
+def _fits(unit: str, dimension: str) -> bool:
+    try:
+        return bool(unit) and factor(unit, dimension) > 0.0
+    except UnitsError:
+        return False
 
 
 def _name(column: RawColumn) -> tuple[str, str, bool]:
@@ -148,15 +172,16 @@ def _name(column: RawColumn) -> tuple[str, str, bool]:
     single |= {c: c for c in (*LINEAR, *ANGULAR)} if prime else {}
     name = NAMES.get(bare) or single.get(bare) or (COEFFICIENTS.get(bare, "") if not prime else "")
     if not name:
-        return "", "no known name", False
+        return "", UNKNOWN, False
     if error and name not in COMPONENTS:
-        return "", "no known name", False
+        return "", UNKNOWN, False
     return f"{prefix}{name}{prime}", "its name", False
 
 
 def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: tuple[object, object]) -> Proposal:
     unit = " ".join(column.unit.split())
     name = str(said).partition(" [")[0]
+    why += f"; {TURN}" * (said.name == "r")
     if said.primed:
         return Proposal(f"{name} [-]", why, certain)
     unit = UNITS.get(unit.casefold(), unit)
@@ -175,7 +200,8 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     except InputError:
         return Proposal(f"{name} [{OPEN}]", f"{why}; its unit [{column.unit}] is none of {said.dimension}")
     if whole is not None:
-        return Proposal(str(whole), f"{why} and unit", certain)
+        by_both = why.replace("its name", "its name and unit", 1)
+        return Proposal(str(whole), by_both, certain)
     if said.dimension == "angle" and np.nanmax(np.abs(column.values), initial=0.0) > np.pi:
         return Proposal(f"{name} [deg]", f"{why}; beyond half a turn in radians")
     return Proposal(f"{name} [{OPEN}]", f"{why}; no unit is stated, such as {EXAMPLES[said.dimension]}")
@@ -197,6 +223,12 @@ def proposals(raw: RawTable) -> tuple[Proposal, ...]:
             else:
                 taken[said.plain] = column.name
         out.append(one)
+    for i, column in enumerate(raw.columns):
+        # V is the speed beside what says where the water comes from; alone it may be a sway velocity in capitals.
+        beside = {"alpha", "beta", "R"} & set(taken) and not {"U", "v"} & set(taken)
+        if beside and column.name.strip() == "V" and out[i].why.startswith(UNKNOWN) and _fits(column.unit, "speed"):
+            out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
+            taken["U"] = column.name
     return tuple(out)
 
 
@@ -214,11 +246,14 @@ class Evidence:
     text : str
     key, value : str
         What of campaign.toml follows from it for a slender body; empty where nothing does.
+    against : str
+        The rate whose sign it contradicts; empty where it contradicts none.
     """
 
     text: str
     key: str = ""
     value: str = ""
+    against: str = ""
 
 
 def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Evidence, ...]:
@@ -256,35 +291,68 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
             else:
                 out.append(Evidence(
                     f"{component} and {rate} have the same sign: no damping of a slender body; one of them has the "
-                    f'other sign (-{rate} or -{component}), or the force contains inertia'
+                    f'other sign (-{rate} or -{component}), or the force contains inertia', against=rate * (rate in ANGULAR)
                 ))  # fmt: skip
-    out += _levers(data)
-    if "X" in data and (x := data["X"][np.isfinite(data["X"])]).size and (np.all(x > 0) or np.all(x < 0)):
+    if "r" in data and np.any(np.nan_to_num(data["r"])):
+        up = float(frame.rotation[2][2]) if frame else 0.0
+        turn = f"r > 0 turns to {'starboard' if up > 0 else 'port'}: it {TURN.partition(':')[0]}"
+        out += [Evidence(turn if up else f"r {TURN}")]
+    out += _levers(data, {one.said.name: one.said for one in columns}, frame)
+    x = _frd(data, "X", frame) if frame else data.get("X")
+    x = np.empty(0) if x is None else x[np.isfinite(x)]
+    if frame and x.size and np.all(x > 0):
+        out.append(Evidence("warning: X is above zero in every row: in FRD that is thrust, not drag" if frame.name == "FRD"
+                            else "warning: X turned to FRD is above zero in every row: that is thrust, not drag"))  # fmt: skip
+    elif not frame and x.size and (np.all(x > 0) or np.all(x < 0)):
         out.append(Evidence(f"X is {'positive' if x[0] > 0 else 'negative'} throughout: drag, if x points "
                             f"{'aft' if x[0] > 0 else 'forward'}"))  # fmt: skip
     return tuple(out)
 
 
 def _frd(data: Mapping[str, Array], component: str, frame: Axes) -> Array | None:
-    group = COMPONENTS[:3] if component in COMPONENTS[:3] else COMPONENTS[3:]
+    group = next(g for g in (COMPONENTS[:3], COMPONENTS[3:], LINEAR) if component in g)
     row = frame.rotation[group.index(component)]
     own = group[int(np.argmax(np.abs(row)))]
     return data[own] * float(row[group.index(own)]) if own in data else None
 
 
-def _levers(data: Mapping[str, Array]) -> list[Evidence]:
-    """Where along x the forces act, which M of a left-handed triad contradicts."""
+def astern(columns: Sequence[Assigned], frame: Axes) -> Assigned | None:
+    """The column along the body's length if in FRD u is below zero in every row."""
+    data = {one.said.name: one.values for one in columns if one.said.role == "velocity"}
+    u = _frd(data, "u", frame)
+    u = np.empty(0) if u is None else u[np.isfinite(u)]
+    if not u.size or not np.all(u < 0.0):
+        return None
+    own = LINEAR[int(np.argmax(np.abs(frame.rotation[0])))]
+    return next(one for one in columns if one.said.role == "velocity" and one.said.name == own)
+
+
+def _levers(data: Mapping[str, Array], said: Mapping[str, ColumnMap], frame: Axes | None) -> list[Evidence]:
+    """Where along x the forces act, which M of a left-handed triad contradicts; in FRD once the axes are known."""
     found = {}
     for moment, force, sign in (("N", "Y", 1.0), ("M", "Z", -1.0)):
-        if moment in data and force in data:
-            ok = np.isfinite(data[moment]) & np.isfinite(data[force])
-            m, f = data[moment][ok], data[force][ok]
+        both = (_frd(data, moment, frame), _frd(data, force, frame)) if frame else (data.get(moment), data.get(force))
+        if both[0] is not None and both[1] is not None:
+            ok = np.isfinite(both[0]) & np.isfinite(both[1])
+            m, f = both[0][ok], both[1][ok]
             if m.size >= 3 and np.any(f) and np.any(m) and abs(np.dot(m, f)) > CLEAR * np.sqrt((m @ m) * (f @ f)):
                 found[moment, force] = sign * float(m @ f) / float(f @ f)
-    out = [
-        Evidence(f"{m} / {f}: the force acts toward {'+' if arm > 0 else '-'}x of the reference point")
-        for (m, f), arm in found.items()
-    ]
+    turning = any(np.any(np.nan_to_num(data[m])) for m in (*ANGULAR, "R") if m in data)
+    hull = "" if turning else "; that of a bare hull without large fins acts forward of midships"
+    out = []
+    for (moment, force), arm in found.items():
+        if frame is None:
+            out.append(
+                Evidence(f"{moment} / {force}: the force acts toward {'+' if arm > 0 else '-'}x of the reference point")
+            )
+            continue
+        kinds = {said[c].pure for c in (moment, force) if c in said}
+        coefficient = any(said[c].area for c in (moment, force) if c in said)
+        place = (
+            "" if coefficient or len(kinds) != 1 else f" (x = {arm:.2g} {'of the length' if kinds == {True} else 'm'})"
+        )
+        side = "forward" if arm > 0 else "aft"
+        out.append(Evidence(f"{moment} / {force}: the force acts {side} of the reference point{place}{hull}"))
     if len(found) == 2 and len({np.sign(arm) for arm in found.values()}) == 2:
         out.append(Evidence("N / Y and M / Z disagree on the side: a left-handed triad, or a sign of Y, Z, M or N"))
     return out

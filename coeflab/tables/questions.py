@@ -6,7 +6,7 @@ import json
 import shlex
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -30,9 +30,9 @@ from coeflab.tables.campaign import (
     TableSource,
     TowedInertia,
 )  # fmt: skip
-from coeflab.tables.column_map import ColumnMap, read_column_map
-from coeflab.tables.mapping import Assigned, assigned, entry_of, error_of, known_as, with_unit
-from coeflab.tables.proposals import OPEN, Evidence, Proposal, evidence, proposals
+from coeflab.tables.column_map import ROLES, ColumnMap, read_column_map
+from coeflab.tables.mapping import Assigned, another_density, assigned, entry_of, error_of, fault, known_as, with_unit
+from coeflab.tables.proposals import OPEN, Evidence, Proposal, astern, evidence, proposals
 from coeflab.tables.raw_table import RawColumn, RawTable
 
 POINT_OF = "axes.reference_point"
@@ -120,11 +120,17 @@ def _frame(said: Any) -> Any:
 
 
 def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:
-    def parsed(said: Any) -> Any:
+    def parsed(typed: Any) -> Any:
+        said = list(typed) if isinstance(typed, tuple) else typed
         if isinstance(said, str):
             said = [_toml(part.strip(" \"'")) for part in said.strip(" []").split(",")]
-        said = list(said) if isinstance(said, tuple) else said
-        read(said, Path())
+        try:
+            read(said, Path())
+        except InputError as why:
+            if not isinstance(typed, str):
+                raise
+            advice = "Write a decimal point." if len(said) > 3 and "." not in typed else why.advice
+            raise type(why)(shown(typed), why.expected, advice=advice) from None
         return said
 
     return parsed
@@ -223,8 +229,9 @@ def frame_of(settings: Settings) -> Axes | None:
 
 
 def questions(
-    raw: RawTable, columns: Sequence[Assigned], settings: Settings, shows: Sequence[Evidence] = ()
-) -> tuple[Question, ...]:
+    raw: RawTable, columns: Sequence[Assigned], settings: Settings, shows: Sequence[Evidence] = (),
+    likely: Sequence[str] = (),
+) -> tuple[Question, ...]:  # fmt: skip
     """What has to be said yet before the file is a campaign.
 
     Parameters
@@ -236,12 +243,15 @@ def questions(
         What is known.
     shows : sequence of Evidence
         What the numbers show; a default comes of it only where one key follows.
+    likely : sequence of str
+        What columns are by name whose unit is still open.
     """
-    by_role = {role: [c for c in columns if c.said.role == role] for role in ("angle", "velocity")}
+    rates = {c.said.name: np.nan_to_num(c.values) != 0.0 for c in columns if c.said.name in ANGULAR}
+    angles = [c.said.name for c in columns if c.said.role == "angle"]
+    angles += [name for name in likely if ROLES[name] == "angle"]
     follows = {e.key: e for e in shows if e.key}
     out = [Question("axes.frame", FRAMES_ASKED, "FRAME")]
-    for one in by_role["angle"]:
-        name = one.said.name
+    for name in angles:
         side = {"beta": "v to starboard", "alpha": "w down"}[name]
         asks = f"Sign of {name}: {' or '.join(ANGLE_SIGNS[name])}, {side}, whatever the axes are; or just + or -"
         found = follows.get(f"axes.{name}")
@@ -260,20 +270,22 @@ def questions(
             for role, asks in (("density", "Density of the water, kg/m^3"), ("speed", "Speed, m/s"))
         ),
     ]
-    arm = any(c.said.role == "radius" for c in columns)
+    arm = "R" in likely or any(c.said.role == "radius" for c in columns)
     if arm:
         out += [
             Question("table.centre", f"Where the centre of the circle lies: {', '.join(CENTRES)}", "SIDE"),
             Question("table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}", "X,Y,Z"),
         ]
-    if arm or any(c.said.name in ANGULAR and np.any(np.nan_to_num(c.values) != 0.0) for c in by_role["velocity"]):
+    if arm or set(ANGULAR) & set(likely) or any(map(np.any, rates.values())):
         out.append(Question("table.contains_inertia", INERTIA_ASKED, "TRUE_OR_FALSE"))
     if (inside := settings.get("table.contains_inertia")) and inside.value is True:
         out += [
             Question("inertia.mass", "Mass of the model, kg", "MASS"),
             Question("inertia.centre_of_gravity", f"Its centre of gravity: {PLACE_ASKED}", "X,Y,Z"),
-            Question("inertia.inertia", "Ix, Iy, Iz about its centre of gravity, kg m^2", "IX,IY,IZ"),
         ]
+        # About one axis alone the moment of inertia holds nothing: omega x I omega = 0.
+        if np.any(np.sum([*rates.values()], axis=0) > 1) or (arm and "alpha" in angles):
+            out.append(Question("inertia.inertia", "Ix, Iy, Iz about its centre of gravity, kg m^2", "IX,IY,IZ"))
     kinds = ", ".join(TABLE_KINDS)
     cited = raw.path.resolve().name
     out += [
@@ -301,6 +313,8 @@ class Understood:
     questions : tuple of Question
     complaints : tuple of InputError
         What is said of columns and cannot be.
+    doubts : tuple of (RawColumn, ColumnMap, str)
+        Rates whose sign the numbers contradict and of which no person said what they are, with the reason.
     """
 
     proposals: tuple[Proposal, ...]
@@ -310,6 +324,7 @@ class Understood:
     shows: tuple[Evidence, ...]
     questions: tuple[Question, ...]
     complaints: tuple[InputError, ...] = ()
+    doubts: tuple[tuple[RawColumn, ColumnMap, str], ...] = ()
 
 
 def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, accept: bool = False) -> Understood:
@@ -343,9 +358,28 @@ def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings,
     except InputError as why:
         complaints = (why, *why.others)
         columns = tuple(_possible(raw, said_of))
-    shows = evidence(columns, frame_of(settings))
-    asked = questions(raw, columns, settings, shows)
-    return Understood(offers, mapping, tuple(still), columns, shows, asked, complaints)
+    frame = frame_of(settings)
+    shows = evidence(columns, frame)
+    names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
+    asked = questions(raw, columns, settings, shows, names)
+    if frame and (back := astern(columns, frame)):
+        complaints += (_astern(raw, back, frame),)
+    if "conditions.density" in settings:
+        other = another_density(raw, columns, quantity(settings["conditions.density"].value, "density"))
+        complaints += (other,) if other else ()
+    doubts = [
+        (one.column, one.said, e.text) for e in shows for one in columns
+        if e.against and one.said.name == e.against and not set(said) & {one.column.name, *known_as(one.column)}
+    ]  # fmt: skip
+    return Understood(offers, mapping, tuple(still), columns, shows, asked, complaints, tuple(doubts))
+
+
+def _astern(raw: RawTable, back: Assigned, frame: Axes) -> InputError:
+    other = "CFD (x aft)" if frame.rotation[0][0] > 0.0 else "FRD or FLU (x forward)"
+    return fault(
+        raw, "u is below zero in every row: in these axes the body moves astern", "u above zero", back.column,
+        f"Is the frame {other}? A test astern is read in place, by [columns] of its campaign.toml.",
+    )  # fmt: skip
 
 
 def _possible(raw: RawTable, said: Mapping[str, ColumnMap]) -> Iterator[Assigned]:
@@ -361,8 +395,10 @@ def _possible(raw: RawTable, said: Mapping[str, ColumnMap]) -> Iterator[Assigned
 
 
 def argument(option: str, key: str, text: str) -> str:
-    """An argument of the command line as a shell takes it."""
-    return f"{option} {shlex.quote(f'{key}={text}')}"
+    """An argument of the command line as a shell takes it; primes in double quotes."""
+    said = f"{key}={text}"
+    plain = "'" in said and not set(said) & set('"$`\\!\n')
+    return f'{option} "{said}"' if plain else f"{option} {shlex.quote(said)}"
 
 
 def open_points(found: Understood, accept: bool = False) -> tuple[tuple[str, str], ...]:
@@ -375,7 +411,13 @@ def open_points(found: Understood, accept: bool = False) -> tuple[tuple[str, str
         Leave out questions whose answer follows from evidence.
     """
     out = []
+    for column, said, why in found.doubts:
+        ways = [argument("--map", column.name, str(replace(said, negative=turned))) for turned in (True, False)]
+        out.append((" or ".join(ways), f"{why}. The first turns its sign, the second keeps it"))
+    doubted = [column.name for column, _, _ in found.doubts]
     for column, offer in found.open:
+        if column.name in doubted:
+            continue
         text = offer.text.replace(OPEN, "UNIT" if "coefficient" not in offer.text else "SIZE") or "WHAT"
         out.append((argument("--map", column.name, text), offer.why))
     for q in found.questions:

@@ -146,6 +146,7 @@ def _first(where: NDArray[np.bool_]) -> int | None:
 
 BLANK, MARKED = "blank in the source", 'marked "uncertain" in the source'
 SYMMETRIC = ("X", "Z", "M")
+ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model taken out"
 
 
@@ -187,7 +188,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         notes.append(f"half model{f' ({half})' if isinstance(half, str) else ''}: X, Z, M doubled")
     turns = any(np.any(motion[m] != 0.0) for m in ANGULAR)
     if turns and table.contains_inertia and campaign.inertia is not None:
-        forces = _without_inertia(campaign.inertia, point, forces, motion)
+        forces = _without_inertia(campaign, campaign.inertia, point, forces, motion)
         notes.append(f"{TAKEN_OUT} (m = {campaign.inertia.mass:g} kg)")
     made = ForceTable(
         name=f"{campaign.name}/{table.file}",
@@ -257,7 +258,7 @@ def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     if turning and table.contains_inertia and campaign.inertia is None:
         yield campaign.fail(
             table, "contains_inertia", "contains_inertia = true without mass",
-            "[inertia] with mass, centre_of_gravity, inertia",
+            "[inertia] with mass, centre_of_gravity, and inertia where a row turns about two axes at once",
         )  # fmt: skip
 
 
@@ -383,11 +384,19 @@ def _exclusions(
 
 
 def _without_inertia(
-    inertia: TowedInertia, point: Array, forces: Mapping[str, Array], motion: Mapping[str, Array]
+    campaign: Campaign, inertia: TowedInertia, point: Array, forces: Mapping[str, Array], motion: Mapping[str, Array]
 ) -> dict[str, Array]:
-    """Add what holds the model on its circle, so that the fluid's force remains."""
+    """Add what holds the model on its circle, so that the fluid's force remains; about one axis alone Ix, Iy, Iz hold nothing."""
+    rates = np.sort(np.abs([motion[m] for m in ANGULAR]), axis=0)
+    if inertia.inertia is None and np.any(rates[1] > ONE_AXIS * rates[2]):
+        raise InputError(
+            "no inertia", "inertia = [Ix, Iy, Iz] about the centre of gravity, kg m^2", file=campaign.path, column="inertia.inertia",
+            advice="A row of the table turns about two axes at once.",
+        )  # fmt: skip
     centre = inertia.centre_of_gravity - point
-    tensor = np.diag(inertia.inertia) + inertia.mass * (centre @ centre * np.eye(3) - np.outer(centre, centre))
+    tensor = np.diag(inertia.inertia or (0.0, 0.0, 0.0)) + inertia.mass * (
+        centre @ centre * np.eye(3) - np.outer(centre, centre)
+    )
     nu = np.column_stack([motion[m] for m in MOTIONS])
     held = rigid_body_force(inertia.mass, centre, tensor, nu)
     return {c: values + held[:, COMPONENTS.index(c)] for c, values in forces.items()}

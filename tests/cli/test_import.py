@@ -17,11 +17,14 @@ from click.testing import Result
 from typer.testing import CliRunner
 
 from coeflab.cli import app
-from coeflab.core.errors import CoeflabError
+from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.provenance import sha256_of
 from coeflab.tables.campaign import read_campaign
+from coeflab.tables.column_map import read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
+from coeflab.tables.questions import Setting, understood
+from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.reading import read_tables
 from tests.cli.conftest import COEFLAB, Run
 from tests.tables.runs_as_text import FILE, write_run
@@ -172,12 +175,125 @@ def test_a_rotating_table_has_to_say_what_it_contains(tmp_path: Path) -> None:
     lines = refused(invoke(*ask, *sets(axes__frame="FRD")))
     assert [line.strip() for line in lines if "--set" in line] == ["--set table.contains_inertia=TRUE_OR_FALSE"]
     lines = refused(invoke(*ask, *sets(axes__frame="FRD", table__contains_inertia="yes")))
-    assert sum("--set inertia." in line for line in lines) == 3
+    assert sum("--set inertia." in line for line in lines) == 2
     inside = {"table.contains_inertia": "true", "inertia.mass": "40 kg", "inertia.centre_of_gravity": "-2,0,0"}
     more = {k.replace(".", "__"): v for k, v in inside.items()}
-    done = invoke(*ask, *sets(axes__frame="FRD", inertia__inertia="[1, 9, 9]", **more))
+    done = invoke(*ask, *sets(axes__frame="FRD", **more))  # about one axis Ix, Iy, Iz hold nothing
     assert done.exit_code == 0, done.output
-    assert table_of(tmp_path / "out").forces["Y"][3] == pytest.approx(10.0 + 40.0 * 2.0 * 0.4)
+    alone = table_of(tmp_path / "out").forces
+    assert alone["Y"][3] == pytest.approx(10.0 + 40.0 * 2.0 * 0.4)
+    done = invoke(*ask, "--force", *sets(axes__frame="FRD", inertia__inertia="[1, 9, 9]", **more))
+    assert done.exit_code == 0, done.output
+    assert all(table_of(tmp_path / "out").forces[n].tolist() == values.tolist() for n, values in alone.items())
+    file.write_text(file.read_text().replace("r (rad/s)", "r (rad/s),q (rad/s)").replace(",-10,", ",0.1,-10,").replace(
+        ",-5,", ",0.1,-5,").replace(",5,", ",0.1,5,").replace(",10,", ",0.1,10,"))  # fmt: skip
+    lines = refused(invoke(*ask, "--force", *sets(axes__frame="FRD", **more)))
+    assert [line.strip() for line in lines if "--set" in line] == ["--set inertia.inertia=IX,IY,IZ"]
+
+
+def test_what_a_rotating_table_contains_is_asked_before_units_are_known(tmp_path: Path) -> None:
+    for head, keys in (
+        ("r", {"table.contains_inertia"}),
+        ("R", {"table.contains_inertia", "table.centre", "table.arm_point"}),
+    ):
+        file = tmp_path / "arm.csv"
+        file.write_text("yaw rate,Fy (N)\n1,2\n2,3\n" if head == "r" else "radius,Fy (N)\n1,2\n2,3\n")
+        lines = refused(invoke("import", file, "--out", tmp_path / "out"))
+        asked = {line.partition("--set ")[2].partition("=")[0] for line in lines if "--set" in line}
+        assert {key for key in asked if key.startswith("table.")} == keys
+
+
+def test_a_density_other_than_that_of_the_forces_is_refused(tmp_path: Path) -> None:
+    """Primes by 998.2 of forces of a fluid of 1 kg/m^3 would be 1/998 of what they are."""
+    table = RawTable(
+        tmp_path, (RawColumn("beta", "deg", np.array([1.0, 2.0])), RawColumn("Fy", "", np.array([3.0, 6.0]))),
+        dialect={"importer": "openfoam"}, stated={"conditions.density": Stated(1.0, "system/controlDict:23")},
+    )  # fmt: skip
+    said = {"beta": read_column_map("beta [deg]"), "Fy": read_column_map("Y [N]")}
+
+    def complaints(density: float, **columns: str) -> list[str]:
+        known = said | {name: read_column_map(text) for name, text in columns.items()}
+        return [
+            str(e) for e in understood(table, known, {"conditions.density": Setting(density, "confirmed")}).complaints
+        ]
+
+    [why] = complaints(998.2)
+    for part in ("998.2 kg/m^3", "expected 1, the density that the forces were computed with (system/controlDict:23)",
+                 "--option density=998.2"):  # fmt: skip
+        assert part in why
+    assert complaints(1.0) == complaints(1.0005) == complaints(998.2, Fy="Y [coefficient A=1 m^2]") == []
+
+
+def test_a_run_with_another_density_is_refused_by_import_and_in_place(runs: Path, tmp_path: Path) -> None:
+    said = {k: v for k, v in SAID.items() if k != "conditions.speed"} | {"conditions.density": "1025"}
+    ask = ("import", runs, "--out", tmp_path / "out", "--name", "b{beta:deg:m=-}", "--yes")
+    lines = refused(invoke(*ask, *[a for k, v in said.items() for a in ("--set", f"{k}={v}")]))
+    assert len(lines) == 1
+    assert "conditions.density = 1025 kg/m^3; expected 998.2" in lines[0]
+    head = '[campaign]\ntitle = "T"\nbody = "b"\nimporter = "stub"\n\n[importer]\nnames = "b{beta:deg:m=-}"\n'
+    keys = (
+        '[axes]\nframe = "CFD"\nbeta = "v = -U sin(beta)"\ndatum = "nose"\nreference_point = [-2, 0, 0]\n'
+        '[scaling]\nlength = 4.0\nlength_name = "LOA"\n[conditions]\ndensity = 1025.0\nspeed = 2.0\n'
+        '[source]\nkind = "experiment"\ncitation = "c"\n[[table]]\nfile = "runs"\n'
+    )
+    (tmp_path / "campaign.toml").write_text(head + keys, encoding="utf-8")
+    with pytest.raises(InputError, match=r"found conditions\.density = 1025"):
+        table_of(tmp_path)
+
+
+def test_a_frame_in_which_the_body_moves_astern_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "cfd.csv"
+    file.write_text("u (m/s),v (m/s),Fx (N),Fy (N)\n-2,-0.2,13,12\n-2,0,12,0.1\n-2,0.2,13,-12\n")
+    ask = ("import", file, "--out", tmp_path / "out", "--yes")
+    lines = refused(invoke(*ask, *sets(axes__frame="FRD")))
+    assert len(lines) == 1
+    assert "found u is below zero in every row: in these axes the body moves astern" in lines[0]
+    assert "Is the frame CFD (x aft)?" in lines[0]
+    assert not (tmp_path / "out").exists()
+    done = invoke(*ask, *sets(axes__frame="CFD"))
+    assert done.exit_code == 0, done.output
+    assert "thrust" not in done.output
+    file.write_text(file.read_text().replace("-2,", "2,"))
+    assert "Is the frame FRD or FLU (x forward)?" in refused(invoke(*ask, "--force", *sets(axes__frame="CFD")))[0]
+    done = invoke(*ask, "--force", *sets(axes__frame="FRD"))
+    assert "warning: X is above zero in every row: in FRD that is thrust, not drag" in " ".join(done.output.split())
+
+
+def test_a_rate_whose_sign_the_numbers_contradict_stays_open(tmp_path: Path) -> None:
+    """Also where the file itself names it, and --yes does not pass over it."""
+    file = tmp_path / "arm.csv"
+    file.write_text("r (rad/s),Fy (N),Mz (Nm)\n-0.4,-10,-13\n-0.2,-5,-7\n0.2,5,7\n0.4,10,13\n")
+    ask = ("import", file, "--out", tmp_path / "out", "--yes", *sets(axes__frame="FRD", table__contains_inertia="no"))
+    lines = refused(invoke(*ask))
+    assert "1 open point;" in lines[0]
+    assert lines[1].strip() == "--map 'r=-r [rad/s]' or --map 'r=r [rad/s]'"
+    assert "N and r have the same sign" in lines[2]
+    file.write_text(file.read_text().replace("r (rad/s)", "r' (-)"))
+    assert refused(invoke(*ask))[1].strip() == """--map "r'=-r' [-]" or --map "r'=r' [-]\""""
+    file.write_text(file.read_text().replace("r' (-)", "r (rad/s)"))
+    for word, sign in (("-r", -1.0), ("r", 1.0)):
+        done = invoke(*ask, "--force", "--map", f"r={word} [rad/s]")
+        assert done.exit_code == 0, done.output
+        assert table_of(tmp_path / "out").motion["r"].tolist() == [sign * x for x in (-0.4, -0.2, 0.2, 0.4)]
+
+
+@pytest.mark.parametrize(("arguments", "said"), [
+    (("--set", "axes.reference_point=L/2"), 'found "L/2"'),
+    (("--set", "axes.reference_point=-1,2,0,0"), 'found "-1,2,0,0"; expected a point [x, y, z] in metres, FRD, from the datum. Write a decimal point.'),
+    (("--set", "scaling.length=2,5"), 'found "2,5"; expected a number in m or a text with its unit, such as "2.5 m". Write a decimal point.'),
+    (("--map", "Fy=Y [coefficient A=6.25]"), 'found "A=6.25"; expected A with its unit, such as 6.25 m^2'),
+    (("--map", "Fy=Y [coefficient A=6,25 m^2]"), 'found "A=6,25 m^2"'),
+])  # fmt: skip
+def test_what_was_typed_is_quoted(drift: Path, tmp_path: Path, arguments: tuple[str, ...], said: str) -> None:
+    lines = refused(invoke("import", drift, "--out", tmp_path / "out", *arguments))
+    assert said in lines[0]
+    assert "[]" not in lines[0]
+
+
+def test_the_next_command_repeats_what_was_given(runs: Path) -> None:
+    pattern = "b{beta:deg:m=-}"
+    done = invoke("inspect", runs, "--name", pattern, "--as", "stub", "--json")
+    assert json.loads(done.stdout)["next"].startswith(f"coeflab import {runs} --as stub --name '{pattern}' --out ")
 
 
 def test_the_list_of_commands_says_what_they_do() -> None:

@@ -223,7 +223,7 @@ CAMPAIGNS: list[tuple[dict[str, str], list[str]]] = [
     ({"table": "colour = 1"}, ['"table[0].colour"', "an unknown key"]),
     ({"inertia": "mass = -1\ncentre_of_gravity = [0, 0, 0]\ninertia = [1, 1, 1]"}, ['"inertia.mass"', "above zero"]),
     (
-        {"inertia": "mass = 1\ncentre_of_gravity = [0, 0, 0]"},
+        {"inertia": "mass = 1\ncentre_of_gravity = [0, 0, 0]\ninertia = [1, 1]"},
         ['"inertia.inertia"', "three numbers [x, y, z] of inertia"],
     ),
     ({"inertia": "mass = 1\ncentre_of_gravity = [0, 0, 0]\ninertia = [1, 'x', 1]"}, ['"inertia.inertia"', 'found "x"']),
@@ -239,6 +239,16 @@ CAMPAIGNS: list[tuple[dict[str, str], list[str]]] = [
 @pytest.mark.parametrize(("pieces", "said"), CAMPAIGNS, ids=range(len(CAMPAIGNS)))
 def test_campaigns(read_table: Read, pieces: dict[str, str], said: list[str]) -> None:
     refused(lambda: read_table(**pieces), "campaign.toml", *said)
+
+
+def test_moments_of_inertia_may_be_absent_only_of_rows_that_turn_about_one_axis(read_table: Read) -> None:
+    more = {"inertia": "mass = 2\ncentre_of_gravity = [-1.9, 0.1, 0]", "table": "contains_inertia = true"}
+    one = "beta [deg],q [rad/s],r [rad/s],Y [N],N [N*m]\n1,0,0.2,1,1\n1,0.2,0,1,1\n"
+    whole = more | {"inertia": more["inertia"] + "\ninertia = [3, 20, 30]"}
+    alone, known = (read_table(one, **said).forces for said in (more, whole))
+    assert all(alone[n].tolist() == known[n].tolist() for n in alone)
+    two = one.replace("1,0,0.2", "1,0.1,0.2")
+    refused(lambda: read_table(two, **more), "campaign.toml", "inertia.inertia", "found no inertia", "two axes at once")
 
 
 def test_kinds_of_errors(read_table: Read) -> None:

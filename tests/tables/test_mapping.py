@@ -19,8 +19,8 @@ from coeflab.tables.column_map import read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.mapping import assigned
-from coeflab.tables.proposals import evidence, proposed
-from coeflab.tables.raw_table import RawColumn
+from coeflab.tables.proposals import evidence, proposals, proposed
+from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.reading import importer_of, read_tables, recognised
 from tests.conftest import SECTIONS
 from tests.tables.raw_files import NAME, plain_stub, raw
@@ -286,6 +286,8 @@ PROPOSED = [
     ("Beta", "°", "beta [deg]"), ("Drift angle", "deg", "beta [deg]"), ("β", "Grad", "beta [deg]"), ("Angle d'attaque", "deg", "alpha [deg]"),
     ("yaw rate", "1/s", "r [rad/s]"), ("Speed", "kn", "U [kn]"), ("Fy", "", "Y [?]"), ("Fy", "m", "Y [?]"), ("Drag", "N", ""),
     ("CL", "", ""), ("se_Fy", "N", "se_Y [N]"), ("Fy std", "N", ""), ("Cells", "", "cells"), ("Run", "", "point"), ("Comment", "", "ignore"),
+    ("Geschw", "m/s", "U [m/s]"), ("Geschwindigkeit", "m/s", "U [m/s]"), ("velocity", "kn", "U [kn]"), ("Yaw Mom", "ft*lbf", "N [ft*lbf]"),
+    ("Zeit", "s", "ignore"), ("time", "s", "ignore"), ("V", "m/s", ""),
     ("Rudder angle", "deg", "dr [deg]"), ("what", "", ""), ("y+", "", ""), ("x", "m", ""),
 ]  # fmt: skip
 
@@ -304,6 +306,49 @@ def test_proposals_are_certain_only_where_nobody_can_mean_otherwise() -> None:
     assert proposed(RawColumn("drift", "", np.array([-12.0, 12.0]))).text == "beta [deg]"
     assert proposed(RawColumn("drift", "", one)).text == "beta [?]"
     assert proposed(RawColumn("Fy mean", "N", np.array([np.nan]), ("diverged",))).text == "label"
+
+
+def test_a_capital_v_is_the_speed_beside_an_angle_or_a_radius_alone() -> None:
+    one = np.array([1.0, 2.0])
+
+    def offer(*columns: tuple[str, str]) -> tuple[str, str]:
+        made = proposals(RawTable(Path("t.csv"), tuple(RawColumn(n, u, one) for n, u in columns)))[0]
+        return made.text, made.why
+
+    assert offer(("V", "m/s"), ("Drift", "deg"))[0] == "U [m/s]"
+    assert offer(("V", "kn"), ("R", "m"))[0] == "U [kn]"
+    assert offer(("V", "m/s"), ("Drift", "deg"), ("U", "m/s"))[0] == ""
+    assert offer(("V", "m/s"), ("Fy", "N")) == ("", "no known name; m/s: U, u, v, w, or ignore")
+    assert offer(
+        ("what", "Nm"),
+    ) == ("", "no known name; Nm: K, M, N, or ignore")
+    assert offer(
+        ("what", "widgets"),
+    ) == ("", "no known name")
+    assert offer(("se_Fx Monitor", "N"))[1] == "no known name; N: se_X, se_Y, se_Z, or ignore"
+    assert "z up (CFD, FLU), to port" in offer(("yaw rate", "deg/s"))[1]
+
+
+@pytest.mark.parametrize("frame", ["FRD", "CFD", "FLU"])
+def test_evidence_says_where_the_force_acts_in_words_of_the_body(frame: str) -> None:
+    """A side force 0.5 m forward of the point has N = +0.5 m Y in FRD; in axes with z up N turns, in CFD Y does not."""
+    side = np.array([-3.0, -1.0, 1.0, 3.0])
+    turned = {"FRD": (1.0, 1.0), "CFD": (1.0, -1.0), "FLU": (-1.0, -1.0)}[frame]
+    values = {"beta [deg]": side, "Y [N]": turned[0] * side, "N [N*m]": turned[1] * 0.5 * side}
+    table = RawTable(Path("t"), tuple(RawColumn(n.partition(" ")[0], "", v) for n, v in values.items()))
+    known = assigned(table, {n.partition(" ")[0]: read_column_map(n) for n in values})
+    texts = [e.text for e in evidence(known, parse_axes(frame))]
+    hull = "that of a bare hull without large fins acts forward of midships"
+    assert f"N / Y: the force acts forward of the reference point (x = 0.5 m); {hull}" in texts
+    own = [e.text for e in evidence(known)]
+    assert f"N / Y: the force acts toward {'+' if turned[0] * turned[1] > 0 else '-'}x of the reference point" in own
+
+
+def test_evidence_says_to_which_side_a_rate_turns() -> None:
+    table = RawTable(Path("t"), (RawColumn("r", "", np.array([0.1, 0.2])), RawColumn("Y", "", np.array([1.0, 2.0]))))
+    known = assigned(table, {"r": read_column_map("r [rad/s]"), "Y": read_column_map("Y [N]")})
+    for frame, side in (("FRD", "starboard"), ("CFD", "port"), ("FLU", "port")):
+        assert any(e.text.startswith(f"r > 0 turns to {side}") for e in evidence(known, parse_axes(frame)))
 
 
 @pytest.mark.parametrize("axes", AXES)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.fits.results.oscillation import OscillatedForce
 from coeflab.fits.statistics.harmonics import (
@@ -222,6 +223,8 @@ def _inertia(table: PlanarMotionTable, motion: _Motion) -> Phasors:
     if table.inertia is None:
         return np.zeros((6, orders + 1), dtype=complex)
     model = table.inertia
+    if model.inertia is None:
+        raise InputError("no inertia", "Ix, Iy, Iz of the oscillating model", column="inertia.inertia")
     centre = model.centre_of_gravity - table.point
     tensor = np.diag(model.inertia) + parallel_axis(model.mass, centre)
     nu = series(motion.velocity, GRID)

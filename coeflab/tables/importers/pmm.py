@@ -342,6 +342,11 @@ def _inertia(campaign: Campaign, table: TableDeclaration, runs: tuple[PlanarMoti
             "contains_inertia = true without mass", "[inertia] with mass, centre_of_gravity, inertia, or a run in air for every "
             "run (column in_air)", file=campaign.path, column="inertia",
         )  # fmt: skip
+    if campaign.inertia.inertia is None:
+        raise InputError(
+            "no inertia", "inertia = [Ix, Iy, Iz] about the centre of gravity, kg m^2", file=campaign.path,
+            column="inertia.inertia", advice="An oscillating model is accelerated about its axes.",
+        )  # fmt: skip
     return campaign.inertia
 
 
