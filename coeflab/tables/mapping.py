@@ -14,12 +14,11 @@ from coeflab.core.limits import LARGEST_NUMBER
 from coeflab.core.types import Array, brief
 from coeflab.core.units import factor
 from coeflab.core.wording import Verbatim, listed
-from coeflab.law.symbols import LINEAR
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.to_frd import BLANK, Columns, force_table, surge_column
+from coeflab.tables.to_frd import BLANK, Columns, force_table, speed_of_rows
 
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
 REMARKS = 5
@@ -283,7 +282,8 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
             given[one.said.role][one.said.name] = values
             if one.said.primed and one.said.role == "velocity":
                 primes[one.said.name] = values
-    speed = _speed(given, primes, campaign, len(rows))
+    own = {name: values for name, values in given["velocity"].items() if name not in primes}
+    speed = speed_of_rows(given["speed"].get("U"), own, primes, campaign, len(rows), bool(given["angle"]))
     density = given["density"].get("density", np.full(len(rows), campaign.conditions.density))
     for one in known:
         if one.said.pure:
@@ -352,21 +352,6 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
 
 def _taken(texts: Sequence[str], rows: NDArray[np.int64]) -> list[str]:
     return [texts[row] for row in rows]
-
-
-def _speed(given: Mapping[str, Mapping[str, Array]], primes: Mapping[str, Array], campaign: Campaign, n: int) -> Array:
-    """U: its column, else the length of a full velocity vector, else the campaign's."""
-    if "U" in given["speed"]:
-        return given["speed"]["U"]
-    velocity = given["velocity"]
-    if surge_column(campaign) not in velocity or given["angle"] or set(LINEAR) & set(velocity) <= set(primes):
-        return np.full(n, campaign.conditions.speed)
-    squares: Array = np.sum([velocity[c] ** 2 for c in LINEAR if c in velocity and c not in primes], axis=0)
-    # v' = v / U, so the dimensional part is U^2 (1 - v'^2).
-    shares = [values**2 for name, values in primes.items() if name in LINEAR]
-    rest = 1.0 - np.sum(shares, axis=0) if shares else np.ones(n)
-    whole = np.broadcast_to(squares, (n,))
-    return np.asarray(np.sqrt(np.divide(whole, rest, out=np.zeros(n), where=rest > 0.0)))
 
 
 def another_density(raw: RawTable, known: Sequence[Assigned], density: float) -> InputError | None:

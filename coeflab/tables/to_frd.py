@@ -323,6 +323,40 @@ def surge_column(campaign: Campaign) -> str:
     return LINEAR[int(np.argmax(np.abs(campaign.axes.rotation[0])))]
 
 
+def speed_of_rows(
+    stated: Array | None,
+    velocity: Mapping[str, Array],
+    primes: Mapping[str, Array],
+    campaign: Campaign,
+    n: int,
+    has_angles: bool,
+) -> Array:
+    """U of every row: its column, else the length of a full velocity vector, else the campaign's.
+
+    Parameters
+    ----------
+    stated : (n,) array or None
+        The column U, m/s.
+    velocity : mapping of str to (n,) array
+        Velocities that are not primed, m/s, in the table's axes.
+    primes : mapping of str to (n,) array
+        Primed ones, of which v' = v/U counts.
+    campaign : Campaign
+    n : int
+    has_angles : bool
+        Angles say the direction, and the campaign the speed.
+    """
+    if stated is not None:
+        return stated
+    if surge_column(campaign) not in velocity or has_angles:
+        return np.full(n, campaign.conditions.speed)
+    squares: Array = np.sum([velocity[c] ** 2 for c in LINEAR if c in velocity], axis=0)
+    # v' = v / U, so the dimensional part is U^2 (1 - v'^2).
+    shares = [primes[c] ** 2 for c in LINEAR if c in primes]
+    rest = 1.0 - np.sum(shares, axis=0) if shares else np.ones(n)
+    return np.asarray(np.sqrt(np.divide(squares, rest, out=np.zeros(n), where=rest > 0.0)))
+
+
 def _sources(campaign: Campaign) -> dict[str, tuple[str, float]]:
     """For every FRD component the table's column and its sign; axes are at right angles, so each is one column."""
     out = {}

@@ -20,7 +20,7 @@ from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MO
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
-from coeflab.tables.to_frd import Columns, force_table, surge_column
+from coeflab.tables.to_frd import Columns, force_table, speed_of_rows
 
 summary = "CSV with units in the headers (beta [deg], Y [N], Y' [-]) and a campaign.toml"
 citations = ("sname1950",)
@@ -140,7 +140,9 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
             primes.append((kind, values))
         else:
             given[kind.role][kind.name] = values
-    speed, density = _speed(given, primes, campaign, len(cells)), given["density"].get("density")
+    shares = {kind.name: values for kind, values in primes}
+    speed = speed_of_rows(given["U"].get("U"), given["velocity"], shares, campaign, len(cells), bool(given["angle"]))
+    density = given["density"].get("density")
     for kind, values in primes:
         given[kind.role][kind.name] = values * campaign.scaling.unit(
             kind.name, campaign.conditions.density if density is None else density, speed
@@ -162,20 +164,6 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         radius=given["R"].get("R"),
         density=density,
     )
-
-
-def _speed(given: dict[str, dict[str, Array]], primes: list[tuple[_Kind, Array]], campaign: Campaign, n: int) -> Array:
-    """U: its column, else the length of a full velocity vector, else the campaign's."""
-    if "U" in given["U"]:
-        return given["U"]["U"]
-    velocity = given["velocity"]
-    if surge_column(campaign) not in velocity or given["angle"]:
-        return np.full(n, campaign.conditions.speed)
-    squares: Array = np.sum([velocity[c] ** 2 for c in LINEAR if c in velocity], axis=0)
-    # v' = v / U, so the dimensional part is U^2 (1 - v'^2).
-    shares = [values**2 for kind, values in primes if kind.name in LINEAR]
-    rest = 1.0 - np.sum(shares, axis=0) if shares else np.ones(n)
-    return np.asarray(np.sqrt(np.divide(squares, rest, out=np.zeros(n), where=rest > 0.0)))
 
 
 def _doubtful(cells: Cells, texts: list[str], headers: dict[str, str]) -> tuple[frozenset[str], ...]:
