@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 GRACE, KILL = 60.0, 10.0  # s in which a solver has to write and end when it is asked to, and to end when it is made to
 NOTICE, BEAT = 0.2, 5.0  # s until a signal is noticed, and between signs of life
-EARLIEST, LATEST, SHARE = 2.0, 60.0, 50.0  # s between two looks at the history, and times as long as one takes
+EARLIEST, LATEST, SHARE = 2.0, 60.0, 50.0  # s between two looks at the history; times what one takes of a core
 FIRST, SPACING, LEAST = (
     50,
     1.1,
@@ -144,6 +144,7 @@ class _Attempt:
         )  # fmt: skip
         self.solver: TowSolver | None = None
         self.verdict: Verdict | None = None
+        self.took = 0.0  # s of this process for the last look
         self.looked = 0  # rows at which a plateau was looked for last
         self.pace: tuple[float, float] | None = None  # time and iteration of the first look
         self.killed = ""  # what is to be said of a solver that did not end by itself
@@ -213,7 +214,7 @@ class _Attempt:
         """Wait for the end of a step, give signs of life, and look at the history of a solver."""
         begun = time.monotonic()
         if step.watched:
-            self._plugin()  # while the solver starts, too
+            self._plugin()  # imported while the solver starts, too
         beat, look = begun + NOTICE, begun + EARLIEST
         while True:
             with suppress(subprocess.TimeoutExpired):
@@ -228,19 +229,18 @@ class _Attempt:
                 self._look()
                 if self.verdict is not None and (self.verdict.settled or self.verdict.diverged):
                     return self._stop(step, process)
-                took = time.monotonic() - now
-                look = now + took + min(max(SHARE * took, EARLIEST), LATEST)
+                look = time.monotonic() + min(max(SHARE * self.took, EARLIEST), LATEST)
 
     def _look(self) -> None:
         """Read the history and look for a plateau at the lengths that it has reached since the last look."""
         history = self._plugin().history
         if history is None:
             return
-        try:
+        begun = time.process_time()
+        with suppress(InputError, OSError):  # nothing written yet, or half a line
             run = history(self.job.folder)
-        except (InputError, OSError):  # nothing written yet, or half a line
-            return
-        self._judge(run, [n for n in lengths(len(run.history)) if n > self.looked])
+            self._judge(run, [n for n in lengths(len(run.history)) if n > self.looked])
+        self.took = time.process_time() - begun
 
     def _judge(self, run: Run, rows: Sequence[int]) -> None:
         from coeflab.tank.plateau import on_plateau
