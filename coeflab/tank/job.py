@@ -303,7 +303,8 @@ class _Attempt:
         if self.verdict is not None and self.verdict.diverged:
             state, why = JobState.DIVERGED, self.verdict.why
         elif code or (reason and not self.killed):
-            state, why = JobState.CRASHED, "; ".join(filter(None, (reason, self._last_words(code) if code else "")))
+            state = JobState.DIVERGED if _signal_of(code) == "SIGFPE" else JobState.CRASHED
+            why = "; ".join(filter(None, (reason, self._last_words(code) if code else "")))
         elif watched and not self.now.plateau:
             state, why = JobState.UNCONVERGED, self.now.why or "no history of forces"
         self._say(state=state, left=nan, why=why, remarks=tuple(remarks))
@@ -323,8 +324,7 @@ class _Attempt:
     def _last_words(self, code: int) -> str:
         """What shows a crash: a full disk, else the last line of the log."""
         log = self.job.folder / f"log.{self.now.step}"
-        number = -code if code < 0 else code - 128  # a shell and mpirun add 128 to the number of a signal
-        by = signal.Signals(number).name if number in set(signal.Signals) else ""
+        by = _signal_of(code)
         how = f"ended by {by}" if by else f"exit code {code}"
         how += ", as by a system without memory" * (by == "SIGKILL")
         with suppress(OSError):
@@ -335,6 +335,12 @@ class _Attempt:
             if number:
                 return f"{self.now.step}: {how}; {log.name}:{number}: {shown(lines[number - 1].strip())}"
         return f"{self.now.step}: {how}"
+
+
+def _signal_of(code: int) -> str:
+    """Name of the signal that ended a program; a shell and mpirun add 128 to its number."""
+    number = -code if code < 0 else code - 128
+    return signal.Signals(number).name if number in set(signal.Signals) else ""
 
 
 def disk_is_full(folder: Path) -> bool:

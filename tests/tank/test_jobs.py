@@ -224,6 +224,7 @@ def test_a_run_that_diverges_is_ended_and_said_to(tmp_path: Path) -> None:
     [
         ("crash", JobState.CRASHED, r"exit code 1; log\.slow:2: .FATAL: no matrix."),
         ("kill", JobState.CRASHED, "slow: ended by SIGKILL, as by a system without memory$"),
+        ("zero", JobState.DIVERGED, "slow: ended by SIGFPE"),
         ("unsound", JobState.CRASHED, "^unsound$"),
     ],
 )
