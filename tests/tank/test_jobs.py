@@ -348,18 +348,20 @@ def test_a_job_stops_when_its_parent_is_killed(tmp_path: Path) -> None:
 def test_a_killed_job_is_not_taken_up_before_its_solver_has_ended(
     tmp_path: Path, start: Callable[..., subprocess.Popen[bytes]]
 ) -> None:
-    """A solver that outlives its watcher, as where a system does not tell it, holds the folder."""
-    job = prepared(tmp_path, pause=0.005)
-    with only_one(job.folder, "job") as lock:
-        orphan = subprocess.Popen(("sleep", "1"), pass_fds=(lock,))
+    job = prepared(tmp_path)
+    deaf = (
+        "sh",
+        "-c",
+        "trap '' TERM; echo begun >> begun; for i in 1 2 3 4 5 6 7; do sleep .2; done; echo ended >> begun",
+    )
+    write_job(replace(job, steps=(replace(job.steps[0], name="deaf", command=deaf),)))
+    begun = job.folder / "begun"
     process = start(job.folder)
-    time.sleep(0.7)
-    assert orphan.poll() is None
-    assert rows(job.folder) == 0
-    wait(lambda: rows(job.folder) > 0)
-    assert orphan.poll() is not None
-    process.terminate()
-    orphan.wait()
+    wait(begun.exists)
+    process.kill()
+    process.wait()
+    assert start(job.folder).wait(20) == 0
+    assert begun.read_text().split() == ["begun", "ended", "begun", "ended"]
 
 
 def test_memory_is_that_of_all_processes_of_a_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
