@@ -180,9 +180,7 @@ def carried_out(made: Job) -> Job:
     for step in made.steps:
         path = made.folder / f"log.{step.name}"
         with path.open("w") as log:
-            done = subprocess.run(
-                ["nice", *step.command], cwd=made.folder, stdout=log, stderr=log, timeout=300, check=False
-            )
+            done = subprocess.run(step.command, cwd=made.folder, stdout=log, stderr=log, timeout=300, check=False)
         assert done.returncode == 0, f"{step.name}\n{path.read_text()[-2000:]}"
     return made
 
@@ -219,7 +217,7 @@ def test_few_layers_and_lost_patches_are_said(copy: Job) -> None:
     planned["surface"] |= {"sail": 0.1, "rudder_upper": planned["surface"]["rudder_upper"] * 1.5}
     (copy.folder / "planned.json").write_text(json.dumps(planned))
     remarks, why = mesh_ended(copy)
-    assert re.match(r"layers cover 2\d% of hull; 90% is asked for", remarks[0])
+    assert re.match(r"layers cover 2\d% of hull; 80% is asked for", remarks[0])
     assert re.match(r"rudder_upper has 6\d% of its surface", remarks[1])
     assert why == "no cell lies on the patch sail: its cells are too large for its shape"
 
@@ -242,6 +240,6 @@ def test_two_cores_make_the_mesh_that_one_was_expected_to(body: TowedBody, tmp_p
     made = carried_out(job(body, tmp_path, cores=2, grid=Grid("coarsest", 8.0)))
     before = expected_cells(made.folder)
     assert mesh_ended(made)[1] == ""
-    assert expected_cells(made.folder) == pytest.approx(before, rel=0.2)
+    assert expected_cells(made.folder) == pytest.approx(before, rel=0.25)
     assert (made.folder / MADE).is_file()
     assert not list(made.folder.glob("processor*"))

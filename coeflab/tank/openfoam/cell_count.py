@@ -41,7 +41,7 @@ class CellCount:
 
 
 def cell_count(body: TowedBody, sizes: MeshSizes) -> CellCount:
-    """What the mesh of a body will have; within a tenth on the meshes of tests/tank/test_openfoam_mesh.py.
+    """What the mesh of a body will have; within a fifth on the meshes that were made of it.
 
     Parameters
     ----------

@@ -67,7 +67,7 @@ class MeshKeys(Declaration):
     ahead: Distance = 1.4
     behind: Distance = 2.0
     beside: Distance = 1.4
-    coverage: Positive = 0.9
+    coverage: Positive = 0.8
     most_cells: Positive = 6e6
 
     def check(self) -> None:
