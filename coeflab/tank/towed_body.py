@@ -56,3 +56,34 @@ class TowedBody:
     def length(self) -> float:
         """Over all along x, m."""
         return float(np.ptp(self.vertices[:, 0]))
+
+
+PANELS = 100_000  # of the whole surface, where it is made from equations
+
+
+def towed(
+    body: Body, reference_point: Array, controls: Mapping[str, float] = MappingProxyType({}), panels: int = PANELS
+) -> TowedBody:
+    """The closed surface of a body with its patches, about the reference point, with its controls turned.
+
+    Parameters
+    ----------
+    body : Body
+    reference_point : (3,) array
+        m, FRD, from the body's datum; the origin of the cases.
+    controls : mapping of str to float
+        Angle of each control by its name, rad; an absent one is at zero.
+    panels : int
+        About how many triangles, where the surface is made from equations; a mesh file is taken as it is.
+
+    Raises
+    ------
+    InputError
+        A body without a closed surface: particulars only, plates without thickness; a control that the body does not have.
+    """
+    raise NotImplementedError
+
+
+def stl(towed: TowedBody) -> bytes:
+    """The surface as an ASCII STL, one solid a patch, m; the same bytes for the same surface."""
+    raise NotImplementedError
