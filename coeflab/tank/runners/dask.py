@@ -58,7 +58,7 @@ def attempted(folder: str) -> tuple[int, str]:
         Of the job.
     """
     # The process ends with the thread that started it, which waits for it here.
-    command = (sys.executable, "-m", "coeflab.tank.job", "--parent", str(os.getpid()), folder)
+    command = (sys.executable, "-m", "coeflab.tank.job", "--end-with", str(os.getpid()), folder)
     done = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, check=False)
     lines = done.stderr.splitlines()
     return done.returncode, lines[-1].removeprefix("error: ") if lines else ""

@@ -138,7 +138,7 @@ class Attempt:
         def unsignalled() -> None:
             signal.signal(signal.Signals[f"SIG{SIGNAL}"], signal.SIG_IGN)
 
-        command = (*self.command, "--parent", str(os.getpid()), self.folder)
+        command = (*self.command, "--end-with", str(os.getpid()), self.folder)
         self.process = subprocess.Popen(command, preexec_fn=unsignalled)  # noqa: PLW1509 - no threads here
         while self.process.poll() is None:  # not wait: checkpoint would find it locked
             time.sleep(LOOK)
