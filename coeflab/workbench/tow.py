@@ -1,0 +1,528 @@
+"""The virtual tow tank from end to end: a body and a tank.toml become cases, runs, a campaign, fits and a report in one folder."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from coeflab.bodies.readers import read_body
+from coeflab.core.declarations import declared
+from coeflab.core.errors import CoeflabError, InputError, shown
+from coeflab.core.files import shipped, write_all, write_atomically
+from coeflab.core.provenance import sha256_of
+from coeflab.core.text.toml import read_toml
+from coeflab.core.types import brief
+from coeflab.core.version import VERSION
+from coeflab.law.coefficient import Coefficient
+from coeflab.study.plan import DEFAULT_FITS, table_at
+from coeflab.study.study import Plan, Study
+from coeflab.tables.raw_table import RawTable, Run
+from coeflab.tables.reading import read_tables
+from coeflab.tank.campaign import TowedRun, campaign_files, rows_of, towed_run
+from coeflab.tank.declaration import TankFile, declared_body, default_tank, default_text, read_tank
+from coeflab.tank.jobs import JOB, Job, JobState, Progressed, only_one, outstanding, progress, write_job
+from coeflab.tank.runners import RUNNERS
+from coeflab.tank.solvers import SOLVERS, Installation, TowSolver
+from coeflab.tank.tank import Tank
+from coeflab.tank.towed_body import TowedBody, stl, towed
+from coeflab.workbench import rendered, run
+
+KIND = "coeflab tow 1"
+PLAN, TANK, BODY = "tow.json", "tank.toml", "body/body.stl"
+CAMPAIGN, REPORT = "campaign", "report"
+SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
+FEWEST = 3  # settings of a sweep: an intercept, a slope and an error
+Look = Callable[[], None]
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Tow:
+    """A folder with everything that is to be computed in it.
+
+    Attributes
+    ----------
+    folder : Path
+        Absolute.
+    tank : Tank
+    body : TowedBody
+    installed : Installation
+        Of the solver.
+    jobs : tuple of Job
+        Meshes and runs in an order in which they can be carried out; none of a method without runs.
+    """
+
+    folder: Path
+    tank: Tank
+    body: TowedBody
+    installed: Installation
+    jobs: tuple[Job, ...] = ()
+
+    @property
+    def solver(self) -> TowSolver:
+        """The plugin."""
+        return SOLVERS.load(self.tank.solver)
+
+    @property
+    def of(self) -> dict[str, Job]:
+        """The jobs by their names."""
+        return {job.name: job for job in self.jobs}
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What an earlier start left of a job.
+
+    Attributes
+    ----------
+    name : str
+    state : JobState
+    what : str
+        ``kept``, ``goes on from iteration 240``, ``run anew`` ...
+    why : str
+        Of what is run anew.
+    """
+
+    name: str
+    state: JobState
+    what: str
+    why: str = ""
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Collected:
+    """What a tow has given so far.
+
+    Attributes
+    ----------
+    runs : tuple of TowedRun
+        Every condition of the matrix.
+    study : Study or None
+        Fits of the campaign; None where nothing can be fitted.
+    undetermined : mapping of str to str
+        Derivatives of the six that have no value, and why.
+    unfitted : str
+        Why there is no study.
+    files : tuple of Path
+        That were written.
+    """
+
+    runs: tuple[TowedRun, ...]
+    study: Study | None = None
+    undetermined: Mapping[str, str] = field(default_factory=dict)
+    unfitted: str = ""
+    files: tuple[Path, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "undetermined", MappingProxyType(dict(self.undetermined)))
+
+    @property
+    def six(self) -> dict[str, Coefficient]:
+        """The slopes at the origin that have a value."""
+        known = self.study.coefficients if self.study is not None else ()
+        return {s: c for s in SIX for c in known if c.symbol == s and c.value is not None and _is_slope(c)}
+
+    @property
+    def failed(self) -> tuple[TowedRun, ...]:
+        """Conditions that were run and do not count."""
+        return tuple(r for r in self.runs if not r.counts and r.state is not JobState.WAITING)
+
+
+def _is_slope(c: Coefficient) -> bool:
+    return c.origin == "fit" and not c.law
+
+
+def read(body: Path | None, matrix: Path | None, solver: str = "", runner: str = "") -> tuple[Tank, TowedBody]:
+    """The tank and the body that a person means.
+
+    Parameters
+    ----------
+    body : Path or None
+        Folder of a body.toml, or the file; None where tank.toml names it.
+    matrix : Path or None
+        A tank.toml; without one the default matrix.
+    solver, runner : str
+        In the place of those of the file.
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong with the files, or a body that cannot be towed.
+    PluginError
+        No such solver or runner.
+    """
+    file = body if body is not None else declared_body(matrix) if matrix is not None else None
+    if file is None:
+        raise InputError("no body", "a folder with a body.toml, or a shipped name", column="BODY")
+    file = (file / "body.toml" if file.is_dir() else file).resolve()
+    own = read_body(file)
+    point = own.reference_point
+    if matrix is not None:
+        said = declared(TankFile, read_toml(matrix)).tank.reference_point
+        point = point if said is None else said
+    surface = towed(own, point)
+    if matrix is None:
+        return default_tank(file, surface, solver=solver, runner=runner), surface
+    return read_tank(matrix, surface, body_file=file, solver=solver, runner=runner), surface
+
+
+def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = None) -> Tow:
+    """Write body, meshes and cases below a folder, with the jobs that compute them; equal files are left alone.
+
+    Parameters
+    ----------
+    tank : Tank
+    body : TowedBody
+    folder : Path
+        New, or with this tow in it.
+    matrix : Path, optional
+        The tank.toml, of which a copy is kept.
+
+    Raises
+    ------
+    InputError
+        Another tow is in the folder, or is being carried out there.
+    OutputError
+        The folder cannot be written.
+    """
+    folder = folder.absolute()
+    solver = SOLVERS.load(tank.solver)
+    installed = solver.installed()
+    refuse_other(folder, tank)
+    with only_one(folder, "tow"):
+        own = default_text(body.body).encode() if matrix is None else matrix.read_bytes()
+        write_all(folder, {TANK: own, BODY: stl(body)})
+        jobs: tuple[Job, ...] = ()
+        if solver.jobs is not None:
+            with SOLVERS.guarded(tank.solver):
+                jobs = tuple(solver.jobs(tank, body, folder))
+        for job in jobs:
+            write_job(job)
+        _forget(folder, {job.folder for job in jobs})
+        tow = Tow(folder, tank, body, installed, jobs)
+        write_atomically(folder / PLAN, _plan(tow))
+    return tow
+
+
+def _plan(tow: Tow) -> bytes:
+    tank = tow.tank
+    content = {
+        "kind": KIND, "coeflab": VERSION, "name": tank.name, "title": tank.title, "body": tow.body.body.name,
+        "body_file": _portable(tank.body, tow.folder), "body_sha256": sha256_of(tank.body),
+        "surface_sha256": sha256_of(tow.folder / BODY), "solver": tank.solver, "version": tow.installed.version,
+        "runner": tank.runner, "cores": tank.cores, "jobs": {job.name: job.key for job in tow.jobs},
+        "conditions": [
+            {
+                "name": c.name, "kind": str(c.kind), "half": str(c.half), "grid": c.grid, "variant": dict(c.variant),
+                "velocity": c.velocity.tolist(), "rates": c.rates.tolist(), "controls": dict(c.controls),
+                # of one unit of a primed force and moment, for the table of runs
+                "units": [tank.scaling.unit(x, tank.conditions.density, c.speed) for x in ("Y", "N")],
+            }
+            for c in tank.matrix
+        ],
+    }  # fmt: skip
+    return (json.dumps(content, indent=1) + "\n").encode()
+
+
+def _portable(path: Path, folder: Path) -> str:
+    """A path that holds when folder and body are moved together; the name of a shipped body."""
+    inside = shipped("geometry").resolve()
+    if path.is_relative_to(inside):
+        return path.relative_to(inside).parts[0]
+    return Path(os.path.relpath(path, folder)).as_posix()
+
+
+def read_plan(folder: Path) -> dict[str, Any]:
+    """What ``tow.json`` says.
+
+    Raises
+    ------
+    InputError
+        No tow is in the folder, or one of another release.
+    """
+    path = folder / PLAN
+    advice = "`coeflab tow BODY --out FOLDER` begins one."
+    try:
+        content: dict[str, Any] = json.loads(path.read_bytes())
+        kind = content["kind"]
+    except OSError:
+        raise InputError("no tow", f"a folder with a {PLAN}", file=folder, advice=advice) from None
+    except (ValueError, KeyError, TypeError):
+        raise InputError("no plan of a tow", KIND, file=path, advice=advice) from None
+    if kind != KIND:
+        raise InputError(shown(kind), KIND, file=path, key="kind", advice="Tow it with the release that began it.")
+    return content
+
+
+def reopened(folder: Path, matrix: Path | None = None, solver: str = "", runner: str = "") -> tuple[Tank, TowedBody, Path]:
+    """Tank and body of a tow as its folder has them, and the tank.toml; a new one in its place where it is given.
+
+    Raises
+    ------
+    InputError
+        No tow is in the folder, or its files do not do any more.
+    """
+    plan = read_plan(folder)
+    named = plan["body_file"]
+    inside = shipped("geometry") / named
+    file = inside if "/" not in named and inside.is_dir() else folder / named
+    own = matrix if matrix is not None else folder / TANK
+    tank, body = read(Path(os.path.normpath(file)), own, solver or plan["solver"], runner or plan["runner"])
+    return tank, body, own
+
+
+def refuse_other(folder: Path, tank: Tank) -> None:
+    """Refuse a folder that holds another tow, or what is none.
+
+    Raises
+    ------
+    InputError
+        With what is there.
+    """
+    if not folder.exists():
+        return
+    if not folder.is_dir():
+        raise InputError("a file", "a folder", file=folder, column="--out")
+    if not (folder / PLAN).exists():
+        own = {TANK, BODY.partition("/")[0], ".lock", CAMPAIGN}
+        if any(p.name not in own for p in folder.iterdir()):
+            raise InputError(f"a folder without {PLAN}, which is not empty", "a new folder, or one of a tow", file=folder,
+                             advice="Name another --out.")  # fmt: skip
+        return
+    there = read_plan(folder)
+    for key, what in (("name", tank.name), ("solver", tank.solver)):
+        if there[key] != what:
+            raise InputError(f"the tow of {there['name']} by {there['solver']}", f"that of {tank.name} by {tank.solver}",
+                             file=folder, advice="Name another --out: a folder holds one tow.")  # fmt: skip
+
+
+def _forget(folder: Path, own: set[Path]) -> None:
+    """Take jobs that are not in the matrix any more out of the plan; what they computed stays, and counts again with them."""
+    for job in sorted(folder.glob(f"*/{JOB}")) + sorted(folder.glob(f"mesh/*/{JOB}")):
+        if job.parent not in own:
+            job.unlink()
+
+
+def has_begun(folder: Path) -> bool:
+    """Whether some job of the folder was started."""
+    from coeflab.tank.jobs import STATE
+
+    return any(folder.glob(f"*/{STATE}")) or any(folder.glob(f"mesh/*/{STATE}"))
+
+
+def kept(tow: Tow, before: Mapping[str, Any] | None = None) -> tuple[Kept, ...]:
+    """What happens to each job when the tow goes on: kept, gone on with, or run anew and why.
+
+    Parameters
+    ----------
+    tow : Tow
+    before : mapping, optional
+        ``tow.json`` as it was before it was laid out again; it tells what changed.
+    """
+    return tuple(_fate(tow, job, before) for job in tow.jobs)
+
+
+def _fate(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> Kept:
+    now = progress(job)
+    if now.state is JobState.WAITING:
+        return Kept(job.name, now.state, "to be run")
+    if now.state is JobState.CHANGED:
+        return Kept(job.name, now.state, "run anew", _changed(tow, job, before))
+    if now.state.is_kept:
+        return Kept(job.name, now.state, f"kept, {now.state}")
+    at = f"goes on from what it wrote last, iteration {now.iteration:.0f} was reached" if now.iteration > 0 else "is begun again"
+    return Kept(job.name, now.state, at, now.why)
+
+
+def _changed(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> str:
+    """What made the key of a job another one, as far as it shows."""
+    if before is not None:
+        if before.get("version") != tow.installed.version:
+            return f"the solver was {before.get('version') or 'not installed'}, now {tow.installed.version or 'not installed'}"
+        if before.get("surface_sha256") != sha256_of(tow.folder / BODY):
+            return "the body's surface changed"
+        keys = before.get("jobs", {})
+        if any(keys.get(name) != tow.of[name].key for name in job.needs if name in tow.of):
+            return f"its mesh changed ({', '.join(job.needs)})"
+        return "its case changed"
+    return "its mesh, case or solver changed"
+
+
+def carried_out(tow: Tow, cores: int, look: Look) -> None:
+    """Carry out what is not finished, by the runner of the tank; returns when nothing is left that can be.
+
+    Parameters
+    ----------
+    tow : Tow
+    cores : int
+        Budget of the runner, where it has one; 0 leaves that of tank.toml.
+    look : callable
+        Is called a few times a second.
+
+    Raises
+    ------
+    InputError
+        The solver is not installed.
+    CoeflabError
+        The runner cannot work.
+    """
+    jobs = outstanding(tow.jobs)
+    if not jobs:
+        return
+    require_installed(tow)
+    runner = RUNNERS.load(tow.tank.runner)
+    options = runner.options(**_with_cores(tow, cores))
+    with RUNNERS.guarded(tow.tank.runner), only_one(tow.folder, "tow"):
+        runner.carry_out(jobs, tow.folder, options, look)
+
+
+def _with_cores(tow: Tow, cores: int) -> dict[str, Any]:
+    options = dict(tow.tank.runner_options)
+    if cores:
+        names = getattr(RUNNERS.load(tow.tank.runner).options, "__dataclass_fields__", {})
+        if "cores" not in names:
+            raise InputError(f"--cores with the runner {tow.tank.runner}", "a runner with a budget of cores, such as local",
+                             column="--cores")  # fmt: skip
+        options["cores"] = cores
+    return options
+
+
+def require_installed(tow: Tow) -> None:
+    """Raise where the solver is not installed, with what to do.
+
+    Raises
+    ------
+    InputError
+    """
+    if tow.installed.missing:
+        others = [n for n in SOLVERS.usable() if n != tow.tank.solver and not SOLVERS.load(n).installed().missing]
+        instead = f" Or take --solver {' or --solver '.join(others)}, which needs nothing installed." if others else ""
+        raise InputError(f"no {tow.tank.solver}", tow.installed.missing.rstrip("."), column="solver",
+                         advice=f"The cases are in {tow.folder}.{instead}".strip())  # fmt: skip
+
+
+def collected(tow: Tow, fitted: bool = True) -> Collected:
+    """Write the campaign of what is finished so far and, if wanted, fit it and write the report.
+
+    Raises
+    ------
+    InputError
+        A history that cannot be read; a table that an outside solver gives.
+    """
+    runs = _runs(tow)
+    inputs = {"body.toml": tow.tank.body, "tank.toml": tow.folder / TANK}
+    files = campaign_files(tow.tank, tow.body, runs, tow.installed.version or tow.tank.solver, inputs)
+    folder = tow.folder / CAMPAIGN
+    write_all(folder, files)
+    for stale in sorted(folder.glob("*.csv")) if folder.is_dir() else ():
+        if stale.name not in files:
+            stale.unlink()
+    written = tuple(folder / name for name in files)
+    if not fitted:
+        return Collected(runs, files=written)
+    if not files:
+        return Collected(runs, undetermined=dict.fromkeys(SIX, "no condition has forces"), unfitted="no condition has forces")
+    study, undetermined, unfitted = _fitted(tow, folder)
+    if study is not None:
+        report = rendered(study)
+        write_all(tow.folder / REPORT, report)
+        written += tuple(tow.folder / REPORT / name for name in report)
+    return Collected(runs, study, undetermined, unfitted, written)
+
+
+def _runs(tow: Tow) -> tuple[TowedRun, ...]:
+    solver, jobs = tow.solver, tow.of
+    if solver.table is not None:
+        with SOLVERS.guarded(tow.tank.solver):
+            table: RawTable = solver.table(tow.tank, tow.body)
+        return rows_of(tow.tank, table)
+    states = {name: progress(job) for name, job in jobs.items()}
+    out = []
+    for condition in tow.tank.matrix:
+        job = jobs.get(condition.name)
+        if job is None:
+            out.append(TowedRun(condition, JobState.WAITING, "no job of that name"))
+            continue
+        remarks = [r for name in job.needs if name in states for r in states[name].remarks]
+        now = states[condition.name]
+        out.append(towed_run(condition, now, jobs, job, _history(tow, job, now), remarks))
+    return tuple(out)
+
+
+def _history(tow: Tow, job: Job, now: Progressed) -> Run | None:
+    """The history up to where the plateau was recognised: how long the solver took to stop must not count."""
+    if now.state in (JobState.WAITING, JobState.CHANGED) or tow.solver.history is None:
+        return None
+    try:
+        with SOLVERS.guarded(tow.tank.solver):
+            found = tow.solver.history(job.folder)
+    except InputError:
+        if now.state.is_kept:
+            raise
+        return None
+    return _first_rows(found, now.plateau) if now.plateau else found
+
+
+def _first_rows(run: Run, rows: int) -> Run:
+    def cut(table: RawTable) -> RawTable:
+        columns = tuple(
+            replace(c, values=c.values[:rows], texts=c.texts[:rows]) for c in table.columns
+        )
+        return replace(table, columns=columns, lines=table.lines[:rows], row_labels=table.row_labels[:rows])
+
+    return replace(run, history=cut(run.history), patches={name: cut(t) for name, t in run.patches.items()})
+
+
+def _fitted(tow: Tow, campaign: Path) -> tuple[Study | None, dict[str, str], str]:
+    """The study of the campaign, why derivatives have no value, and why there is no study."""
+    usable, why = [], {}
+    tables = read_tables(table_at(campaign))
+    for table in tables:
+        rows = max((int(mask.sum()) for mask in table.usable.values()), default=0)
+        moving = [m for m in table.varies if m in "vwpqr"]
+        if rows >= FEWEST and moving:
+            usable.append(table.name.rpartition("/")[2])
+            continue
+        for m in moving:
+            said = f"{rows} usable run{'s' * (rows != 1)} over {m}', {FEWEST} needed"
+            why.update({s: said for s in SIX if s.endswith(m)})
+    planned = [campaign] if len(usable) == len(tables) else [campaign / f"{_file(name)}" for name in usable]
+    study, unfitted = None, ""
+    for fits in (DEFAULT_FITS, DEFAULT_FITS[:1]):
+        if not planned:
+            unfitted = f"no sweep has {FEWEST} usable runs"
+            break
+        plan = Plan(
+            name=tow.tank.name, title=tow.tank.title, tables=tuple(table_at(p, fits) for p in planned),
+            body=tow.tank.body, wanted=SIX,
+        )  # fmt: skip
+        try:
+            study = run(plan)
+            break
+        except CoeflabError as refused:
+            unfitted = str(refused)
+    given = {c.symbol for c in study.coefficients if c.value is not None} if study is not None else set()
+    by_symbol = {c.symbol: c for c in study.coefficients if c.value is None} if study is not None else {}
+    for s in SIX:
+        if s in given:
+            why.pop(s, None)
+        elif s not in why:
+            c = by_symbol.get(s)
+            why[s] = unfitted or ("no such sweep" if c is None else c.status.replace("_", " "))
+    return study, {s: why[s] for s in SIX if s in why}, "" if study is not None else unfitted
+
+
+def _file(table: str) -> str:
+    return table if table.endswith(".csv") else f"{table}.csv"
+
+
+def estimates(jobs: Sequence[Job]) -> tuple[float, float]:
+    """Core hours of all jobs, and bytes of the largest."""
+    return sum(j.seconds * j.cores for j in jobs) / 3600.0, max((j.memory for j in jobs), default=0.0)
