@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -22,6 +23,8 @@ from coeflab.tables.runs import find_runs
 
 Progress = Callable[[str], None]
 GENERAL = "table"  # any delimited text: those of one tool come first
+MATRIX = "matrix"  # in the column of studies: a row of none
+_CHANGES = re.compile(r"(\w+)\s*=\s*([^\s=]+)(?!\s*=)(?=\s|$)")
 OF_RUNS = ("names", "run_list", "state")
 
 
@@ -164,16 +167,16 @@ def with_declarations(
 
 
 def _variants(read: Cells, column: str) -> tuple[str, ...]:
-    """What a study changed in every row, as ``name = value``."""
+    """What a study changed in every row, as ``name = value``; several changes one after the other."""
     out = []
-    for row, text in enumerate(read.texts(column)):
-        name, sign, value = (part.strip() for part in text.partition("="))
-        if text.strip() and not (sign and value and "=" not in value and name in STUDIES):
+    for row, text in enumerate(map(str.strip, read.texts(column))):
+        pairs = [] if text in ("", MATRIX) else _CHANGES.findall(text)
+        if text not in ("", MATRIX) and (_CHANGES.sub("", text).strip() or any(n not in STUDIES for n, _ in pairs)):
             raise InputError(
-                shown(text), f"blank, or one change: {', '.join(f'{n} = ...' for n in STUDIES)}", file=read.file,
-                line=read.line(row), column=column,
+                shown(text), f"blank, {MATRIX}, or what a study changed: {', '.join(f'{n} = ...' for n in STUDIES)}",
+                file=read.file, line=read.line(row), column=column,
             )  # fmt: skip
-        out.append(Verbatim(f"{name} = {value}") if sign else "")
+        out.append(Verbatim(" ".join(f"{name} = {value}" for name, value in pairs)))
     return tuple(out)
 
 

@@ -29,7 +29,8 @@ CHANGED = (
     ("domain = 1.5", 700000, 18.622, 146.47, ""),
     ("turbulence = kEpsilon", 607541, 20.522, 145.47, ""),
     ("turbulence = SpalartAllmaras", 607541, 17.522, 146.97, ""),
-    ("iterations = 500", 607541, 18.022, 146.49, ""),
+    ("iterations=500", 607541, 18.022, 146.49, ""),
+    ("domain=1.5 turbulence=kEpsilon", 700000, 99.0, 999.0, ""),
 )
 
 
@@ -38,7 +39,7 @@ def campaign(folder: Path, changed: tuple[tuple[str, int, float, float, str], ..
     shutil.copytree(shipped("cfd_data") / "suboff_cfd_barehull", folder)
     table = folder / "drift.csv"
     head, *rows = table.read_text().splitlines()
-    rows = [f"{row},," for row in rows]
+    rows = [f"{row},{'matrix' if i % 2 else ''}," for i, row in enumerate(rows)]
     rows += [ROW.format(variant=v, cells=c, Y=y, N=n, doubtful=d) for v, c, y, n, d in changed]
     table.write_text("\n".join([f"{head},variant,uncertain", *rows]) + "\n")
     text = (folder / "campaign.toml").read_text()
@@ -74,7 +75,7 @@ def without(bare: tuple[ForceTable, ...]) -> tuple[FitResult, dict[str, Budget]]
 
 
 def half(used: float, *others: float, noise: float = 0.0) -> float:
-    return 2.0 / 3.0**0.5 * max(max(abs(o - used), noise) for o in others)
+    return float(2.0 / 3.0**0.5 * max(max(abs(o - used), noise) for o in others))
 
 
 def test_rows_of_studies_stay_out_of_the_fit_and_of_the_grid_study(
@@ -82,7 +83,7 @@ def test_rows_of_studies_stay_out_of_the_fit_and_of_the_grid_study(
 ) -> None:
     drift = tables[0]
     assert [e.reason for e in drift.exclusions if "study" in e.reason and e.row >= len(bare[0])] == [
-        f"study only: {v}" for v, *_ in CHANGED
+        f"study only: {v.replace(' = ', '=').replace('=', ' = ')}" for v, *_ in CHANGED
     ]
     assert not np.any(drift.usable["Y"][len(bare[0]) :])
     assert grid_studies(drift, "Y")[0].convergence == grid_studies(bare[0], "Y")[0].convergence
@@ -159,7 +160,9 @@ def test_another_grid_is_judged_for_the_domain_only(tmp_path: Path) -> None:
     assert [s.name for s in variant_studies(drift, "Y")] == ["domain size"]
 
 
-@pytest.mark.parametrize("text", ["kEpsilon", "model = kEpsilon", "domain =", "domain = 1.5 = 2"])
+@pytest.mark.parametrize(
+    "text", ["kEpsilon", "model = kEpsilon", "domain =", "domain = 1.5 = 2", "domain = very large"]
+)
 def test_a_change_of_no_known_study_is_refused_by_line(tmp_path: Path, text: str) -> None:
     folder = campaign(tmp_path / "c", ((text, 1000, 1.0, 1.0, ""),))
     with pytest.raises(InputError, match=r"domain = \.\.\., turbulence = \.\.\., iterations") as why:
@@ -170,10 +173,11 @@ def test_a_change_of_no_known_study_is_refused_by_line(tmp_path: Path, text: str
 
 def test_the_tables_name_what_was_changed(with_studies: tuple[FitResult, dict[str, Budget]]) -> None:
     shown = study_table(tuple(with_studies[1].values()))
-    assert [r[3] for r in shown.rows if r[3] == "in use" or r[3].startswith("turbulence")][1:4] == [
-        "in use",
-        "turbulence = kEpsilon",
-        "turbulence = SpalartAllmaras",
+    at = next(i for i, r in enumerate(shown.rows) if r[:2] == ("turbulence model", "Y"))
+    assert [r[3:6] for r in shown.rows[at : at + 3]] == [
+        ("in use", "18.522", "0.0 %"),
+        ("turbulence = kEpsilon", "20.522", "10.8 %"),
+        ("turbulence = SpalartAllmaras", "17.522", "5.4 %"),
     ]
     notes = " ".join(budget_table(with_studies[1]["Yv"]).notes)
     assert "turbulence model: 18.52 in use, kEpsilon 20.52, SpalartAllmaras 17.52" in notes

@@ -343,6 +343,7 @@ def _expansion(f: Array, h: Array, w: Array, orders: tuple[float, ...], free: bo
     return _Fit(float(coefficients[0]), deviation, on_grids, orders[0] if len(orders) == 1 else None, form)
 
 
+MANY = 3
 AT_REST = 1e-4  # of the largest motion in the table: rounding of a printed angle, not a motion
 
 
@@ -481,8 +482,9 @@ def variant_studies(table: ForceTable, component: str) -> tuple[VariantStudy, ..
 
 
 def _changed(table: ForceTable, row: int) -> str:
-    """Name of the study that a row belongs to; empty for one of the matrix itself."""
-    return table.variants[row].partition(" = ")[0] if table.variants else ""
+    """Name of the study that a row belongs to; ``several`` of one with several changes, empty for one of the matrix itself."""
+    names = table.variants[row].split(" = ") if table.variants else [""]
+    return names[0] if len(names) < MANY else "several"
 
 
 def _one_grid(table: ForceTable, a: int, b: int) -> bool:
