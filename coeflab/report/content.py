@@ -255,7 +255,7 @@ def _coefficients(study: Study) -> Section:
         "Its random part is what the scatter of single readings does, its form part the rest, joined as a root sum of squares. "
         "What single forms would have said stands under each coefficient, for comparison only.",
         "A part that was not assessed is shown by a dash and is not in U95; the budget of every coefficient names what is "
-        "missing. The turbulence model of a computation is never in it.",
+        "missing. The turbulence model of a computation is in it only where the campaign has a study of it.",
     )
     single = any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients)
     if single:
