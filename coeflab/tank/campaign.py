@@ -33,10 +33,11 @@ from coeflab.tank.towed_body import TowedBody
 
 RUNS = "runs.csv"
 HISTORY_ROWS = 200  # of the history of a run that the campaign keeps
-MATRIX = "matrix"  # in the column variant: a row of the matrix itself, not of a study
 CONVERGED = "converged"
+SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 REPORTED = {Half.WHOLE: tuple(COMPONENTS), Half.UPPER: ("X", "Y", "N"), Half.PORT: ("X", "Z", "M")}
-LABELS = ("kind", "grid", "variant", "half", "status")
+LABELS = ("kind", "grid", "half", "status")
+VARIANT = "variant"
 LONG_CONTROLS = {short: name for name, short in CONTROL_COLUMNS.items()}
 _QUARTER = {"v": ("w", 1.0), "w": ("v", -1.0), "q": ("r", 1.0), "r": ("q", -1.0),
             "Y": ("Z", 1.0), "Z": ("Y", -1.0), "M": ("N", 1.0), "N": ("M", -1.0)}  # fmt: skip
@@ -274,7 +275,8 @@ def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, lis
     heads += [f"{LONG_CONTROLS[c]} [rad]" for c in controls]
     heads += [f"{c} [{'N' if c in FORCES else 'N*m'}]" for c in components]
     heads += [f"se_{c} [{'N' if c in FORCES else 'N*m'}]" for c in with_errors]
-    heads += [*LABELS, *(["cells"] if has_cells else []), "iterations"]
+    varies = any(variant_of(r.condition) for r in group)
+    heads += [*LABELS, *([VARIANT] if varies else []), *(["cells"] if has_cells else []), "iterations"]
     heads += [f"{p} [{'N' if p[0] in FORCES else 'N*m'}]" for p in patches]
     heads.append("uncertain")
     out = io.StringIO()
@@ -290,7 +292,8 @@ def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, lis
         cells = [c.name, *(_exact(_motion(r, m)) for m in motions), *(_exact(c.controls.get(k, 0.0)) for k in controls)]
         cells += [_number(means.get(x)) if x in known else "" for x in components]
         cells += [_short(_error(r, x)) if x in known else "" for x in with_errors]
-        cells += [str(c.kind), c.grid, variant_of(c), str(c.half) or "whole", f"{r.status}"]
+        cells += [str(c.kind), c.grid, str(c.half) or "whole", r.status]
+        cells += [variant_of(c)] if varies else []
         cells += [_cells(r)] if has_cells else []
         cells.append("" if s is None or not math.isfinite(s.iterations) else f"{s.iterations:.10g}")
         cells += ["" if s is None or p not in s.patches else _number(s.patches[p][0]) for p in patches]
@@ -303,8 +306,8 @@ def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, lis
 
 
 def variant_of(condition: TowCondition) -> str:
-    """``matrix``, or what a study changes: ``domain=large``."""
-    return " ".join(f"{k}={v}" for k, v in condition.variant.items()) or MATRIX
+    """What a study changes, ``domain = 1.5``; empty for a condition of the matrix itself."""
+    return ", ".join(f"{k} = {v}" for k, v in condition.variant.items())
 
 
 def _motion(run: TowedRun, name: str) -> float:
@@ -344,15 +347,12 @@ def _declared(name: str, group: Sequence[TowedRun], names: Mapping[str, list[str
     if names["ignore"]:
         lines.append(f"ignore = {value(names['ignore'])}")
     if "cells" in names:
-        lines.append(f"{'cells = "cells"':<41} # of the grid, for the grid study")
-    chosen: dict[str, str] = {}
+        own = 'cells = "cells"'
+        lines.append(f"{own:<41} # of the grid, for the grid study")
+    if any(variant_of(r.condition) for r in group):
+        lines.append(f"variant = {quoted(VARIANT)}")
     if len({r.condition.grid for r in group}) > 1:
-        chosen["grid"] = "medium"
-    if len({variant_of(r.condition) for r in group}) > 1:
-        chosen["variant"] = MATRIX
-    if chosen:
-        what = " and ".join(f"the {k}s" if k != "variant" else "the studies" for k in chosen)
-        lines.append(f"select = {value({**chosen, 'reason': f'for {what} study' if len(chosen) == 1 else 'for studies'})}")
+        lines.append(f"select = {value({'grid': 'medium', 'reason': 'grid study only'})}")
     if origin:
         lines.append(f"# Not run: {origin}.")
     return "\n".join(lines)

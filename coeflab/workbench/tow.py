@@ -23,7 +23,7 @@ from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import Plan, Study
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.reading import read_tables
-from coeflab.tank.campaign import TowedRun, campaign_files, rows_of, towed_run
+from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
 from coeflab.tank.declaration import TankFile, declared_body, default_tank, default_text, read_tank
 from coeflab.tank.jobs import JOB, Job, JobState, Progressed, only_one, outstanding, progress, write_job
 from coeflab.tank.runners import RUNNERS
@@ -35,7 +35,6 @@ from coeflab.workbench import rendered, run
 KIND = "coeflab tow 1"
 PLAN, TANK, BODY = "tow.json", "tank.toml", "body/body.stl"
 CAMPAIGN, REPORT = "campaign", "report"
-SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 FEWEST = 3  # settings of a sweep: an intercept, a slope and an error
 Look = Callable[[], None]
 
@@ -261,7 +260,9 @@ def read_plan(folder: Path) -> dict[str, Any]:
     return content
 
 
-def reopened(folder: Path, matrix: Path | None = None, solver: str = "", runner: str = "") -> tuple[Tank, TowedBody, Path]:
+def reopened(
+    folder: Path, matrix: Path | None = None, solver: str = "", runner: str = ""
+) -> tuple[Tank, TowedBody, Path]:
     """Tank and body of a tow as its folder has them, and the tank.toml; a new one in its place where it is given.
 
     Raises
@@ -337,7 +338,11 @@ def _fate(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> Kept:
         return Kept(job.name, now.state, "run anew", _changed(tow, job, before))
     if now.state.is_kept:
         return Kept(job.name, now.state, f"kept, {now.state}")
-    at = f"goes on from what it wrote last, iteration {now.iteration:.0f} was reached" if now.iteration > 0 else "is begun again"
+    at = (
+        f"goes on from what it wrote last, iteration {now.iteration:.0f} was reached"
+        if now.iteration > 0
+        else "is begun again"
+    )
     return Kept(job.name, now.state, at, now.why)
 
 
@@ -428,7 +433,9 @@ def collected(tow: Tow, fitted: bool = True) -> Collected:
     if not fitted:
         return Collected(runs, files=written)
     if not files:
-        return Collected(runs, undetermined=dict.fromkeys(SIX, "no condition has forces"), unfitted="no condition has forces")
+        return Collected(
+            runs, undetermined=dict.fromkeys(SIX, "no condition has forces"), unfitted="no condition has forces"
+        )
     study, undetermined, unfitted = _fitted(tow, folder)
     if study is not None:
         report = rendered(study)
@@ -472,9 +479,7 @@ def _history(tow: Tow, job: Job, now: Progressed) -> Run | None:
 
 def _first_rows(run: Run, rows: int) -> Run:
     def cut(table: RawTable) -> RawTable:
-        columns = tuple(
-            replace(c, values=c.values[:rows], texts=c.texts[:rows]) for c in table.columns
-        )
+        columns = tuple(replace(c, values=c.values[:rows], texts=c.texts[:rows]) for c in table.columns)
         return replace(table, columns=columns, lines=table.lines[:rows], row_labels=table.row_labels[:rows])
 
     return replace(run, history=cut(run.history), patches={name: cut(t) for name, t in run.patches.items()})
