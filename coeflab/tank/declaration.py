@@ -178,7 +178,7 @@ class ControlKeys(Declaration):
     Attributes
     ----------
     name : str
-        Of the control as the body's file has it: rudder, stern_plane, bow_plane or dr, ds, db.
+        As the columns of a campaign: delta_r or dr (rudder), delta_s or ds (stern planes), delta_b or db (bow planes).
     angles : tuple of float
         Of the control.
     """

@@ -1,0 +1,2 @@
+"""x"""
+MADE, PLANNED = "mesh.json", "planned.json"
