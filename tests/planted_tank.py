@@ -97,7 +97,7 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
     meshes: dict[str, Job] = {}
     runs = []
     for c in tank.matrix:
-        name = f"mesh/{c.grid}_{ {'': 'whole', 'z<0': 'upper', 'y<0': 'port'}[str(c.half)]}"
+        name = f"mesh/{c.grid}_{ {'': 'whole', 'z<0': 'upper', 'y<0': 'port'}[str(c.half)] }"
         key = hashlib.sha256(f"{name} {len(body.faces)} {installed().version}".encode()).hexdigest()
         if name not in meshes:
             write_all(folder / name, {"size": f"{tank.grid(c.grid).size}\n".encode()})
@@ -130,7 +130,9 @@ def history(folder: Path) -> Run:
         for i, n in enumerate(head)
     )
     table = RawTable(path, columns, files=(path,))
-    hull = replace(table, columns=tuple(c if c.means == "iteration" else replace(c, values=0.9 * c.values) for c in columns))
+    hull = replace(
+        table, columns=tuple(c if c.means == "iteration" else replace(c, values=0.9 * c.values) for c in columns)
+    )
     cells = {"coarse": 2.3e4, "medium": 5e4, "fine": 1.1e5}[json.loads((folder / "case.json").read_text())["grid"]]
     return Run(folder, folder.name, table, {"cells": Stated(cells, "case.json")}, {"hull": hull} if body else {})
 

@@ -268,7 +268,9 @@ def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, lis
     controls = [c for c in dict.fromkeys(k for r in group for k in r.condition.controls) if c in LONG_CONTROLS]
     given = {c for r in group if r.summary for c in r.summary.means if c in REPORTED[r.condition.half]}
     components = [c for c in COMPONENTS if c in given]
-    with_errors = [c for c in components if any(_error(r, c) > 0.0 for r in group)]
+    with_errors = [
+        c for c in components if all(_error(r, c) > 0.0 for r in group if r.summary and c in r.summary.means)
+    ]
     patches = list(dict.fromkeys(p for r in group if r.summary for p in r.summary.patches if p[0] in components))
     has_cells = any(_cells(r) for r in group)
     heads = ["point", *(f"{m} [{'m/s' if m in LINEAR else 'rad/s'}]" for m in motions)]

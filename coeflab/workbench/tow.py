@@ -448,7 +448,7 @@ def _runs(tow: Tow) -> tuple[TowedRun, ...]:
     solver, jobs = tow.solver, tow.of
     if solver.table is not None:
         with SOLVERS.guarded(tow.tank.solver):
-            table: RawTable = solver.table(tow.tank, tow.body)
+            table: RawTable = solver.table(tow.tank, tow.body, tow.folder)
         return rows_of(tow.tank, table)
     states = {name: progress(job) for name, job in jobs.items()}
     out = []
