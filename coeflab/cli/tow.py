@@ -59,7 +59,7 @@ def command(
     """
     from coeflab.core.errors import InputError
     from coeflab.core.files import located, typed
-    from coeflab.workbench.tow import PLAN, has_begun
+    from coeflab.tank.folder import PLAN, has_begun
 
     modes = {"--dry-run": dry_run, "--continue": go_on, "--status": status, "--collect": collect}
     chosen = [name for name, on in modes.items() if on]
@@ -86,7 +86,7 @@ def command(
 
 def _folder(out: Path | None, body: str) -> Path:
     """The folder of a tow that is there."""
-    from coeflab.workbench.tow import PLAN, read_plan
+    from coeflab.tank.folder import PLAN, read_plan
 
     folder = out if out is not None else Path(RUNS) / Path(body).name if body else Path()
     if not (folder / PLAN).is_file() and body and out is None and Path(body).is_dir():
@@ -107,21 +107,22 @@ def _tow(
     json: bool, go_on: bool = True,
 ) -> None:  # fmt: skip
     """Lay out, and unless it is a dry run, carry out and collect."""
+    from coeflab.tank.folder import PLAN, has_begun, read_plan, refuse_other
     from coeflab.workbench import tow as tank_room
 
     with show.progress(json) as say:
         say("reading the body")
         own = matrix
-        if body is None and out is not None and (out / tank_room.PLAN).is_file():
+        if body is None and out is not None and (out / PLAN).is_file():
             tank, surface, own = tank_room.reopened(out, matrix, solver, runner)
         else:
             tank, surface = tank_room.read(body, matrix, solver, runner)
     folder = out if out is not None else Path(RUNS) / tank.name
     before: Mapping[str, Any] | None = None
-    if (folder / tank_room.PLAN).is_file():
-        tank_room.refuse_other(folder, tank)
-        before = tank_room.read_plan(folder)
-        if not go_on and not dry_run and tank_room.has_begun(folder):
+    if (folder / PLAN).is_file():
+        refuse_other(folder, tank)
+        before = read_plan(folder)
+        if not go_on and not dry_run and has_begun(folder):
             _refuse_begun(folder)
     with _place(folder, dry_run and out is None) as place:
         with show.progress(json) as say:
@@ -224,9 +225,10 @@ def _fates(tow: Tow, before: Mapping[str, Any] | None) -> None:
 
 def _carry_out(tow: Tow, before: Mapping[str, Any] | None, folder: Path, cores: int, json: bool) -> None:
     """Run what is not finished with a live table; then the answer. Ctrl-C leaves everything to go on from."""
+    from coeflab.tank.folder import has_begun
     from coeflab.workbench import tow as tank_room
 
-    if before is not None and not json and tank_room.has_begun(tow.folder):
+    if before is not None and not json and has_begun(tow.folder):
         _fates(tow, before)
     try:
         with _live(tow, json) as look:
@@ -257,10 +259,11 @@ def _live(tow: Tow, json: bool) -> Iterator[Any]:
     """
     from coeflab.core.errors import CoeflabError
     from coeflab.report.tables import tow as tables
+    from coeflab.tank.folder import read_plan
     from coeflab.tank.states import states_of, time_left
     from coeflab.workbench import tow as tank_room
 
-    shown = tables.shown_of(tank_room.read_plan(tow.folder))
+    shown = tables.shown_of(read_plan(tow.folder))
     said: dict[str, str] = {row.job.name: str(row.progress.state) for row in states_of(tow.folder)} if tow.jobs else {}
     trouble: list[str] = []
     last = [-REFRESH]
@@ -342,8 +345,8 @@ def _ended(row: JobRow, shown: Mapping[str, Any], rows: Sequence[JobRow]) -> str
 def _status(folder: Path, json: bool) -> None:
     """The states of a tow that another process may carry out."""
     from coeflab.report.tables import tow as tables
+    from coeflab.tank.folder import read_plan
     from coeflab.tank.states import states_of, time_left
-    from coeflab.workbench.tow import read_plan
 
     plan = read_plan(folder)
     if not plan["jobs"]:
@@ -384,8 +387,7 @@ def _collected_only(folder: Path, json: bool) -> None:
 
     with show.progress(json) as say:
         say("reading the tow")
-        tank, body, own = tank_room.reopened(folder)
-        tow = tank_room.laid_out(tank, body, folder, own)
+        tow = tank_room.opened(folder)
     show.step("fitting and drawing the report", json)
     _answer(tow, tank_room.collected(tow), folder, json)
 
@@ -396,7 +398,7 @@ def _answer(tow: Tow, made: Collected, folder: Path, json: bool) -> None:
     from coeflab.law.symbols import primed
     from coeflab.report.tables import tow as tables
     from coeflab.tank.campaign import SIX
-    from coeflab.workbench.tow import CAMPAIGN, REPORT
+    from coeflab.tank.folder import CAMPAIGN, REPORT
 
     waiting = [r for r in made.runs if r not in made.failed and not r.counts]
     if json:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -12,12 +10,11 @@ from typing import Any
 
 from coeflab.bodies.readers import read_body
 from coeflab.core.declarations import declared
-from coeflab.core.errors import CoeflabError, InputError, shown
-from coeflab.core.files import shipped, write_all, write_atomically
+from coeflab.core.errors import CoeflabError, InputError
+from coeflab.core.files import write_all, write_atomically
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief
-from coeflab.core.version import VERSION
 from coeflab.law.coefficient import Coefficient
 from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import Plan, Study
@@ -25,16 +22,25 @@ from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.reading import read_tables
 from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
 from coeflab.tank.declaration import TankFile, declared_body, default_tank, default_text, read_tank
-from coeflab.tank.jobs import JOB, Job, JobState, Progressed, only_one, outstanding, progress, write_job
+from coeflab.tank.folder import (
+    BODY,
+    CAMPAIGN,
+    PLAN,
+    REPORT,
+    TANK,
+    body_file,
+    forget,
+    plan_text,
+    read_plan,
+    refuse_other,
+)
+from coeflab.tank.jobs import Job, JobState, Progressed, only_one, outstanding, progress, read_job, write_job
 from coeflab.tank.runners import RUNNERS
 from coeflab.tank.solvers import SOLVERS, Installation, TowSolver
 from coeflab.tank.tank import Tank
 from coeflab.tank.towed_body import TowedBody, stl, towed
 from coeflab.workbench import rendered, run
 
-KIND = "coeflab tow 1"
-PLAN, TANK, BODY = "tow.json", "tank.toml", "body/body.stl"
-CAMPAIGN, REPORT = "campaign", "report"
 FEWEST = 3  # settings of a sweep: an intercept, a slope and an error
 Look = Callable[[], None]
 
@@ -204,60 +210,10 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
                 jobs = tuple(solver.jobs(tank, body, folder))
         for job in jobs:
             write_job(job)
-        _forget(folder, {job.folder for job in jobs})
+        forget(folder, {job.folder for job in jobs})
         tow = Tow(folder, tank, body, installed, jobs)
-        write_atomically(folder / PLAN, _plan(tow))
+        write_atomically(folder / PLAN, plan_text(folder, tank, body.body.name, installed.version, jobs))
     return tow
-
-
-def _plan(tow: Tow) -> bytes:
-    tank = tow.tank
-    content = {
-        "kind": KIND, "coeflab": VERSION, "name": tank.name, "title": tank.title, "body": tow.body.body.name,
-        "body_file": _portable(tank.body, tow.folder), "body_sha256": sha256_of(tank.body),
-        "surface_sha256": sha256_of(tow.folder / BODY), "solver": tank.solver, "version": tow.installed.version,
-        "runner": tank.runner, "cores": tank.cores, "jobs": {job.name: job.key for job in tow.jobs},
-        "conditions": [
-            {
-                "name": c.name, "kind": str(c.kind), "half": str(c.half), "grid": c.grid, "variant": dict(c.variant),
-                "velocity": c.velocity.tolist(), "rates": c.rates.tolist(), "controls": dict(c.controls),
-                # of one unit of a primed force and moment, for the table of runs
-                "units": [tank.scaling.unit(x, tank.conditions.density, c.speed) for x in ("Y", "N")],
-            }
-            for c in tank.matrix
-        ],
-    }  # fmt: skip
-    return (json.dumps(content, indent=1) + "\n").encode()
-
-
-def _portable(path: Path, folder: Path) -> str:
-    """A path that holds when folder and body are moved together; the name of a shipped body."""
-    inside = shipped("geometry").resolve()
-    if path.is_relative_to(inside):
-        return path.relative_to(inside).parts[0]
-    return Path(os.path.relpath(path, folder)).as_posix()
-
-
-def read_plan(folder: Path) -> dict[str, Any]:
-    """What ``tow.json`` says.
-
-    Raises
-    ------
-    InputError
-        No tow is in the folder, or one of another release.
-    """
-    path = folder / PLAN
-    advice = "`coeflab tow BODY --out FOLDER` begins one."
-    try:
-        content: dict[str, Any] = json.loads(path.read_bytes())
-        kind = content["kind"]
-    except OSError:
-        raise InputError("no tow", f"a folder with a {PLAN}", file=folder, advice=advice) from None
-    except (ValueError, KeyError, TypeError):
-        raise InputError("no plan of a tow", KIND, file=path, advice=advice) from None
-    if kind != KIND:
-        raise InputError(shown(kind), KIND, file=path, key="kind", advice="Tow it with the release that began it.")
-    return content
 
 
 def reopened(
@@ -271,51 +227,22 @@ def reopened(
         No tow is in the folder, or its files do not do any more.
     """
     plan = read_plan(folder)
-    named = plan["body_file"]
-    inside = shipped("geometry") / named
-    file = inside if "/" not in named and inside.is_dir() else folder / named
     own = matrix if matrix is not None else folder / TANK
-    tank, body = read(Path(os.path.normpath(file)), own, solver or plan["solver"], runner or plan["runner"])
+    tank, body = read(body_file(folder, plan), own, solver or plan["solver"], runner or plan["runner"])
     return tank, body, own
 
 
-def refuse_other(folder: Path, tank: Tank) -> None:
-    """Refuse a folder that holds another tow, or what is none.
+def opened(folder: Path) -> Tow:
+    """A tow as its folder has it; nothing is written, so that another process may carry it out meanwhile.
 
     Raises
     ------
     InputError
-        With what is there.
+        No tow is in the folder, or its files do not do any more.
     """
-    if not folder.exists():
-        return
-    if not folder.is_dir():
-        raise InputError("a file", "a folder", file=folder, column="--out")
-    if not (folder / PLAN).exists():
-        own = {TANK, BODY.partition("/")[0], ".lock", CAMPAIGN}
-        if any(p.name not in own for p in folder.iterdir()):
-            raise InputError(f"a folder without {PLAN}, which is not empty", "a new folder, or one of a tow", file=folder,
-                             advice="Name another --out.")  # fmt: skip
-        return
-    there = read_plan(folder)
-    for key, what in (("name", tank.name), ("solver", tank.solver)):
-        if there[key] != what:
-            raise InputError(f"the tow of {there['name']} by {there['solver']}", f"that of {tank.name} by {tank.solver}",
-                             file=folder, advice="Name another --out: a folder holds one tow.")  # fmt: skip
-
-
-def _forget(folder: Path, own: set[Path]) -> None:
-    """Take jobs that are not in the matrix any more out of the plan; what they computed stays, and counts again with them."""
-    for job in sorted(folder.glob(f"*/{JOB}")) + sorted(folder.glob(f"mesh/*/{JOB}")):
-        if job.parent not in own:
-            job.unlink()
-
-
-def has_begun(folder: Path) -> bool:
-    """Whether some job of the folder was started."""
-    from coeflab.tank.jobs import STATE
-
-    return any(folder.glob(f"*/{STATE}")) or any(folder.glob(f"mesh/*/{STATE}"))
+    tank, body, _ = reopened(folder)
+    jobs = tuple(read_job(folder / name) for name in read_plan(folder)["jobs"])
+    return Tow(folder.absolute(), tank, body, SOLVERS.load(tank.solver).installed(), jobs)
 
 
 def kept(tow: Tow, before: Mapping[str, Any] | None = None) -> tuple[Kept, ...]:
