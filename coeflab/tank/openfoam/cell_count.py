@@ -94,7 +94,9 @@ def _in_regions(level: int, sizes: MeshSizes) -> Iterator[Keys]:
     for region in sizes.regions:
         if region.level > level:
             first = np.maximum(np.ceil((region.low - sizes.low) / edges - 0.5), 0.0).astype(int)
-            last = np.minimum(np.floor((region.high - sizes.low) / edges - 0.5) + 1.0, sizes.counts * 2**level).astype(int)
+            last = np.minimum(np.floor((region.high - sizes.low) / edges - 0.5) + 1.0, sizes.counts * 2**level).astype(
+                int
+            )
             if np.all(last > first):
                 grid = np.meshgrid(*map(np.arange, first, last), indexing="ij")
                 yield _packed(np.stack([axis.ravel() for axis in grid], axis=1))

@@ -16,11 +16,13 @@ from coeflab.core.types import Array
 from coeflab.tank.jobs import Job, Step
 from coeflab.tank.openfoam import rendered, step
 from coeflab.tank.openfoam.cell_count import BETWEEN_LEVELS, cell_count
-from coeflab.tank.openfoam.mesh_made import MADE, PLANNED
+from coeflab.tank.openfoam.mesh_made import MADE, PLANNED, expected_cells, mesh_ended
 from coeflab.tank.openfoam.mesh_sizes import GROWTH, LAST_LAYER, SYMMETRY_AXIS, MeshKeys, MeshSizes, mesh_sizes
 from coeflab.tank.tank import Grid, Tank
 from coeflab.tank.test_matrix import Half
 from coeflab.tank.towed_body import TowedBody, stl
+
+__all__ = ["CUT", "FAR", "expected_cells", "mesh_ended", "mesh_job", "mesh_name"]
 
 FAR, CUT = "far", "cut"  # patches beside those of the body; the cut is a symmetryPlane
 GEOMETRY = "constant/triSurface"

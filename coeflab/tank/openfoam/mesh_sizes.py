@@ -196,7 +196,9 @@ def mesh_sizes(
     levels = {name: _level(body, name, points, base, below, keys, patches) for name, points in patches.items()}
     regions = (*_hull_regions(body, hull, edge, below), *_appendage_regions(body, patches, levels, below))
     low, high = body.vertices.min(0), body.vertices.max(0)
-    margin = domain * length * np.array([[keys.behind, keys.beside, keys.beside], [keys.ahead, keys.beside, keys.beside]])
+    margin = (
+        domain * length * np.array([[keys.behind, keys.beside, keys.beside], [keys.ahead, keys.beside, keys.beside]])
+    )
     low, high = np.floor((low - margin[0]) / base) * base, np.ceil((high + margin[1]) / base) * base
     if half is not Half.WHOLE:
         high[SYMMETRY_AXIS[half]] = 0.0
@@ -206,7 +208,9 @@ def mesh_sizes(
         counts=np.maximum(np.rint((high - low) / (size * base)), 1),
         levels=levels,
         regions=regions,
-        layers={name: made for name in patches if (made := _layers(body, name, base / 2 ** levels[name], keys, conditions))},
+        layers={
+            name: made for name in patches if (made := _layers(body, name, base / 2 ** levels[name], keys, conditions))
+        },
         inside=low + (high - low) * np.array([0.9713, 0.0387, 0.0431]),
     )
 
@@ -214,7 +218,9 @@ def mesh_sizes(
 def _usable(body: TowedBody, half: Half, keys: MeshKeys, conditions: Conditions) -> None:
     for patch in keys.cells:
         if patch not in body.patches:
-            raise InputError(f"cells of a patch {shown(patch)}", f"one of {', '.join(body.patches)}", key=f"cells.{patch}")
+            raise InputError(
+                f"cells of a patch {shown(patch)}", f"one of {', '.join(body.patches)}", key=f"cells.{patch}"
+            )
     if keys.wall != "none" and conditions.viscosity is None:
         raise InputError("no viscosity", "one, for the thickness of the layers", key="conditions.viscosity")
     if half is not Half.WHOLE and not body.mirrors[SYMMETRY_AXIS[half]]:
@@ -302,7 +308,9 @@ def _pieces(body: TowedBody, patch: str) -> Iterator[Array]:
     names, local = np.unique(faces, return_inverse=True)
     local = local.reshape(faces.shape)
     rows, columns = local[:, [0, 1]].ravel(), local[:, [1, 2]].ravel()
-    count, piece = connected_components(coo_array((np.ones(len(rows)), (rows, columns)), (len(names), len(names))), False)
+    count, piece = connected_components(
+        coo_array((np.ones(len(rows)), (rows, columns)), (len(names), len(names))), False
+    )
     for k in range(count):
         yield body.vertices[names[piece == k]]
 
