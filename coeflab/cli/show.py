@@ -64,6 +64,15 @@ def table(content: Table) -> None:
         _plain(content)
 
 
+def folded(content: Table) -> None:
+    """A table whose notes are folded to 80 columns."""
+    import textwrap
+    from dataclasses import replace
+
+    notes = (line for note in content.notes for line in textwrap.wrap(note, 77, subsequent_indent="  "))
+    table(replace(content, notes=tuple(notes)))
+
+
 def _visible(content: Table) -> Table:
     from dataclasses import replace
 
