@@ -129,7 +129,9 @@ def _tow(
             say("writing the cases")
             tow = tank_room.laid_out(tank, surface, place, own)
         if dry_run:
-            _dry(tow, before, None if place != folder else folder, cores, json)
+            asked = [*([str(body)] if body else []), *(["--matrix", str(matrix)] if matrix else [])]
+            asked += ["--solver", solver] if solver else []
+            _dry(tow, before, asked, None if place != folder else folder, cores, json)
             return
     _carry_out(tow, before, folder, cores, json)
 
@@ -143,7 +145,9 @@ def _place(folder: Path, temporary: bool) -> Iterator[Path]:
         yield Path(made)
 
 
-def _dry(tow: Tow, before: Mapping[str, Any] | None, folder: Path | None, cores: int, json: bool) -> None:
+def _dry(
+    tow: Tow, before: Mapping[str, Any] | None, asked: Sequence[str], folder: Path | None, cores: int, json: bool
+) -> None:
     """What the tow is expected to take, and what to install."""
     from coeflab.core.machine import cores as machine_cores
     from coeflab.core.machine import physical_memory
@@ -190,7 +194,7 @@ def _dry(tow: Tow, before: Mapping[str, Any] | None, folder: Path | None, cores:
         _fates(tow, before)
     if folder is None:
         show.sentence("Nothing was kept; add --out DIR to look at the cases.")
-        show.text(f"Next: coeflab tow {shlex.quote(tow.body.body.name)} --out {RUNS}/{tow.tank.name}")
+        show.text(f"Next: {shlex.join(['coeflab', 'tow', *asked])} --out {RUNS}/{tow.tank.name}")
     else:
         show.text(f"Cases in {folder}")
         show.text(f"Next: coeflab tow {shlex.quote(str(folder))}" + " --continue" * (before is not None))
@@ -394,57 +398,50 @@ def _collected_only(folder: Path, json: bool) -> None:
 
 def _answer(tow: Tow, made: Collected, folder: Path, json: bool) -> None:
     """The six derivatives first, then the conditions, the files and the next command; exit code 1 where one did not converge."""
-    from coeflab.core.table import Table, with_u95
-    from coeflab.law.symbols import primed
     from coeflab.report.tables import tow as tables
-    from coeflab.tank.campaign import SIX
     from coeflab.tank.folder import CAMPAIGN, REPORT
 
-    waiting = [r for r in made.runs if r not in made.failed and not r.counts]
     if json:
-        show.json_object({
-            "name": tow.tank.name, "solver": tow.tank.solver, "version": tow.installed.version,
-            "six": {
-                f"{s}'": {"value": c.value, "u95": c.u95, "status": str(c.status)} if (c := made.six.get(s)) is not None
-                else {"value": None, "u95": None, "status": made.undetermined.get(s, "")}
-                for s in SIX
-            },
-            "conditions": [{"name": r.condition.name, "state": r.status, "why": r.why or None} for r in made.runs],
-            "unfitted": made.unfitted or None, "files": [str(p) for p in made.files],
-        })  # fmt: skip
+        show.json_object(_as_json(tow, made))
     else:
-        rows = []
-        for s in SIX:
-            c = made.six.get(s)
-            value, u95 = with_u95(c.value, c.u95) if c is not None else ("not determined", "")
-            said = "" if c is None else "" if c.status == "ok" else str(c.status).replace("_", " ")
-            why = said or made.undetermined.get(s, "") if c is None else said
-            rows.append((primed(s), value, u95, why[:44]))
-        about = ", ".join(f"{x:.4g}" for x in tow.tank.reference_point)
-        show.table(Table(
-            f"{tow.tank.title}"[:79], ("", "value", "U95", ""), tuple(rows),
-            (f"About ({about}) m from the {tow.tank.datum.id}, primed by {tow.tank.scaling}.",), frozenset({0, 3}),
-        ))  # fmt: skip
-        if made.unfitted:
-            show.sentence(f"Not fitted: {made.unfitted}")
-        good = sum(r.counts for r in made.runs)
-        parts = [f"{good} of {len(made.runs)} conditions converged"]
-        states = [r.status for r in made.failed]
-        parts += [f"{states.count(s)} {s}" for s in dict.fromkeys(states)]
-        parts += [f"{len(waiting)} not run"] if waiting else []
-        show.sentence(", ".join(parts) + ".")
-        for r in made.runs:
-            for remark in r.remarks[:1]:
-                show.sentence(f"  {r.condition.name}: {remark}")
-        show.table(tables.ended([r for r in made.runs if not r.counts]))
-        show.text(f"Campaign: {folder / CAMPAIGN}")
-        pages = [p for p in made.files if p.suffix == ".html"]
-        if pages:
-            show.text(f"Report:   {folder / REPORT / pages[0].name}")
-        place = shlex.quote(str(folder))
-        next_ = (
-            f"coeflab tow {place} --continue" if waiting or made.failed else f"coeflab fit {place}/{CAMPAIGN} --next 3"
-        )
-        show.text(f"Next: {next_}")
-    if made.failed or waiting:
+        show.table(tables.six(tow.tank, made.six, made.unfitted))
+        show.sentence(tables.outcome(made.runs))
+        for remark, names in tables.remarks(made.runs).items():
+            show.sentence(f"  {remark} ({names})")
+        show.table(tables.ended(made.runs))
+        if made.files:
+            show.text(f"Campaign: {folder / CAMPAIGN}")
+        for page in (p for p in made.files if p.suffix == ".html"):
+            show.text(f"Report:   {folder / REPORT / page.name}")
+        show.sentence(f"Next: {_next(tow, made, folder)}")
+    if not all(r.counts for r in made.runs):
         raise typer.Exit(1)
+
+
+def _as_json(tow: Tow, made: Collected) -> dict[str, Any]:
+    six = {}
+    for r in made.six:
+        status = r.missing if r.coefficient is None else str(r.coefficient.status)
+        six[f"{r.symbol}'"] = {"value": r.value, "u95": r.u95, "status": status, "why": r.why or None}
+    return {
+        "name": tow.tank.name, "solver": tow.tank.solver, "version": tow.installed.version, "six": six,
+        "conditions": [{"name": r.condition.name, "state": r.status, "why": r.why or None} for r in made.runs],
+        "unfitted": made.unfitted or None, "files": [str(p) for p in made.files],
+    }  # fmt: skip
+
+
+def _next(tow: Tow, made: Collected, folder: Path) -> str:
+    """What to type, or to mend first."""
+    from coeflab.tank.folder import CAMPAIGN, TANK
+    from coeflab.tank.jobs import JobState
+
+    place = shlex.quote(str(folder))
+    states = {r.state for r in made.runs if not r.counts}
+    if tow.solver.table is not None and states:
+        where = tow.tank.options.get("table") or folder / "external" / "forces.csv"
+        return f"fill in {where}, then coeflab tow {place} --collect"
+    if states - {JobState.UNCONVERGED, JobState.DIVERGED, JobState.FINISHED}:
+        return f"coeflab tow {place} --continue"
+    if JobState.UNCONVERGED in states:
+        return f"allow more iterations in {folder / TANK}, then coeflab tow {place} --continue"
+    return f"coeflab fit {place}/{CAMPAIGN} --next 3"

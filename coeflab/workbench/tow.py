@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
+
+import numpy as np
 
 from coeflab.bodies.readers import read_body
 from coeflab.core.declarations import declared
@@ -15,9 +16,10 @@ from coeflab.core.files import write_all, write_atomically
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief
-from coeflab.law.coefficient import Coefficient
 from coeflab.study.plan import DEFAULT_FITS, table_at
-from coeflab.study.study import Plan, Study
+from coeflab.study.study import Plan, PlannedTow, Study
+from coeflab.study.towed import TowedRow
+from coeflab.study.towed import towed as compared
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.reading import read_tables
 from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
@@ -34,7 +36,18 @@ from coeflab.tank.folder import (
     read_plan,
     refuse_other,
 )
-from coeflab.tank.jobs import Job, JobState, Progressed, only_one, outstanding, progress, read_job, write_job
+from coeflab.tank.job import until
+from coeflab.tank.jobs import (
+    Job,
+    JobState,
+    Progressed,
+    only_one,
+    outstanding,
+    progress,
+    read_job,
+    write_job,
+    write_progress,
+)
 from coeflab.tank.runners import RUNNERS
 from coeflab.tank.solvers import SOLVERS, Installation, TowSolver
 from coeflab.tank.tank import Tank
@@ -111,8 +124,6 @@ class Collected:
         Every condition of the matrix.
     study : Study or None
         Fits of the campaign; None where nothing can be fitted.
-    undetermined : mapping of str to str
-        Derivatives of the six that have no value, and why.
     unfitted : str
         Why there is no study.
     files : tuple of Path
@@ -121,27 +132,20 @@ class Collected:
 
     runs: tuple[TowedRun, ...]
     study: Study | None = None
-    undetermined: Mapping[str, str] = field(default_factory=dict)
     unfitted: str = ""
     files: tuple[Path, ...] = ()
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "undetermined", MappingProxyType(dict(self.undetermined)))
-
     @property
-    def six(self) -> dict[str, Coefficient]:
-        """The slopes at the origin that have a value."""
-        known = self.study.coefficients if self.study is not None else ()
-        return {s: c for s in SIX for c in known if c.symbol == s and c.value is not None and _is_slope(c)}
+    def six(self) -> tuple[TowedRow, ...]:
+        """Every one of the six derivatives, one without a value with its reason."""
+        if self.study is None:
+            return tuple(TowedRow(s, None, None, "open", self.unfitted, ()) for s in SIX)
+        return compared(self.study)[0].rows
 
     @property
     def failed(self) -> tuple[TowedRun, ...]:
         """Conditions that were run and do not count."""
         return tuple(r for r in self.runs if not r.counts and r.state is not JobState.WAITING)
-
-
-def _is_slope(c: Coefficient) -> bool:
-    return c.origin == "fit" and not c.law
 
 
 def read(body: Path | None, matrix: Path | None, solver: str = "", runner: str = "") -> tuple[Tank, TowedBody]:
@@ -263,6 +267,9 @@ def _fate(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> Kept:
         return Kept(job.name, now.state, "to be run")
     if now.state is JobState.CHANGED:
         return Kept(job.name, now.state, "run anew", _changed(tow, job, before))
+    if _may_go_on(job, now):
+        what = f"goes on from iteration {now.iteration:.0f} to {job.iterations:.0f} at most"
+        return Kept(job.name, JobState.STOPPED, what, "more iterations are allowed")
     if now.state.is_kept:
         return Kept(job.name, now.state, f"kept, {now.state}")
     at = (
@@ -271,6 +278,11 @@ def _fate(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> Kept:
         else "is begun again"
     )
     return Kept(job.name, now.state, at, now.why)
+
+
+def _may_go_on(job: Job, now: Progressed) -> bool:
+    """Whether a run that ended without a plateau has iterations left, because more are allowed now."""
+    return now.state is JobState.UNCONVERGED and job.iterations > now.iteration
 
 
 def _changed(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> str:
@@ -305,6 +317,10 @@ def carried_out(tow: Tow, cores: int, look: Look) -> None:
     CoeflabError
         The runner cannot work.
     """
+    for job in tow.jobs:
+        now = progress(job)
+        if _may_go_on(job, now):
+            write_progress(job.folder, replace(now, state=JobState.STOPPED, why="more iterations are allowed"))
     jobs = outstanding(tow.jobs)
     if not jobs:
         return
@@ -359,16 +375,15 @@ def collected(tow: Tow, fitted: bool = True) -> Collected:
     written = tuple(folder / name for name in files)
     if not fitted:
         return Collected(runs, files=written)
-    if not files:
-        return Collected(
-            runs, undetermined=dict.fromkeys(SIX, "no condition has forces"), unfitted="no condition has forces"
-        )
-    study, undetermined, unfitted = _fitted(tow, folder)
-    if study is not None:
-        report = rendered(study)
-        write_all(tow.folder / REPORT, report)
-        written += tuple(tow.folder / REPORT / name for name in report)
-    return Collected(runs, study, undetermined, unfitted, written)
+    if not files or not _has_a_sweep(folder):
+        return Collected(runs, files=written, unfitted=f"no sweep has {FEWEST} runs that count")
+    try:
+        study = _study(tow, folder)
+    except CoeflabError as why:  # the campaign stands, whatever a fit makes of it
+        return Collected(runs, files=written, unfitted=str(why))
+    report = rendered(study)
+    write_all(tow.folder / REPORT, report)
+    return Collected(runs, study, files=(*written, *(tow.folder / REPORT / name for name in report)))
 
 
 def _runs(tow: Tow) -> tuple[TowedRun, ...]:
@@ -401,60 +416,27 @@ def _history(tow: Tow, job: Job, now: Progressed) -> Run | None:
         if now.state.is_kept:
             raise
         return None
-    return _first_rows(found, now.plateau) if now.plateau else found
+    return until(found, now.plateau) if now.plateau else found
 
 
-def _first_rows(run: Run, rows: int) -> Run:
-    def cut(table: RawTable) -> RawTable:
-        columns = tuple(replace(c, values=c.values[:rows], texts=c.texts[:rows]) for c in table.columns)
-        return replace(table, columns=columns, lines=table.lines[:rows], row_labels=table.row_labels[:rows])
+def _study(tow: Tow, campaign: Path) -> Study:
+    """The six derivatives as far as the campaign gives them: a table with too few runs is left out and named.
 
-    return replace(run, history=cut(run.history), patches={name: cut(t) for name, t in run.patches.items()})
+    Raises
+    ------
+    InputError
+        No table has runs enough.
+    """
+    tank = tow.tank
+    planned = PlannedTow(tank.title, tow.body.body.name, tank.name, added=campaign)
+    return run(
+        Plan(
+            name=tank.name, title=tank.title, tables=(table_at(campaign, DEFAULT_FITS),), scaling=tank.scaling,
+            conditions=tank.conditions, body=tank.body, wanted=SIX, tows=(planned,),
+        )
+    )  # fmt: skip
 
 
-def _fitted(tow: Tow, campaign: Path) -> tuple[Study | None, dict[str, str], str]:
-    """The study of the campaign, why derivatives have no value, and why there is no study."""
-    usable, why = [], {}
+def _has_a_sweep(campaign: Path) -> bool:
     tables = read_tables(table_at(campaign))
-    for table in tables:
-        rows = max((int(mask.sum()) for mask in table.usable.values()), default=0)
-        moving = [m for m in table.varies if m in "vwpqr"]
-        if rows >= FEWEST and moving:
-            usable.append(table.name.rpartition("/")[2])
-            continue
-        for m in moving:
-            said = f"{rows} usable run{'s' * (rows != 1)} over {m}', {FEWEST} needed"
-            why.update({s: said for s in SIX if s.endswith(m)})
-    planned = [campaign] if len(usable) == len(tables) else [campaign / f"{_file(name)}" for name in usable]
-    study, unfitted = None, ""
-    for fits in (DEFAULT_FITS, DEFAULT_FITS[:1]):
-        if not planned:
-            unfitted = f"no sweep has {FEWEST} usable runs"
-            break
-        plan = Plan(
-            name=tow.tank.name, title=tow.tank.title, tables=tuple(table_at(p, fits) for p in planned),
-            body=tow.tank.body, wanted=SIX,
-        )  # fmt: skip
-        try:
-            study = run(plan)
-            break
-        except CoeflabError as refused:
-            unfitted = str(refused)
-    given = {c.symbol for c in study.coefficients if c.value is not None} if study is not None else set()
-    by_symbol = {c.symbol: c for c in study.coefficients if c.value is None} if study is not None else {}
-    for s in SIX:
-        if s in given:
-            why.pop(s, None)
-        elif s not in why:
-            c = by_symbol.get(s)
-            why[s] = unfitted or ("no such sweep" if c is None else c.status.replace("_", " "))
-    return study, {s: why[s] for s in SIX if s in why}, "" if study is not None else unfitted
-
-
-def _file(table: str) -> str:
-    return table if table.endswith(".csv") else f"{table}.csv"
-
-
-def estimates(jobs: Sequence[Job]) -> tuple[float, float]:
-    """Core hours of all jobs, and bytes of the largest."""
-    return sum(j.seconds * j.cores for j in jobs) / 3600.0, max((j.memory for j in jobs), default=0.0)
+    return any(len(np.unique(t.setting[mask])) >= FEWEST for t in tables for mask in t.usable.values())

@@ -5,22 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coeflab.core.table import ABSENT, Table
+from coeflab.core.table import ABSENT, Table, with_u95
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
-from coeflab.law.symbols import ANGULAR, LINEAR
+from coeflab.law.coefficient import Status
+from coeflab.law.symbols import ANGULAR, LINEAR, primed
 from coeflab.report.printable import shortened
+from coeflab.tables.conditions import named
 from coeflab.tank.campaign import TowedRun
 from coeflab.tank.jobs import Job, JobState
 from coeflab.tank.states import JobRow
 from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import TowCondition
 
-NAME, MOTION = 20, 17  # letters
+if TYPE_CHECKING:
+    from coeflab.study.towed import TowedRow
+
+NAME, MOTION, LONGEST = 20, 17, 44  # letters
 SMALL = 5e-4  # of a thousandth of a primed unit: less is nothing in the table
 # What a person looks for first, where not all rows fit.
 FIRST = (
@@ -169,6 +174,38 @@ def counted(rows: Sequence[JobRow]) -> str:
     parts = [f"{own.count(JobState.FINISHED)} of {len(own)} finished"]
     parts += [f"{own.count(s)} {s}" for s in FIRST if s not in (JobState.FINISHED, JobState.WAITING) and s in own]
     return ", ".join(parts)
+
+
+def six(tank: Tank, rows: Sequence[TowedRow], unfitted: str = "") -> Table:
+    """The answer: six derivatives with U95, one without a value with its reason."""
+    cells = []
+    for r in rows:
+        if r.coefficient is None:
+            cells.append((primed(r.symbol), r.missing, "", "" if unfitted else shortened(r.why, LONGEST)))
+            continue
+        status = "" if r.coefficient.status is Status.OK else r.coefficient.status.replace("_", " ")
+        said = "; ".join(filter(None, (status, r.why)))
+        cells.append((primed(r.symbol), *with_u95(r.value, r.u95), shortened(said, LONGEST)))
+    about = ", ".join(f"{x:.4g}" for x in tank.reference_point)
+    notes = [f"About ({about}) m from the {tank.datum.id}, primed by {tank.scaling}."]
+    notes += [f"Not fitted: {unfitted}."] if unfitted else []
+    return Table(shortened(tank.title, 79), ("", "value", "U95", ""), tuple(cells), tuple(notes), frozenset({0, 3}))
+
+
+def outcome(runs: Sequence[TowedRun]) -> str:
+    """How many conditions converged, and what became of the others."""
+    bad = [r.status for r in runs if not r.counts]
+    parts = [f"{len(runs) - len(bad)} of {len(runs)} conditions converged"]
+    return ", ".join([*parts, *(f"{bad.count(s)} {s}" for s in dict.fromkeys(bad))]) + "."
+
+
+def remarks(runs: Sequence[TowedRun]) -> dict[str, str]:
+    """What is to be known of finished runs and their meshes: each remark once, with the conditions it is of."""
+    out: dict[str, list[str]] = {}
+    for r in runs:
+        for remark in r.remarks:
+            out.setdefault(remark, []).append(r.condition.name)
+    return {remark: "all conditions" if len(names) == len(runs) > 1 else named(names) for remark, names in out.items()}
 
 
 def ended(runs: Sequence[TowedRun]) -> Table:
