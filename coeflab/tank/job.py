@@ -323,7 +323,10 @@ class _Attempt:
     def _last_words(self, code: int) -> str:
         """What shows a crash: a full disk, else the last line of the log."""
         log = self.job.folder / f"log.{self.now.step}"
-        how = f"exit code {code}" if code > 0 else f"ended by {signal.Signals(-code).name}"
+        number = -code if code < 0 else code - 128  # a shell and mpirun add 128 to the number of a signal
+        by = signal.Signals(number).name if number in set(signal.Signals) else ""
+        how = f"ended by {by}" if by else f"exit code {code}"
+        how += ", as by a system without memory" * (by == "SIGKILL")
         with suppress(OSError):
             if disk_is_full(self.job.folder):
                 return f"the disk is full ({self.now.step}: {how})"
@@ -354,12 +357,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("folder", type=Path, help="folder of the job")
     parser.add_argument("--alone", action="store_true", help="no other machine carries it out, whatever its state says")
     parser.add_argument(
-        "--parent", type=int, default=0, metavar="PID", help="stop when that process, the parent, is gone"
+        "--end-with", type=int, default=0, metavar="PID", help="stop when that process, the parent, is gone"
     )
     parser.add_argument("--nice", type=int, default=0, metavar="N", help="lower the priority by so much")
     given = parser.parse_args(arguments)
-    if given.parent:
-        ends_with(given.parent)()
+    if given.end_with:
+        ends_with(given.end_with)()
     if given.nice:
         os.nice(given.nice)
     try:

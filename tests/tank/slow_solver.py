@@ -11,6 +11,8 @@ import math
 import os
 import sys
 import time
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 summary = "a slow synthetic solver for tests"
@@ -36,7 +38,7 @@ def program() -> None:
             if case["fails"] == "crash" and i == case["at"]:
                 sys.exit("solving for p\nFATAL: no matrix")
             if case["fails"] == "kill" and i == case["at"]:
-                os.abort()
+                os.kill(os.getpid(), 9)
             y, n = row(i)
             y *= 10.0 ** (i - case["at"]) if case["fails"] == "diverge" and i > case["at"] else 1.0
             history.write(f"{i},{y!r},{n!r}\n")
@@ -61,6 +63,41 @@ def prepared(
     job = Job(name, folder / name, "slow", steps, needs, cores, seconds=1.0, key=key, iterations=400.0)
     write_job(job)
     return job
+
+
+def rows(folder: Path) -> int:
+    """Rows that the history has."""
+    path = folder / HISTORY
+    return len(path.read_text().splitlines()) if path.exists() else 0
+
+
+def wait(for_what: Callable[[], object], seconds: float = 20.0) -> None:
+    """Until it is so."""
+    end = time.monotonic() + seconds
+    while not for_what():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.01)
+
+
+def solvers_in(folder: Path) -> list[int]:
+    """Living processes whose working folder this is."""
+    out = []
+    for entry in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            state = (entry / "stat").read_text().rpartition(")")[2].split()[0]
+            if state not in "ZX" and (entry / "cwd").resolve() == folder.resolve():
+                out.append(int(entry.name))
+    return out
+
+
+def environment(folder: Path) -> dict[str, str]:
+    """Variables with which this is a plugin of an installed package, whose metadata are written into the folder."""
+    info = folder / "slow-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: slow\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(f"[coeflab.tow_solvers]\nslow = {__name__}\n")
+    root = Path(__file__).parents[2]
+    return {"PYTHONPATH": f"{folder}{os.pathsep}{root}", "OPENBLAS_NUM_THREADS": "1"}
 
 
 COMMAND = (sys.executable, "-S", "-E", __file__)

@@ -78,7 +78,7 @@ def carry_out(jobs: Sequence[Job], folder: Path, options: Local, look: Callable[
                 running.remove((job, process))
                 if process.returncode == REFUSED:
                     refused.append(_said(job))
-                if progress(job).state is not JobState.FINISHED:
+                if process.returncode == REFUSED or progress(job).state is not JobState.FINISHED:
                     failed.add(job.name)
             waiting = list(_possible(waiting, failed))
             full = bool(waiting) and disk_is_full(folder)
@@ -123,7 +123,7 @@ def _begun(job: Job, nice: int) -> subprocess.Popen[bytes]:
         "-m",
         "coeflab.tank.job",
         str(job.folder),
-        "--parent",
+        "--end-with",
         str(os.getpid()),
         "--nice",
         str(nice),
