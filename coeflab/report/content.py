@@ -29,7 +29,7 @@ from coeflab.report.document import Document, Section, digest_of, reproduction
 from coeflab.report.figures.svg import settings
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.body import added_mass_sections, body_sections
-from coeflab.report.sections.campaign import anchor, budget_sections, campaign_section, filled
+from coeflab.report.sections.campaign import anchor, budget_sections, campaign_section, filled, tow_sections
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.data_quality import quality_sections
 from coeflab.report.sections.parameter_file import export_sections, in_words, manoeuvre_sections, stability_sections
@@ -38,7 +38,6 @@ from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.study.study import Study
-from coeflab.study.towed import towed
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.reference import Comparison, Relation
 
@@ -127,7 +126,7 @@ def _document(study: Study) -> Document:
     sections = (
         verdict(study),
         *_comparison(study),
-        *_tows(study),
+        *tow_sections(study),
         _coefficients(study),
         *_models(study),
         *_laws(study),
@@ -307,20 +306,6 @@ def _comparison(study: Study) -> tuple[Section, ...]:
             )
     shown = filled(tables.side_by_side(study), tables.differences(study), tables.verdicts(study))
     return (Section("comparison", "Comparison with published values", tuple(text), shown),)
-
-
-def _tows(study: Study) -> tuple[Section, ...]:
-    found = towed(study)
-    if not found:
-        return ()
-    text = (
-        "Every wanted coefficient of each body that our own computations tow, a missing one with its reason; grid: its share of "
-        "the value by the grid study, which U95 holds.",
-        "E = S - D against U_V, ASME V&V 20. A verdict needs tests of the very body at steady angles: against another body, or "
-        "against derivatives of an oscillation (PMM), E and U_V are given and no verdict.",
-    )
-    tables_of = (t for one in found for t in (tables.own_tow(one), tables.tow_against(one)))
-    return (Section("own-tows", "Own tows", text, filled(*tables_of)),)
 
 
 def _checks(study: Study) -> Section:

@@ -233,9 +233,10 @@ def _left_out(study: Study, campaign: str, symbol: str) -> str:
         if component not in t.forces:
             continue
         moving = [int(i) for i in np.flatnonzero(_moving(t, variable)) if not (t.variants and t.variants[i])]
+        apart = {e.row for e in t.exclusions if not e.status and e.component in ("", component)}  # of other grids
         own = {e.row: e.status for e in t.exclusions if e.status and e.component in ("", component)}
-        runs += len(moving)
-        states.update(own[i] for i in moving if i in own)
+        states.update(own[i] for i in moving if i in own and i not in apart)
+        runs += sum(i not in apart for i in moving)
     said = ", ".join(f"{n} {state}" for state, n in sorted(states.items()))
     return f"{states.total()} of {runs} runs with {variable} left out: {said}" if states else ""
 

@@ -35,6 +35,7 @@ from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.study import Study
+from coeflab.study.towed import towed
 from coeflab.study.validation import validations
 from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.vehicle.derived import centre_of_pressure, stability
@@ -280,6 +281,21 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         for i, b in enumerate(wanted)
     )
     return (Section("budget", "Uncertainty budget", text, _filled(tables), subsections=parts),)
+
+
+def tow_sections(study: Study) -> tuple[Section, ...]:
+    """Bodies that our own computations tow, or none where the plan names none."""
+    found = towed(study)
+    if not found:
+        return ()
+    text = (
+        "Every wanted coefficient of each body that our own computations tow, a missing one with its reason; grid: its share of "
+        "the value by the grid study, which U95 holds.",
+        "E = S - D against U_V, ASME V&V 20. A verdict needs tests of the very body at steady angles: against another body, or "
+        "against derivatives of an oscillation (PMM), E and U_V are given and no verdict.",
+    )
+    each = (t for one in found for t in (tables.own_tow(one), tables.tow_against(one)))
+    return (Section("own-tows", "Own tows", text, _filled(tuple(each))),)
 
 
 def _filled(tables: tuple[Table, ...]) -> tuple[Table, ...]:
