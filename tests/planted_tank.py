@@ -10,9 +10,11 @@ import hashlib
 import json
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -20,8 +22,10 @@ from coeflab.core.declarations import Declaration, Pure, Texts
 from coeflab.core.files import write_all
 from coeflab.law.symbols import COMPONENTS, FORCES
 from coeflab.tables.raw_table import RawColumn, RawTable, Run, Stated
-from coeflab.tank.jobs import Job, Step
-from coeflab.tank.solvers import Installation
+from coeflab.tank import job
+from coeflab.tank.jobs import Job, JobState, Step, progress, read_job
+from coeflab.tank.runners import RUNNERS
+from coeflab.tank.solvers import SOLVERS, Installation
 from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import TowCondition
 from coeflab.tank.towed_body import TowedBody
@@ -43,7 +47,7 @@ with there.open("a") as stream:
         print(",".join(["iteration", *said["forces"]]), file=stream)
     for i in range(max(len(rows), 1), said["iterations"] + 1):
         noise = (i * 7919 % 1009) / 1009 - 0.5
-        drift = 0.004 * i if said["restless"] else math.exp(-i / 6)
+        drift = 0.004 * i if said["restless"] else math.exp(-i / 3)
         print(",".join([str(i), *(repr(f * (1 + drift + 1e-3 * noise)) for f in said["forces"].values())]), file=stream, flush=True)
         if pathlib.Path("stop").exists():
             break
@@ -65,7 +69,7 @@ class Planted(Declaration):
         Of the solver; "" for one that is not installed.
     """
 
-    iterations: Pure = 200.0
+    iterations: Pure = 160.0
     pace: Pure = 0.0
     crashes: Texts = ()
     restless: Texts = ()
@@ -108,7 +112,7 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
             "crashes": c.name in given.crashes, "restless": c.name in given.restless, "grid": c.grid,
         }  # fmt: skip
         own = json.dumps(case).encode()
-        slower = {k: x for k, x in case.items() if k not in ("pace", "crashes")}
+        slower = {k: x for k, x in case.items() if k not in ("pace", "crashes", "iterations")}
         write_all(folder / c.name, {"case.json": own, "solver.py": SOLVER.encode()})
         solver = Step("solver", (sys.executable, "-S", "-E", "solver.py"), watched=True)
         digest = hashlib.sha256(f"{json.dumps(slower)} {key}".encode()).hexdigest()
@@ -152,10 +156,47 @@ def resumed(job: Job) -> tuple[tuple[Step, ...], float]:
     return tuple(s for s in job.steps if s.watched), float(at)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Nothing(Declaration):
+    """``[runner.here]``."""
+
+
+def carry_out_here(jobs: Sequence[Job], folder: Path, options: Declaration, look: Callable[[], None]) -> None:
+    """One after the other, in this process."""
+    for one in jobs:
+        if all(progress(read_job(folder / name)).state is JobState.FINISHED for name in one.needs):
+            job.carry_out(one.folder)
+        look()
+
+
+HERE = SimpleNamespace(
+    __name__="here", summary="one job after the other, in this process", citations=(), options=Nothing,
+    carry_out=carry_out_here,
+)  # fmt: skip
+
+
+@contextmanager
+def planted_here(folder: Path) -> Iterator[None]:
+    """This process finds the solver, and a runner ``here``."""
+    planted(folder)
+    sys.path.insert(0, str(folder))
+    for registry in (SOLVERS, RUNNERS):
+        registry.__dict__.pop("_claims", None)
+    try:
+        yield
+    finally:
+        sys.path.remove(str(folder))
+        for registry in (SOLVERS, RUNNERS):
+            registry.__dict__.pop("_claims", None)
+
+
 def planted(folder: Path, environment: Mapping[str, str] = os.environ) -> dict[str, str]:
     """The environment in which coeflab finds this solver; its files go into the folder."""
     info = folder / "planted_tank-1.0.dist-info"
     info.mkdir(parents=True)
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: planted-tank\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text("[coeflab.tow_solvers]\nplanted = tests.planted_tank\n")
+    points = (
+        "[coeflab.tow_solvers]\nplanted = tests.planted_tank\n[coeflab.tow_runners]\nhere = tests.planted_tank:HERE\n"
+    )
+    (info / "entry_points.txt").write_text(points)
     return {**environment, "PYTHONPATH": os.pathsep.join([str(folder), str(ROOT)])}

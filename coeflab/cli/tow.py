@@ -319,6 +319,8 @@ def _live(tow: Tow, json: bool) -> Iterator[Any]:
                 live.update(Text("\n".join(visible(line) for line in lines), no_wrap=True), refresh=True)
 
             yield draw
+    if tow.jobs:
+        rows_now()
     for line in trouble:
         show.error(f"error: {line}")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import Plan, PlannedTow, Study
 from coeflab.study.towed import TowedRow
 from coeflab.study.towed import towed as compared
+from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.reading import read_tables
 from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
@@ -140,12 +141,22 @@ class Collected:
         """Every one of the six derivatives, one without a value with its reason."""
         if self.study is None:
             return tuple(TowedRow(s, None, None, "open", self.unfitted, ()) for s in SIX)
-        return compared(self.study)[0].rows
+        tables = self.study.tables
+        return tuple(_with_count(row, tables) for row in compared(self.study)[0].rows)
 
     @property
     def failed(self) -> tuple[TowedRun, ...]:
         """Conditions that were run and do not count."""
         return tuple(r for r in self.runs if not r.counts and r.state is not JobState.WAITING)
+
+
+def _with_count(row: TowedRow, tables: Sequence[ForceTable]) -> TowedRow:
+    """A derivative without a value with the number of runs that count, where these are too few for a fit."""
+    own = [t for t in tables if row.symbol[1] in t.varies]
+    if row.coefficient is not None or not own:
+        return row
+    runs = sum(max((len(np.unique(t.setting[mask])) for mask in t.usable.values()), default=0) for t in own)
+    return row if runs >= FEWEST else replace(row, why=f"{runs} runs with {row.symbol[1]} count, {FEWEST} are needed")
 
 
 def read(body: Path | None, matrix: Path | None, solver: str = "", runner: str = "") -> tuple[Tank, TowedBody]:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from coeflab.study.towed import TowedRow
 
 NAME, MOTION, LONGEST = 20, 17, 44  # letters
-SMALL = 5e-4  # of a thousandth of a primed unit: less is nothing in the table
+LEAST = 1e-4  # of a thousandth of a primed unit
 # What a person looks for first, where not all rows fit.
 FIRST = (
     JobState.RUNNING, JobState.CRASHED, JobState.DIVERGED, JobState.STOPPED, JobState.UNCONVERGED, JobState.CHANGED,
@@ -153,11 +153,12 @@ def _state(row: JobRow, shown: Shown | None) -> tuple[str, ...]:
 
 
 def _with_error(value: float, error: float) -> str:
-    """``-2.318+-0.012``: the error to two digits, at most four decimals."""
+    """``-2.318+-0.012``: the error to two digits and at most four decimals, not below the last of these."""
     if not math.isfinite(error):
-        return f"{value:.3f}"
-    places = 4 if error < SMALL else min(max(1 - math.floor(math.log10(error)), 0), 4)
-    return f"{value:.{places}f}+-{error:.{places}f}"
+        return f"{value + 0.0:.3f}"
+    error = max(error, LEAST)
+    places = min(max(1 - math.floor(math.log10(error)), 0), 4)
+    return f"{round(value, places) + 0.0:.{places}f}+-{error:.{places}f}"
 
 
 def reasons(rows: Sequence[JobRow]) -> tuple[str, ...]:
