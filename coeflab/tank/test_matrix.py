@@ -15,6 +15,7 @@ import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief, locked
+from coeflab.tables.campaign import FOURFOLD, PORT_STARBOARD, UP_DOWN
 from coeflab.tank.towed_body import TowedBody
 
 # Sizes of drift and attack, deg. Small ones carry the slope at the origin, large ones show how it bends.
@@ -23,7 +24,6 @@ ONE_SIDE, BOTH_SIDES = (2.0, 4.0, 6.0, 8.0, 10.0, 12.0), (2.0, 4.0, 8.0, 12.0)
 # incidence grows along the body, and beyond it the ends separate before the middle sees a rate at all.
 ONE_TURN, BOTH_TURNS = (1 / 6, 1 / 3, 1 / 2, 2 / 3, 5 / 6, 1.0), (1 / 6, 1 / 3, 2 / 3, 1.0)
 LARGEST_RATE = 0.5  # r'; half of it and less, three rates at least, is what oscillation tests reach
-PORT_STARBOARD, UP_DOWN, FOURFOLD = "port-starboard", "up-down", "fourfold"
 KEEPS = {"dr": UP_DOWN, "ds": PORT_STARBOARD, "db": PORT_STARBOARD}  # mirror that a deflected pair of controls leaves
 EXACT = 1e-9  # smaller components of a motion are rounding
 
