@@ -141,6 +141,9 @@ def _placed(
             advice = "" if known else "Add [[control]] to its body.toml: which parts turn about which hinge."
             raise InputError(f"no control {shown(name)} of {body.name}", f"one of {', '.join(known) or 'none'}",
                              advice=advice)  # fmt: skip
+    for name, angle in controls.items():
+        if not abs(angle) <= np.pi / 2.0:
+            raise InputError(f"{name} at {angle:g} rad", "an angle within 90 deg", advice="A bare number is in rad.")
     shape = body.require_shape()
     pieces = body.pieces
     if body.mesh is not None:  # what the parts stand for
@@ -213,6 +216,11 @@ def _patches(
     chords: dict[str, list[float]] = {}
     for k, (piece, surface) in enumerate(zip(pieces, surfaces, strict=True)):
         own = which == k
+        if not np.any(own):
+            raise InputError(
+                f"the part {shown(piece.name)}, nothing of which meets the water", "parts that reach out of the others",
+                advice="Delete it, or move it.",
+            )  # fmt: skip
         label[own], found = _labelled(piece, surface, middles[own])
         for name, chord in found.items():
             chords.setdefault(name, []).append(chord)

@@ -183,6 +183,16 @@ def test_what_encloses_nothing_cannot_be_towed(name: str, found: str) -> None:
         towed(whole, whole.reference_point)
 
 
+def test_a_control_by_degrees_in_place_of_radians(planes: Body) -> None:
+    with pytest.raises(InputError, match="10 rad"):
+        towed(planes, planes.reference_point, {"dr": 10.0}, FEW)
+
+
+def test_a_part_that_the_hull_hides(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="nothing of which meets the water"):
+        written(tmp_path, SPHEROID.replace("tip = 0.15", "tip = 0.04", 1))
+
+
 def test_too_few_triangles() -> None:
     with pytest.raises(InputError, match="64 a part"):
         towed(body("finned_spheroid"), np.zeros(3), panels=100)
