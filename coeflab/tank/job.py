@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 GRACE, KILL = 60.0, 10.0  # s in which a solver has to write and end when it is asked to, and to end when it is made to
 NOTICE, BEAT = 0.2, 5.0  # s until a signal is noticed, and between signs of life
-EARLIEST, LATEST, SHARE = 2.0, 60.0, 50.0  # s between two looks at the history, and times as long as one takes
+EARLIEST, LATEST, SHARE = 2.0, 60.0, 50.0  # s between two looks at the history; times what one takes of a core
 FIRST, SPACING, LEAST = (
     50,
     1.1,
@@ -144,6 +144,7 @@ class _Attempt:
         )  # fmt: skip
         self.solver: TowSolver | None = None
         self.verdict: Verdict | None = None
+        self.took = 0.0  # s of this process for the last look
         self.looked = 0  # rows at which a plateau was looked for last
         self.pace: tuple[float, float] | None = None  # time and iteration of the first look
         self.killed = ""  # what is to be said of a solver that did not end by itself
@@ -213,7 +214,7 @@ class _Attempt:
         """Wait for the end of a step, give signs of life, and look at the history of a solver."""
         begun = time.monotonic()
         if step.watched:
-            self._plugin()  # while the solver starts, too
+            self._plugin()  # imported while the solver starts, too
         beat, look = begun + NOTICE, begun + EARLIEST
         while True:
             with suppress(subprocess.TimeoutExpired):
@@ -228,19 +229,18 @@ class _Attempt:
                 self._look()
                 if self.verdict is not None and (self.verdict.settled or self.verdict.diverged):
                     return self._stop(step, process)
-                took = time.monotonic() - now
-                look = now + took + min(max(SHARE * took, EARLIEST), LATEST)
+                look = time.monotonic() + min(max(SHARE * self.took, EARLIEST), LATEST)
 
     def _look(self) -> None:
         """Read the history and look for a plateau at the lengths that it has reached since the last look."""
         history = self._plugin().history
         if history is None:
             return
-        try:
+        begun = time.process_time()
+        with suppress(InputError, OSError):  # nothing written yet, or half a line
             run = history(self.job.folder)
-        except (InputError, OSError):  # nothing written yet, or half a line
-            return
-        self._judge(run, [n for n in lengths(len(run.history)) if n > self.looked])
+            self._judge(run, [n for n in lengths(len(run.history)) if n > self.looked])
+        self.took = time.process_time() - begun
 
     def _judge(self, run: Run, rows: Sequence[int]) -> None:
         from coeflab.tank.plateau import on_plateau
@@ -303,7 +303,8 @@ class _Attempt:
         if self.verdict is not None and self.verdict.diverged:
             state, why = JobState.DIVERGED, self.verdict.why
         elif code or (reason and not self.killed):
-            state, why = JobState.CRASHED, "; ".join(filter(None, (reason, self._last_words(code) if code else "")))
+            state = JobState.DIVERGED if _signal_of(code) == "SIGFPE" else JobState.CRASHED
+            why = "; ".join(filter(None, (reason, self._last_words(code) if code else "")))
         elif watched and not self.now.plateau:
             state, why = JobState.UNCONVERGED, self.now.why or "no history of forces"
         self._say(state=state, left=nan, why=why, remarks=tuple(remarks))
@@ -323,8 +324,7 @@ class _Attempt:
     def _last_words(self, code: int) -> str:
         """What shows a crash: a full disk, else the last line of the log."""
         log = self.job.folder / f"log.{self.now.step}"
-        number = -code if code < 0 else code - 128  # a shell and mpirun add 128 to the number of a signal
-        by = signal.Signals(number).name if number in set(signal.Signals) else ""
+        by = _signal_of(code)
         how = f"ended by {by}" if by else f"exit code {code}"
         how += ", as by a system without memory" * (by == "SIGKILL")
         with suppress(OSError):
@@ -335,6 +335,12 @@ class _Attempt:
             if number:
                 return f"{self.now.step}: {how}; {log.name}:{number}: {shown(lines[number - 1].strip())}"
         return f"{self.now.step}: {how}"
+
+
+def _signal_of(code: int) -> str:
+    """Name of the signal that ended a program; a shell and mpirun add 128 to its number."""
+    number = -code if code < 0 else code - 128
+    return signal.Signals(number).name if number in set(signal.Signals) else ""
 
 
 def disk_is_full(folder: Path) -> bool:

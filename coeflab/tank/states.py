@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, nan
@@ -10,6 +9,7 @@ from pathlib import Path
 
 from coeflab.core.errors import InputError
 from coeflab.core.types import brief
+from coeflab.core.wording import natural
 from coeflab.tank.jobs import JOB, Job, JobState, Progressed, progress, read_job
 
 FAILED = (JobState.CRASHED, JobState.DIVERGED, JobState.UNCONVERGED)  # of a mesh: nothing can be run on it
@@ -48,7 +48,7 @@ def states_of(folder: Path) -> tuple[JobRow, ...]:
     InputError
         No job is there, or a job.json or state.json is none.
     """
-    jobs = sorted((read_job(path.parent) for path in _found(folder)), key=lambda j: (bool(j.needs), _natural(j.name)))
+    jobs = sorted((read_job(path.parent) for path in _found(folder)), key=lambda j: (bool(j.needs), natural(j.name)))
     if not jobs:
         raise InputError(
             "no jobs", "the folder of a tow", file=folder, advice="`coeflab tow BODY --out FOLDER` begins one."
@@ -110,7 +110,3 @@ def _found(folder: Path) -> Iterator[Path]:
     """``mesh/NAME`` and ``CONDITION``: nothing deeper, for cases have thousands of files."""
     yield from folder.glob(f"*/{JOB}")
     yield from folder.glob(f"*/*/{JOB}")
-
-
-def _natural(name: str) -> tuple[tuple[int, float, str], ...]:
-    return tuple((0, float(p), p) if p.isdigit() else (1, 0.0, p) for p in re.split(r"(\d{1,15})", name) if p)

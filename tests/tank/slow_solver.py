@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import signal
 import sys
 import time
 from collections.abc import Callable
@@ -18,6 +19,7 @@ from pathlib import Path
 summary = "a slow synthetic solver for tests"
 citations = ("synthetic",)
 HISTORY, FIELDS, ASKED, CASE = "forces.csv", "fields", "stop", "case.json"
+ENDS = {"kill": signal.SIGKILL, "zero": signal.SIGFPE}  # of a system without memory; of a division by zero
 USUAL = {"iterations": 400, "pause": 0.0, "fields": 50, "fails": "", "at": 60, "deaf": False}
 
 
@@ -37,8 +39,8 @@ def program() -> None:
         for i in range(first + 1, case["iterations"] + 1):
             if case["fails"] == "crash" and i == case["at"]:
                 sys.exit("solving for p\nFATAL: no matrix")
-            if case["fails"] == "kill" and i == case["at"]:
-                os.kill(os.getpid(), 9)
+            if case["fails"] in ENDS and i == case["at"]:
+                os.kill(os.getpid(), ENDS[case["fails"]])
             y, n = row(i)
             y *= 10.0 ** (i - case["at"]) if case["fails"] == "diverge" and i > case["at"] else 1.0
             history.write(f"{i},{y!r},{n!r}\n")
