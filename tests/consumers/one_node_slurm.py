@@ -51,6 +51,7 @@ SlurmdTimeout=60
 SlurmctldTimeout=60
 KillWait=2
 BatchStartTimeout=1
+MessageTimeout=3
 MinJobAge=300
 NodeName={node} NodeHostname={host} NodeAddr=127.0.0.1 Port={daemon} Sockets=1 CoresPerSocket=2 ThreadsPerCore=1 RealMemory=1000 State=UNKNOWN
 PartitionName=towing Nodes={node} Default=YES MaxTime=INFINITE State=UP
@@ -76,6 +77,7 @@ class OneNodeSlurm:
 
     folder: Path
     daemons: dict[str, subprocess.Popen[bytes]] = field(default_factory=dict)
+    node: str = NODE
 
     @property
     def configuration(self) -> Path:

@@ -63,8 +63,8 @@ Whole = Annotated[int, takes.Takes("a whole number above zero", _whole, {"type":
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options(Declaration):
-    """``[runner.slurm]``: jobs of a cluster.
+class Slurm(Declaration):
+    """Jobs of a cluster.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ class Options(Declaration):
             raise InputError(found, expected, column="notice")
 
 
-options = Options
+options = Slurm
 
 
 class Attempt:
@@ -206,7 +206,7 @@ def _asked(*command: str) -> str:
     return done.stdout
 
 
-def carry_out(jobs: Sequence[Job], folder: Path, options: Declaration, look: Callable[[], None]) -> None:
+def carry_out(jobs: Sequence[Job], folder: Path, options: Slurm, look: Callable[[], None]) -> None:
     """Give the jobs to Slurm, those of an earlier call that are still in its queue left there, and wait for their end.
 
     Parameters
@@ -214,7 +214,7 @@ def carry_out(jobs: Sequence[Job], folder: Path, options: Declaration, look: Cal
     jobs : sequence of Job
     folder : Path
         Of the tow.
-    options : Options
+    options : Slurm
     look : callable
 
     Raises
@@ -224,8 +224,6 @@ def carry_out(jobs: Sequence[Job], folder: Path, options: Declaration, look: Cal
     CoeflabError
         Slurm does not answer any more.
     """
-    if not isinstance(options, Options):
-        raise TypeError(options)
     _there()
     kept = folder / ".runner" / LEFT
     queue, keys = _left(kept, folder)
@@ -285,9 +283,7 @@ def arrays(jobs: Sequence[Job]) -> list[list[Job]]:
     return list(groups.values())
 
 
-def _submitted(
-    group: Sequence[Job], before: Sequence[str], name: str, folder: Path, options: Options
-) -> dict[str, str]:
+def _submitted(group: Sequence[Job], before: Sequence[str], name: str, folder: Path, options: Slurm) -> dict[str, str]:
     """Give a group to Slurm, behind the jobs of those ids; the ids of its own.
 
     Raises
