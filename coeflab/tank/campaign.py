@@ -22,7 +22,7 @@ from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import one_line
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, FORCES, LINEAR, MOTIONS
-from coeflab.tables.campaign import FILE
+from coeflab.tables.campaign import FILE, FOURFOLD
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.runs import RunSummary, natural, summarised
@@ -174,7 +174,7 @@ def campaign_files(
         Without a table where no condition has a mean.
     """
     groups = _grouped(runs)
-    turned = _by_fourfold_symmetry(groups) if body.fourfold else {}
+    turned = _by_fourfold_symmetry(groups) if FOURFOLD in tank.symmetry else {}
     files: dict[str, bytes] = {}
     declared: list[str] = []
     for name, group in {**groups, **turned}.items():
@@ -356,7 +356,8 @@ def _declared(name: str, group: Sequence[TowedRun], names: Mapping[str, list[str
     if len({r.condition.grid for r in group}) > 1:
         lines.append(f"select = {value({'grid': 'medium', 'reason': 'grid study only'})}")
     if origin:
-        lines.append(f"# Not run: {origin}.")
+        source = f"by_symmetry = {quoted(f'{_SOURCES[name]}.csv')}"
+        lines.append(f"{source:<41} # turned by 90 deg about x: stated, not run")
     return "\n".join(lines)
 
 
@@ -381,7 +382,7 @@ def _campaign_text(
     )
     sections: dict[str, dict[str, Any]] = {
         "campaign": {
-            "name": tank.name, "title": tank.title, "body": body.body.name,
+            "name": tank.name, "title": tank.title, "body": body.body.name, "symmetry": list(tank.symmetry) or None,
             "notes": " ".join([f"{finished} of {len(runs)} conditions converged.", *(f"By symmetry: {s}." for s in stated)]),
         },
         "axes": {
