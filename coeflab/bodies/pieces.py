@@ -11,9 +11,11 @@ from functools import partial
 from typing import Annotated
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import dense_meridian, meshed, revolved, rings
+from coeflab.bodies.mesh.source import MeshSource
 from coeflab.bodies.shape import Parts, Revolution, as_revolution
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
@@ -22,6 +24,7 @@ from coeflab.law.transforms import skew
 
 HULL, STERN = "hull", "stern"
 LONG = 3.0  # triangles of a hull of revolution over their width: it bends less along than around
+Regions = Callable[[Array], tuple[tuple[str, ...], NDArray[np.int64]]]
 Direction = Annotated[tuple[float, float, float], takes.numbers(3, "none", "a direction [x, y, z]")]
 
 
@@ -44,6 +47,9 @@ class Piece:
         Mean chord of an appendage, length of a hull, m.
     stern : float, optional
         Of a hull: where its run begins, x from the datum, m, FRD; what lies aft of it is a patch of its own.
+    regions : callable, optional
+        ``regions(points)``: names of patches within the piece, none if it is one, and which of them each of (n, 3) points of
+        its surface lies on, m, FRD, from the datum.
     """
 
     name: str
@@ -52,6 +58,7 @@ class Piece:
     area: float
     chord: float
     stern: float | None = None
+    regions: Regions | None = None
 
 
 def hull_piece(shape: Revolution, area: float, stern: float | None = None) -> Piece:
@@ -76,9 +83,9 @@ def _revolution(shape: Revolution, panels: int) -> TriangleMesh:
     return TriangleMesh(vertices + np.array([0.0, *shape.axis]), faces, shape.volume)
 
 
-def mesh_piece(mesh: TriangleMesh) -> Piece:
-    """A mesh as it is, called ``hull``."""
-    return Piece(HULL, HULL, lambda _panels: mesh, mesh.integrals.area, mesh.length)
+def mesh_piece(mesh: TriangleMesh, source: MeshSource) -> Piece:
+    """A mesh as it is, called ``hull``; solids that its file names are patches of their own."""
+    return Piece(HULL, HULL, lambda _panels: mesh, mesh.integrals.area, mesh.length, regions=source.solids)
 
 
 def part_pieces(shape: Parts, areas: Iterable[float]) -> tuple[Piece, ...]:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,22 +99,13 @@ def towed(
         A body without a closed surface: particulars only, plates without thickness; a control that the body does not have.
     """
     pieces, surfaces, from_file = _placed(body, controls, panels)
-    surfaces = [TriangleMesh(s.vertices - reference_point, s.faces) for s in surfaces]
-    vertices, faces, which = _tidied(*_united(body, surfaces))
+    origin = np.asarray(reference_point, dtype=float)
+    vertices, faces, which = _tidied(*_united(body, surfaces, origin))
     _require_closed(body, faces)
-    patches, patch = _patches(pieces, surfaces, vertices[faces].mean(axis=1), which, reference_point)
-    turns = [np.diag(np.where(np.arange(3) == k, -1.0, 1.0)) for k in range(3)]
-    x, y, z = (_same(surfaces, turn, from_file) for turn in turns)
-    return TowedBody(
-        body=body,
-        vertices=vertices,
-        faces=faces,
-        patches=patches,
-        patch=patch,
-        chord=_chords(pieces, patches),
-        mirrors=(x, y, z),
-        fourfold=_same(surfaces, QUARTER, from_file),
-    )
+    patches, patch, chord = _patches(pieces, surfaces, vertices[faces].mean(axis=1) + origin, which)
+    x, y, z = (_same(surfaces, origin, turn, from_file) for turn in MIRRORS)
+    fourfold = _same(surfaces, origin, QUARTER, from_file)
+    return TowedBody(body, vertices, faces, patches, patch, chord, (x, y, z), fourfold)
 
 
 def stl(towed: TowedBody) -> bytes:
@@ -135,6 +127,7 @@ def stl(towed: TowedBody) -> bytes:
     return "".join(out).encode()
 
 
+MIRRORS = tuple(np.diag(signs) for signs in ([-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]))
 QUARTER = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
@@ -148,11 +141,14 @@ def _placed(
             advice = "" if known else "Add [[control]] to its body.toml: which parts turn about which hinge."
             raise InputError(f"no control {shown(name)} of {body.name}", f"one of {', '.join(known) or 'none'}",
                              advice=advice)  # fmt: skip
+    for name, angle in controls.items():
+        if not abs(angle) <= np.pi / 2.0:
+            raise InputError(f"{name} at {angle:g} rad", "an angle within 90 deg", advice="A bare number is in rad.")
     shape = body.require_shape()
     pieces = body.pieces
     if body.mesh is not None:  # what the parts stand for
         shape, _ = body.mesh.read()
-        pieces = (mesh_piece(shape),)
+        pieces = (mesh_piece(shape, body.mesh),)
     if panels < FEWEST * len(pieces):
         raise InputError(f"{panels} triangles", f"{FEWEST * len(pieces)} at least, {FEWEST} a part", column="panels")
     share = np.sqrt([piece.area for piece in pieces])
@@ -168,11 +164,12 @@ def _placed(
     return pieces, surfaces, isinstance(shape, TriangleMesh) and shape.remade is None
 
 
-def _united(body: Body, surfaces: list[TriangleMesh]) -> tuple[Array, Faces, Index]:
+def _united(body: Body, surfaces: list[TriangleMesh], origin: Array) -> tuple[Array, Faces, Index]:
+    """Vertices from the origin, faces, and the piece that each face is of."""
     if len(surfaces) == 1:
-        return surfaces[0].vertices, surfaces[0].faces, np.zeros(len(surfaces[0].faces), dtype=np.int64)
+        return surfaces[0].vertices - origin, surfaces[0].faces, np.zeros(len(surfaces[0].faces), dtype=np.int64)
     try:
-        return united([(s.vertices, s.faces) for s in surfaces])
+        return united([(s.vertices - origin, s.faces) for s in surfaces])
     except ValueError as why:
         raise InputError(f"{body.name}: {why}", "parts of closed surfaces") from None
 
@@ -201,35 +198,58 @@ def _require_closed(body: Body, faces: Faces) -> None:
 
 
 def _patches(
-    pieces: tuple[Piece, ...], surfaces: list[TriangleMesh], middles: Array, which: Index, reference_point: Array
-) -> tuple[tuple[str, ...], Index]:
-    """Names of the patches that have faces, and the patch of each face."""
-    names = [WORD.sub("_", piece.patch) for piece in pieces]
-    label = np.array(names, dtype=object)[which]
+    pieces: tuple[Piece, ...], surfaces: list[TriangleMesh], middles: Array, which: Index
+) -> tuple[tuple[str, ...], Index, dict[str, float]]:
+    """Names of the patches that have faces, the patch of each face, and chords.
+
+    Parameters
+    ----------
+    pieces : tuple of Piece
+    surfaces : list of TriangleMesh
+        Theirs, from the datum.
+    middles : (m, 3) array
+        Of the faces, from the datum.
+    which : (m,) array of int
+        The piece of each face.
+    """
+    label = np.empty(len(which), dtype=object)
+    chords: dict[str, list[float]] = {}
     for k, (piece, surface) in enumerate(zip(pieces, surfaces, strict=True)):
-        if piece.stern is not None:
-            rings = np.unique(surface.vertices[:, 0])
-            begins = rings[np.argmin(np.abs(rings + reference_point[0] - piece.stern))]
-            label[(which == k) & (middles[:, 0] < begins)] = STERN
-    order = dict.fromkeys(n for name in names for n in ((name, STERN) if name == HULL else (name,)))
-    found = tuple(name for name in order if np.any(label == name))
-    number = {name: k for k, name in enumerate(found)}
-    return found, np.array([number[name] for name in label], dtype=np.int64)
+        own = which == k
+        if not np.any(own):
+            raise InputError(
+                f"the part {shown(piece.name)}, nothing of which meets the water", "parts that reach out of the others",
+                advice="Delete it, or move it.",
+            )  # fmt: skip
+        label[own], found = _labelled(piece, surface, middles[own])
+        for name, chord in found.items():
+            chords.setdefault(name, []).append(chord)
+    present = {name: k for k, name in enumerate(name for name in chords if np.any(label == name))}
+    patch = np.array([present[name] for name in label], dtype=np.int64)
+    return tuple(present), patch, {name: float(np.mean(chords[name])) for name in present}
 
 
-def _chords(pieces: tuple[Piece, ...], patches: tuple[str, ...]) -> dict[str, float]:
-    """Mean chord of the pieces of each patch; of hull and stern the hull's length."""
-    out: dict[str, float] = {}
-    for name in patches:
-        of = HULL if name == STERN else name
-        own = [piece.chord for piece in pieces if WORD.sub("_", piece.patch) == of]
-        out[name] = float(np.mean(own))
-    return out
+def _labelled(piece: Piece, surface: TriangleMesh, middles: Array) -> tuple[NDArray[Any], dict[str, float]]:
+    """The patch of each face of a piece, and chords by patch: of a named region its extent along x."""
+    names, region = piece.regions(middles) if piece.regions else ((), np.zeros(0, dtype=np.int64))
+    if names:
+        words = [WORD.sub("_", name) for name in names]
+        extents = (float(np.ptp(middles[region == k, 0])) for k in range(len(names)))
+        chord = {w: piece.chord if w in (HULL, STERN) else e for w, e in zip(words, extents, strict=True)}
+        return np.array(words, dtype=object)[region], chord
+    word = WORD.sub("_", piece.patch)
+    label = np.full(len(middles), word, dtype=object)
+    if piece.stern is None:
+        return label, {word: piece.chord}
+    rings = np.unique(surface.vertices[:, 0])
+    label[middles[:, 0] < rings[np.argmin(np.abs(rings - piece.stern))]] = STERN
+    return label, {word: piece.chord, STERN: piece.chord}
 
 
-def _same(surfaces: list[TriangleMesh], turn: Array, from_file: bool) -> bool:
+def _same(surfaces: list[TriangleMesh], origin: Array, turn: Array, from_file: bool) -> bool:
     """Whether a mirror or a turn through the origin leaves the pieces as they are, one for another."""
-    return all(any(_like(s, other, turn, from_file) for other in surfaces) for s in surfaces)
+    about = [TriangleMesh(s.vertices - origin, s.faces) for s in surfaces]
+    return all(any(_like(s, other, turn, from_file) for other in about) for s in about)
 
 
 def _like(one: TriangleMesh, other: TriangleMesh, turn: Array, from_file: bool) -> bool:

@@ -77,11 +77,23 @@ def meshed(folder: Path, half: Half = Half.WHOLE, cells: tuple[int, int] = (8, 1
     return folder
 
 
-def surface(patches: tuple[str, ...] = ("hull", "stern")) -> TowedBody:
-    """Points of the spheroid; it has no body.toml and no triangles, which cases do not look at."""
-    points = 0.5 * np.array([[LENGTH, 0, 0], [-LENGTH, 0, 0], [0, DIAMETER, 0], [0, 0, DIAMETER]])
-    faces = np.array([[0, 2, 3], [1, 3, 2]])
-    return TowedBody(cast(Any, None), points, faces, patches, np.arange(2) % len(patches), mirrors=(True, True, True))
+def surface() -> TowedBody:
+    """An octahedron in place of the spheroid; it has no body.toml, which cases do not look at."""
+    ends = 0.5 * np.diag([LENGTH, DIAMETER, DIAMETER])
+    points = np.concatenate([ends, -ends])
+    faces = np.array([[x, y, z] for x in (0, 3) for y in (1, 4) for z in (2, 5)])
+    return TowedBody(cast(Any, None), points, faces, ("hull", "stern"), faces[:, 0] // 3, mirrors=(True, True, True))
+
+
+def with_rudders() -> TowedBody:
+    """Two more patches of a triangle each, above and below."""
+    plain = surface()
+    upper = np.array([[-1.9, 0.0, -0.3], [-1.7, 0.0, -0.6], [-1.5, 0.0, -0.3]])
+    points = np.concatenate([plain.vertices, upper, upper * [1, 1, -1]])
+    faces = np.concatenate([plain.faces, [[6, 7, 8], [9, 10, 11]]])
+    patches = ("hull", "rudder_lower", "rudder_upper", "stern")
+    patch = np.concatenate([3 * plain.patch, [2, 1]])
+    return TowedBody(plain.body, points, faces, patches, patch, mirrors=(False, True, True))
 
 
 def condition(name: str, velocity: Any, rates: Any = (0.0, 0.0, 0.0), **more: Any) -> TowCondition:

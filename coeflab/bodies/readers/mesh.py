@@ -105,6 +105,8 @@ def read(path: Path) -> Body:
     and ``repair`` (false). ``length``, ``breadth`` and ``depth`` under ``[particulars]``, and the volume of a
     ``[[configuration]]``, are what the mesh is held against.
 
+    A text STL of several named solids that close one surface keeps these names as the patches of a towed body.
+
     Raises
     ------
     InputError
@@ -115,7 +117,7 @@ def read(path: Path) -> Body:
     file = declared(File, toml)
     source = file.mesh.source(path.parent)
     shape, statements = source.read()
-    body = file.shaped(path, shape, computed(shape, statements), (mesh_piece(shape),))
+    body = file.shaped(path, shape, computed(shape, statements), (mesh_piece(shape, source),))
     said = _require_size(shape, source.unit, dict(body.lengths), toml.fail)
     said += _require_volume(shape, source.unit, body.configurations[1:], toml.fail)
     return dataclasses.replace(

@@ -30,8 +30,11 @@ from coeflab.tank.towed_body import TowedBody
 C_MU = 0.09
 FOOT = b"// ****"  # with which OpenFOAM ends every field that it has written whole
 STOP_AT = re.compile(r"^(stopAt\s+)\w+;", re.MULTILINE)
-# By symmetry in the cut these are the whole body's, twice the half's; the others are zero.
-DOUBLED = {Half.PORT: ("X", "Z", "M"), Half.UPPER: ("X", "Y", "N")}
+# The image in the cut has the same; of the others it has the opposite, so that they vanish in the sum of both.
+EVEN = {Half.PORT: ("X", "Z", "M"), Half.UPPER: ("X", "Y", "N")}
+ACROSS = {Half.PORT: 1, Half.UPPER: 2}
+SAME = 0.01  # of the length and of the area: how well the image of a patch has to fit the patch on the other side
+ON_PLANE = 1e-5  # of the body's length: what ends this near to the plane of the cut does not cross it
 ALIKE = ("system/decomposeParDict",)  # does not count for the key: how many processes share a run
 ONCE = (
     "constant/transportProperties",
@@ -147,6 +150,60 @@ def turbulent_fields(
     return (eddy, kinetic, Field("epsilon", "[0 2 -3 0 0 0 0]", start, far, "epsilonWallFunction", far))
 
 
+def split(body: TowedBody, half: Half) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:
+    """Which patches the cut divides, and which lie in the half as the image of one that does not.
+
+    Parameters
+    ----------
+    body : TowedBody
+        Its own mirror image in the cut.
+    half : Half
+
+    Returns
+    -------
+    divided : tuple of str
+        Of the whole body every patch.
+    pairs : tuple of (str, str)
+        The patch in the half and its image, a patch of another name.
+
+    Raises
+    ------
+    InputError
+        A patch outside the half is no image of one within.
+    """
+    if half is Half.WHOLE:
+        return body.patches, ()
+    axis, near = ACROSS[half], SAME * body.length
+    corners = body.vertices[body.faces]
+    areas = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    divided: list[str] = []
+    inside: dict[str, tuple[Array, float]] = {}
+    outside: dict[str, tuple[Array, float]] = {}
+    for i, name in enumerate(body.patches):
+        mine = body.patch == i
+        across = corners[mine][:, :, axis]
+        area = float(areas[mine].sum())
+        centre = np.average(corners[mine].mean(axis=1), axis=0, weights=areas[mine])
+        if across.min() < -ON_PLANE * body.length and across.max() > ON_PLANE * body.length:
+            divided.append(name)
+        else:
+            (inside if centre[axis] < 0.0 else outside)[name] = (centre, area)
+    pairs = []
+    turn = np.where(np.arange(3) == axis, -1.0, 1.0)
+    for name, (centre, area) in outside.items():
+        image = [
+            n for n, (c, a) in inside.items()
+            if np.linalg.norm(turn * centre - c) < near and abs(a - area) < SAME * area
+        ]  # fmt: skip
+        if len(image) != 1:
+            raise InputError(
+                f"the patch {name}, of which no patch with {half} is the mirror image", "a body that is its own image",
+                advice="Tow the whole body.",
+            )  # fmt: skip
+        pairs.append((image[0], name))
+    return tuple(divided), tuple(pairs)
+
+
 def slices(cores: int) -> tuple[int, int, int]:
     """Into how many parts a domain is cut along x, y, z: along the body first, across it where that leaves thin slices."""
     across = next((n for n in (2,) if cores >= 8 and cores % n == 0), 1)
@@ -176,7 +233,9 @@ def case_files(
     """
     water, centre = frame(condition.velocity, condition.rates)
     rate = float(np.linalg.norm(condition.rates))
+    divided, pairs = split(body, condition.half)
     values = {
+        "divided": divided, "pairs": pairs, "parts": (*divided, *(mine for mine, _ in pairs)),
         "condition": condition, "half": condition.half.value, "turns": condition.turns, "water": water, "centre": centre,
         "axis": condition.rates / rate if rate else np.zeros(3), "omega": rate, "model": model, "simplec": simplec,
         "density": tank.conditions.density, "viscosity": tank.conditions.viscosity, "patches": body.patches,

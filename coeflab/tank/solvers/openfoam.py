@@ -8,6 +8,7 @@ import shutil
 import subprocess
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from operator import itemgetter
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,6 +18,7 @@ from coeflab.core.declarations import ABOVE_ZERO, Flag, Pure, Within, one_of
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
 from coeflab.core.text.foam import FoamCase
+from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.importers import openfoam
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run
 from coeflab.tank.jobs import Job, Step
@@ -120,7 +122,7 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
     """
     given = OpenFOAM(**tank.options)
     version = installed().version
-    meshes: dict[tuple[Any, ...], Job] = {}
+    meshes: dict[tuple[Any, ...], tuple[TowedBody, Job]] = {}
     runs = []
     for condition in tank.matrix:
         domain = float(condition.variant.get("domain", 1.0))
@@ -140,9 +142,10 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
                 version,
                 domain,
             )
-            meshes[which] = _with_zone(made)
-        runs.append(_run(tank, body, condition, given, meshes[which], folder / condition.name, version))
-    return (*meshes.values(), *runs)
+            meshes[which] = turned, _with_zone(made)
+        turned, mesh = meshes[which]
+        runs.append(_run(tank, turned, condition, given, mesh, folder / condition.name, version))
+    return (*(mesh for _, mesh in meshes.values()), *runs)
 
 
 def _with_zone(mesh: Job) -> Job:
@@ -155,6 +158,7 @@ def _run(
     tank: Tank, body: TowedBody, condition: TowCondition, given: OpenFOAM, mesh: Job, folder: Path, version: str
 ) -> Job:  # fmt: skip
     """Write the case of one condition."""
+    folder = folder.resolve()
     viscosity = tank.conditions.viscosity
     if viscosity is None:
         raise InputError("no viscosity", "the kinematic viscosity of the water", column="conditions.viscosity")
@@ -177,7 +181,7 @@ def _run(
         condition.name, folder, "openfoam", tuple(steps), (mesh.name,), cores,
         memory=cells * BYTES_A_CELL + cores * BYTES_A_PROCESS,
         seconds=float(min(most, USUAL_ITERATIONS) * cells * SECONDS_A_CELL / speed_up),
-        key=case.digest(files, mesh.key, version),
+        key=case.digest(files, mesh.key, version), iterations=float(most),
     )  # fmt: skip
 
 
@@ -192,23 +196,36 @@ def history(folder: Path) -> Run:
     if not _has_rows(folder):
         return Run(folder, folder.name, RawTable(folder, ()), ended=Ended.EMPTY, why="no iteration yet")
     run = openfoam.run(folder, {"function": "forces", "rotation": "body"})
-    about = FoamCase(folder)
-    towing = about.read("constant/towProperties")
-    said = {n: about.value(towing, n) for n in ("half", "length", "fastest")}
-    if any(v is None for v in said.values()):
-        raise InputError("no half, length or fastest", "what coeflab wrote", file=folder / "constant/towProperties")
-    half, length, fastest = (v[0] for v in said.values() if v is not None)
-    half = Half(half.strip('"') if isinstance(half, str) else "")
-    run = replace(
-        run, history=_whole_body(run.history, half), patches={n: _whole_body(t, half) for n, t in run.patches.items()}
-    )  # fmt: skip
+    half, divided, pairs, length, fastest = _towing(folder)
+    patches = {
+        n: _whole_body(t, half) for n, t in run.patches.items() if n in divided or n not in map(itemgetter(0), pairs)
+    }
+    for mine, image in pairs:
+        if mine in run.patches:
+            patches |= {mine: run.patches[mine], image: _mirrored(run.patches[mine], half)}
+    run = replace(run, history=_whole_body(run.history, half), patches=patches)
     density = float(str(run.history.stated["conditions.density"].value))
-    grown = _too_large(run.history, 0.5 * density * float(fastest) ** 2 * float(length) ** 2, float(length))
+    grown = _too_large(run.history, 0.5 * density * fastest**2 * length**2, length)
     if grown:
         return replace(run, ended=Ended.DIVERGED, why=grown)
     if run.ended is Ended.CRASHED and not run.why.startswith("log"):
         return replace(run, ended=Ended.WHOLE, why="")  # a line that the solver is writing now
     return run
+
+
+def _towing(folder: Path) -> tuple[Half, tuple[str, ...], tuple[tuple[str, str], ...], float, float]:
+    """Half, patches that the cut divides, patches and their images, length of the body, speed of its fastest point."""
+    about = FoamCase(folder)
+    towing = about.read("constant/towProperties")
+    said = [about.value(towing, n) for n in ("half", "divided", "mirrored", "length", "fastest")]
+    try:
+        half, divided, pairs, length, fastest = (v[0] for v in said if v is not None)
+        return Half(half.strip('"')), tuple(divided), tuple((a, b) for a, b in pairs), float(length), float(fastest)
+    except (ValueError, AttributeError, TypeError):
+        raise InputError(
+            "not what coeflab writes", "half, divided, mirrored, length, fastest", file=folder / "constant/towProperties",
+            advice="`coeflab tow` writes the case anew.",
+        ) from None  # fmt: skip
 
 
 def _has_rows(folder: Path) -> bool:
@@ -226,12 +243,18 @@ def _whole_body(table: RawTable, half: Half) -> RawTable:
     """Forces of a half doubled; those that are zero by symmetry are left out."""
     if half is Half.WHOLE:
         return table
-    kept = case.DOUBLED[half]
+    even = case.EVEN[half]
     columns = [
-        replace(c, values=2.0 * c.values) if c.means in kept else c
-        for c in table.columns if c.means in kept or c.means not in ("X", "Y", "Z", "K", "M", "N")
+        replace(c, values=2.0 * c.values) if c.means in even else c
+        for c in table.columns if c.means in even or c.means not in COMPONENTS
     ]  # fmt: skip
     return replace(table, columns=tuple(columns))
+
+
+def _mirrored(table: RawTable, half: Half) -> RawTable:
+    """Forces on the image of a patch."""
+    odd = set(COMPONENTS) - set(case.EVEN[half])
+    return replace(table, columns=tuple(replace(c, values=-c.values) if c.means in odd else c for c in table.columns))
 
 
 def _too_large(table: RawTable, force: float, length: float) -> str:
