@@ -24,7 +24,7 @@ from coeflab.tables.runs import find_runs
 Progress = Callable[[str], None]
 GENERAL = "table"  # any delimited text: those of one tool come first
 MATRIX = "matrix"  # in the column of studies: a row of none
-_CHANGES = re.compile(r"(\w+)\s*=\s*([^\s=]+)(?!\s*=)(?=\s|$)")
+_CHANGES = re.compile(r"(\w+)\s*=\s*([^\s=,]+)(?!\s*=)(?=[\s,]|$)")
 OF_RUNS = ("names", "run_list", "state")
 
 
@@ -171,7 +171,7 @@ def _variants(read: Cells, column: str) -> tuple[str, ...]:
     out = []
     for row, text in enumerate(map(str.strip, read.texts(column))):
         pairs = [] if text in ("", MATRIX) else _CHANGES.findall(text)
-        if text not in ("", MATRIX) and (_CHANGES.sub("", text).strip() or any(n not in STUDIES for n, _ in pairs)):
+        if text not in ("", MATRIX) and (_CHANGES.sub("", text).strip(", ") or any(n not in STUDIES for n, _ in pairs)):
             raise InputError(
                 shown(text), f"blank, {MATRIX}, or what a study changed: {', '.join(f'{n} = ...' for n in STUDIES)}",
                 file=read.file, line=read.line(row), column=column,
