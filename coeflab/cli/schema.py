@@ -19,6 +19,7 @@ KINDS = {
     "body": "",
     "glider": "motion.glider.glider.GliderFile",
     "tuning": "motion.tune.plan.TuningFile",
+    "tank": "tank.declaration.TankFile",
     "parameters": "",
 }
 

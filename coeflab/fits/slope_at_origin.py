@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
@@ -23,21 +24,28 @@ from coeflab.fits.results.fit_result import FitResult, LeftOut, Sensitivity, Swe
 from coeflab.fits.rows.sweeps import INCIDENCE, SweepRows, arm_shift, collect_points, one_size, sweep_rows
 from coeflab.fits.statistics import origin_slope, slopes
 from coeflab.fits.statistics.diagnostics import levels
-from coeflab.fits.statistics.many_rows import condensed_rows
+from coeflab.fits.statistics.many_rows import condensed_rows, images
 from coeflab.fits.statistics.origin_slope import OriginSlope
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR
-from coeflab.tables.force_table import ForceTable
+from coeflab.tables.campaign import PORT_STARBOARD, UP_DOWN
+from coeflab.tables.force_table import AT_REST, ForceTable
 
 summary = "slopes at the origin without a choice of form or window, with a calibrated uncertainty"
 citations = ("wahba1990", "kimeldorf1970", "grunwald2017", "mackinnon1985", "bell2002", "hurvich1989")
 ODD = {"v": "YNK", "w": "ZM", "r": "YNK", "q": "ZM", "p": "K", "dr": "YNK", "ds": "ZM", "db": "ZM"}
+SIDEWAYS = {**dict.fromkeys(("v", "p", "r", "dr"), PORT_STARBOARD), **dict.fromkeys(("w", "q", "ds", "db"), UP_DOWN)}
+MIRRORED = "mirror image of another row: counts once"
+AT_REST_BY_SYMMETRY = "at rest, where it is zero by declared symmetry"
 EVEN = {"v": "X", "w": "X", "r": "X", "q": "X"}
 ANGLE_CAPS = (10.0, 12.0, 18.0)
 RATE_CAPS = (0.5, 0.75, 1.0)
 MOST_NAMED = 12  # rows that do not fit their neighbours
 NODES = 41  # of the recommended curve, odd: one is at rest
+
+
+_Points = tuple[Array, Array, Array | None, tuple[str, ...], tuple[LeftOut, ...]]  # as `collect_points` gives them
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +59,40 @@ class Options:
     """
 
     largest_angle: float = bounded(90.0, 1.0, 90.0)
+
+
+def _within(limit: float, points: _Points) -> _Points:
+    """The points up to the largest setting; the others are left out."""
+    inside = np.abs(points[0]) <= limit
+    return _kept(points, inside, {int(i): "beyond largest_angle" for i in np.flatnonzero(~inside)})
+
+
+def _kept(points: _Points, keep: NDArray[np.bool_], why: Mapping[int, str]) -> _Points:
+    x, y, se, labels, left = points
+    left += tuple(LeftOut(float(x[i]), float(y[i]), labels[i], why[int(i)]) for i in np.flatnonzero(~keep))
+    named = tuple(label for label, stays in zip(labels, keep, strict=True) if stays)
+    return x[keep], y[keep], None if se is None else se[keep], named, left
+
+
+def _on_one_side(rows: SweepRows, variable: str, parity: str, points: _Points) -> tuple[str, _Points]:
+    """The declared symmetry that gives the other side of a sweep, and the points that count by it.
+
+    A row and its mirror image are one reading. An odd force at rest is zero by declaration: a row there says nothing of the slope,
+    and what little noise it has is not that of the others.
+    """
+    plane = SIDEWAYS[variable]
+    if plane not in rows.table.symmetry:
+        return "", points
+    again = images(points[0], points[1], -1.0 if parity == "odd" else 1.0)
+    if np.any(again):
+        points = _kept(points, ~again, dict.fromkeys(np.flatnonzero(again).tolist(), MIRRORED))
+    x = points[0]
+    if not slopes.is_one_sided(x):
+        return "", points
+    resting = np.abs(x) <= AT_REST
+    if parity == "odd" and np.any(resting):
+        points = _kept(points, ~resting, dict.fromkeys(np.flatnonzero(resting).tolist(), AT_REST_BY_SYMMETRY))
+    return plane, points
 
 
 def _sweep(
@@ -69,22 +111,26 @@ def _sweep(
         motion = INCIDENCE[variable]
         taken_out = slope * rows.table.primed_motion(motion, length)
         offset = f"{component}{motion}' {motion}' of the residual incidence taken out"
-    x, y, se, labels, left = collect_points(rows, component, length, taken_out)
     target = "x" if parity == "odd" else "1" if symbol.endswith("0") else "x2"
     is_angle = variable in ("v", "w")
     limit = float(np.sin(np.radians(options.largest_angle))) * (1.0 + slopes.SAME_LEVEL) if is_angle else np.inf
-    inside = np.abs(x) <= limit
-    far = tuple(LeftOut(float(x[i]), float(y[i]), labels[i], "beyond largest_angle") for i in np.flatnonzero(~inside))
-    x, y, se = x[inside], y[inside], None if se is None else se[inside]
-    labels = tuple(label for label, kept in zip(labels, inside, strict=True) if kept)
-    if last is not None and np.array_equal(last[0].x, x) and np.array_equal(last[0].y, y):
+    plane, (x, y, se, labels, far) = _on_one_side(
+        rows, variable, parity, _within(limit, collect_points(rows, component, length, taken_out))
+    )
+    odd = bool(plane) and parity == "odd"
+    if (
+        last is not None
+        and odd == (bool(last[0].symmetry) and last[0].parity == "odd")
+        and np.array_equal(last[0].x, x)
+        and np.array_equal(last[0].y, y)
+    ):
         origin, curve, fitted, at_rest = last[1], last[0].curve, last[0].fitted, last[0].at_rest
     else:
-        few = condensed_rows(x, y, se)
+        few = condensed_rows(x, y, se, odd)
         if few is None:
-            origin = origin_slope.estimate(x, y, se)
+            origin = origin_slope.estimate(x, y, se, odd=odd)
         else:
-            origin = origin_slope.estimate_condensed(few)
+            origin = origin_slope.estimate_condensed(few, odd=odd)
             far += tuple(
                 LeftOut(float(x[i]), float(y[i]), labels[i], "does not fit its neighbours")
                 for i in np.flatnonzero(few.strip < 0)[:MOST_NAMED]
@@ -96,7 +142,7 @@ def _sweep(
         fitted, curve = mean[: len(x)], np.stack([over, mean[len(x) :], halves[len(x) :]])
         at_rest = (float(curve[1, NODES // 2]), float(curve[2, NODES // 2]))
     middle = None if se is None or not np.any(se > 0.0) else float(np.median(se[se > 0.0]))
-    value, u95, moved = slopes.determined(origin, target, middle, at_rest)
+    value, u95, moved = slopes.determined(origin, target, middle, at_rest, bool(plane))
     if single := _one_size(rows, variable, target, x, origin):
         value, u95, moved = None, None, np.zeros_like(moved)
     by_row = np.zeros(len(x))
@@ -108,13 +154,13 @@ def _sweep(
     if parity == "even" and np.any(np.isfinite(origin.without) & np.logical_not(origin.used)):
         everything = slopes.of_all_rows(origin, x, y, se)
         mean, half = origin_slope.curve(everything, np.zeros(1))
-        with_all, _, _ = slopes.determined(everything, target, middle, (float(mean[0]), float(half[0])))
+        with_all, _, _ = slopes.determined(everything, target, middle, (float(mean[0]), float(half[0])), bool(plane))
     elif parity == "odd" and origin.design is not None:
         with_all = origin.with_all
     reach = float(np.max(np.abs(x), initial=0.0))
     caps = [float(np.sin(np.radians(c))) for c in ANGLE_CAPS] if is_angle else [c * reach for c in RATE_CAPS]
     caps = [c for c in caps if c <= reach * 1.03] if parity == "odd" and reach else []
-    shorter = slopes.by_largest(x, y, [w for c in caps if (w := c * (1.0 + slopes.SAME_LEVEL)) < reach], se)
+    shorter = slopes.by_largest(x, y, [w for c in caps if (w := c * (1.0 + slopes.SAME_LEVEL)) < reach], se, odd=odd)
     ended = [s for _, s in shorter] + [origin] * (len(caps) - len(shorter))
     made = Sweep(
         symbol=symbol,
@@ -126,7 +172,7 @@ def _sweep(
         y=y,
         se=se,
         labels=labels,
-        left_out=left + far,
+        left_out=far,
         value=value,
         u95=u95,
         random=random,
@@ -155,7 +201,8 @@ def _sweep(
         body=rows.table.body,
         offset=offset,
         one_size=bool(single),
-        borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces else "",
+        symmetry=plane,
+        borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces and not odd else "",
     )
     return made, origin
 

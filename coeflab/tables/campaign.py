@@ -87,6 +87,9 @@ SIDES = {"starboard": (0.0, 1.0, 0.0), "port": (0.0, -1.0, 0.0), "above": (0.0, 
 SIGNED = "+R "  # before the side that a positive radius means
 CENTRES = (*SIDES, *(f"{SIGNED}{side}" for side in SIDES))
 HALVES = ("starboard", "port")
+# What a body may be declared to be: its own mirror image in y = 0 or z = 0, the same after a quarter of a turn about x.
+PORT_STARBOARD, UP_DOWN, FOURFOLD = "port-starboard", "up-down", "fourfold"
+SYMMETRIES = (PORT_STARBOARD, UP_DOWN, FOURFOLD)
 HALF_WORDS = f"true or false, or which half: {' or '.join(map(shown, HALVES))}"
 
 
@@ -96,6 +99,19 @@ def _half(value: Any, _file: Path) -> bool | str:
     raise InputError(shown(value), HALF_WORDS)
 
 
+def _symmetries(value: Any, file: Path) -> tuple[str, ...]:
+    names: tuple[str, ...] = takes.TEXTS.read(value, file)
+    for name in names:
+        if name not in SYMMETRIES or names.count(name) > 1:
+            raise InputError(shown(name), f"each once of {', '.join(SYMMETRIES)}")
+    return names
+
+
+SYMMETRY_WORDS = takes.Takes(
+    "a list of texts",
+    _symmetries,
+    {"type": "array", "items": {"type": "string", "enum": list(SYMMETRIES)}, "uniqueItems": True},
+)
 HalfModel = Annotated[
     bool | str,
     takes.Takes(HALF_WORDS, _half, {"anyOf": [{"type": "boolean"}, {"type": "string", "enum": list(HALVES)}]}),
@@ -177,6 +193,9 @@ class TableDeclaration(takes.Declaration):
         above (q > 0), below; or "+R starboard" and the like, where R has a sign.
     half_model : bool or str
         As campaign.half_model, which it overrides.
+    by_symmetry : str
+        File of the table whose rows these are, mirrored or turned by the body's symmetry: stated, not run. They decide no fit
+        together with those.
     source_sha256 : str
         Of the file that the table was made from; for people.
     """
@@ -193,6 +212,7 @@ class TableDeclaration(takes.Declaration):
     arm_point: takes.Point | None = None
     centre: Annotated[str, takes.one_of(*CENTRES)] = ""
     half_model: HalfModel | None = None
+    by_symmetry: takes.Words = ""
     source_sha256: takes.Anything = None
 
     def __post_init__(self) -> None:
@@ -233,6 +253,10 @@ class CampaignHead(takes.Declaration):
         Format of the tables; ``coeflab formats`` lists them.
     half_model : bool or str
         Whether the tables are of one half of a symmetric model, and which: true, false, starboard or port.
+    symmetry : tuple of str
+        What the body is exactly: port-starboard, up-down (each its own mirror image), fourfold (a quarter of a turn about x leaves
+        it as it is). A sweep of one side is then odd or even by declaration, and needs no other side. Leave it out for a model
+        whose own asymmetry is to be measured.
     appendages, reynolds, notes, configuration, date : any
         For people.
     """
@@ -242,6 +266,7 @@ class CampaignHead(takes.Declaration):
     body: takes.Text
     importer: takes.Words = "csv"
     half_model: HalfModel = False
+    symmetry: Annotated[tuple[str, ...], SYMMETRY_WORDS] = ()
     appendages: takes.Anything = None
     reynolds: takes.Anything = None
     notes: takes.Anything = None
@@ -343,11 +368,21 @@ class CampaignFile(takes.Declaration):
     table: tuple[TableDeclaration, ...] = ()
 
     def check(self) -> None:
-        """At least one table."""
+        """At least one table; those by symmetry are of others, and of a body with a symmetry."""
         if not self.table:
             raise InputError(
                 "no [[table]]", "at least one table", column="table", advice='Add [[table]] with file = "table.csv".'
             )
+        for i, table in enumerate(self.table):
+            others = [t.file for t in self.table if t is not table and not t.by_symmetry]
+            if table.by_symmetry and table.by_symmetry not in others:
+                expected = f"the file of a table that was run: {', '.join(others) or 'there is none'}"
+                raise InputError(shown(table.by_symmetry), expected, column=f"table[{i}].by_symmetry")
+            if table.by_symmetry and not self.campaign.symmetry:
+                advice = f"Add campaign.symmetry, a list of {', '.join(SYMMETRIES)}."
+                raise InputError(
+                    "a body without declared symmetry", "one with it", column=f"table[{i}].by_symmetry", advice=advice
+                )
 
 
 @brief
@@ -378,6 +413,7 @@ class Campaign:
     options: Mapping[str, Any] = field(default_factory=dict)
     lines: tuple[int | None, ...] = ()
     planar_motion: PlanarMotionKeys | None = None
+    symmetry: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("signs", "columns", "options"):
@@ -429,4 +465,5 @@ def read_campaign(path: Path) -> Campaign:
         options=file.importer,
         lines=tuple(toml.line(("table", i)) for i in range(len(file.table))),
         planar_motion=file.planar_motion,
+        symmetry=head.symmetry,
     )

@@ -116,6 +116,10 @@ class ForceTable:
     arm_point : (3,) array or None
         Point of the body that runs on the circle of an arm with the speed U, m, FRD, from the datum; None where the file's
         motions are at the point of its moments.
+    symmetry : tuple of str
+        What the body is declared to be exactly: port-starboard, up-down, fourfold.
+    by_symmetry : str
+        Name of the table whose rows these are, turned by that symmetry; empty for rows that were run.
     """
 
     name: str
@@ -144,6 +148,8 @@ class ForceTable:
     density: Array | None = None
     arm_point: Array | None = None
     variants: tuple[str, ...] = ()
+    symmetry: tuple[str, ...] = ()
+    by_symmetry: str = ""
 
     def __post_init__(self) -> None:
         for name in ("motion", "controls", "forces", "errors"):

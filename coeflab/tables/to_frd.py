@@ -216,6 +216,8 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
         lines=columns.lines,
         density=columns.density,
         arm_point=table.arm_point,
+        symmetry=campaign.symmetry,
+        by_symmetry=f"{campaign.name}/{table.by_symmetry}" if table.by_symmetry else "",
     )
     return made.about(campaign.reference_point)
 

@@ -1,18 +1,39 @@
 """Jobs: what has to be computed, as commands in a folder; their states, which files keep and any process may read.
 
 A solver writes jobs, a runner starts them, here or on a cluster: ``python -m coeflab.tank.job FOLDER`` carries one out. Neither
-knows the other.
+knows the other. This file is read by every process that carries a job out: it imports nothing heavy.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import json
+import os
+import socket
+import sys
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass, field, fields, replace
 from enum import StrEnum
+from math import nan
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
+from coeflab.core.errors import InputError, OutputError, shown
+from coeflab.core.files import write_atomically
 from coeflab.core.types import brief
+from coeflab.core.wording import finite
+from coeflab.tank.processes import lives
 
-JOB, STATE = "job.json", "state.json"  # in the folder of every job
+if sys.platform != "win32":
+    import fcntl
+
+JOB, STATE, LOCK = "job.json", "state.json", ".lock"  # in the folder of every job
+KIND = "coeflab job 1"
+ANEW = "`coeflab tow` writes it anew."
+SILENT = 300.0  # s without a sign of life from another machine, after which a job counts as stopped
+PATIENCE = 100.0  # s that a killed attempt may take to end its solver
 
 
 class JobState(StrEnum):
@@ -26,6 +47,16 @@ class JobState(StrEnum):
     CRASHED = "crashed"
     STOPPED = "stopped"  # killed, or out of time: goes on from what it wrote last
     CHANGED = "changed"  # finished with another mesh, case or solver: is run anew
+
+    @property
+    def is_kept(self) -> bool:
+        """Whether the job is left as it is: carried out again, it would end the same."""
+        return self in (JobState.FINISHED, JobState.UNCONVERGED, JobState.DIVERGED)
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether it is carried on from what it wrote last."""
+        return self in (JobState.RUNNING, JobState.STOPPED, JobState.CRASHED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +101,10 @@ class Job:
         That it is expected to take on an idle machine of the kind that the estimate was measured on.
     key : str
         sha256 of everything that its result depends on: files of the case, keys of the jobs it needs, version of the solver.
+    iterations : float
+        That the solver makes at most; NaN where it counts none.
+    cells : float
+        Of its grid, as expected; 0 where that is unknown.
     """
 
     name: str
@@ -81,10 +116,12 @@ class Job:
     memory: float = 0.0
     seconds: float = 0.0
     key: str = ""
+    iterations: float = nan
+    cells: float = 0.0
 
 
 @brief
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Progressed:
     """What ``state.json`` says of a job.
 
@@ -103,6 +140,15 @@ class Progressed:
         The most that it took, bytes.
     process, host : int, str
         Who carries it out.
+    started : float
+        When that process began, clock ticks since the machine did: another one may get its number. NaN where unknown.
+    left : float
+        Seconds to the last iteration at the pace so far; NaN where unknown.
+    means, errors : mapping of str to float
+        X Y Z K M N of the whole body over what is a plateau so far, and their standard errors, N and N m.
+    plateau : int
+        Rows of the history within which the plateau was recognised; what the solver wrote until it stopped comes after them
+        and counts for nothing, so that a result does not depend on when somebody looked. 0 without a plateau.
     resumed_from : float
         Iteration or time from which the last attempt went on; NaN for one from the start.
     why : str
@@ -114,11 +160,225 @@ class Progressed:
     state: JobState
     key: str = ""
     step: str = ""
-    iteration: float = float("nan")
+    iteration: float = nan
     seconds: float = 0.0
     memory: float = 0.0
     process: int = 0
     host: str = ""
-    resumed_from: float = float("nan")
+    started: float = nan
+    left: float = nan
+    means: Mapping[str, float] = field(default_factory=dict)
+    errors: Mapping[str, float] = field(default_factory=dict)
+    plateau: int = 0
+    resumed_from: float = nan
     why: str = ""
     remarks: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("means", "errors"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+
+
+def write_job(job: Job) -> bool:
+    """Write ``job.json`` into the job's folder, which is not named in it: a tow may be moved.
+
+    Returns
+    -------
+    bool
+        Whether the file changed.
+
+    Raises
+    ------
+    OutputError
+        The folder cannot be written.
+    """
+    content = {"kind": KIND} | {f.name: getattr(job, f.name) for f in fields(job) if f.name != "folder"}
+    content |= {"steps": [asdict(step) for step in job.steps], "iterations": finite(job.iterations)}
+    return write_atomically(job.folder / JOB, _bytes(content))
+
+
+def read_job(folder: Path) -> Job:
+    """The job of a folder.
+
+    Raises
+    ------
+    InputError
+        There is no job, or one that this release does not know.
+    """
+    path = folder.resolve() / JOB
+    try:
+        content = json.loads(path.read_bytes())
+        kind = content.pop("kind")
+        steps = tuple(Step(s["name"], tuple(s["command"]), s["watched"]) for s in content.pop("steps"))
+        content["needs"] = tuple(content["needs"])
+        content["iterations"] = _number(content["iterations"])
+        job = Job(folder=path.parent, steps=steps, **content)
+    except FileNotFoundError:
+        raise InputError(f"no {JOB}", "the folder of a job", file=folder) from None
+    except (ValueError, KeyError, TypeError, AttributeError, OSError) as why:
+        raise InputError(f"no job ({shown(why)[1:-1]})", KIND, file=path, advice=ANEW) from None
+    if kind != KIND:
+        raise InputError(shown(kind), KIND, file=path, key="kind", advice=ANEW)
+    return job
+
+
+def write_progress(folder: Path, progressed: Progressed) -> None:
+    """Write ``state.json``, whole or not at all; on a full disk into the place that the last one takes.
+
+    Raises
+    ------
+    OutputError
+        It cannot be written at all.
+    """
+    content = {f.name: getattr(progressed, f.name) for f in fields(progressed)}
+    for name, value in content.items():
+        if isinstance(value, float):
+            content[name] = finite(value)
+        elif isinstance(value, Mapping):
+            content[name] = {k: finite(v) for k, v in value.items()}
+    try:
+        write_atomically(folder / STATE, _bytes(content))
+    except OutputError:
+        _overwrite(folder / STATE, _bytes(content))
+        if not (folder / STATE).is_file():
+            raise
+
+
+def _overwrite(path: Path, content: bytes) -> None:
+    """Into the blocks that the file has: a full disk has no others."""
+    with suppress(OSError), path.open("r+b") as stream:
+        size = os.fstat(stream.fileno()).st_size
+        stream.write(content.ljust(size))
+        stream.truncate()
+
+
+def read_progress(folder: Path) -> Progressed:
+    """What ``state.json`` says, word for word; WAITING without one.
+
+    Raises
+    ------
+    InputError
+        The file is no state of a job.
+    """
+    path = folder / STATE
+    try:
+        content: dict[str, Any] = json.loads(path.read_bytes())
+        for f in fields(Progressed):
+            if f.type == "float":
+                content[f.name] = _number(content[f.name])
+        for name in ("means", "errors"):
+            content[name] = {k: _number(v) for k, v in content[name].items()}
+        return Progressed(**content | {"state": JobState(content["state"]), "remarks": tuple(content["remarks"])})
+    except FileNotFoundError:
+        return Progressed(JobState.WAITING)
+    except (ValueError, KeyError, TypeError, AttributeError, OSError) as why:
+        advice = "Delete the file: the job is carried out anew."
+        raise InputError(
+            f"no state of a job ({shown(why)[1:-1]})", "what coeflab wrote", file=path, advice=advice
+        ) from None
+
+
+def progress(job: Job) -> Progressed:
+    """How far a job is: ``state.json`` seen with what is true now.
+
+    A job that runs by its file and whose process is gone is STOPPED; one that was carried out with another key is CHANGED.
+
+    Raises
+    ------
+    InputError
+        The file is no state of a job.
+    """
+    found = read_progress(job.folder)
+    if found.state is JobState.RUNNING and not _is_carried_out(job.folder, found):
+        why = f"killed: process {found.process} on {found.host} is gone"
+        found = replace(found, state=JobState.STOPPED, left=nan, why=why)
+    if found.state not in (JobState.WAITING, JobState.RUNNING) and found.key != job.key:
+        why = f"{found.state.value} with another mesh, case or solver ({found.key[:8]}, now {job.key[:8]})"
+        found = replace(found, state=JobState.CHANGED, why=why)
+    return found
+
+
+def outstanding(jobs: Sequence[Job]) -> tuple[Job, ...]:
+    """The jobs that a runner has to carry out, in their order: all but those that are kept.
+
+    Raises
+    ------
+    InputError
+        A ``state.json`` is no state of a job.
+    """
+    return tuple(job for job in jobs if not progress(job).state.is_kept)
+
+
+def _is_carried_out(folder: Path, found: Progressed) -> bool:
+    if found.host == socket.gethostname():
+        return lives(found.process, found.started)
+    try:
+        return time.time() - (folder / STATE).stat().st_mtime < SILENT
+    except OSError:
+        return False
+
+
+@contextmanager
+def only_one(folder: Path, what: str, patience: float = 0.0) -> Iterator[int]:
+    """Hold a folder against other processes; children that inherit the descriptor hold it too, until they end.
+
+    Parameters
+    ----------
+    folder : Path
+        It is made.
+    what : str
+        For the complaint: ``tow``, ``job``.
+    patience : float
+        Seconds to wait for another one to end.
+
+    Yields
+    ------
+    int
+        The descriptor that holds the lock.
+
+    Raises
+    ------
+    InputError
+        Another process holds it.
+    OutputError
+        The folder cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        handle = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    except OSError as why:
+        raise OutputError(f"cannot write {folder}: {why.strerror or why}. Choose another folder.") from None
+    try:
+        until = time.monotonic() + patience
+        while not _locked(handle):
+            if time.monotonic() >= until:
+                owner = os.pread(handle, 200, 0).decode(errors="replace").strip() or "another process"
+                raise InputError(f"a {what} that {owner} carries out", f"one {what} at a time in a folder", file=folder,
+                                 advice="Wait for it, or end that process.")  # fmt: skip
+            time.sleep(0.2)
+        with suppress(OSError):  # a full disk: then nobody learns whose it is
+            os.ftruncate(handle, 0)
+            os.pwrite(handle, f"process {os.getpid()} on {socket.gethostname()}".encode(), 0)
+        yield handle
+    finally:
+        os.close(handle)
+
+
+def _locked(handle: int) -> bool:
+    if sys.platform == "win32":
+        return True
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks
+        return True
+    return True
+
+
+def _number(value: float | None) -> float:
+    return nan if value is None else float(value)
+
+
+def _bytes(content: Mapping[str, Any]) -> bytes:
+    return (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode()

@@ -54,11 +54,17 @@ class Tank:
     solver : str
         Name of the plugin.
     options : mapping
-        Of the solver, as its declaration read them.
+        Of the solver, as its declaration read them: ``SOLVERS.load(solver).options(**options)`` is that declaration.
     cores : int
         That one run takes.
     by_symmetry : tuple of str
-        What is stated instead of being run: ``attack from drift by fourfold symmetry``.
+        What is stated instead of being run, in words: ``attack from drift by fourfold symmetry``.
+    symmetry : tuple of str
+        port-starboard, up-down, fourfold as far as the matrix makes use of them: ``campaign.symmetry`` of what is collected.
+    runner : str
+        Name of the plugin.
+    runner_options : mapping
+        As `options`, of the runner.
     """
 
     name: str
@@ -74,10 +80,14 @@ class Tank:
     options: Mapping[str, Any] = field(default_factory=dict)
     cores: int = 1
     by_symmetry: tuple[str, ...] = ()
+    symmetry: tuple[str, ...] = ()
+    runner: str = "local"
+    runner_options: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "reference_point", locked(np.asarray(self.reference_point, dtype=float)))
-        object.__setattr__(self, "options", MappingProxyType(dict(self.options)))
+        for name in ("options", "runner_options"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
 
     def grid(self, name: str) -> Grid:
         """The grid of that name.

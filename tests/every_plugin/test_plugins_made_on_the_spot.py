@@ -30,6 +30,10 @@ PLANTED = {
     "simulators": "from coeflab.motion.simulators.rigid_body import Options, simulate\n",
     "checks": "from coeflab.core.table import Check, Severity\n"
     "def check(study):\n    return [Check('planted', 'subject', Severity.WARN, 'looked', 'look', '')]\n",
+    "tow_solvers": "from coeflab.tank.solvers.external import installed, jobs, options, table\n",
+    "tow_runners": "from coeflab.core.declarations import Declaration\nfrom dataclasses import dataclass\n"
+    "@dataclass(frozen=True)\nclass options(Declaration):\n    pass\n"
+    "def carry_out(jobs, folder, options, look):\n    look()\n",
     "reporting": "def render(document):\n    return {'report.planted': document.title.encode()}\n",
 }
 PLAN = """

@@ -209,6 +209,8 @@ class Sweep:
         Table that lent its row at rest, if any.
     one_size : bool
         Whether all settings have one size, so that they determine neither slope nor curvature.
+    symmetry : str
+        Declared symmetry by which a sweep of one side is odd or even; empty where both sides were run or none is declared.
     """
 
     symbol: str
@@ -242,6 +244,7 @@ class Sweep:
     offset: str = ""
     borrowed: str = ""
     one_size: bool = False
+    symmetry: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "x", locked(self.x))
@@ -297,7 +300,9 @@ class Sweep:
             at = np.sin(at) if self.is_angle else at
         return tuple(
             (float(x), float(u))
-            for x, u in zip(*next_points(estimate(self.x, self.y, self.se), count, at), strict=True)
+            for x, u in zip(
+                *next_points(estimate(self.x, self.y, self.se, odd=bool(self.symmetry)), count, at), strict=True
+            )
         )
 
 

@@ -214,6 +214,24 @@ def copies(rows: Array) -> tuple[NDArray[np.bool_], bool]:
     return again, len(off) > 2 and all((-float(r[0]), -float(r[1])) in seen for r in off)
 
 
+def images(x: Array, y: Array, sign: float) -> NDArray[np.bool_]:
+    """Rows, (n,), whose exact mirror image stands earlier.
+
+    Parameters
+    ----------
+    x, y : (n,) array
+    sign : float
+        Of the image of y: -1 of an odd, 1 of an even force.
+    """
+    seen: set[tuple[float, float]] = set()
+    out = np.zeros(len(x), bool)
+    for i, (a, b) in enumerate(zip(x.tolist(), y.tolist())):
+        out[i] = a != 0.0 and (-a, sign * b) in seen
+        if not out[i]:
+            seen.add((a, b))
+    return out
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Rows:
     """What goes into a slope.
@@ -243,8 +261,10 @@ class Rows:
     strips: Strips | None = None
 
 
-def rows_of(x: Array, y: Array, se: Array | None) -> Rows:
+def rows_of(x: Array, y: Array, se: Array | None, odd: bool = False) -> Rows:
     """Rows that count, their relative variance, and what is to be said of them.
+
+    Where the curve is odd by declaration a row and its exact mirror image count once, wherever the image came from.
 
     Raises
     ------
@@ -259,21 +279,26 @@ def rows_of(x: Array, y: Array, se: Array | None) -> Rows:
         middle = float(np.median(np.asarray(se)[usable]))
         variance, stated = np.clip(np.where(usable, se, middle) / middle, 1e-2, 1e2) ** 2, middle**2
     again, mirrored = copies(np.stack([x, y] if variance is None else [x, y, variance], 1))
+    if odd:
+        again, mirrored = again | images(x, y, -1.0), False
     notes = []
     if again.any():
-        notes.append(f"{int(again.sum())} rows repeat an earlier row exactly and count once")
+        image = " or mirror" if odd else ""
+        notes.append(f"{int(again.sum())} rows repeat{image} an earlier row exactly and count once")
     if mirrored:
         notes.append("every row has its exact mirror image: the mirrored half is no new data, U95 widened by sqrt 2")
-    if not len(x) or not x.min() < 0.0 < x.max():
+    if odd:
+        notes.append("odd by declared symmetry: the mirrored side is no new data and adds no degree of freedom")
+    elif not len(x) or not x.min() < 0.0 < x.max():
         notes.append("one-sided sweep: even and odd parts cannot be told apart")
     return Rows(x, y, variance, stated, np.logical_not(again), mirrored, tuple(notes))
 
 
-def condensed_rows(x: Array, y: Array, se: Array | None = None) -> Condensed | None:
+def condensed_rows(x: Array, y: Array, se: Array | None = None, odd: bool = False) -> Condensed | None:
     """Very many rows as few; None where they are few, or too few settings."""
     if len(x) <= EACH_ROW:
         return None
-    r = rows_of(x, y, se)
+    r = rows_of(x, y, se, odd)
     if np.count_nonzero(r.used) <= EACH_ROW or len(np.unique(r.x[r.used])) < 3:
         return None
     few = condensed(r.x, r.y, r.used, r.variance)

@@ -49,6 +49,8 @@ POWER, TAIL, TAIL_PER_DECADE, TAILS = 0.63, 0.016, -0.0085, (0.01, 0.025)
 # Prior probability that a row is wrong, and the posterior one (flattened by the power) at which it is left out: 10 of
 # 960 clean campaigns lost a row, 97 % of 901 readings that were off by over five standard deviations were named.
 WRONG, REMOVE = 0.005, 0.1
+# Size, in units of the noise, of the constant of a curve that is odd by declaration: next to nothing.
+PINNED = ((1e-4, 1.0),)
 # Smallest noise (of the largest force), leverage that is rounding.
 ROUNDING, WEIGHTLESS = 3e-8, 1e-10
 DECAY, ORDERS, STATED_FREEDOM, FEWEST, MOST_LIKELY = 0.8, 16, 2.0, 5, 100
@@ -256,6 +258,7 @@ def prepare(
     symmetric: bool = False,
     settings: Array | None = None,
     strips: Strips | None = None,
+    odd: bool = False,
 ) -> Design:
     """Factorise a sweep.
 
@@ -270,6 +273,8 @@ def prepare(
         Rows of one label are replicates of one setting; equal x without it.
     strips : Strips, optional
         Rows are means over several settings.
+    odd : bool
+        The curve is odd by declaration: no constant, no even part, whichever sides have rows.
 
     Returns
     -------
@@ -282,19 +287,19 @@ def prepare(
     ratios = np.ones(n) if variance is None else variance
     labels = np.unique(np.round(t, 9) if settings is None else settings, return_inverse=True)[1].astype(np.int64)
     one_sided = not t.min() < 0.0 < t.max()
-    even = not symmetric and not one_sided
+    even = not symmetric and not one_sided and not odd
     terms = _terms(t, even) if strips is None else strips.mean(_terms(strips.nodes.ravel(), even), 0)
     p = terms.shape[1]
     members = []
     specifications = _specifications(t, even, labels, variance is not None, strips)
     total = sum(s[4] for s in specifications)
-    for name, odd, sizes, kernel, odds in specifications:
+    for name, is_odd, sizes, kernel, odds in specifications:
         polynomial = SIZES if name == "none" else COARSE
-        nuisance = NUISANCE if even or one_sided else ((np.inf, 1.0),)
+        nuisance = PINNED if odd else NUISANCE if even or one_sided else ((np.inf, 1.0),)
         grid = np.array(list(product(range(len(nuisance)), polynomial, polynomial)))
         first = np.array(nuisance)[grid[:, 0].astype(int)]
         precision = np.zeros((len(grid), p))
-        if even or one_sided:
+        if even or one_sided or odd:
             precision[:, 2 if even else 0] = first[:, 0] ** -2.0
         precision[:, -2:] = grid[:, 1:] ** -2.0
         log_prior = _log_prior(None if name == "none" else sizes, grid[:, 1:], odds / total)
@@ -319,11 +324,11 @@ def prepare(
         )
         members.append(
             _Member(
-                name, odd, sizes, root, np.ascontiguousarray(np.swapaxes(a, 1, 2)), inverse, precision, log_prior,
+                name, is_odd, sizes, root, np.ascontiguousarray(np.swapaxes(a, 1, 2)), inverse, precision, log_prior,
                 log_det, leverage, c[:, :, 1], leverage > WEIGHTLESS * (root * root).sum(1)[:, None],
             )
         )  # fmt: skip
-    return Design(x, largest, ratios, 1 if one_sided else 2, labels, terms, tuple(members), strips)
+    return Design(x, largest, ratios, 1 if one_sided or odd else 2, labels, terms, tuple(members), strips)
 
 
 def _log_density(freedom: float) -> float:
@@ -468,8 +473,9 @@ def _shares(design: Design, y: Array, weights: Array) -> dict[str, float]:
 
 @remembered(24)
 def estimate(
-    x: Array, y: Array, se: Array | None = None, *, symmetric: bool = False, groups: Array | None = None
-) -> OriginSlope:
+    x: Array, y: Array, se: Array | None = None, *, symmetric: bool = False, groups: Array | None = None,
+    odd: bool = False,
+) -> OriginSlope:  # fmt: skip
     """Slope of one campaign at x = 0.
 
     Parameters
@@ -482,6 +488,9 @@ def estimate(
         No even part.
     groups : (n,) array, optional
         Rows of one label are replicates of one setting; equal x without it.
+    odd : bool
+        The curve is odd by declaration, and not by what rows show: no constant, no even part. Rows at rest say nothing of it
+        and should be left out.
 
     Returns
     -------
@@ -492,23 +501,23 @@ def estimate(
     ValueError
         Lengths differ or a number is not finite.
     """
-    rows = rows_of(x, y, se)
-    few = condensed_rows(x, y, se)
+    rows = rows_of(x, y, se, odd=odd)
+    few = condensed_rows(x, y, se, odd=odd)
     if few is None:
-        return _estimate(rows, symmetric, groups)
-    found = estimate_condensed(few, symmetric=symmetric)
+        return _estimate(rows, symmetric, groups, odd)
+    found = estimate_condensed(few, symmetric=symmetric, odd=odd)
     used, wrong = few.rows(found.used.astype(float), 0.0) > 0.5, few.rows(found.wrong, 1.0)
     return replace(found, used=used, wrong=wrong, without=np.full(len(rows.x), np.nan))
 
 
-def estimate_condensed(few: Condensed, *, symmetric: bool = False) -> OriginSlope:
+def estimate_condensed(few: Condensed, *, symmetric: bool = False, odd: bool = False) -> OriginSlope:
     """Slope of one campaign of very many rows, every array by the strips."""
     used = np.ones(len(few.x), dtype=bool)
     rows = Rows(few.x, few.y, few.variance, few.stated, used, few.mirrored, few.notes, few.strips)
-    return replace(_estimate(rows, symmetric, None), pure_error=few.scatter)
+    return replace(_estimate(rows, symmetric, None, odd), pure_error=few.scatter)
 
 
-def _estimate(rows: Rows, symmetric: bool, groups: Array | None) -> OriginSlope:
+def _estimate(rows: Rows, symmetric: bool, groups: Array | None, odd: bool) -> OriginSlope:
     x, y, variance, stated, notes = rows.x, rows.y, rows.variance, rows.stated, rows.notes
     used, mirrored, strips = rows.used.copy(), rows.mirrored, rows.strips
     wrong, without, with_all, reason = np.zeros(len(x)), np.full(len(x), np.nan), np.nan, ""
@@ -523,7 +532,7 @@ def _estimate(rows: Rows, symmetric: bool, groups: Array | None) -> OriginSlope:
             )  # fmt: skip
         design = prepare(
             x[kept], None if variance is None else variance[kept], symmetric=symmetric,
-            settings=None if groups is None else np.asarray(groups)[kept], strips=strips and strips.of(kept),
+            settings=None if groups is None else np.asarray(groups)[kept], strips=strips and strips.of(kept), odd=odd,
         )  # fmt: skip
         many = estimate_many(design, y[kept], stated)
         wrong[kept], without[kept] = many.wrong[0], many.without[0]

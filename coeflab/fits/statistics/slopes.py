@@ -162,11 +162,12 @@ def by_row(slope: OriginSlope, term: int) -> Array:
 
 
 def determined(
-    slope: OriginSlope, target: str, middle: float | None, rest: tuple[float, float]
+    slope: OriginSlope, target: str, middle: float | None, rest: tuple[float, float], odd: bool = False
 ) -> tuple[float | None, float | None, Array]:
     """Value, U95 and what each used reading moves the value by.
 
-    ``middle`` is the median stated standard error, ``rest`` the curve at zero with its half-width.
+    ``middle`` is the median stated standard error, ``rest`` the curve at zero with its half-width; ``odd`` says that the part
+    over x of an even force is odd by declared symmetry.
     """
     if slope.design is None:
         return None, None, np.zeros(int(slope.used.sum()))
@@ -180,7 +181,7 @@ def determined(
     kept = np.flatnonzero(np.abs(x) > NEAR_REST * slope.design.largest)
     floor = middle or NO_FLOOR * float(np.abs(y - at_rest).max())
     error = floor * np.sqrt(slope.design.variance[kept]) / np.abs(x[kept])
-    bent = origin_slope.estimate(x[kept], (y[kept] - at_rest) / x[kept], error)
+    bent = origin_slope.estimate(x[kept], (y[kept] - at_rest) / x[kept], error, odd=odd)
     if bent.design is None:
         return None, None, np.zeros(len(x))
     out, kept = np.zeros(len(x)), kept[bent.used]
@@ -208,10 +209,11 @@ def rest_and_curvature(x: Array, y: Array) -> tuple[float | None, float | None]:
 
 
 def by_largest(
-    x: Array, y: Array, caps: Sequence[float], se: Array | None = None, *, symmetric: bool = False
+    x: Array, y: Array, caps: Sequence[float], se: Array | None = None, *, symmetric: bool = False, odd: bool = False
 ) -> tuple[tuple[float, OriginSlope], ...]:
     """The slope had the sweep ended at each of ``caps`` (largest |x|)."""
     inside = [(c, np.abs(x) <= c * (1.0 + 1e-9)) for c in caps]
     return tuple(
-        (c, origin_slope.estimate(x[i], y[i], None if se is None else se[i], symmetric=symmetric)) for c, i in inside
+        (c, origin_slope.estimate(x[i], y[i], None if se is None else se[i], symmetric=symmetric, odd=odd))
+        for c, i in inside
     )

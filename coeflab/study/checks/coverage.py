@@ -39,6 +39,15 @@ def _sides(s: Sweep) -> Check | None:
     if s.value is None:
         return None
     subject = f"{s.table} {s.variable}'"
+    if s.symmetry:
+        return Check(
+            "coverage",
+            subject,
+            Severity.PASS,
+            f"all points on one side, the other by declared {s.symmetry} symmetry",
+            "points on both sides of zero, or a declared symmetry",
+            "The declaration fixes the parity; mirrored rows add no degree of freedom.",
+        )
     if s.one_sided:
         return Check(
             "coverage",

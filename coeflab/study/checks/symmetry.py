@@ -19,7 +19,7 @@ RULE = (
 
 
 def _intercept(sweep: Sweep) -> Check | None:
-    if sweep.component not in "YKN" or sweep.variable not in ("v", "r") or sweep.value is None:
+    if sweep.component not in "YKN" or sweep.variable not in ("v", "r") or sweep.value is None or sweep.symmetry:
         return None
     value, error = sweep.at_rest
     reach = float(abs(sweep.y).max())

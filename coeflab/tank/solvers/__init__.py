@@ -54,7 +54,9 @@ class TowSolver(Plugin, Protocol):
     ended : callable or None
         ``ended(job)``: what shows that a job that ended is not sound (diverged, few layers, ...), as remarks and a reason.
     table : callable or None
-        ``table(tank, body)``: the whole table at once, of a method that needs no runs.
+        ``table(tank, body, folder)``: the whole table at once, of a method that needs no runs of ours; a row bears the name of
+        its condition in ``row_labels``, columns their plain name in ``means``, in SI, whole body, FRD. ``folder`` is that of the
+        tow, in which ``jobs`` may have written what a person fills in.
     """
 
     options: type[Declaration]
@@ -63,7 +65,7 @@ class TowSolver(Plugin, Protocol):
     stop: Callable[[Path], None] | None = None
     resumed: Callable[[Job], tuple[tuple[Step, ...], float]] | None = None
     ended: Callable[[Job], tuple[tuple[str, ...], str]] | None = None
-    table: Callable[[Tank, TowedBody], RawTable] | None = None
+    table: Callable[[Tank, TowedBody, Path], RawTable] | None = None
 
     def installed(self) -> Installation:
         """What is installed here."""

@@ -1,0 +1,438 @@
+"""What a tow gave, as a campaign: one table a kind of condition, every row with its state, and where each row comes from.
+
+The rows are means over the plateau of each run, as `coeflab.tables.runs` makes them of any solver's. Nothing in them depends
+on when or how often a run was started, so that a finished run gives the same bytes after an interruption.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coeflab.core.provenance import sha256_of
+from coeflab.core.text.toml import quoted, value
+from coeflab.core.types import brief
+from coeflab.core.version import VERSION
+from coeflab.core.wording import one_line
+from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, FORCES, LINEAR, MOTIONS
+from coeflab.tables.campaign import FILE, FOURFOLD
+from coeflab.tables.histories import Convergence
+from coeflab.tables.raw_table import RawTable, Run
+from coeflab.tables.runs import RunSummary, natural, summarised
+from coeflab.tank.jobs import Job, JobState, Progressed
+from coeflab.tank.tank import Tank
+from coeflab.tank.test_matrix import Half, Kind, TowCondition
+from coeflab.tank.towed_body import TowedBody
+
+RUNS = "runs.csv"
+HISTORY_ROWS = 200  # of the history of a run that the campaign keeps
+CONVERGED = "converged"
+SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
+REPORTED = {Half.WHOLE: tuple(COMPONENTS), Half.UPPER: ("X", "Y", "N"), Half.PORT: ("X", "Z", "M")}
+LABELS = ("kind", "grid", "half", "status")
+VARIANT = "variant"
+LONG_CONTROLS = {short: name for name, short in CONTROL_COLUMNS.items()}
+_QUARTER = {"v": ("w", 1.0), "w": ("v", -1.0), "q": ("r", 1.0), "r": ("q", -1.0),
+            "Y": ("Z", 1.0), "Z": ("Y", -1.0), "M": ("N", 1.0), "N": ("M", -1.0)}  # fmt: skip
+_SIDE = ("X", "Y", "N")
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class TowedRun:
+    """One condition as it came out.
+
+    Attributes
+    ----------
+    condition : TowCondition
+    state : JobState
+    why : str
+        What shows a state that is not finished.
+    summary : RunSummary or None
+        Means over the plateau, N and N m, whole body, FRD; None where nothing was run.
+    remarks : tuple of str
+        Of the mesh and of the run.
+    case, mesh : str
+        Keys of the run and of the mesh that it needs; empty for a method without runs.
+    history : Run or None
+        For the short history that the campaign keeps.
+    """
+
+    condition: TowCondition
+    state: JobState
+    why: str = ""
+    summary: RunSummary | None = None
+    remarks: tuple[str, ...] = ()
+    case: str = ""
+    mesh: str = ""
+    history: Run | None = None
+
+    @property
+    def counts(self) -> bool:
+        """Whether fits may use it: finished, and on a plateau by the rule of all runs."""
+        return self.state is JobState.FINISHED and self.status == CONVERGED
+
+    @property
+    def status(self) -> str:
+        """As the column of the table has it: ``converged``, or what it is instead."""
+        if self.state is JobState.FINISHED and self.summary is not None:
+            return str(self.summary.status)
+        return "not run" if self.state is JobState.WAITING else str(self.state)
+
+
+def towed_run(
+    condition: TowCondition, progressed: Progressed, jobs: Mapping[str, Job], job: Job, history: Run | None,
+    mesh_remarks: Sequence[str] = (),
+) -> TowedRun:  # fmt: skip
+    """A condition with what its job left.
+
+    Parameters
+    ----------
+    condition : TowCondition
+    progressed : Progressed
+        State of its job.
+    jobs : mapping of str to Job
+        All of the tow, for the mesh.
+    job : Job
+    history : Run or None
+        As the solver reads it; None where there is none.
+    mesh_remarks : sequence of str
+    """
+    meshes = [jobs[name].key for name in job.needs if name in jobs]
+    return TowedRun(
+        condition,
+        progressed.state,
+        progressed.why,
+        None if history is None or not len(history.history) else summarised(history, condition.name),
+        (*mesh_remarks, *progressed.remarks),
+        job.key,
+        "+".join(meshes),
+        history,
+    )
+
+
+def rows_of(tank: Tank, table: RawTable) -> tuple[TowedRun, ...]:
+    """The conditions of a tank as a method gives them that needs no runs: its rows bear the conditions' names.
+
+    Parameters
+    ----------
+    tank : Tank
+    table : RawTable
+        Forces by their meaning, SI, whole body, FRD; a condition without a row, or with blank cells, was not run.
+    """
+    at = {name: i for i, name in enumerate(table.row_labels)}
+    known = {c.means: c for c in table.columns if c.means}
+    out = []
+    for condition in tank.matrix:
+        row = at.get(condition.name)
+        wanted = [c for c in REPORTED[condition.half] if c in known]
+        means = {} if row is None else {c: float(known[c].values[row]) for c in wanted}
+        means = {c: x for c, x in means.items() if math.isfinite(x)}
+        if row is None or not means:
+            out.append(TowedRun(condition, JobState.WAITING, "no forces in the table"))
+            continue
+        errors = {c: float(known[f"se_{c}"].values[row]) for c in means if f"se_{c}" in known}
+        summary = RunSummary(condition.name, Convergence.CONVERGED, means=means, errors=errors)
+        cells = known.get("cells")
+        if cells is not None and math.isfinite(cells.values[row]):
+            from coeflab.tables.raw_table import Stated
+
+            summary = RunSummary(
+                condition.name, Convergence.CONVERGED, means=means, errors=errors,
+                stated_conditions={"cells": Stated(float(cells.values[row]), table.path.name)},
+            )  # fmt: skip
+        out.append(TowedRun(condition, JobState.FINISHED, "", summary))
+    return tuple(out)
+
+
+def campaign_files(
+    tank: Tank, body: TowedBody, runs: Sequence[TowedRun], version: str, inputs: Mapping[str, Path] | None = None
+) -> dict[str, bytes]:
+    """The files of the campaign folder, by name: tables, campaign.toml, runs.csv, and a short history of each run.
+
+    Parameters
+    ----------
+    tank : Tank
+    body : TowedBody
+    runs : sequence of TowedRun
+        Every condition of the matrix, in its order.
+    version : str
+        Of the solver.
+    inputs : mapping of str to Path, optional
+        Files whose sha256 is written down: ``body.toml``, ``tank.toml``.
+
+    Returns
+    -------
+    dict of str to bytes
+        Without a table where no condition has a mean.
+    """
+    groups = _grouped(runs)
+    turned = _by_fourfold_symmetry(groups) if FOURFOLD in tank.symmetry else {}
+    files: dict[str, bytes] = {}
+    declared: list[str] = []
+    for name, group in {**groups, **turned}.items():
+        if not any(r.summary is not None and r.summary.means for r in group):
+            continue
+        origin = f"by fourfold symmetry, from {_SOURCES[name]}.csv turned by 90 deg about x" if name in turned else ""
+        files[f"{name}.csv"], notes = _table(group, origin)
+        declared.append(_declared(name, group, notes, origin))
+    if not declared:
+        return {}
+    files[FILE] = _campaign_text(tank, body, runs, version, inputs or {}, declared, tuple(turned)).encode()
+    files[RUNS] = _runs_text(runs)
+    for r in runs:
+        if r.history is not None and len(r.history.history):
+            files[f"histories/{r.condition.name}.csv"] = short_history(r.history)
+    return files
+
+
+def _grouped(runs: Sequence[TowedRun]) -> dict[str, list[TowedRun]]:
+    """Runs by the table that they belong to; a table has conditions of one kind that report the same components."""
+    kinds = {r.condition.kind for r in runs}
+    out: dict[str, list[TowedRun]] = {}
+    for r in runs:
+        out.setdefault(_table_name(r.condition, kinds), []).append(r)
+    return {name: out[name] for name in sorted(out, key=lambda n: (_place(n), natural(n)))}
+
+
+_ORDER = ("straight", "drift", "attack", "arm", "arm_pitch", "arm_roll", "combined", "control")
+
+
+def _place(name: str) -> int:
+    return _ORDER.index(name) if name in _ORDER else len(_ORDER)
+
+
+def _table_name(condition: TowCondition, kinds: set[Kind]) -> str:
+    """``drift``, ``attack``, ``arm`` ...: straight runs are the zero of the sweep that has their half of the body."""
+    half = condition.half
+    if condition.kind is Kind.STRAIGHT:
+        order = (Kind.ATTACK, Kind.DRIFT) if half is Half.PORT else (Kind.DRIFT, Kind.ATTACK)
+        return next((str(k) for k in order if k in kinds), "straight")
+    if condition.kind is Kind.ARM:
+        p, q, r = np.abs(condition.rates)
+        return "arm" if r >= max(p, q) else "arm_pitch" if q >= p else "arm_roll"
+    usual = {Kind.DRIFT: (Half.WHOLE, Half.UPPER), Kind.ATTACK: (Half.WHOLE, Half.PORT)}.get(condition.kind, ())
+    is_usual = not usual or half in usual
+    return str(condition.kind) if is_usual else f"{condition.kind}_{'port' if half is Half.PORT else 'upper'}"
+
+
+_SOURCES = {"attack": "drift", "arm_pitch": "arm"}
+
+
+def _by_fourfold_symmetry(groups: Mapping[str, Sequence[TowedRun]]) -> dict[str, list[TowedRun]]:
+    """Attack from drift and a pitching arm from a yawing one, where they were not run: the same rows a quarter of a turn on."""
+    return {
+        name: [_turned(r, name) for r in groups[source]]
+        for name, source in _SOURCES.items()
+        if name not in groups and source in groups
+    }
+
+
+def _turned(run: TowedRun, kind: str) -> TowedRun:
+    """A run as it would be had body and motion been turned by 90 deg about x: starboard becomes down."""
+    c = run.condition
+    motion = dict(zip(MOTIONS, (*c.velocity, *c.rates), strict=True))
+    new = dict.fromkeys(MOTIONS, 0.0)
+    for name, x in motion.items():
+        to, sign = _QUARTER.get(name, (name, 1.0))
+        new[to] = sign * float(x) + 0.0
+    condition = TowCondition(
+        c.name, Kind.ATTACK if kind == "attack" else c.kind, np.array([new[m] for m in LINEAR]),
+        np.array([new[m] for m in ANGULAR]), {}, Half.PORT if c.half is Half.UPPER else c.half, c.grid, c.variant,
+    )  # fmt: skip
+    s = run.summary
+    if s is None:
+        return TowedRun(condition, run.state, run.why, None, run.remarks, run.case, run.mesh)
+    means, errors = {}, {}
+    for name, x in s.means.items():
+        to, sign = _QUARTER.get(name, (name, 1.0))
+        means[to] = sign * x + 0.0
+        if name in s.errors:
+            errors[to] = s.errors[name]
+    summary = RunSummary(
+        s.name, s.status, s.why, means, errors, iterations=s.iterations, stated_conditions=s.stated_conditions
+    )
+    return TowedRun(condition, run.state, run.why, summary, run.remarks, run.case, run.mesh)
+
+
+def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, list[str]]]:
+    """One table as CSV, and the names of its columns that are labels, and that are ignored."""
+    motions = [m for m in MOTIONS if m == "u" or any(_motion(r, m) != 0.0 for r in group)]
+    controls = [c for c in dict.fromkeys(k for r in group for k in r.condition.controls) if c in LONG_CONTROLS]
+    given = {c for r in group if r.summary for c in r.summary.means if c in REPORTED[r.condition.half]}
+    components = [c for c in COMPONENTS if c in given]
+    with_errors = [
+        c for c in components if all(_error(r, c) > 0.0 for r in group if r.summary and c in r.summary.means)
+    ]
+    patches = list(dict.fromkeys(p for r in group if r.summary for p in r.summary.patches if p[0] in components))
+    has_cells = any(_cells(r) for r in group)
+    heads = ["point", *(f"{m} [{'m/s' if m in LINEAR else 'rad/s'}]" for m in motions)]
+    heads += [f"{LONG_CONTROLS[c]} [rad]" for c in controls]
+    heads += [f"{c} [{'N' if c in FORCES else 'N*m'}]" for c in components]
+    heads += [f"se_{c} [{'N' if c in FORCES else 'N*m'}]" for c in with_errors]
+    varies = any(variant_of(r.condition) for r in group)
+    heads += [*LABELS, *([VARIANT] if varies else []), *(["cells"] if has_cells else []), "iterations"]
+    heads += [f"{p} [{'N' if p[0] in FORCES else 'N*m'}]" for p in patches]
+    heads.append("uncertain")
+    out = io.StringIO()
+    if origin:
+        out.write(f"# Not run: {origin}.\n")
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(heads)
+    for r in group:
+        c, s = r.condition, r.summary
+        means = s.means if s is not None else {}
+        known = REPORTED[c.half]
+        doubtful = [x for x in components if not r.counts or x not in means or x not in known]
+        cells = [c.name, *(_exact(_motion(r, m)) for m in motions), *(_exact(c.controls.get(k, 0.0)) for k in controls)]
+        cells += [_number(means.get(x)) if x in known else "" for x in components]
+        cells += [_short(_error(r, x)) if x in known else "" for x in with_errors]
+        cells += [str(c.kind), c.grid, str(c.half) or "whole", r.status]
+        cells += [variant_of(c)] if varies else []
+        cells += [_cells(r)] if has_cells else []
+        cells.append("" if s is None or not math.isfinite(s.iterations) else f"{s.iterations:.10g}")
+        cells += ["" if s is None or p not in s.patches else _number(s.patches[p][0]) for p in patches]
+        cells.append(" ".join(doubtful))
+        writer.writerow(cells)
+    names = {"labels": list(LABELS), "ignore": ["iterations", *patches]}
+    if has_cells:
+        names["cells"] = ["cells"]
+    return out.getvalue().encode(), names
+
+
+def variant_of(condition: TowCondition) -> str:
+    """What a study changes, ``domain = 1.5``; empty for a condition of the matrix itself."""
+    return ", ".join(f"{k} = {v}" for k, v in condition.variant.items())
+
+
+def _motion(run: TowedRun, name: str) -> float:
+    c = run.condition
+    return float(c.velocity[LINEAR.index(name)] if name in LINEAR else c.rates[ANGULAR.index(name)])
+
+
+def _error(run: TowedRun, component: str) -> float:
+    error = run.summary.errors.get(component, math.nan) if run.summary is not None else math.nan
+    return error if math.isfinite(error) else 0.0
+
+
+def _cells(run: TowedRun) -> str:
+    stated = run.summary.stated_conditions.get("cells") if run.summary is not None else None
+    return f"{stated.value:.0f}" if stated is not None and isinstance(stated.value, (int, float)) else ""
+
+
+def _exact(x: float) -> str:
+    """Twelve digits: settings come from angles, and rows at one setting have to be recognised."""
+    return f"{x + 0.0:.12g}"
+
+
+def _number(x: float | None) -> str:
+    return "" if x is None or not math.isfinite(x) else f"{x + 0.0:.6g}"
+
+
+def _short(x: float) -> str:
+    return f"{x:.3g}" if x > 0.0 else ""
+
+
+def _declared(name: str, group: Sequence[TowedRun], names: Mapping[str, list[str]], origin: str) -> str:
+    """The ``[[table]]`` of one table."""
+    lines = ["[[table]]", f'file = "{name}.csv"']
+    if any(r.condition.turns for r in group):
+        lines.append(f"{'contains_inertia = false':<41} # the solver's frame turns: hydrodynamic force only")
+    lines.append(f"labels = {value(names['labels'])}")
+    if names["ignore"]:
+        lines.append(f"ignore = {value(names['ignore'])}")
+    if "cells" in names:
+        own = 'cells = "cells"'
+        lines.append(f"{own:<41} # of the grid, for the grid study")
+    if any(variant_of(r.condition) for r in group):
+        lines.append(f"variant = {quoted(VARIANT)}")
+    if len({r.condition.grid for r in group}) > 1:
+        lines.append(f"select = {value({'grid': 'medium', 'reason': 'grid study only'})}")
+    if origin:
+        source = f"by_symmetry = {quoted(f'{_SOURCES[name]}.csv')}"
+        lines.append(f"{source:<41} # turned by 90 deg about x: stated, not run")
+    return "\n".join(lines)
+
+
+def _campaign_text(
+    tank: Tank, body: TowedBody, runs: Sequence[TowedRun], version: str, inputs: Mapping[str, Path],
+    declared: Sequence[str], turned: Sequence[str],
+) -> str:  # fmt: skip
+    finished = sum(r.counts for r in runs)
+    stated = [*tank.by_symmetry, *(f"{t}.csv from {_SOURCES[t]}.csv by fourfold symmetry" for t in turned)]
+    files = "; ".join(f"{name} sha256 {sha256_of(path)}" for name, path in inputs.items())
+    at = tank.conditions
+    how = (
+        f"{version}, run by coeflab {VERSION}. Means over the plateau of every force and moment, se from batch means "
+        "(iteration noise only). Halves of the body are doubled. Meshes, cases and states: runs.csv."
+        + (f" {files}." if files else "")
+    )
+    grids = {r.condition.grid for r in runs}
+    scatter = "iteration noise per point (se_); " + (
+        f"grids {', '.join(g.name for g in tank.grids if g.name in grids)} for chosen conditions"
+        if len(grids) > 1
+        else "one grid: grid error not assessed"
+    )
+    sections: dict[str, dict[str, Any]] = {
+        "campaign": {
+            "name": tank.name, "title": tank.title, "body": body.body.name, "symmetry": list(tank.symmetry) or None,
+            "notes": " ".join([f"{finished} of {len(runs)} conditions converged.", *(f"By symmetry: {s}." for s in stated)]),
+        },
+        "axes": {
+            "frame": "FRD", "datum": tank.datum.id, "datum_note": tank.datum.note or None,
+            "reference_point": [float(x) for x in tank.reference_point],
+        },
+        "scaling": {"length": float(tank.scaling.length), "length_name": tank.scaling.length_name},
+        "conditions": {
+            "speed": float(at.speed), "density": float(at.density), "viscosity": at.viscosity,
+            "reynolds": at.reynolds_on(tank.scaling.length),
+        },
+        "source": {
+            "citation": f"coeflab tow of {body.body.name}, {version}",
+            "kind": "cfd", "how_obtained": how, "stated_uncertainty": f"{scatter}; modelling error not assessed",
+        },
+    }  # fmt: skip
+    lines = ["# Made by `coeflab tow`. What its rows come from, run by run, is in runs.csv."]
+    for section, keys in sections.items():
+        lines += ["", f"[{section}]"]
+        lines += [f"{k} = {quoted(v) if isinstance(v, str) else value(v)}" for k, v in keys.items() if v is not None]
+    return "\n".join([*lines, *(f"\n{d}" for d in declared)]) + "\n"
+
+
+def _runs_text(runs: Sequence[TowedRun]) -> bytes:
+    """Every condition with its state, what shows it, and the keys of its case and mesh."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["condition", "state", "status", "why", "remarks", "case sha256", "mesh sha256"])
+    for r in runs:
+        shown = r.why or (r.summary.why if r.summary is not None else "")
+        texts = (r.condition.name, str(r.state), r.status, shown, "; ".join(r.remarks), r.case, r.mesh)
+        writer.writerow([one_line(t) for t in texts])
+    return out.getvalue().encode()
+
+
+def short_history(run: Run, most: int = HISTORY_ROWS) -> bytes:
+    """At most so many rows of a history, evenly spread, the last among them: iteration and forces, six digits.
+
+    Parameters
+    ----------
+    run : Run
+    most : int
+    """
+    history = run.history
+    at = history.meaning("time") or history.meaning("iteration")
+    columns = [*([at] if at is not None else []), *(c for x in COMPONENTS if (c := history.meaning(x)) is not None)]
+    n = len(history)
+    rows = np.unique(np.linspace(0, n - 1, min(n, most)).round().astype(int))
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow([f"{c.means} [{c.unit}]" if c.means in COMPONENTS else c.means for c in columns])
+    writer.writerows([f"{c.values[i]:.6g}" for c in columns] for i in rows)
+    return out.getvalue().encode()
