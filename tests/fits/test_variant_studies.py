@@ -154,6 +154,21 @@ def test_a_run_that_did_not_converge_is_not_judged(tmp_path: Path) -> None:
     assert found.changed == (("turbulence = SpalartAllmaras", 17.522),)
 
 
+def test_a_study_of_the_iterations_judges_a_run_that_ended_sooner(tmp_path: Path) -> None:
+    changed = (
+        ("iterations = 60", 607541, 19.522, 146.0, "Y N,unconverged"),
+        ("iterations = 70", 607541, 9.0, 9.0, "Y N,diverged"),
+    )
+    folder = campaign(tmp_path / "c", changed)
+    head, *rows = (folder / "drift.csv").read_text().splitlines()
+    rows = [row if row.endswith(("ged", "unconverged")) else f"{row},converged" for row in rows]
+    (folder / "drift.csv").write_text("\n".join([f"{head},status", *rows]) + "\n")
+    text = (folder / "campaign.toml").read_text().replace('labels = ["grid"]', 'labels = ["grid", "status"]', 1)
+    (folder / "campaign.toml").write_text(text)
+    (found,) = variant_studies(read_tables(PlannedTable(folder, ()))[0], "Y")
+    assert found.changed == (("iterations = 60", 19.522),)
+
+
 def test_another_grid_is_judged_for_the_domain_only(tmp_path: Path) -> None:
     changed = (("turbulence = realizable k-epsilon", 192998, 20.0, 146.0, ""), ("domain = 2", 900000, 18.0, 146.0, ""))
     drift = read_tables(PlannedTable(campaign(tmp_path / "c", changed), ()))[0]
