@@ -15,11 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.source import MeshSource
+from coeflab.bodies.pieces import Control, ControlKeys, Piece
 from coeflab.bodies.shape import Shape
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum, DatumKeys
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source, sha256_of
+from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
 from coeflab.law.scaling import Scaling
@@ -127,6 +129,10 @@ class Body:
         Acceleration derivatives from elsewhere, to be shown beside computed ones.
     mesh : MeshSource, optional
         Where the shape's parts stand for a mesh: that mesh.
+    pieces : tuple of Piece
+        The closed pieces that the shape is made of, where its reader knows them.
+    controls : tuple of Control
+        Which of them turn.
     """
 
     name: str
@@ -141,6 +147,8 @@ class Body:
     scaling: Scaling | None = None
     measured: tuple[Measured, ...] = ()
     mesh: MeshSource | None = None
+    pieces: tuple[Piece, ...] = ()
+    controls: tuple[Control, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))
@@ -511,9 +519,12 @@ class ShapedBodyFile(BodyFile):
     ----------
     measured : array of tables
         Acceleration derivatives from elsewhere, to be shown beside computed ones.
+    control : array of tables
+        Parts that turn.
     """
 
     measured: tuple[MeasuredKeys, ...] = ()
+    control: tuple[ControlKeys, ...] = ()
 
     def check(self) -> None:
         """Primed values have a length."""
@@ -522,10 +533,24 @@ class ShapedBodyFile(BodyFile):
             expected = "[prime] with length and length_name"
             raise InputError("primed values without a length", expected, column="measured")
 
-    def shaped(self, path: Path, shape: Shape, computed: Configuration) -> Body:
-        """The body with its shape and what was measured."""
+    def shaped(self, path: Path, shape: Shape, computed: Configuration, pieces: tuple[Piece, ...] = ()) -> Body:
+        """The body with its shape, its pieces, what turns and what was measured.
+
+        Raises
+        ------
+        InputError
+            A control of a part that is none of the pieces, by file, line and key.
+        """
+        controls = []
+        for i, one in enumerate(self.control):
+            try:
+                controls.append(one.made(pieces))
+            except InputError as why:
+                raise read_toml(path).fail(f"control[{i}].{why.column}", why.found, why.expected) from None
         return replace(
             self.made(path, shape, (computed,)),
             scaling=self.prime and self.prime.scaling,
             measured=tuple(m for s in self.measured for m in s.made),
+            pieces=pieces,
+            controls=tuple(controls),
         )

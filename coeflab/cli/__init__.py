@@ -21,6 +21,7 @@ ORDER = [
     "report",
     "serve",
     "import",
+    "tow",
     "fit",
     "inspect",
     "new",

@@ -24,6 +24,7 @@ from coeflab.law.symbols import ANGULAR, primed
 from coeflab.motion.manoeuvre import Figure, Simulation
 from coeflab.report.acceptance import Acceptance, Held, held, held_of_study
 from coeflab.study.study import Study
+from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.inertia import WaterInertia
 
 
@@ -200,6 +201,33 @@ def numbers(found: Held) -> dict[str, dict[str, int]]:
     return {b.value: {"count": count, "hold": good} for b, (good, count) in found.items()}
 
 
+def tow(found: Towed) -> dict[str, Any]:
+    """Every wanted coefficient of a towed body; absent values are null and ``missing`` and ``why`` say why."""
+    return {
+        "name": found.tow.name,
+        "body": found.body,
+        "campaign": found.tow.campaign or None,
+        "rows": [
+            {
+                "symbol": primed(r.symbol),
+                "value": r.value,
+                "u95": r.u95,
+                "u_grid": r.u_grid,
+                "missing": r.missing or None,
+                "why": r.why or None,
+                "published": dict(zip(found.columns, r.published, strict=True)),
+                "test": None if r.validation is None else r.validation.experiment,
+                "measured": None if r.validation is None else r.validation.measured,
+                "error": None if r.validation is None else r.validation.error,
+                "u_validation": None if r.validation is None else r.validation.u_validation,
+                "within_u_validation": r.verdict,
+                "why_no_verdict": r.why_none or None,
+            }
+            for r in found.rows
+        ],
+    }
+
+
 def study(s: Study, files: list[str]) -> dict[str, Any]:
     """A whole study."""
     scalings = {f.campaign: str(f.coefficients.scaling) for f in s.fits}
@@ -228,6 +256,7 @@ def study(s: Study, files: list[str]) -> dict[str, Any]:
             }
             for c in s.comparisons
         ],
+        "tows": [tow(t) for t in towed(s)],
         "law_at_points": {
             name: [f.model_dump(mode="json") for f in p.law_at_points] for name, p in s.parameter_files.items()
         },

@@ -85,6 +85,7 @@ def summarise(study: Study) -> None:
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import results as tables
+    from coeflab.study.towed import towed
     from coeflab.vehicle.derived import stability
     from coeflab.vehicle.force_law import points_of
 
@@ -92,6 +93,9 @@ def summarise(study: Study) -> None:
     show.sentence(tables.headline(study))
     show.text()
     show.table(tables.side_by_side(study))
+    for tow in towed(study):
+        show.folded(tables.own_tow(tow))
+        show.folded(tables.tow_against(tow))
     verdicts = tables.verdicts(study)
     show.table(verdicts)
     if verdicts.rows:

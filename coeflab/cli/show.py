@@ -64,6 +64,15 @@ def table(content: Table) -> None:
         _plain(content)
 
 
+def folded(content: Table) -> None:
+    """A table whose notes are folded to 80 columns."""
+    import textwrap
+    from dataclasses import replace
+
+    notes = (line for note in content.notes for line in textwrap.wrap(note, 77, subsequent_indent="  "))
+    table(replace(content, notes=tuple(notes)))
+
+
 def _visible(content: Table) -> Table:
     from dataclasses import replace
 
@@ -108,17 +117,22 @@ def _rich(content: Table) -> None:
 
 
 def _plain(content: Table) -> None:
+    for line in plain_lines(content):
+        typer.echo(line)
+    typer.echo()
+
+
+def plain_lines(content: Table) -> list[str]:
+    """The table as aligned plain text."""
     rows = [content.headers, *content.rows]
     widths = [max(len(row[i]) for row in rows) for i in range(len(content.headers))]
-    typer.echo(content.title)
+    out = [content.title]
     for row in rows:
         cells = [
             c.ljust(w) if i in content.left else c.rjust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True))
         ]
-        typer.echo("  " + "  ".join(cells).rstrip())
-    for note in content.notes:
-        typer.echo(f"  {note}")
-    typer.echo()
+        out.append("  " + "  ".join(cells).rstrip())
+    return [*out, *(f"  {note}" for note in content.notes)]
 
 
 def json_object(content: dict[str, Any]) -> None:

@@ -43,6 +43,11 @@ def repeated(items: Iterable[Item]) -> list[Item]:
     return sorted((item for item, n in Counter(items).items() if n > 1), key=str)
 
 
+def natural(name: str) -> tuple[tuple[int, float, str], ...]:
+    """A key that sorts b2 before b10."""
+    return tuple((0, float(p), p) if p.isdigit() else (1, 0.0, p) for p in re.split(r"(\d{1,15})", name) if p)
+
+
 def finite(value: float) -> float | None:
     """The number, or None for what JSON cannot hold: infinities and NaN."""
     return float(value) if isfinite(value) else None

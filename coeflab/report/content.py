@@ -29,7 +29,7 @@ from coeflab.report.document import Document, Section, digest_of, reproduction
 from coeflab.report.figures.svg import settings
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.body import added_mass_sections, body_sections
-from coeflab.report.sections.campaign import anchor, budget_sections, campaign_section, filled
+from coeflab.report.sections.campaign import anchor, budget_sections, campaign_section, filled, tow_sections
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.data_quality import quality_sections
 from coeflab.report.sections.parameter_file import export_sections, in_words, manoeuvre_sections, stability_sections
@@ -126,6 +126,7 @@ def _document(study: Study) -> Document:
     sections = (
         verdict(study),
         *_comparison(study),
+        *tow_sections(study),
         _coefficients(study),
         *_models(study),
         *_laws(study),
@@ -255,7 +256,7 @@ def _coefficients(study: Study) -> Section:
         "Its random part is what the scatter of single readings does, its form part the rest, joined as a root sum of squares. "
         "What single forms would have said stands under each coefficient, for comparison only.",
         "A part that was not assessed is shown by a dash and is not in U95; the budget of every coefficient names what is "
-        "missing. The turbulence model of a computation is never in it.",
+        "missing. The turbulence model of a computation is in it only where the campaign has a study of it.",
     )
     single = any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients)
     if single:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
@@ -18,7 +18,8 @@ from coeflab.formats.export import PlannedExport
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import derivative
 from coeflab.motion.manoeuvre import PlannedManoeuvre
-from coeflab.study.study import Plan, PlannedJoint
+from coeflab.study.study import Plan, PlannedJoint, PlannedTow
+from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.importers import PlannedTable
 from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
@@ -263,6 +264,42 @@ class ManoeuvreKeys(takes.Declaration):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class TowKeys(takes.Declaration):
+    """A body that is towed by our own computations, each wanted coefficient beside what is published of it.
+
+    Attributes
+    ----------
+    name : str
+        Of the body, as tables print it.
+    body : str
+        Configuration that it is.
+    campaigns : tuple of str
+        Folders of campaigns as in ``[[table]]``; the first that is there counts, and none has to be.
+    fourfold : bool
+        Whether a quarter of a turn about x leaves the body as it is: Zw' = Yv', Mw' = -Nv', stated and not run.
+    experiment : tuple of str
+        Names of references that hold tests to compare with, in that order.
+    columns : tuple of str
+        Names of references to print beside.
+    note : str
+        What a reader has to know of the comparison.
+    """
+
+    name: takes.Words
+    body: takes.Text
+    campaigns: takes.Texts
+    fourfold: takes.Flag = False
+    experiment: takes.Texts = ()
+    columns: takes.Texts = ()
+    note: takes.Words = ""
+
+    def check(self) -> None:
+        """A campaign at least."""
+        if not self.campaigns:
+            raise InputError("no campaign", "the path of one or more", column="campaigns")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PlanFile(takes.Declaration):
     """A plan.toml: a study of tables, and what is made of it.
 
@@ -286,6 +323,8 @@ class PlanFile(takes.Declaration):
         A parameter file of some of the campaigns.
     references : array of tables
         Published values to compare with.
+    tow : array of tables
+        Bodies towed by our own computations, whether their campaigns are there yet or not.
     export : array of tables
         Files for a simulator, every target once.
     manoeuvre : array of tables
@@ -301,6 +340,7 @@ class PlanFile(takes.Declaration):
     joint: tuple[JointKeys, ...] | None = None
     parameter_file: tuple[ParameterFileKeys, ...] = ()
     references: tuple[ReferencesKeys, ...] = ()
+    tow: tuple[TowKeys, ...] = ()
     export: tuple[ExportKeys, ...] = ()
     manoeuvre: tuple[ManoeuvreKeys, ...] = ()
 
@@ -332,6 +372,26 @@ def table_at(
     return PlannedTable(path, fits, options or {}, only)
 
 
+def _tow(keys: TowKeys, plan: Path, tables: Sequence[Path]) -> PlannedTow:
+    """The tow with the first of its campaigns that is there."""
+    absent: list[str] = []
+    found: Path | None = None
+    for name in keys.campaigns:
+        try:
+            found = located(name, "cfd_data", plan.parent)
+        except InputError:
+            absent.append(Path(name).name)
+            continue
+        break
+    campaign, added = "", None
+    if found is not None:
+        campaign = read_campaign(found / FILE if found.is_dir() else found).name
+        added = None if any(found.resolve() == t.resolve() for t in tables) else found
+    return PlannedTow(
+        keys.name, keys.body, campaign, tuple(absent), keys.fourfold, keys.experiment, keys.columns, keys.note, added
+    )
+
+
 def read_plan(path: Path) -> Plan:
     """Read a plan.
 
@@ -347,10 +407,15 @@ def read_plan(path: Path) -> Plan:
     """
     file = takes.declared(PlanFile, read_toml(path))
     study = file.study
+    tows = tuple(_tow(t, path, [own.campaign for own in file.table]) for t in file.tow)
     return Plan(
         name=study.name,
         title=study.name if study.title is None else study.title,
-        tables=tuple(table_at(t.campaign, t.used, t.options) for t in file.table),
+        tables=(
+            *(table_at(t.campaign, t.used, t.options) for t in file.table),
+            *(table_at(t.added, DEFAULT_FITS) for t in tows if t.added is not None),
+        ),
+        tows=tows,
         joint=tuple(PlannedJoint(tuple(map(table_at, j.campaigns)), j.fit, j.options) for j in file.joint or ()),
         reference_point=study.reference_point,
         datum=None if study.datum is None else Datum.named(study.datum, study.datum_note or ""),

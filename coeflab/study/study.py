@@ -45,6 +45,38 @@ class PlannedJoint:
 
 
 @brief
+@dataclass(frozen=True, slots=True)
+class PlannedTow:
+    """One ``[[tow]]``: a body of which every wanted coefficient is to come from our own computations.
+
+    Attributes
+    ----------
+    name, body : str
+    campaign : str
+        Name of the campaign that is there; empty where none is.
+    absent : tuple of str
+        Folders that were looked for and are not there.
+    fourfold : bool
+        A quarter of a turn about x leaves the body as it is, so that derivatives of attack are stated from those of drift.
+    experiment, columns : tuple of str
+        References that hold the tests to compare with, and published columns to print.
+    note : str
+    added : Path or None
+        Of the campaign where no ``[[table]]`` names it.
+    """
+
+    name: str
+    body: str
+    campaign: str = ""
+    absent: tuple[str, ...] = ()
+    fourfold: bool = False
+    experiment: tuple[str, ...] = ()
+    columns: tuple[str, ...] = ()
+    note: str = ""
+    added: Path | None = None
+
+
+@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
     """What to do, with paths resolved.
@@ -73,6 +105,8 @@ class Plan:
     include_uncertain : bool
         Use cells that their source marks as doubtful.
     file : InputFile or None
+    tows : tuple of PlannedTow
+        Their campaigns are among the tables.
     """
 
     name: str
@@ -93,6 +127,7 @@ class Plan:
     hull: Path | None = None
     method: str = "all"
     manoeuvres: tuple[PlannedManoeuvre, ...] = ()
+    tows: tuple[PlannedTow, ...] = ()
 
     def __post_init__(self) -> None:
         if self.reference_point is not None:
@@ -105,7 +140,8 @@ class Study:
     """Everything that a run found; export and report are two leaves of this one object.
 
     ``parameter_files`` and ``hulls``, the added mass of those that have one, go by the name of the file. ``refused`` are
-    planned exports that were not made; all else stands.
+    planned exports that were not made; all else stands. ``unfitted`` says of the campaign of a tow why a fit of it could not
+    be made.
     """
 
     plan: Plan
@@ -123,8 +159,10 @@ class Study:
     exports: tuple[Export, ...] = ()
     refused: tuple[Refused, ...] = ()
     manoeuvres: tuple[Simulation, ...] = ()
+    unfitted: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "unfitted", MappingProxyType(dict(self.unfitted)))
         object.__setattr__(self, "parameter_files", MappingProxyType(dict(self.parameter_files)))
         object.__setattr__(self, "hulls", MappingProxyType(dict(self.hulls)))
 

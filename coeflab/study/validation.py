@@ -15,6 +15,7 @@ from coeflab.core.types import brief
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.study.study import Study
+from coeflab.tables.force_table import STUDIES
 from coeflab.vehicle.derived import INDICES, index_gradient, stability_index
 
 
@@ -81,7 +82,8 @@ def _half_a_digit(printed: str) -> float:
     return 0.5 * 10.0 ** -len(printed.partition(".")[2])
 
 
-NUMERICAL = ("random", "grid")
+NUMERICAL = ("random", "grid", STUDIES["domain"], STUDIES["iterations"])
+MODEL = STUDIES["turbulence"]
 REDUCTION = ("model form", "random and model form")
 
 
@@ -98,7 +100,7 @@ class Validation:
     u_measured : float or None
         U_D.
     u_numerical : float
-        U_SN: grid and iteration noise of the computation, as far as they were assessed.
+        U_SN: grid, domain, iterations and their noise, as far as they were assessed; no turbulence model, which E is about.
     u_reduction : float
         Of drawing a slope through computed points: the model form.
     u_input : float or None
@@ -181,7 +183,7 @@ def validation(s: Budget, d: Budget, ratio: float = 1.0) -> Validation:
         u_numerical=s.joined(*NUMERICAL),
         u_reduction=s.joined(*REDUCTION),
         u_input=s.input,
-        lacking=s.unassessed,
+        lacking=(*s.unassessed, *([] if s.part(MODEL) is None else [MODEL])),
         lacking_measured=d.unassessed,
     )
 

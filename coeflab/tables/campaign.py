@@ -180,6 +180,9 @@ class TableDeclaration(takes.Declaration):
         Only rows with this text in that label column enter fits; ``reason`` says why.
     cells : str
         Column with the cells of the grid that computed each row, or empty. Of rows at one condition the finest grid enters fits.
+    variant : str
+        Column that says what a study changed in a row, as "domain = large" (domain, turbulence or iterations); blank or "matrix"
+        in a row of none. Rows of studies do not enter fits; how far they differ enters U95.
     reference_point : (3,) array or None
         Of this table's moments and rates, m, FRD, from the datum; the campaign's unless given. Moments are moved to the campaign's.
     arm_point : (3,) array or None
@@ -204,6 +207,7 @@ class TableDeclaration(takes.Declaration):
     ignore: takes.Texts = ()
     select: Mapping[str, Any] = field(default_factory=dict)
     cells: takes.Words = ""
+    variant: takes.Words = ""
     reference_point: takes.Point | None = None
     arm_point: takes.Point | None = None
     centre: Annotated[str, takes.one_of(*CENTRES)] = ""

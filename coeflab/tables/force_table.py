@@ -24,6 +24,11 @@ if TYPE_CHECKING:
 AT_REST = float(np.sin(np.radians(0.05)))
 ROUNDING = 1e-12
 COARSER = "coarser grid"
+STUDIES = {
+    "domain": "domain size",
+    "turbulence": "turbulence model",
+    "iterations": "iterations",
+}  # what each part is called
 SAME_SIZE = 0.02  # of the largest |x|: one radius, or one setting of a sweep, as measured
 
 
@@ -101,6 +106,8 @@ class ForceTable:
         What the importer did: inertia taken out, half model doubled, axes turned.
     cells : (n,) array or None
         Cells of the grid that computed each row, NaN where blank; None where the table does not say.
+    variants : tuple of str
+        What a study changed in each row, as ``domain = large``, empty for a row of the matrix itself; empty without studies.
     uncertainty : InputUncertainty or None
         Of the inputs, as the campaign declares it; None where it does not.
     lines : tuple of int
@@ -143,6 +150,7 @@ class ForceTable:
     measured_about: Array | None = None
     density: Array | None = None
     arm_point: Array | None = None
+    variants: tuple[str, ...] = ()
     symmetry: tuple[str, ...] = ()
     by_symmetry: str = ""
 
@@ -226,6 +234,20 @@ class ForceTable:
         if np.ptp(used) > 0.0:
             note += f"; grids in use have {int(used.min())} to {int(used.max())} cells"
         return replace(self, usable=usable, exclusions=(*self.exclusions, *found), notes=(*self.notes, note))
+
+    def without_studies(self) -> ForceTable:
+        """Rows in which a study changed something are left to that study."""
+        rows = [i for i, changed in enumerate(self.variants) if changed]
+        used = [i for i in rows if any(mask[i] for mask in self.usable.values())]
+        usable = {c: mask & ~np.isin(np.arange(len(self)), rows) for c, mask in self.usable.items()}
+        found = [Exclusion(i, self.lines[i] if self.lines else 0, "", f"study only: {self.variants[i]}") for i in used]
+        return replace(self, usable=usable, exclusions=(*self.exclusions, *found)) if rows else self
+
+    def sound(self, component: str) -> NDArray[np.bool_]:
+        """Rows, (n,), whose force has a number that its source or the state of its run does not call doubtful."""
+        out = np.isfinite(self.forces[component])
+        out[[e.row for e in self.exclusions if e.component in ("", component) and (e.uncertain or e.status)]] = False
+        return np.asarray(out)
 
     def primed_motion(self, variable: str, length: float) -> Array:
         """v/U, r L/U or a control angle, shape (n,); what rounding leaves of a zero is zero."""

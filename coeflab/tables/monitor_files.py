@@ -22,6 +22,9 @@ _FLUENT_INDEX = re.compile(r"iterations?|time[ -]step|flow[ -]time", re.I)
 _SU2_NAME = re.compile(r"(?:Time|Outer|Inner)_Iter|rms\[.*|bgs\[.*")
 _SU2_OLD = {"CL", "CD", "CLift", "CDrag"}
 CFX_INDEX = b'"ACCUMULATED TIMESTEP"'
+FIRST_LINES = 64  # in which the names of a captive test are looked for
+SIMMAN = frozenset(("X", "Y", "N", "u", "v", "r", "udot", "vdot", "rdot"))
+_CAPTIVE = re.compile(r"(?P<name>[A-Za-z]+(?:_?dot)?)\s*(?P<unit>\[[^\[\]]*\]|\([^()]*\))?")
 _STAR_MONITOR = re.compile(r".+ Monitor(?: \d+)?: .+|(Iteration|Time Step): \1|Physical Time: Physical Time \(.*\)")
 
 
@@ -63,7 +66,7 @@ def header_cells(line: str, delimiter: str) -> list[str]:
 
 
 def kind_of(raw: bytes) -> str:
-    """Which solver wrote the file that begins so: ``starccm``, ``fluent``, ``su2``, ``cfx``, or empty.
+    """Which solver or tank wrote the file that begins so: ``starccm``, ``fluent``, ``su2``, ``cfx``, ``simman``, or empty.
 
     Parameters
     ----------
@@ -76,7 +79,8 @@ def kind_of(raw: bytes) -> str:
     Time: Physical Time (s)``. Fluent's report files have a quoted title, quoted names, names in parentheses; its force
     reports a table with Zone, Pressure, Viscous, Total below a line that begins with Forces or Moments. SU2 quotes its
     names and has Time_Iter, Outer_Iter, Inner_Iter or residuals ``rms[...]`` (7, 8), or Iteration and CL (6 and before). CFX's cfx5mondata begins
-    with ACCUMULATED TIMESTEP.
+    with ACCUMULATED TIMESTEP. A captive test as SIMMAN 2014 asks for it has forces X Y N, velocities u v r and accelerations
+    udot vdot rdot.
     """
     if not raw or b"\0" in raw:
         return ""
@@ -95,7 +99,28 @@ def kind_of(raw: bytes) -> str:
         return "su2"
     if lines and any(_STAR_MONITOR.fullmatch(c) for d in ",;\t" if d in lines[0] for c in header_cells(lines[0], d)):
         return "starccm"
+    if any(captive_names(line)[0] for line in lines_of(text)[:FIRST_LINES]):
+        return "simman"
     return ""
+
+
+def captive_names(line: str) -> tuple[tuple[str, ...], tuple[str, ...], str]:
+    """Names, units and delimiter of a line that names the columns of a SIMMAN captive test; empty where it does not.
+
+    Parameters
+    ----------
+    line : str
+        A comment mark before the names is no part of them.
+    """
+    bare = line.strip().lstrip("#%!").strip()
+    delimiter = next((d for d in "\t;," if d in bare), " ")
+    # A blank separates columns only where none stands before a unit.
+    cells = re.sub(r"\s+([\[(])", r"\1", bare).split() if delimiter == " " else header_cells(bare, delimiter)
+    parts = [_CAPTIVE.fullmatch(cell) for cell in cells]
+    names = tuple(m["name"].replace("_", "") if m else cell for m, cell in zip(parts, cells, strict=True))
+    if not set(names) >= SIMMAN or len(set(names)) < len(names):
+        return (), (), ""
+    return names, tuple((m["unit"] or "").strip("[]()") if m else "" for m in parts), delimiter
 
 
 def su2_names(lines: Sequence[str]) -> tuple[str, ...]:

@@ -358,7 +358,7 @@ def read_log(case: FoamCase, application: str) -> tuple[dict[str, str], str, boo
         if (met := re.search(r"solution converged in (\d+) iterations", tail)) is not None:
             said["convergence"] = f"the solver's residualControl was met after {met[1]} iterations ({file.name})"
         broken = re.search(
-            r"FOAM FATAL[^\n]*|sigFpe[^\n]*|Floating point exception|Segmentation fault|\bKilled\b", tail
+            r"FOAM FATAL[^\n]*|sigFpe::[^\n]*|Floating point exception(?! trapping)|Segmentation fault|\bKilled\b", tail
         )
         return (
             said,

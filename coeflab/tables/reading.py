@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.text.delimited import read_cells
+from coeflab.core.text.delimited import Cells, read_cells
+from coeflab.core.wording import Verbatim
 from coeflab.tables.campaign import FILE, Campaign, InputUncertainty, TableDeclaration, read_campaign
 from coeflab.tables.collect import collect
-from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.tables.importers import IMPORTERS, Importer, PlannedTable
 from coeflab.tables.mapping import mapped_table
 from coeflab.tables.raw_table import RawTable
@@ -21,6 +23,8 @@ from coeflab.tables.runs import find_runs
 
 Progress = Callable[[str], None]
 GENERAL = "table"  # any delimited text: those of one tool come first
+MATRIX = "matrix"  # in the column of studies: a row of none
+_CHANGES = re.compile(r"(\w+)\s*=\s*([^\s=]+)(?!\s*=)(?=\s|$)")
 OF_RUNS = ("names", "run_list", "state")
 
 
@@ -111,9 +115,13 @@ def read_raw(
 
 
 def with_declarations(
-    table: ForceTable, file: Path, cells: str = "", uncertainty: InputUncertainty | None = None
+    table: ForceTable,
+    file: Path,
+    cells: str = "",
+    uncertainty: InputUncertainty | None = None,
+    variant: str = "",
 ) -> ForceTable:
-    """A table with its cell counts and input uncertainty.
+    """A table with its cell counts, studies and input uncertainty.
 
     Parameters
     ----------
@@ -124,27 +132,52 @@ def with_declarations(
     cells : str
         Column of the cell counts, or empty.
     uncertainty : InputUncertainty, optional
+    variant : str
+        Column that says what a study changed, or empty.
 
     Raises
     ------
     InputError
-        No such column, or a count that is not above zero.
+        No such column, a count that is not above zero, or a change that is none of a known study.
     """
-    if not cells:
-        return replace(table, uncertainty=uncertainty)
+    table = replace(table, uncertainty=uncertainty)
+    if not (cells or variant):
+        return table
     read = read_cells(file)
-    if cells not in [h.name for h in read.headers]:
-        raise InputError(
-            f"no column {cells}", "the column of cell counts that [[table]] cells names", file=file,
-            line=read.first_line - 1, column=cells,
-        )  # fmt: skip
+    for column, holds in ((cells, "cell counts that [[table]] cells"), (variant, "studies that [[table]] variant")):
+        if column and column not in [h.name for h in read.headers]:
+            raise InputError(
+                f"no column {column}",
+                f"the column of {holds} names",
+                file=file,
+                line=read.first_line - 1,
+                column=column,
+            )
+    if variant:
+        table = replace(table, variants=_variants(read, variant)).without_studies()
+    if not cells:
+        return table
     counts = read.numbers(cells)
     bad = np.flatnonzero(counts <= 0.0)
     if bad.size:
         raise InputError(
             f"{counts[bad[0]]:g} cells", "a count above zero", file=file, line=read.line(int(bad[0])), column=cells
         )
-    return replace(table, cells=counts, uncertainty=uncertainty).on_finest_grids()
+    return replace(table, cells=counts).on_finest_grids()
+
+
+def _variants(read: Cells, column: str) -> tuple[str, ...]:
+    """What a study changed in every row, as ``name = value``; several changes one after the other."""
+    out = []
+    for row, text in enumerate(map(str.strip, read.texts(column))):
+        pairs = [] if text in ("", MATRIX) else _CHANGES.findall(text)
+        if text not in ("", MATRIX) and (_CHANGES.sub("", text).strip() or any(n not in STUDIES for n, _ in pairs)):
+            raise InputError(
+                shown(text), f"blank, {MATRIX}, or what a study changed: {', '.join(f'{n} = ...' for n in STUDIES)}",
+                file=read.file, line=read.line(row), column=column,
+            )  # fmt: skip
+        out.append(Verbatim(" ".join(f"{name} = {value}" for name, value in pairs)))
+    return tuple(out)
 
 
 def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTable, ...]:
@@ -153,7 +186,7 @@ def declared(tables: Sequence[ForceTable], campaign: Campaign) -> tuple[ForceTab
     out = []
     for table in tables:
         t = columns[table.name]
-        out.append(with_declarations(table, campaign.path.parent / t.file, t.cells, campaign.uncertainty))
+        out.append(with_declarations(table, campaign.path.parent / t.file, t.cells, campaign.uncertainty, t.variant))
     return tuple(out)
 
 

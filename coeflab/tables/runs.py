@@ -30,7 +30,7 @@ from coeflab.core.machine import cores, end_with_parent
 from coeflab.core.types import brief
 from coeflab.core.units import factor
 from coeflab.core.version import VERSION
-from coeflab.core.wording import listed
+from coeflab.core.wording import listed, natural
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.conditions import Condition
 from coeflab.tables.histories import Convergence, plateau
@@ -127,11 +127,6 @@ class RunSummary:
     stated: Mapping[str, Stated] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     conditions: Mapping[str, Condition] = field(default_factory=dict)
-
-
-def natural(name: str) -> tuple[tuple[int, float, str], ...]:
-    """A key that sorts b2 before b10."""
-    return tuple((0, float(p), p) if p.isdigit() else (1, 0.0, p) for p in re.split(r"(\d{1,15})", name) if p)
 
 
 def find_runs(path: Path, importer: str = "") -> tuple[str, dict[str, Path]]:

@@ -22,7 +22,7 @@ from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import one_line
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, FORCES, LINEAR, MOTIONS
-from coeflab.tables.campaign import FILE
+from coeflab.tables.campaign import FILE, FOURFOLD
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.runs import RunSummary, natural, summarised
@@ -33,10 +33,11 @@ from coeflab.tank.towed_body import TowedBody
 
 RUNS = "runs.csv"
 HISTORY_ROWS = 200  # of the history of a run that the campaign keeps
-MATRIX = "matrix"  # in the column variant: a row of the matrix itself, not of a study
 CONVERGED = "converged"
+SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 REPORTED = {Half.WHOLE: tuple(COMPONENTS), Half.UPPER: ("X", "Y", "N"), Half.PORT: ("X", "Z", "M")}
-LABELS = ("kind", "grid", "variant", "half", "status")
+LABELS = ("kind", "grid", "half", "status")
+VARIANT = "variant"
 LONG_CONTROLS = {short: name for name, short in CONTROL_COLUMNS.items()}
 _QUARTER = {"v": ("w", 1.0), "w": ("v", -1.0), "q": ("r", 1.0), "r": ("q", -1.0),
             "Y": ("Z", 1.0), "Z": ("Y", -1.0), "M": ("N", 1.0), "N": ("M", -1.0)}  # fmt: skip
@@ -173,7 +174,7 @@ def campaign_files(
         Without a table where no condition has a mean.
     """
     groups = _grouped(runs)
-    turned = _by_fourfold_symmetry(groups) if body.fourfold else {}
+    turned = _by_fourfold_symmetry(groups) if FOURFOLD in tank.symmetry else {}
     files: dict[str, bytes] = {}
     declared: list[str] = []
     for name, group in {**groups, **turned}.items():
@@ -267,14 +268,17 @@ def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, lis
     controls = [c for c in dict.fromkeys(k for r in group for k in r.condition.controls) if c in LONG_CONTROLS]
     given = {c for r in group if r.summary for c in r.summary.means if c in REPORTED[r.condition.half]}
     components = [c for c in COMPONENTS if c in given]
-    with_errors = [c for c in components if any(_error(r, c) > 0.0 for r in group)]
+    with_errors = [
+        c for c in components if all(_error(r, c) > 0.0 for r in group if r.summary and c in r.summary.means)
+    ]
     patches = list(dict.fromkeys(p for r in group if r.summary for p in r.summary.patches if p[0] in components))
     has_cells = any(_cells(r) for r in group)
     heads = ["point", *(f"{m} [{'m/s' if m in LINEAR else 'rad/s'}]" for m in motions)]
     heads += [f"{LONG_CONTROLS[c]} [rad]" for c in controls]
     heads += [f"{c} [{'N' if c in FORCES else 'N*m'}]" for c in components]
     heads += [f"se_{c} [{'N' if c in FORCES else 'N*m'}]" for c in with_errors]
-    heads += [*LABELS, *(["cells"] if has_cells else []), "iterations"]
+    varies = any(variant_of(r.condition) for r in group)
+    heads += [*LABELS, *([VARIANT] if varies else []), *(["cells"] if has_cells else []), "iterations"]
     heads += [f"{p} [{'N' if p[0] in FORCES else 'N*m'}]" for p in patches]
     heads.append("uncertain")
     out = io.StringIO()
@@ -290,7 +294,8 @@ def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, lis
         cells = [c.name, *(_exact(_motion(r, m)) for m in motions), *(_exact(c.controls.get(k, 0.0)) for k in controls)]
         cells += [_number(means.get(x)) if x in known else "" for x in components]
         cells += [_short(_error(r, x)) if x in known else "" for x in with_errors]
-        cells += [str(c.kind), c.grid, variant_of(c), str(c.half) or "whole", f"{r.status}"]
+        cells += [str(c.kind), c.grid, str(c.half) or "whole", r.status]
+        cells += [variant_of(c)] if varies else []
         cells += [_cells(r)] if has_cells else []
         cells.append("" if s is None or not math.isfinite(s.iterations) else f"{s.iterations:.10g}")
         cells += ["" if s is None or p not in s.patches else _number(s.patches[p][0]) for p in patches]
@@ -303,8 +308,8 @@ def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, lis
 
 
 def variant_of(condition: TowCondition) -> str:
-    """``matrix``, or what a study changes: ``domain=large``."""
-    return " ".join(f"{k}={v}" for k, v in condition.variant.items()) or MATRIX
+    """What a study changes, ``domain = 1.5``; empty for a condition of the matrix itself."""
+    return ", ".join(f"{k} = {v}" for k, v in condition.variant.items())
 
 
 def _motion(run: TowedRun, name: str) -> float:
@@ -344,17 +349,15 @@ def _declared(name: str, group: Sequence[TowedRun], names: Mapping[str, list[str
     if names["ignore"]:
         lines.append(f"ignore = {value(names['ignore'])}")
     if "cells" in names:
-        lines.append(f"{'cells = "cells"':<41} # of the grid, for the grid study")
-    chosen: dict[str, str] = {}
+        own = 'cells = "cells"'
+        lines.append(f"{own:<41} # of the grid, for the grid study")
+    if any(variant_of(r.condition) for r in group):
+        lines.append(f"variant = {quoted(VARIANT)}")
     if len({r.condition.grid for r in group}) > 1:
-        chosen["grid"] = "medium"
-    if len({variant_of(r.condition) for r in group}) > 1:
-        chosen["variant"] = MATRIX
-    if chosen:
-        what = " and ".join(f"the {k}s" if k != "variant" else "the studies" for k in chosen)
-        lines.append(f"select = {value({**chosen, 'reason': f'for {what} study' if len(chosen) == 1 else 'for studies'})}")
+        lines.append(f"select = {value({'grid': 'medium', 'reason': 'grid study only'})}")
     if origin:
-        lines.append(f"# Not run: {origin}.")
+        source = f"by_symmetry = {quoted(f'{_SOURCES[name]}.csv')}"
+        lines.append(f"{source:<41} # turned by 90 deg about x: stated, not run")
     return "\n".join(lines)
 
 
@@ -379,7 +382,7 @@ def _campaign_text(
     )
     sections: dict[str, dict[str, Any]] = {
         "campaign": {
-            "name": tank.name, "title": tank.title, "body": body.body.name,
+            "name": tank.name, "title": tank.title, "body": body.body.name, "symmetry": list(tank.symmetry) or None,
             "notes": " ".join([f"{finished} of {len(runs)} conditions converged.", *(f"By symmetry: {s}." for s in stated)]),
         },
         "axes": {

@@ -103,6 +103,8 @@ class Job:
         sha256 of everything that its result depends on: files of the case, keys of the jobs it needs, version of the solver.
     iterations : float
         That the solver makes at most; NaN where it counts none.
+    cells : float
+        Of its grid, as expected; 0 where that is unknown.
     """
 
     name: str
@@ -115,6 +117,7 @@ class Job:
     seconds: float = 0.0
     key: str = ""
     iterations: float = nan
+    cells: float = 0.0
 
 
 @brief

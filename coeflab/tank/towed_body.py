@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body
-from coeflab.core.types import Array, brief, locked
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.solids import united
+from coeflab.bodies.mesh.topology import edges
+from coeflab.bodies.pieces import HULL, STERN, Piece, mesh_piece
+from coeflab.core.errors import InputError, shown
+from coeflab.core.types import Array, Faces, brief, locked
+
+Index = NDArray[np.int64]
 
 
 @brief
@@ -59,12 +68,20 @@ class TowedBody:
 
 
 PANELS = 100_000  # of the whole surface, where it is made from equations
+FEWEST = 64
+DIGITS = 9  # of coordinates: a nanometre, in the file as in memory
+SAME = 1e-6  # of a piece's size: its image in a mirror is the same piece
+SPACING, NEAR = 1.0 / 200.0, 0.75  # points on a mesh file's surface, over its size; how near its image is, over that
+WORD = re.compile(r"[^A-Za-z0-9_.+-]")
+STRAIGHT: Mapping[str, float] = MappingProxyType({})
 
 
 def towed(
-    body: Body, reference_point: Array, controls: Mapping[str, float] = MappingProxyType({}), panels: int = PANELS
+    body: Body, reference_point: Array, controls: Mapping[str, float] = STRAIGHT, panels: int = PANELS
 ) -> TowedBody:
     """The closed surface of a body with its patches, about the reference point, with its controls turned.
+
+    Appendages are united with the hull and keep their names; a gap that a turned control opens at its root is not there.
 
     Parameters
     ----------
@@ -81,9 +98,189 @@ def towed(
     InputError
         A body without a closed surface: particulars only, plates without thickness; a control that the body does not have.
     """
-    raise NotImplementedError
+    pieces, surfaces, from_file = _placed(body, controls, panels)
+    origin = np.asarray(reference_point, dtype=float)
+    vertices, faces, which = _tidied(*_united(body, surfaces, origin))
+    _require_closed(body, faces)
+    patches, patch, chord = _patches(pieces, surfaces, vertices[faces].mean(axis=1) + origin, which)
+    x, y, z = (_same(surfaces, origin, turn, from_file) for turn in MIRRORS)
+    fourfold = _same(surfaces, origin, QUARTER, from_file)
+    return TowedBody(body, vertices, faces, patches, patch, chord, (x, y, z), fourfold)
 
 
 def stl(towed: TowedBody) -> bytes:
     """The surface as an ASCII STL, one solid a patch, m; the same bytes for the same surface."""
-    raise NotImplementedError
+    corners = towed.vertices[towed.faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    size = np.linalg.norm(normal, axis=1)[:, None]
+    normal = np.round(np.divide(normal, size, out=np.zeros_like(normal), where=size > 0.0), 6) + 0.0
+    rows = np.hstack([normal, corners.reshape(-1, 9)])
+    facet = (
+        "facet normal %.6f %.6f %.6f\nouter loop\n"
+        + f"vertex %.{DIGITS}f %.{DIGITS}f %.{DIGITS}f\n" * 3
+        + "endloop\nendfacet\n"
+    )
+    out = []
+    for k, name in enumerate(towed.patches):
+        own = rows[towed.patch == k]
+        out.append(f"solid {name}\n" + (facet * len(own)) % tuple(own.ravel()) + f"endsolid {name}\n")
+    return "".join(out).encode()
+
+
+MIRRORS = tuple(np.diag(signs) for signs in ([-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]))
+QUARTER = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+
+
+def _placed(
+    body: Body, controls: Mapping[str, float], panels: int
+) -> tuple[tuple[Piece, ...], list[TriangleMesh], bool]:
+    """The pieces, their surfaces from the datum with controls turned, and whether these are what a file says."""
+    known = tuple(dict.fromkeys(control.name for control in body.controls))
+    for name in controls:
+        if name not in known:
+            advice = "" if known else "Add [[control]] to its body.toml: which parts turn about which hinge."
+            raise InputError(f"no control {shown(name)} of {body.name}", f"one of {', '.join(known) or 'none'}",
+                             advice=advice)  # fmt: skip
+    for name, angle in controls.items():
+        if not abs(angle) <= np.pi / 2.0:
+            raise InputError(f"{name} at {angle:g} rad", "an angle within 90 deg", advice="A bare number is in rad.")
+    shape = body.require_shape()
+    pieces = body.pieces
+    if body.mesh is not None:  # what the parts stand for
+        shape, _ = body.mesh.read()
+        pieces = (mesh_piece(shape, body.mesh),)
+    if panels < FEWEST * len(pieces):
+        raise InputError(f"{panels} triangles", f"{FEWEST * len(pieces)} at least, {FEWEST} a part", column="panels")
+    share = np.sqrt([piece.area for piece in pieces])
+    counts = np.maximum(panels * share / share.sum(), FEWEST).astype(int)
+    surfaces = []
+    for piece, count in zip(pieces, counts, strict=True):
+        surface = piece.surface(int(count))
+        for control in body.controls:
+            if piece.name in control.parts and controls.get(control.name):
+                turned = control.turned(surface.vertices, controls[control.name])
+                surface = TriangleMesh(turned, surface.faces)
+        surfaces.append(surface)
+    return pieces, surfaces, isinstance(shape, TriangleMesh) and shape.remade is None
+
+
+def _united(body: Body, surfaces: list[TriangleMesh], origin: Array) -> tuple[Array, Faces, Index]:
+    """Vertices from the origin, faces, and the piece that each face is of."""
+    if len(surfaces) == 1:
+        return surfaces[0].vertices - origin, surfaces[0].faces, np.zeros(len(surfaces[0].faces), dtype=np.int64)
+    try:
+        return united([(s.vertices - origin, s.faces) for s in surfaces])
+    except ValueError as why:
+        raise InputError(f"{body.name}: {why}", "parts of closed surfaces") from None
+
+
+def _tidied(vertices: Array, faces: Faces, which: Index) -> tuple[Array, Faces, Index]:
+    """Coordinates of a nanometre, faces without an edge of less than that gone; sorted, whatever order they came in."""
+    places, number = np.unique(np.round(vertices, DIGITS) + 0.0, axis=0, return_inverse=True)
+    corners = number.reshape(-1)[faces]
+    whole = np.all(corners != np.roll(corners, 1, axis=1), axis=1)
+    corners, which = corners[whole], which[whole]
+    first = np.argmin(corners, axis=1)[:, None]
+    corners = np.take_along_axis(corners, (first + np.arange(3)) % 3, axis=1)
+    order = np.lexsort((corners[:, 2], corners[:, 1], corners[:, 0], which))
+    return places, corners[order], which[order]
+
+
+def _require_closed(body: Body, faces: Faces) -> None:
+    border = edges(faces)
+    if not border.sound:
+        count = border.open + border.crowded + border.turned
+        raise InputError(
+            f"{body.name}, a surface that is not closed at {count} edges",
+            "two faces at every edge, running opposite ways along it",
+            advice="Do parts touch without overlapping? Let each reach into the next.",
+        )
+
+
+def _patches(
+    pieces: tuple[Piece, ...], surfaces: list[TriangleMesh], middles: Array, which: Index
+) -> tuple[tuple[str, ...], Index, dict[str, float]]:
+    """Names of the patches that have faces, the patch of each face, and chords.
+
+    Parameters
+    ----------
+    pieces : tuple of Piece
+    surfaces : list of TriangleMesh
+        Theirs, from the datum.
+    middles : (m, 3) array
+        Of the faces, from the datum.
+    which : (m,) array of int
+        The piece of each face.
+    """
+    label = np.empty(len(which), dtype=object)
+    chords: dict[str, list[float]] = {}
+    for k, (piece, surface) in enumerate(zip(pieces, surfaces, strict=True)):
+        own = which == k
+        if not np.any(own):
+            raise InputError(
+                f"the part {shown(piece.name)}, nothing of which meets the water", "parts that reach out of the others",
+                advice="Delete it, or move it.",
+            )  # fmt: skip
+        label[own], found = _labelled(piece, surface, middles[own])
+        for name, chord in found.items():
+            chords.setdefault(name, []).append(chord)
+    present = {name: k for k, name in enumerate(name for name in chords if np.any(label == name))}
+    patch = np.array([present[name] for name in label], dtype=np.int64)
+    return tuple(present), patch, {name: float(np.mean(chords[name])) for name in present}
+
+
+def _labelled(piece: Piece, surface: TriangleMesh, middles: Array) -> tuple[NDArray[Any], dict[str, float]]:
+    """The patch of each face of a piece, and chords by patch: of a named region its extent along x."""
+    names, region = piece.regions(middles) if piece.regions else ((), np.zeros(0, dtype=np.int64))
+    if names:
+        words = [WORD.sub("_", name) for name in names]
+        extents = (float(np.ptp(middles[region == k, 0])) for k in range(len(names)))
+        chord = {w: piece.chord if w in (HULL, STERN) else e for w, e in zip(words, extents, strict=True)}
+        return np.array(words, dtype=object)[region], chord
+    word = WORD.sub("_", piece.patch)
+    label = np.full(len(middles), word, dtype=object)
+    if piece.stern is None:
+        return label, {word: piece.chord}
+    rings = np.unique(surface.vertices[:, 0])
+    label[middles[:, 0] < rings[np.argmin(np.abs(rings - piece.stern))]] = STERN
+    return label, {word: piece.chord, STERN: piece.chord}
+
+
+def _same(surfaces: list[TriangleMesh], origin: Array, turn: Array, from_file: bool) -> bool:
+    """Whether a mirror or a turn through the origin leaves the pieces as they are, one for another."""
+    about = [TriangleMesh(s.vertices - origin, s.faces) for s in surfaces]
+    return all(any(_like(s, other, turn, from_file) for other in about) for s in about)
+
+
+def _like(one: TriangleMesh, other: TriangleMesh, turn: Array, from_file: bool) -> bool:
+    """Whether one surface, turned, is the other: every corner on a corner; of a mesh file, near its surface."""
+    from scipy.spatial import cKDTree
+
+    image, size = one.vertices @ turn.T, float(np.ptp(one.vertices, axis=0).max())
+    low, high = (
+        np.abs(image.min(axis=0) - other.vertices.min(axis=0)),
+        np.abs(image.max(axis=0) - other.vertices.max(axis=0)),
+    )
+    within = NEAR * SPACING if from_file else SAME
+    if max(low.max(), high.max()) > within * size:
+        return False
+    points = _sampled(other, SPACING * size) if from_file else other.vertices
+    return bool(cKDTree(points).query(image, distance_upper_bound=within * size)[0].max() <= within * size)
+
+
+def _sampled(mesh: TriangleMesh, apart: float) -> Array:
+    """Points on a surface, no more than so far apart along each triangle's longest edge and across it, m."""
+    corners = mesh.vertices[mesh.faces]
+    edge = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    first = np.argmax(edge, axis=1)[:, None]
+    a, b, c = (np.take_along_axis(corners, ((first + k) % 3)[:, :, None], axis=1)[:, 0] for k in range(3))
+    longest = edge.max(axis=1)
+    height = np.linalg.norm(np.cross(b - a, c - a), axis=1) / longest
+    parts = np.maximum(np.ceil(np.stack([longest, height], axis=1) / apart), 1).astype(int)
+    out = []
+    for n, m in np.unique(parts, axis=0):
+        own = np.all(parts == (n, m), axis=1)
+        along, up = (g.ravel() for g in np.meshgrid(np.arange(n + 1) / n, np.arange(m + 1) / m))
+        weight = np.stack([(1.0 - up) * (1.0 - along), (1.0 - up) * along, up], axis=1)
+        out.append(np.einsum("pk,ktx->tpx", weight, np.stack([a[own], b[own], c[own]])).reshape(-1, 3))
+    return np.concatenate(out)

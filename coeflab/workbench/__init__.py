@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from coeflab.bodies.body import Body
 from coeflab.bodies.readers import read_body
 from coeflab.core.errors import CoeflabError, InputError, ScalingMismatchError, shown
@@ -93,12 +95,22 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
     tables: list[ForceTable] = []
     fits: list[FitResult] = []
     budgets: list[Budget] = []
+    unfitted: dict[str, str] = {}
+    ours = [t.added for t in plan.tows if t.added is not None]
     for planned in plan.tables:
         read = [settled(t, plan) for t in read_tables(planned)]
         progress(f"read {read[0].campaign}: {sum(map(len, read))} rows")
         scaling = plan.scaling or read[0].scaling
+        is_ours = planned.campaign in ours
+        enough = [t for t in read if _has_points(t)] if is_ours else read
         for name in planned.fits:
-            fitted, found = _fitted(name, read, scaling, planned.options.get(name, {}), fits)
+            try:
+                fitted, found = _fitted(name, enough, scaling, planned.options.get(name, {}), fits)
+            except InputError as why:
+                if not is_ours:
+                    raise
+                unfitted.setdefault(read[0].campaign, why.found)
+                continue
             budgets += found
             fits.append(fitted)
             progress(f"fitted {read[0].campaign} by {name}")
@@ -142,10 +154,16 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         exports=exports,
         refused=refused,
         manoeuvres=manoeuvres_of(plan.manoeuvres, files, progress),
+        unfitted=unfitted,
     )
     findings = [c for name in CHECKS.names() for c in _findings(name, study)]
     progress(f"{len(findings)} checks")
     return study.with_checks(tuple(findings))
+
+
+def _has_points(table: ForceTable) -> bool:
+    """Whether a component of a tow has points enough for a fit, as runs that did not converge do not count."""
+    return any(len(np.unique(table.setting[mask])) >= FEWEST for mask in table.usable.values())
 
 
 def _findings(name: str, study: Study) -> tuple[Check, ...]:

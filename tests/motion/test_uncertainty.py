@@ -169,7 +169,7 @@ def test_dask_gives_the_same_numbers(scheduler: str) -> None:
 
 @pytest.mark.slow
 def test_a_scheduler_that_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("coeflab.motion.uncertainty.batches.PATIENCE", 1.0)
+    monkeypatch.setattr("coeflab.core.machine.PATIENCE", 1.0)
     with pytest.raises(InputError, match="no Dask scheduler"):
         uncertainty(uncertain_torpedo(), SHORT, scheduler="tcp://127.0.0.1:9")
 

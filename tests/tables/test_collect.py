@@ -18,6 +18,7 @@ import pytest
 from scipy.signal import lfilter
 
 from coeflab.core.errors import InputError
+from coeflab.core.wording import natural
 from coeflab.fits import FITS
 from coeflab.report.tables.results import inspected, unused
 from coeflab.tables.collect import Collected, collect
@@ -28,7 +29,7 @@ from coeflab.tables.importers import IMPORTERS, PlannedTable
 from coeflab.tables.mapping import assigned, doubtful
 from coeflab.tables.raw_table import RawTable
 from coeflab.tables.reading import read_tables
-from coeflab.tables.runs import find_runs, natural
+from coeflab.tables.runs import find_runs
 from tests.conftest import SECTIONS
 from tests.tables.runs_as_text import FILE, install, write_run
 

@@ -170,7 +170,20 @@ def cfx(folder: Path, digits: Digits) -> tuple[Path, Said]:
     return folder / "cases", ["--runs", str(run_list(folder, made)), *said]
 
 
-FORMATS = (text_table, tabs, sheet, pytest.param(openfoam, marks=pytest.mark.slow), su2, starccm, fluent, cfx)
+def simman(folder: Path, digits: Digits) -> tuple[Path, Said]:
+    """Horizontal and vertical tests are of one layout: what a heaving ship would be has no columns there."""
+    names = ["Time", "X", "Y", "N", "psi", "u", "v", "r", "udot", "vdot", "rdot", "Z", "M", "w", "q"]
+    lines = [" ".join(names)]
+    for row in OWN:
+        own = dict(zip([*MOTIONS, *MEANT], row, strict=True))
+        lines.append(" ".join(digits(own[n]) if n in MEANT else repr(float(own.get(n, 0.0))) for n in names))
+    path = folder / "tests.dat"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    more = [a for n, u in (("Z", "N"), ("M", "N*m"), ("w", "m/s"), ("q", "rad/s")) for a in ("--map", f"{n}={n} [{u}]")]
+    return path, [*more, "--set", "axes.frame=CFD"]
+
+
+FORMATS = (text_table, tabs, sheet, pytest.param(openfoam, marks=pytest.mark.slow), su2, starccm, fluent, cfx, simman)
 SETTINGS = {
     "axes.frame": "CFD", "axes.datum": "nose", "axes.reference_point": f"[{-POINT}, 0, 0]", "scaling.length_name": "LBP",
     "scaling.length": repr(LENGTH), "conditions.density": repr(RHO), "conditions.speed": "2.0", "source.kind": "synthetic",

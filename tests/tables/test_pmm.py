@@ -152,3 +152,32 @@ def test_half_models_and_air_runs_that_some_lack_are_refused(folder: Path) -> No
     edited(folder / FILE, 'importer = "pmm"', 'importer = "pmm"\nhalf_model = true')
     with pytest.raises(InputError, match="half model"):
         read(folder)
+
+
+def test_a_record_in_the_columns_of_simman_is_the_same_record(folder: Path) -> None:
+    file = folder / "runs/sway_1.csv"
+    (plain,) = (r.record for r in read(folder).runs if r.label == "sway_1")
+    omega, zero = 1.5, np.zeros(len(plain.time))
+    y = plain.displacements["y"]
+    columns = {
+        "Time": plain.time, "X": zero, "Y": plain.forces["Y"], "N": plain.forces["N"], "x": 1.5 * plain.time, "y": y,
+        "psi": zero, "u": zero + 1.5, "v": omega * y, "r": zero, "udot": zero, "vdot": -(omega**2) * y, "rdot": zero,
+    }  # fmt: skip
+    rows = np.transpose(list(columns.values()))
+
+    def written(names: list[str], mark: str) -> None:
+        lines = [mark.join(names), *(mark.join(repr(float(v)) for v in row) for row in rows)]
+        file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    written(list(columns), " ")
+    (simman,) = (r.record for r in read(folder).runs if r.label == "sway_1")
+    np.testing.assert_array_equal(simman.time, plain.time)
+    assert set(simman.displacements) == {"y", "psi"}
+    for own, kind in ((plain.forces["Y"], simman.forces["Y"]), (-(omega**2) * y, simman.accelerations["v"])):
+        np.testing.assert_allclose(kind, own, rtol=1e-12)
+    with pytest.raises(InputError, match="time series of an oscillating test"):
+        IMPORTERS.load("simman").raw(file, {})
+    rows[3, 0] = rows[1, 0]
+    written(list(columns), " ")
+    with pytest.raises(InputError, match="a time that rises"):
+        read(folder)

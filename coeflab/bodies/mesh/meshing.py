@@ -310,7 +310,7 @@ def _assembled(shape: Parts, panels: int) -> TriangleMesh:
             "parts that displace water",
             advice="The added-mass method primitives has the formulas of plates; a box has a thickness.",
         )
-    share = np.sqrt([_surface(p.form) for p in shape.parts])
+    share = np.sqrt([surface_of(p.form) for p in shape.parts])
     counts = np.maximum(panels * share / share.sum(), FEWEST).astype(int)
     meshes = [_placed(part, int(count)) for part, count in zip(shape.parts, counts, strict=True)]
     if any(_boxes_meet(a, b) for a, b in combinations(meshes, 2)):
@@ -329,7 +329,7 @@ def _boxes_meet(a: TriangleMesh, b: TriangleMesh) -> bool:
     return bool(np.all(low <= high))
 
 
-def _surface(form: Form) -> float:
+def surface_of(form: Form) -> float:
     """m^2; of an ellipsoid by Thomsen's formula, within 1.1 %, which is enough to share panels by."""
     if isinstance(form, Cylinder):
         return float(2.0 * np.pi * form.radius * (form.radius + form.length))

@@ -9,9 +9,13 @@ The smallest box about a cloud of points, in any attitude.
 
 from __future__ import annotations
 
+import operator
+from collections.abc import Sequence
+from functools import reduce
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.core.types import Array, Faces
 
@@ -43,6 +47,26 @@ def surface(of: Solid) -> Surface:
     """Vertices and faces of a solid."""
     mesh = of.to_mesh64()
     return np.array(mesh.vert_properties[:, :3], dtype=np.float64), np.array(mesh.tri_verts, dtype=np.int64)
+
+
+def united(of: Sequence[Surface]) -> tuple[Array, Faces, NDArray[np.int64]]:
+    """Vertices and faces of what closed surfaces enclose together, and (m,) which surface each face is a part of.
+
+    Raises
+    ------
+    ValueError
+        See `solid`.
+    """
+    solids = [solid(*one).as_original() for one in of]
+    mesh = reduce(operator.add, solids).to_mesh64()
+    number = {one.original_id(): k for k, one in enumerate(solids)}
+    ends = np.asarray(mesh.run_index, dtype=np.int64) // 3
+    which = np.repeat([number[k] for k in mesh.run_original_id], np.diff(ends))
+    return (
+        np.array(mesh.vert_properties[:, :3], dtype=np.float64),
+        np.array(mesh.tri_verts, dtype=np.int64),
+        which.astype(np.int64),
+    )
 
 
 def pieces(of: Solid) -> list[Solid]:

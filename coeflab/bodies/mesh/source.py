@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -63,6 +64,40 @@ class MeshSource:
         sound = repaired(*raw, self.file) if self.repair else examined(*raw, self.file)
         placed = self.unit * sound.vertices @ self.rotation.T + self.origin
         return TriangleMesh(placed, sound.faces), sound.statements
+
+    def solids(self, points: Array) -> tuple[tuple[str, ...], NDArray[np.int64]]:
+        """The named solids of a text STL, and which of them each point of its surface lies on; none of other files.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Middles of faces, m, FRD, from the datum.
+
+        Returns
+        -------
+        names : tuple of str
+            None where the file has fewer than two names.
+        which : (n,) array of int
+            The solid of the facet with the nearest middle.
+        """
+        from scipy.spatial import cKDTree
+
+        data = self.file.read_bytes() if self.file.suffix.lower() == ".stl" else b""
+        found = [(name.decode("utf-8", "replace"), VERTEX.findall(rest)) for name, rest in SOLID.findall(data)]
+        names = tuple(dict.fromkeys(name for name, corners in found if corners))
+        if len(names) < 2:
+            return (), np.zeros(len(points), dtype=np.int64)
+        corners = np.array([corner for _, own in found for corner in own], dtype=float)
+        middles = corners.reshape(-1, 3, 3).mean(axis=1)
+        number = np.repeat(
+            [names.index(name) for name, own in found if own], [len(own) // 3 for _, own in found if own]
+        )
+        nearest = cKDTree(self.unit * middles @ self.rotation.T + self.origin).query(points)[1]
+        return names, np.asarray(number[nearest], dtype=np.int64)
+
+
+SOLID = re.compile(rb"^[ \t]*solid[ \t]+([^\r\n]*?)[ \t]*$(.*?)^[ \t]*endsolid", re.MULTILINE | re.DOTALL)
+VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
 
 
 def _unit(value: Any, file: Path) -> float:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import ClassVar
@@ -23,6 +24,7 @@ from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
 from coeflab.bodies.closed_forms import graded_nodes
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import lofted, meshed, united
+from coeflab.bodies.pieces import Piece, hull_piece
 from coeflab.bodies.shape import Revolution
 from coeflab.core.declarations import Declaration, Flag, declared
 from coeflab.core.errors import InputError
@@ -206,6 +208,8 @@ CAP_RADIUS, K0, K1 = 0.1175, 10.0, 44.6244
 NODES, GRADING = 96, 4
 HULL_PANELS, FEWEST_HULL = 60_000, 64
 SAIL, PLANE = (48, 24, 12), (40, 20)
+TOWED_SAIL, TOWED_PLANE = (96, 16, 16), (80, 12)  # the sides are straight along the span: stations count
+PLANES = ("upper", "starboard", "lower", "port")  # each a quarter of a turn about x from the one before
 
 _X = Polynomial([0.0, 1.0])
 _BOW = (
@@ -346,6 +350,37 @@ def _whole(with_sail: bool, with_planes: bool, hull_panels: int) -> TriangleMesh
     return united(solids)
 
 
+def pieces(with_sail: bool, with_planes: bool) -> tuple[Piece, ...]:
+    """Hull, sail and planes, each closed; the roots of the appendages lie within the hull."""
+    hull = meridian()
+    found = [hull_piece(hull, hull.integrals.wetted_surface, -FOOT * MIDDLE_END)]
+    if with_sail:
+        chord = FOOT * (SAIL_JOINTS[4] - SAIL_JOINTS[0])
+        found.append(Piece("sail", "sail", _sail, FOOT**2 * sail(profile).surface, chord))
+    if with_planes:
+        own = plane(profile)
+        foot = float(_foot(profile, np.array([0.5]), np.zeros(1))[0])
+        chord = FOOT * float(_chord(np.array((foot + TIP) / 2.0)))
+        found += [
+            Piece(f"plane_{name}", "fins", partial(_plane, turn), FOOT**2 * own.surface, chord)
+            for turn, name in enumerate(PLANES)
+        ]
+    return tuple(found)
+
+
+def _sail(panels: int) -> TriangleMesh:
+    return _solid(sail_sections(*_shared(TOWED_SAIL, panels, lambda n: 2 * n[0] * (2 * n[1] + n[2] + 1))), 0.0)
+
+
+def _plane(turn: int, panels: int) -> TriangleMesh:
+    sections = plane_sections(*_shared(TOWED_PLANE, panels, lambda n: 2 * n[0] * (2 * n[1] + 3)))
+    return _solid(sections[:, :, [0, 2, 1]], turn * np.pi / 2.0)
+
+
+def _shared(counts: tuple[int, ...], panels: int, triangles: Callable[[tuple[int, ...]], int]) -> tuple[int, ...]:
+    return _counts(counts, np.sqrt(panels / triangles(counts)))
+
+
 def _counts(finest: tuple[int, ...], fine: float) -> tuple[int, ...]:
     """Even counts along a section, so that its checkerboard of diagonals keeps its symmetry."""
     return tuple(max(2, 2 * round(count * fine / 2.0)) for count in finest)
@@ -400,4 +435,4 @@ def read(path: Path) -> Body:
     file = declared(File, read_toml(path))
     with_sail, with_planes = file.hull.sail, file.hull.planes
     shape = mesh(with_sail, with_planes) if with_sail or with_planes else meridian()
-    return file.shaped(path, shape, appended(with_sail, with_planes))
+    return file.shaped(path, shape, appended(with_sail, with_planes), pieces(with_sail, with_planes))

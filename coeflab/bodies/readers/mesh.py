@@ -14,6 +14,7 @@ from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import UNITS, computed, likely_unit, require_plausible
 from coeflab.bodies.mesh.source import MeshKeys
+from coeflab.bodies.pieces import mesh_piece
 from coeflab.core.declarations import declared
 from coeflab.core.errors import InputError
 from coeflab.core.text.toml import read_toml
@@ -104,6 +105,8 @@ def read(path: Path) -> Body:
     and ``repair`` (false). ``length``, ``breadth`` and ``depth`` under ``[particulars]``, and the volume of a
     ``[[configuration]]``, are what the mesh is held against.
 
+    A text STL of several named solids that close one surface keeps these names as the patches of a towed body.
+
     Raises
     ------
     InputError
@@ -114,7 +117,7 @@ def read(path: Path) -> Body:
     file = declared(File, toml)
     source = file.mesh.source(path.parent)
     shape, statements = source.read()
-    body = file.shaped(path, shape, computed(shape, statements))
+    body = file.shaped(path, shape, computed(shape, statements), (mesh_piece(shape, source),))
     said = _require_size(shape, source.unit, dict(body.lengths), toml.fail)
     said += _require_volume(shape, source.unit, body.configurations[1:], toml.fail)
     return dataclasses.replace(

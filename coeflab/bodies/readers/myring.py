@@ -15,6 +15,7 @@ import numpy as np
 
 from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
 from coeflab.bodies.closed_forms import graded_nodes
+from coeflab.bodies.pieces import hull_piece
 from coeflab.bodies.shape import Revolution, within_reach
 from coeflab.core.declarations import Angle, Declaration, Length, Pure, declared
 from coeflab.core.errors import InputError
@@ -166,4 +167,5 @@ def read(path: Path) -> Body:
         centre_of_buoyancy=hull.centre_of_volume,
         mass=None,
     )
-    return file.shaped(path, hull, computed)
+    whole = hull_piece(hull, hull.integrals.wetted_surface + file.hull.flat_ends, -file.hull.joints[2])
+    return file.shaped(path, hull, computed, (whole,))

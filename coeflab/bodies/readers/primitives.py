@@ -10,7 +10,9 @@ from typing import Annotated, ClassVar
 import numpy as np
 
 from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
+from coeflab.bodies.mesh.meshing import surface_of
 from coeflab.bodies.mesh.source import MeshKeys
+from coeflab.bodies.pieces import part_pieces
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, StandIn
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
@@ -205,7 +207,7 @@ def read(path: Path) -> Body:
         centre_of_buoyancy=shape.centre_of_volume,
         mass=None,
     )
-    body = file.shaped(path, shape, computed)
+    body = file.shaped(path, shape, computed, part_pieces(shape, (surface_of(p.form) for p in shape.parts)))
     if file.mesh is None:
         return body
     source = file.mesh.source(path.parent)

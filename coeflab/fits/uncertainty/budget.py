@@ -19,12 +19,12 @@ from numpy.typing import NDArray
 
 from coeflab.core.types import Array, brief
 from coeflab.fits.results.fit_result import FitResult, Sweep
-from coeflab.fits.uncertainty.grid_convergence import GridStudy, gravest, grid_studies
+from coeflab.fits.uncertainty.grid_convergence import GridStudy, VariantStudy, gravest, grid_studies, variant_studies
 from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
 from coeflab.law.coefficient import Coefficient, CoefficientSet, transfer_matrix
 from coeflab.law.symbols import ANGULAR, MOMENTS, primed
 from coeflab.tables.campaign import NAMES, InputUncertainty
-from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import STUDIES, ForceTable
 
 ROUNDING = 1e-9
 NEWTON = 4
@@ -178,6 +178,10 @@ ALWAYS_OPEN = {
     "literature": ("whatever the source left out",),
     "synthetic": (),
 }
+REMAINS = {
+    STUDIES["turbulence"]: ("turbulence model", "turbulence models not tried"),
+    STUDIES["domain"]: ("domain and boundary conditions", "boundary conditions"),
+}  # what is open without a study, and with one
 COUPLED = "angle, coupled with the rate"
 NOT_OF_A_COMPUTATION = ("force", "moment")
 
@@ -189,7 +193,7 @@ class BudgetPart:
     Attributes
     ----------
     name : str
-        ``random``, ``model form``, ``grid``, or the name of an input.
+        ``random``, ``model form``, ``grid``, ``domain size``, ``turbulence model``, ``iterations``, or the name of an input.
     half_width : float
         95 %, primed.
     share : float or None
@@ -225,6 +229,8 @@ class Budget:
         How far the value moves had the sweep ended sooner, 2 / sqrt 3 times the largest move; for information, as the
         model-form part holds that already.
     unassessed : tuple of str
+    studies : tuple of VariantStudy
+        Of the domain, the turbulence model and the iterations, the gravest of each.
     """
 
     symbol: str
@@ -240,6 +246,7 @@ class Budget:
     grid: GridStudy | None
     window: float | None
     unassessed: tuple[str, ...]
+    studies: tuple[VariantStudy, ...] = ()
 
     def part(self, name: str) -> float | None:
         """Half-width of a part; None where it was not assessed."""
@@ -309,6 +316,7 @@ def budget_of(
     lacking: Sequence[str],
     window: float | None = None,
     study: GridStudy | None = None,
+    variants: Sequence[VariantStudy] | None = None,
 ) -> Budget:
     """The budget of a coefficient.
 
@@ -330,6 +338,8 @@ def budget_of(
         See `Budget`.
     study : GridStudy, optional
         The one to take; by default the gravest of the component in these tables.
+    variants : sequence of VariantStudy, optional
+        Those to take; by default the gravest of each in these tables.
     """
     value = 0.0 if c.value is None else c.value
     kinds = tuple(dict.fromkeys(t.source.kind for t in tables))
@@ -341,12 +351,17 @@ def budget_of(
         found["grid"] = relative * abs(value)
     elif "cfd" in kinds:
         open_parts.append("grid" if study is None else f"grid: {study.convergence.convergence}")
+    studies = tuple(variant_studies_of(tables, component) if variants is None else variants)
+    found.update({s.name: s.relative * abs(value) for s in studies})
     found.update({p.name.replace("_", " "): p.linear for p in inputs if p.linear > 0.0})
-    unassessed = (*open_parts, *lacking, *(u for kind in kinds for u in ALWAYS_OPEN[kind]))
+    remains = dict(REMAINS[s.name] for s in studies if s.name in REMAINS)
+    always = [remains.get(u, u) for kind in kinds for u in ALWAYS_OPEN[kind]]
+    unassessed = (*open_parts, *lacking, *always)
     u95 = None if c.u95 is None else float(np.sqrt(sum(h * h for h in found.values())))
     parts = tuple(BudgetPart(n, h, (h / u95) ** 2 if u95 else None) for n, h in found.items())
     return Budget(
-        c.symbol, c.campaign or "", c.body, c.table or "", kinds[0], value, parts, u95, inputs, total, study, window, unassessed
+        c.symbol, c.campaign or "", c.body, c.table or "", kinds[0], value, parts, u95, inputs, total, study, window, unassessed,
+        studies,
     )  # fmt: skip
 
 
@@ -372,6 +387,25 @@ def grid_study_of(tables: Sequence[ForceTable], component: str, variables: Seque
     return gravest(tuple(studies))
 
 
+def variant_studies_of(
+    tables: Sequence[ForceTable], component: str, variables: Sequence[str] = ()
+) -> tuple[VariantStudy, ...]:
+    """Of each study of the domain, the turbulence model and the iterations the gravest, as `grid_study_of` does."""
+    gravest_of: dict[str, VariantStudy] = {}
+    for table in tables:
+        if table.source.kind != "cfd" or component not in table.forces:
+            continue
+        force = table.forces[component][table.usable[component]]
+        least = TELLING * float(np.max(np.abs(force), initial=0.0))
+        for s in variant_studies(table, component):
+            known = gravest_of.get(s.name)
+            if abs(s.used) < least or s.used == 0.0 or (variables and not set(variables) & set(s.moving)):
+                continue
+            if known is None or s.relative > known.relative:
+                gravest_of[s.name] = s
+    return tuple(gravest_of[name] for name in STUDIES.values() if name in gravest_of)
+
+
 def _true_by_construction(tables: Sequence[ForceTable]) -> bool:
     return all(t.source.kind == "synthetic" and t.uncertainty is None for t in tables)
 
@@ -387,7 +421,7 @@ def undeclared(wanted: Sequence[str], tables: Sequence[ForceTable], inputs: Sequ
 
 
 def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
-    """The fit with the grid and input parts in the U95 and covariance of its coefficients."""
+    """The fit with the parts of studies and inputs in the U95 and covariance of its coefficients."""
     mine = {b.symbol: b for b in found if b.campaign == fit.campaign}
     if not any(b.u95 is not None for b in mine.values()):
         return fit
@@ -395,7 +429,7 @@ def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
     changed = []
     for c in among.coefficients:
         b = mine.get(c.symbol)
-        outside = None if b is None else float(np.hypot(b.input or 0.0, b.part("grid") or 0.0))
+        outside = None if b is None else float(np.hypot(b.input or 0.0, b.joined("grid", *STUDIES.values())))
         if b is None or b.u95 is None or not outside:
             changed.append(c)
         else:
@@ -407,22 +441,26 @@ def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
 def covariance(among: CoefficientSet, found: Sequence[Budget]) -> Array:
     """Covariance of standard uncertainties of a set with the budgets' further parts, shape (k, k).
 
-    Random parts keep the correlation of the set. A grid error is common to the coefficients of one component that take it
-    from one study, and independent of others. An input error is common to the coefficients of a campaign, so that it
+    Random parts keep the correlation of the set. The error that a study finds is common to the coefficients of one component
+    that take it from one study, and independent of others. An input error is common to the coefficients of a campaign, so that it
     cancels where a ratio does not feel it.
     """
     return np.asarray(among.covariance + further(among.symbols, [c.campaign for c in among.coefficients], found))
 
 
-def _one_grid(a: Budget, b: Budget) -> bool:
-    """Whether two budgets take their grid part from one study."""
-    if a.grid is None or b.grid is None:
-        return False
-    return (a.grid.table, a.grid.component, a.grid.setting) == (b.grid.table, b.grid.component, b.grid.setting)
+def _shared_studies(a: Budget, b: Budget) -> tuple[str, ...]:
+    """Parts that two budgets take from one study."""
+    one, two = ({name: (s.table, s.component, s.setting) for name, s in _studies_of(budget)} for budget in (a, b))
+    return tuple(name for name in one if one[name] == two.get(name))
+
+
+def _studies_of(b: Budget) -> list[tuple[str, GridStudy | VariantStudy]]:
+    grid: list[tuple[str, GridStudy | VariantStudy]] = [] if b.grid is None else [("grid", b.grid)]
+    return [*grid, *((s.name, s) for s in b.studies)]
 
 
 def further(symbols: Sequence[str], campaigns: Sequence[str | None], found: Sequence[Budget]) -> Array:
-    """Covariance that the grid and input parts add, shape (k, k); symbols with or without prime."""
+    """Covariance that studies and inputs add, shape (k, k); symbols with or without prime."""
     by = {(primed(b.symbol), b.campaign): b for b in found}
     chosen = [by.get((primed(s), c or "")) for s, c in zip(symbols, campaigns, strict=True)]
     out = np.zeros((len(symbols), len(symbols)))
@@ -432,8 +470,7 @@ def further(symbols: Sequence[str], campaigns: Sequence[str | None], found: Sequ
                 continue
             other = {p.name: p.sensitivity for p in b.inputs}
             out[i, j] += sum(p.sensitivity * other.get(p.name, 0.0) * p.half_width**2 for p in a.inputs) / 4.0
-            if i == j or _one_grid(a, b):
-                out[i, j] += (
-                    float(np.copysign(a.joined("grid"), a.value) * np.copysign(b.joined("grid"), b.value)) / 4.0
-                )
+            for name in ("grid", *STUDIES.values()) if i == j else _shared_studies(a, b):
+                pair = (np.copysign(x.joined(name), x.value) for x in (a, b))
+                out[i, j] += float(np.prod(list(pair))) / 4.0
     return out

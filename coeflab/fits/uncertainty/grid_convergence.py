@@ -12,7 +12,7 @@ Their section 5: the values are fitted by f0 + a h^p; where p lies outside 0.5 t
 once with equal weights and once with weights 1/h; of the fits that compete, the one with the smallest standard deviation
 counts. For schemes of second order on geometrically similar grids.
 
-Grid studies inside a force table: rows of one setting, computed on several grids.
+Studies inside a force table: rows of one setting, computed on several grids, or with one thing changed at a time.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from coeflab.core.types import Array, brief
 from coeflab.law.symbols import LINEAR, MOTIONS
-from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import STUDIES, ForceTable
 
 LOWEST_ORDER, ORDER_SLACK, STEEPEST = 0.5, 0.1, 60.0
 WITHIN, OUTSIDE = 1.25, 3.0
@@ -343,6 +343,7 @@ def _expansion(f: Array, h: Array, w: Array, orders: tuple[float, ...], free: bo
     return _Fit(float(coefficients[0]), deviation, on_grids, orders[0] if len(orders) == 1 else None, form)
 
 
+MANY = 3
 AT_REST = 1e-4  # of the largest motion in the table: rounding of a printed angle, not a motion
 
 
@@ -382,9 +383,9 @@ def grid_studies(table: ForceTable, component: str, dimension: int = 3) -> tuple
     cells = table.cells
     if cells is None or component not in table.forces:
         return ()
-    found, setting = [], table.setting
+    found, setting, judged_rows = [], table.setting, table.sound(component)
     for group in (np.flatnonzero(setting == k) for k in range(int(setting.max(initial=-1)) + 1)):
-        rows = [int(i) for i in group if np.isfinite(cells[i]) and np.isfinite(table.forces[component][i])]
+        rows = [int(i) for i in group if np.isfinite(cells[i]) and judged_rows[i] and not _changed(table, int(i))]
         used = [i for i in rows if table.usable[component][i]]
         if len(used) != 1 or len(np.unique(cells[rows])) != len(rows) or len(rows) < 2:
             continue
@@ -408,6 +409,87 @@ def gravest(studies: tuple[GridStudy, ...]) -> GridStudy | None:
     if not studies:
         return None
     return max(studies, key=lambda s: np.inf if s.convergence.relative is None else s.convergence.relative)
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class VariantStudy:
+    """One force component at one setting, with one thing changed at a time: the domain, the turbulence model, the iterations.
+
+    Attributes
+    ----------
+    name : str
+        Of the part of a budget: ``domain size``, ``turbulence model`` or ``iterations``.
+    table, component : str
+    setting : str
+        Motion that is not zero, in words.
+    moving : tuple of str
+        Its variables.
+    used : float
+        Force of the row that the fit uses.
+    changed : tuple of (str, float)
+        What was changed, and the force with it.
+    half_width : float
+        95 % half-width of the force in use.
+    statement : str
+    """
+
+    name: str
+    table: str
+    component: str
+    setting: str
+    moving: tuple[str, ...]
+    used: float
+    changed: tuple[tuple[str, float], ...]
+    half_width: float
+    statement: str
+
+    @property
+    def relative(self) -> float:
+        """Half-width over the absolute force in use; infinite where that is zero."""
+        return self.half_width / abs(self.used) if self.used else float("inf")
+
+
+def variant_studies(table: ForceTable, component: str) -> tuple[VariantStudy, ...]:
+    """Studies of a component in which something else than the grid was changed.
+
+    The half-width is that of a rectangular distribution about the value in use that reaches to the farthest of the others,
+    JCGM 100:2008, 4.3.7: 2 / sqrt 3 times the largest distance; a distance below the iteration noise of both values counts
+    as that noise. Rows of other grids than the row in use, where cells are known and the domain is the same, are not judged.
+    """
+    if component not in table.forces or not any(table.variants):
+        return ()
+    force, sound, setting = table.forces[component], table.sound(component), table.setting
+    noise = 2.0 * table.errors[component] if component in table.errors else np.zeros(len(table))
+    noise = np.nan_to_num(noise)
+    found = []
+    for row in (int(i) for i in np.flatnonzero(table.usable[component] & sound)):
+        alike = [int(i) for i in np.flatnonzero((setting == setting[row]) & sound)]
+        if any(i != row and not _changed(table, i) and table.usable[component][i] for i in alike):
+            continue
+        for name, part in STUDIES.items():
+            rows = [i for i in alike if _changed(table, i) == name and (name == "domain" or _one_grid(table, row, i))]
+            if not rows:
+                continue
+            apart = np.maximum(np.abs(force[rows] - force[row]), np.hypot(noise[rows], noise[row]))
+            half = 2.0 / 3.0**0.5 * float(np.max(apart))
+            said = ", ".join(f"{table.variants[i].partition('= ')[2]} {force[i]:.4g}" for i in rows)
+            changed = tuple((table.variants[i], float(force[i])) for i in rows)
+            text = f"{part}: {force[row]:.4g} in use, {said}"
+            own = (part, table.name, component, _setting(table, row), _moving(table, row))
+            found.append(VariantStudy(*own, float(force[row]), changed, half, text))
+    return tuple(found)
+
+
+def _changed(table: ForceTable, row: int) -> str:
+    """Name of the study that a row belongs to; ``several`` of one with several changes, empty for one of the matrix itself."""
+    names = table.variants[row].split(" = ") if table.variants else [""]
+    return names[0] if len(names) < MANY else "several"
+
+
+def _one_grid(table: ForceTable, a: int, b: int) -> bool:
+    cells = table.cells
+    return cells is None or not np.all(np.isfinite(cells[[a, b]])) or bool(cells[a] == cells[b])
 
 
 def _moving(table: ForceTable, row: int) -> tuple[str, ...]:

@@ -28,9 +28,10 @@ from coeflab.fits.uncertainty.budget import (
     budget_of,
     grid_study_of,
     undeclared,
+    variant_studies_of,
     with_budget,
 )
-from coeflab.fits.uncertainty.grid_convergence import GridStudy, gravest
+from coeflab.fits.uncertainty.grid_convergence import GridStudy, VariantStudy, gravest
 from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.scaling import Scaling
@@ -319,9 +320,9 @@ def with_model_budgets(
         numbers = slice(at, at + len(model.symbols))
         at = numbers.stop
         shifts = effects.shifts(numbers) if effects else {}
-        grid = _grid(model, tables)
+        grid = _grid(model, tables) | _changed(model, tables)
         lacking = _lacking(model, _component(model), model.domain.variables, tables, effects, numbers)
-        if _computed(model, tables) and not grid:
+        if _computed(model, tables) and not any(name.startswith("grid") for name in grid):
             lacking = ("grid", *lacking)
         form = () if model.remainder is not None else (FORM,)
         models.append(replace(model, shared=shifts | grid, not_assessed=(*form, *lacking)))
@@ -378,6 +379,23 @@ def _grid(model: FittedModel, tables: Sequence[ForceTable]) -> dict[str, Array]:
             shift = out.setdefault(f"grid at {study.setting}", np.zeros(len(model.terms)))
             shift[i] = relative * value
     return {"grid": next(iter(out.values()))} if len(out) == 1 else out
+
+
+def _variants(model: FittedModel, i: int, tables: Sequence[ForceTable]) -> tuple[VariantStudy, ...]:
+    """Studies of a term's component at settings that move one of its variables."""
+    moves = tuple(dict.fromkeys({"alpha": "w", "beta": "v"}.get(v, v) for v, _, _ in model.terms[i].factors))
+    component = _component(model)
+    return variant_studies_of(_own(model, tables), component, moves) if component else ()
+
+
+def _changed(model: FittedModel, tables: Sequence[ForceTable]) -> dict[str, Array]:
+    """Half-widths by what a study changed, each common to the terms that take it; signed as the coefficients are."""
+    out: dict[str, Array] = {}
+    for i, value in enumerate(np.nan_to_num(model.fit.coefficients)):
+        for study in _variants(model, i, tables):
+            shift = out.setdefault(f"{study.name} at {study.setting}", np.zeros(len(model.terms)))
+            shift[i] = study.relative * value
+    return out
 
 
 def _model_of(c: Coefficient, fit: FitResult) -> tuple[FittedModel, int] | None:
@@ -437,5 +455,5 @@ def _budget(
     model, i = place
     variables = tuple(v for v, _, _ in model.terms[i].factors) or model.domain.variables
     lacking = _lacking(model, component, variables, tables, effects, slice(number, number + 1))
-    study = _study(model, i, tables)
-    return budget_of(c, component, _own(model, tables), fitted, inputs, total, lacking, study=study)
+    study, variants = _study(model, i, tables), _variants(model, i, tables)
+    return budget_of(c, component, _own(model, tables), fitted, inputs, total, lacking, study=study, variants=variants)

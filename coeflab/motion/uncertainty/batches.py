@@ -9,7 +9,6 @@ import hashlib
 import json
 import math
 import os
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
@@ -23,9 +22,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from coeflab.core.errors import CoeflabError, InputError, shown
+from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.files import write_atomically
-from coeflab.core.machine import end_with_parent, one_thread
+from coeflab.core.machine import dask_client, end_with_parent, one_thread
 from coeflab.core.types import Array, brief
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import CONTROLS
@@ -250,8 +249,6 @@ def _digest(text: str) -> str:
 
 
 Result = TypeVar("Result")
-PATIENCE = 10.0
-_ADDRESS = re.compile(r"(?:(?:tcp|tls|ws|wss)://)?(?:\[[0-9A-Fa-f:.%]+\]|[^\s:/\[\]]+):(?P<port>[0-9]{1,5})")
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
@@ -321,39 +318,15 @@ def _one_thread() -> Iterator[None]:
 def _on_dask(
     work: Callable[..., Result], tasks: Mapping[int, tuple[Any, ...]], scheduler: str
 ) -> Iterator[tuple[int, Result]]:
-    try:
+    with dask_client(scheduler, "--scheduler") as client:
         import distributed
-    except ImportError:
-        raise InputError(
-            "--scheduler without distributed", "the extra", column="--scheduler", advice='pip install "coeflab[dask]"'
-        ) from None
-    address = _ADDRESS.fullmatch(scheduler)
-    # A client that fails on the text of its address goes on waiting for 20 s.
-    if address is None or not 0 < int(address["port"]) < 1 << 16:
-        raise InputError(
-            f"no Dask scheduler at {shown(scheduler)}, which is no address", "the address of one that runs, such as "
-            "tcp://host:8786", column="--scheduler",
-        )  # fmt: skip
-    connect: Any = distributed.Client
-    finished: Any = distributed.as_completed
-    try:
-        client = connect(scheduler, timeout=PATIENCE, set_as_default=False)
-    except (OSError, ValueError, TypeError) as why:
-        raise InputError(
-            f"no Dask scheduler at {shown(scheduler)} ({type(why).__name__})", "the address of one that runs, such as "
-            "tcp://host:8786", column="--scheduler",
-        ) from None  # fmt: skip
-    with client:
+
+        finished: Any = distributed.as_completed
         try:
-            client.wait_for_workers(1, timeout=PATIENCE)
             waiting = {client.submit(work, *a, pure=False): index for index, a in tasks.items()}
             for done in finished(list(waiting), loop=client.loop):
                 yield waiting[done], done.result()
                 done.release()
-        except TimeoutError:
-            raise InputError(
-                "a Dask scheduler without workers", f"one at least within {PATIENCE:g} s", column="--scheduler"
-            ) from None
         except ModuleNotFoundError as why:
             raise CoeflabError(
                 f"A Dask worker has no module {why.name}: install this release of coeflab there."

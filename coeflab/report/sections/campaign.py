@@ -35,8 +35,9 @@ from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.study import Study
+from coeflab.study.towed import towed
 from coeflab.study.validation import validations
-from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.vehicle.derived import centre_of_pressure, stability
 from coeflab.vehicle.reference import Relation
 
@@ -181,6 +182,7 @@ def _caveats(sweep: Sweep) -> list[str]:
 WIDTH, LEFT, RIGHT, BOTTOM, TOP = 340.0, 112.0, 44.0, 34.0, 8.0
 ROW, THICK = 17.0, 0.62
 MEASURED = ("random", "model form", "random and model form")
+STUDIED = ("grid", *STUDIES.values())
 
 
 def tornado_figure(b: Budget, anchor: str) -> Figure:
@@ -224,7 +226,7 @@ def _bars(figure: Drawing, bars: list[tuple[str, float]], height: float, factor:
     axes.axvline(0.0, color=COLOURS["muted"], linewidth=0.6, zorder=3)
     for row, (label, half) in enumerate(bars):
         y, size = rows - 1.0 - row, half * factor
-        colour = COLOURS["ink" if label == "U95" else "a" if label in MEASURED else "b" if label == "grid" else "c"]
+        colour = COLOURS["ink" if label == "U95" else "a" if label in MEASURED else "b" if label in STUDIED else "c"]
         axes.barh(y, 2.0 * size, height=THICK, left=-size, color=colour, zorder=2)
         base = (BOTTOM + (y + 0.5) * ROW - 2.9) / height
         figure.text((LEFT - 5.5) / WIDTH, base, label, ha="right", va="baseline")
@@ -258,13 +260,14 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
     tables = (
         budget_tables.overview(found),
         budget_tables.grids(found),
+        budget_tables.studies(found),
         budget_tables.validation(validations(study, found)),
         budget_tables.derived(derived),
         *(budget_tables.shared(m) for m in models),
     )
     text = (
         "U95 joins every assessed part as a root sum of squares: the scatter of the points, the model form, the grid where "
-        "a campaign has a grid study, and the inputs that a campaign declares under [uncertainty] (angle, speed, "
+        "a campaign has a grid study, what studies of domain, turbulence model and iterations show, and the inputs that a campaign declares under [uncertainty] (angle, speed, "
         "calibration, reference point, length). A part that was not assessed is named, never zero.",
     )
     wanted = [b for b in found if b.symbol.removesuffix("'") in study.plan.wanted]
@@ -278,6 +281,21 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         for i, b in enumerate(wanted)
     )
     return (Section("budget", "Uncertainty budget", text, _filled(tables), subsections=parts),)
+
+
+def tow_sections(study: Study) -> tuple[Section, ...]:
+    """Bodies that our own computations tow, or none where the plan names none."""
+    found = towed(study)
+    if not found:
+        return ()
+    text = (
+        "Every wanted coefficient of each body that our own computations tow, a missing one with its reason; grid: its share of "
+        "the value by the grid study, which U95 holds.",
+        "E = S - D against U_V, ASME V&V 20. A verdict needs tests of the very body at steady angles: against another body, or "
+        "against derivatives of an oscillation (PMM), E and U_V are given and no verdict.",
+    )
+    each = (t for one in found for t in (tables.own_tow(one), tables.tow_against(one)))
+    return (Section("own-tows", "Own tows", text, _filled(tuple(each))),)
 
 
 def _filled(tables: tuple[Table, ...]) -> tuple[Table, ...]:

@@ -7,11 +7,13 @@ from collections.abc import Sequence
 
 from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Check, Table, coefficient, number, percent, plus_minus, probability, with_u95
+from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import primed
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.study.study import Study
+from coeflab.study.towed import Towed
 from coeflab.tables.force_table import Exclusion, ForceTable
 from coeflab.vehicle.reference import Relation
 
@@ -113,9 +115,59 @@ def side_by_side(study: Study) -> Table:
     return Table("Side by side with the published table", headers, tuple(rows), notes, frozenset({0, 1}))
 
 
+def own_tow(found: Towed) -> Table:
+    """The wanted coefficients of a towed body beside the published columns, what is missing with its reason; 80 columns."""
+    rows = []
+    for r in found.rows:
+        value, u95 = (r.missing, ABSENT) if r.missing else with_u95(r.value, r.u95)
+        rows.append((primed(r.symbol), value, u95, percent(r.u_grid, r.value), *map(coefficient, r.published)))
+    said: dict[str, list[str]] = {}
+    for r in found.rows:
+        said.setdefault(r.why, []).append(primed(r.symbol))
+    absent = f", as there is no {listed(found.tow.absent)} yet" if found.tow.absent else ""
+    where = f"Campaign {found.tow.campaign}{absent}." if found.tow.campaign else ""
+    every = len(found.rows) > 1 and len(said) == 1
+    reasons = [f"{'All' if every else ', '.join(symbols)}: {why}." for why, symbols in said.items() if why]
+    grid = "" if any(r.u_grid for r in found.rows) or not found.tow.campaign else "No grid study: not in U95."
+    notes = tuple(n for n in (where, *reasons, grid, found.tow.note) if n)
+    headers = ("", "tow", "U95", "grid", *found.columns)
+    return Table(f"Own tow: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
+
+
+def tow_against(found: Towed) -> Table:
+    """Comparison error of a tow against validation uncertainty, ASME V&V 20; no rows without an experiment. 80 columns."""
+    rows = []
+    for r in found.rows:
+        v = r.validation
+        if v is None:
+            continue
+        verdict = "no verdict" if r.verdict is None else "|E| < U_V" if r.verdict else "|E| > U_V"
+        rows.append(
+            (
+                primed(r.symbol), with_u95(v.computed, r.u95)[0], with_u95(v.measured, v.u_measured)[0],
+                *with_u95(v.error, v.u_validation), verdict,
+            )
+        )  # fmt: skip
+    none: dict[str, list[str]] = {}
+    tests: dict[str, list[str]] = {}
+    for r in found.rows:
+        none.setdefault(r.why_none, []).append(primed(r.symbol))
+        if r.validation is not None:
+            tests.setdefault(r.validation.experiment, []).append(primed(r.symbol))
+    notes = [f"D of {', '.join(symbols)}: {test}." for test, symbols in tests.items()]
+    notes += [f"No verdict on {', '.join(s)}: {why}." for why, s in none.items() if why and not why.startswith("as ")]
+    open_parts = dict.fromkeys(u for r in found.rows if r.validation is not None for u in r.validation.lacking)
+    notes += [f"Not in U_V of the tow: {', '.join(open_parts)}."] if open_parts else []
+    headers = ("", "S, tow", "D, test", "E = S - D", "U_V", "verdict")
+    return Table(
+        f"Comparison error of the tow: {found.tow.name}", headers, tuple(rows), tuple(notes), frozenset({0, 5})
+    )
+
+
 def by_campaign(study: Study) -> Table:
-    """The wanted coefficients, one column a campaign: value and U95, or that no table gives them."""
-    campaigns = list(dict.fromkeys(f.campaign for f in study.fits))
+    """The wanted coefficients, one column a campaign: value and U95, or that no table gives them; those of tows apart."""
+    apart = {t.campaign for t in study.plan.tows if t.added is not None}
+    campaigns = list(dict.fromkeys(f.campaign for f in study.fits if f.campaign not in apart))
     found = {(c.symbol, c.campaign): c for c in study.coefficients}
     rows = []
     for symbol in study.plan.wanted:

@@ -218,6 +218,7 @@ def budget(b: Budget) -> Table:
             f"Grid: {b.grid.component} at {b.grid.setting} on {', '.join(map(str, b.grid.cells))} cells, "
             f"{b.grid.cells_used} in use: {c.statement}. Its relative half-width is taken for the coefficient."
         )
+    notes += [f"{s.component} at {s.setting}, {s.statement}: 95 % {percent(s.half_width, s.used)}." for s in b.studies]
     notes.append(f"Not assessed: {', '.join(b.unassessed) or 'nothing known'}.")
     headers = ("part", "half-width of the input", "sensitivity", "95 %", "of the value", "of the variance")
     return Table(f"Budget of {primed(b.symbol)}, {b.campaign}", headers, tuple(rows), tuple(notes), frozenset({0}))
@@ -277,6 +278,25 @@ def grids(budgets: Sequence[Budget]) -> Table:
     return Table("Grid convergence", headers, rows, notes, frozenset({0, 1, 2, 3, 9}))
 
 
+def studies(budgets: Sequence[Budget]) -> Table:
+    """Every study of the domain, the turbulence model and the iterations once."""
+    found = {(s.name, s.table, s.component, s.setting): s for b in budgets for s in b.studies}
+    rows = tuple(
+        (
+            s.name if i == 0 else "", s.component if i == 0 else "", s.setting if i == 0 else "", what,
+            number(value, 5), percent(value - s.used, s.used), percent(s.half_width, s.used) if i == 0 else "",
+        )
+        for s in found.values()
+        for i, (what, value) in enumerate((("in use", s.used), *s.changed))
+    )  # fmt: skip
+    headers = ("study", "", "setting", "", "value", "apart", "95 %")
+    notes = (
+        "One thing changed at a time. 95 %: 2 / sqrt 3 of the largest distance, at least of the iteration noise.",
+        "U95 holds it; U_V of a validation leaves the turbulence model out, as E is about it.",
+    )
+    return Table("Studies of domain, turbulence model and iterations", headers, rows, notes, frozenset({0, 1, 2, 3}))
+
+
 def validation(found: Sequence[Validation]) -> Table:
     """Comparison error against validation uncertainty, ASME V&V 20."""
     verdicts = {True: "|E| < U_V", False: "|E| > U_V", None: "no verdict"}
@@ -292,7 +312,7 @@ def validation(found: Sequence[Validation]) -> Table:
         "", "computed", "measured", "S", "D", "E = S - D", "U_D", "U_SN", "U_red", "U_input", "U_V", "verdict",
     )  # fmt: skip
     notes = (
-        "U_SN: grid and iteration noise; U_red: form of the curve drawn through computed points; a dash: "
+        "U_SN: grid, domain, iterations and their noise; U_red: form of the curve drawn through computed points; a dash: "
         "not assessed. E also holds the difference of Reynolds number and rig between both.",
         *(f"{primed(v.symbol)}: {v.statement}." for v in found),
     )

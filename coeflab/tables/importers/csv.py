@@ -123,7 +123,7 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
         if header.name in (*table.labels, UNCERTAIN, POINT):
             labels[header.name] = list(map(Verbatim, cells.texts(header.name)))
             continue
-        if table.cells and header.name == table.cells:
+        if header.name in (table.cells, table.variant):
             continue
         kind = _kind(header.name)
         if kind is None:

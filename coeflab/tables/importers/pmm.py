@@ -1,7 +1,8 @@
 """Runs of a planar motion mechanism: a list of runs and one file of forces over time for each.
 
 The list (``runs.csv``) says of every run its file, motion and frequency, and what the files do not hold; a file has ``t`` and the
-forces, and may have the motion: displacements y z phi theta psi, velocities u v w p q r, accelerations udot ... rdot.
+forces, and may have the motion: displacements y z phi theta psi, velocities u v w p q r, accelerations udot ... rdot. A file may
+also be a captive test as the SIMMAN workshops ask for it.
 All of them are in the axes that campaign.toml declares, displacements in axes that move with the carriage and lie along
 those of the body at rest.
 """
@@ -24,7 +25,9 @@ from coeflab.core.types import Array
 from coeflab.core.units import factor
 from coeflab.law.symbols import ANGULAR, COMPONENTS, FORCES, LINEAR, MOMENTS
 from coeflab.tables.campaign import Campaign, TableDeclaration, TowedInertia
+from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
+from coeflab.tables.monitor_files import head, kind_of
 from coeflab.tables.planar_motion import (
     DISPLACEMENTS,
     VARIABLES,
@@ -33,6 +36,7 @@ from coeflab.tables.planar_motion import (
     PlanarMotionTable,
     TimeSeries,
 )
+from coeflab.tables.simman_files import record
 
 summary = (
     "runs of a planar motion mechanism: runs.csv (file, motion, frequency [Hz] ...) and one CSV over time for each"
@@ -287,6 +291,13 @@ def _series(
     if not path.is_file():
         raise fail(f"no file {shown(name)}", "a CSV file with t [s] and forces", "file")
     path = folder / name
+    if kind_of(head(path)) == "simman" and not is_house_table(path):
+        time, columns = record(path)
+        columns = {n: v for n, v in columns.items() if n not in ignored}
+        back = np.flatnonzero(np.diff(time) <= 0.0)
+        if back.size:
+            raise InputError(f"{time[back[0] + 1]:g} s after {time[back[0]]:g} s", "a time that rises", file=path)
+        return _turned(path, time, columns, start, turn)
     cells = read_cells(path)
     _unknown(cells, ("t", *DIMENSIONS, *ignored))
     names = [h.name for h in cells.headers if h.name not in ignored]
@@ -304,13 +315,20 @@ def _series(
         raise InputError(
             f"{time[at]:g} s after {time[at - 1]:g} s", "a time that rises", file=path, line=cells.line(at), column="t"
         )
+    return _turned(path, time, columns, start, turn)
+
+
+def _turned(
+    path: Path, time: Array, columns: Mapping[str, Array], start: float, turn: Mapping[str, tuple[str, float]]
+) -> TimeSeries:
+    """A record from ``start`` on, in FRD."""
     keep = time >= start
     made: dict[str, dict[str, Array]] = {}
     for kind, groups in GROUPS.items():
         frd = [n for names, _ in groups for n in names if turn[n][0] in columns]
         made[kind] = {n: turn[n][1] * columns[turn[n][0]][keep] for n in frd}
     if not made["forces"]:
-        raise InputError("no force column", "at least one of X Y Z K M N", file=path, line=cells.first_line - 1)
+        raise InputError("no force column", "at least one of X Y Z K M N", file=path)
     made["accelerations"] = {n.removesuffix("dot"): v for n, v in made["accelerations"].items()}
     return TimeSeries(file=path, time=time[keep], **made)
 

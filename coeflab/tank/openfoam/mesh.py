@@ -2,21 +2,53 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-from coeflab.tank.jobs import Job
-from coeflab.tank.openfoam.mesh_sizes import MeshKeys
+import numpy as np
+
+from coeflab.core.errors import InputError
+from coeflab.core.files import write_all
+from coeflab.core.types import Array
+from coeflab.tank.jobs import Job, Step
+from coeflab.tank.openfoam import rendered, step
+from coeflab.tank.openfoam.cell_count import BETWEEN_LEVELS, cell_count
+from coeflab.tank.openfoam.mesh_made import MADE, PLANNED, expected_cells, mesh_ended
+from coeflab.tank.openfoam.mesh_sizes import GROWTH, LAST_LAYER, SYMMETRY_AXIS, MeshKeys, MeshSizes, mesh_sizes
 from coeflab.tank.tank import Grid, Tank
 from coeflab.tank.test_matrix import Half
-from coeflab.tank.towed_body import TowedBody
+from coeflab.tank.towed_body import TowedBody, stl
+
+__all__ = ["CUT", "FAR", "expected_cells", "mesh_ended", "mesh_job", "mesh_name"]
 
 FAR, CUT = "far", "cut"  # patches beside those of the body; the cut is a symmetryPlane
+GEOMETRY = "constant/triSurface"
+WITHOUT_VALUES = ("controlDict", "fvSchemes", "fvSolution", "meshQualityDict")
+SIDES = {
+    ("x", 0): "(0 4 7 3)",
+    ("x", 1): "(1 2 6 5)",
+    ("y", 0): "(0 1 5 4)",
+    ("y", 1): "(3 7 6 2)",
+    ("z", 0): "(0 3 2 1)",
+    ("z", 1): "(4 5 6 7)",
+}
+CUT_SIDE = {Half.PORT: ("y", 1), Half.UPPER: ("z", 1)}
+SEED_DISTANCE = 4.0  # in cells of the patch
+MOST_CELLS = 100_000_000  # where snappyHexMesh stops; a tow is refused before, by the cells expected
+# Of OpenFOAM 1912, measured on meshes of 20,000 to 600,000 cells; the last steps have one core only.
+SECONDS_AT_LEAST, SECONDS_A_CELL, SECONDS_A_FACE, SPEEDUP, SECONDS_ALONE = 1.0, 1.25e-4, 6.5e-4, 0.6, 1.5e-5
+BYTES_AT_LEAST, BYTES_A_CELL = 80e6, 1750.0
 
 
 def mesh_name(grid: Grid, half: Half, controls: Mapping[str, float], domain: float = 1.0) -> str:
-    """Name of a mesh's job and, below the folder of the tow, its folder: ``mesh/medium_upper``."""
-    raise NotImplementedError
+    """Name of a mesh's job and, below the folder of the tow, its folder: ``mesh/medium_upper_dr+5``."""
+    words = [grid.name, *([half.name.lower()] if half is not Half.WHOLE else [])]
+    words += [f"{name}{np.degrees(angle):+.6g}" for name, angle in sorted(controls.items()) if angle]
+    words += [f"domain{domain:.6g}"] if domain != 1.0 else []
+    return "mesh/" + "_".join(words)
 
 
 def mesh_job(
@@ -60,14 +92,106 @@ def mesh_job(
     InputError
         The body reaches through the end of the domain, or the mesh would have too many cells.
     """
-    raise NotImplementedError
+    sizes = mesh_sizes(body, grid.size, half, options, tank.conditions, domain)
+    count = cell_count(body, sizes)
+    if (cells := count.cells) > options.most_cells:
+        raise InputError(
+            f"a mesh of about {cells:.2g} cells for the grid {grid.name}",
+            f"{options.most_cells:.2g} at most",
+            key="most_cells",
+            advice="Choose fewer cells_per_chord or cells_per_length, a larger grid, or raise most_cells.",
+        )
+    name, cores = mesh_name(grid, half, controls, domain), tank.cores
+    shared = (SECONDS_A_CELL * cells + SECONDS_A_FACE * count.faces) / cores**SPEEDUP
+    contents = _files(body, sizes, half, cores)
+    planned = {"cells": round(cells), "coverage": options.coverage, **_geometry(body, half)}
+    planned["layers"] = {patch: made.count for patch, made in sizes.layers.items()}
+    place = (folder / name).resolve()
+    write_all(place, {**contents, PLANNED: json.dumps(planned, indent=1).encode() + b"\n"})
+    return Job(
+        name=name,
+        folder=place,
+        solver="openfoam",
+        steps=_steps(cores),
+        cores=cores,
+        memory=BYTES_AT_LEAST * cores + BYTES_A_CELL * cells,
+        seconds=SECONDS_AT_LEAST + shared + SECONDS_ALONE * cells,
+        key=_key(contents, version),
+    )
 
 
-def mesh_ended(job: Job) -> tuple[tuple[str, ...], str]:
-    """Remarks on a mesh that was made, and why it is not sound; an empty reason where it is."""
-    raise NotImplementedError
+def _files(body: TowedBody, sizes: MeshSizes, half: Half, cores: int) -> dict[str, bytes]:
+    whole = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))])
+    cut = [CUT_SIDE[half]] if half is not Half.WHOLE else []
+    boundary = [{"name": FAR, "type": "patch", "faces": [face for side, face in SIDES.items() if side not in cut]}]
+    boundary += [{"name": CUT, "type": "symmetryPlane", "faces": [SIDES[side]]} for side in cut]
+    values: dict[str, Any] = {
+        "corners": np.where(whole, sizes.high, sizes.low),
+        "counts": sizes.counts,
+        "boundary": boundary,
+        "levels": sizes.levels,
+        "surface_level": min(sizes.levels.values()),
+        "regions": sizes.regions,
+        "layers": sizes.layers,
+        "growth": GROWTH,
+        "last_layer": LAST_LAYER,
+        "inside": sizes.inside,
+        "between_levels": BETWEEN_LEVELS,
+        "most_cells": MOST_CELLS,
+        "cores": cores,
+    }
+    names = ("blockMeshDict", "snappyHexMeshDict", *WITHOUT_VALUES, *(("decomposeParDict",) if cores > 1 else ()))
+    contents = {f"system/{name}": rendered(f"mesh/{name}", **values) for name in names}
+    for patch in body.patches:
+        name = f"{patch}.eMesh"
+        contents[f"{GEOMETRY}/{name}"] = rendered("mesh/seeds.eMesh", name=name, points=_seeds(body, patch, sizes))
+    return contents | {f"{GEOMETRY}/body.stl": stl(body)}
 
 
-def expected_cells(job_folder: Path) -> float:
-    """Cells that the mesh of that folder has, once made, else those expected; runs estimate their time from it."""
-    raise NotImplementedError
+def _seeds(body: TowedBody, patch: str, sizes: MeshSizes) -> Array:
+    """Ends of an edge of one triangle in every few cells, (2 n, 3): what lies in the domain."""
+    ends = body.vertices[body.faces[body.patch == body.patches.index(patch)][:, :2]]
+    ends = ends[np.all((ends > sizes.low) & (ends < sizes.high), axis=(1, 2))]
+    places = np.floor(ends.mean(1) / (SEED_DISTANCE * sizes.edge(patch))).astype(int)
+    _, first = np.unique(places, axis=0, return_index=True)
+    seeds: Array = ends[np.sort(first)].reshape(-1, 3)
+    return seeds
+
+
+def _steps(cores: int) -> tuple[Step, ...]:
+    processors = [f"processor{k}" for k in range(cores)]
+    clean = Step("clean", ("rm", "-rf", "constant/polyMesh", MADE, *processors))
+    last = (step("renumberMesh", "renumberMesh", "-overwrite"), step("checkMesh", "checkMesh"))
+    if cores == 1:
+        return (clean, step("blockMesh", "blockMesh"), step("snappyHexMesh", "snappyHexMesh", "-overwrite"), *last)
+    return (
+        clean,
+        step("blockMesh", "blockMesh"),
+        step("decomposePar", "decomposePar", "-force"),
+        step("snappyHexMesh", "snappyHexMesh", "-overwrite", cores=cores),
+        step("reconstructParMesh", "reconstructParMesh", "-constant", "-mergeTol", "1e-6"),
+        Step("cleanProcessors", ("rm", "-rf", *processors)),
+        *last,
+    )
+
+
+def _key(contents: Mapping[str, bytes], version: str) -> str:
+    """Of everything but how the work is shared among cores."""
+    digest = hashlib.sha256(f"OpenFOAM {version}\n".encode())
+    for name in sorted(contents):
+        if not name.endswith("decomposeParDict"):
+            digest.update(f"{name} {hashlib.sha256(contents[name]).hexdigest()}\n".encode())
+    return digest.hexdigest()
+
+
+def _geometry(body: TowedBody, half: Half) -> dict[str, Any]:
+    """Volume of the body in the domain and wetted surface of each patch."""
+    corners = body.vertices[body.faces]
+    normals: Array = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2.0
+    here = corners.mean(1)[:, SYMMETRY_AXIS[half]] < 0.0 if half is not Half.WHOLE else np.ones(len(corners), bool)
+    areas = np.bincount(body.patch[here], np.linalg.norm(normals[here], axis=1), len(body.patches))
+    volume = float((corners.mean(1) * normals).sum() / 3.0)
+    return {
+        "volume": volume / (1.0 if half is Half.WHOLE else 2.0),
+        "surface": dict(zip(body.patches, areas.tolist(), strict=True)),
+    }

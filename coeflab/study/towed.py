@@ -1,0 +1,259 @@
+"""Own tows beside published columns: every wanted coefficient of each towed body, a missing one with its reason.
+
+A verdict by ASME V&V 20 needs one body and one method on both sides: tests of the very body that was towed, at steady angles.
+Against another body, or derivatives from an oscillation, E and U_V are given and no verdict.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.core.types import brief
+from coeflab.core.wording import listed
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.fits.uncertainty.budget import Budget
+from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import ANGULAR, LINEAR, derivative, primed
+from coeflab.study.study import PlannedTow, Study
+from coeflab.study.validation import Validation, validation
+from coeflab.tables.force_table import AT_REST, ForceTable
+from coeflab.vehicle.reference import Reference
+
+# A quarter of a turn about x: v -> w, Y -> Z, N -> -M, r -> -q.
+FOURFOLD = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}
+NOT_TOWED, NOT_RUN, OPEN = "not towed", "not run", "open"
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class TowedRow:
+    """One coefficient of a towed body.
+
+    Attributes
+    ----------
+    symbol : str
+    coefficient : Coefficient or None
+        None where the tow gives none.
+    u_grid : float or None
+        95 % half-width by the grid study; None without one.
+    missing : str
+        ``not towed``, ``not run`` or ``open`` in the place of a value; empty with one.
+    why : str
+        What is missing or left out, or by which symmetry the value is stated; empty where there is nothing to say.
+    published : tuple of float or None
+        In the order of the columns, primed by our length; None where a column has no such value.
+    validation : Validation or None
+        Against the experiment; None where it has no such value, or the row is stated by symmetry.
+    verdict : bool or None
+        Whether |E| lies within U_V; None where no verdict can be given.
+    why_none : str
+        Why not.
+    """
+
+    symbol: str
+    coefficient: Coefficient | None
+    u_grid: float | None
+    missing: str
+    why: str
+    published: tuple[float | None, ...]
+    validation: Validation | None = None
+    verdict: bool | None = None
+    why_none: str = ""
+
+    @property
+    def value(self) -> float | None:
+        """Primed."""
+        return None if self.coefficient is None else self.coefficient.value
+
+    @property
+    def u95(self) -> float | None:
+        """95 % half-width; None where there is none."""
+        return None if self.coefficient is None else self.coefficient.u95
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Towed:
+    """A towed body.
+
+    Attributes
+    ----------
+    tow : PlannedTow
+    body : str
+        As its campaign names it; the plan's where there is none.
+    columns : tuple of str
+        Names of the published columns.
+    rows : tuple of TowedRow
+        One a wanted coefficient.
+    """
+
+    tow: PlannedTow
+    body: str
+    columns: tuple[str, ...]
+    rows: tuple[TowedRow, ...]
+
+
+def towed(study: Study) -> tuple[Towed, ...]:
+    """Every planned tow, whether it was carried out or not."""
+    return tuple(_towed(study, tow) for tow in study.plan.tows)
+
+
+def _towed(study: Study, tow: PlannedTow) -> Towed:
+    by_name = {r.name: r for r in study.references}
+    columns = tuple(by_name[name] for name in tow.columns if name in by_name)
+    tests = tuple(by_name[name] for name in tow.experiment if name in by_name)
+    fits = tuple(f for f in study.fits if f.campaign == tow.campaign)
+    body = fits[0].body if fits else tow.body
+    rows = tuple(_row(study, tow, symbol, fits, columns, tests) for symbol in study.plan.wanted)
+    return Towed(tow, body, tuple(c.name for c in columns), rows)
+
+
+def _row(
+    study: Study,
+    tow: PlannedTow,
+    symbol: str,
+    fits: tuple[FitResult, ...],
+    columns: tuple[Reference, ...],
+    tests: tuple[Reference, ...],
+) -> TowedRow:
+    scaling = fits[0].coefficients.scaling if fits else study.plan.scaling
+    published = tuple(_published(study, fits, r, symbol, scaling) for r in columns)
+    source, sign = FOURFOLD.get(symbol, ("", 1.0)) if tow.fourfold else ("", 1.0)
+    own = _coefficient(fits, source or symbol)
+    budget = _budget(study, tow.campaign, source or symbol)
+    u_grid = None if budget is None else budget.part("grid")
+    if own is None or own.value is None:
+        missing, why = _missing(study, tow, source or symbol, own)
+        return TowedRow(symbol, None, u_grid, missing, why, published)
+    if source:
+        turned = replace(own, symbol=symbol, value=sign * own.value)
+        equal = f"{'-' if sign < 0.0 else ''}{primed(source)}"
+        return TowedRow(
+            symbol, turned, u_grid, "", f"{equal} by fourfold symmetry", published, why_none=f"as {primed(source)}"
+        )
+    why = _left_out(study, tow.campaign, symbol)
+    made = None if budget is None else _against(study, budget, own, fits, tests)
+    if made is None:
+        lacking = "no budget" if budget is None else "no test of it" if tests else ""
+        return TowedRow(symbol, own, u_grid, "", why, published, why_none=lacking)
+    found, none = made
+    return TowedRow(symbol, own, u_grid, "", why, published, found, None if none else found.within, none)
+
+
+def _coefficient(fits: tuple[FitResult, ...], symbol: str) -> Coefficient | None:
+    """Of the first fit that gives it a value, else of the first that knows it."""
+    known = [f.coefficients[symbol] for f in fits if symbol in f.coefficients]
+    return next((c for c in known if c.value is not None), known[0] if known else None)
+
+
+def _budget(study: Study, campaign: str, symbol: str) -> Budget | None:
+    return next((b for b in study.budgets if (b.campaign, b.symbol) == (campaign, symbol)), None)
+
+
+def _published(
+    study: Study, fits: tuple[FitResult, ...], reference: Reference, symbol: str, scaling: Scaling | None
+) -> float | None:
+    """A printed value about our reference point and by our length, read as printed; from PMM where it is no other."""
+    point = fits[0].coefficients.reference_point if fits else study.plan.reference_point
+    elsewhere = reference.reference_point is not None and (
+        point is None or not np.allclose(reference.reference_point, point, atol=1e-6)
+    )
+    if scaling is None or elsewhere:
+        return None
+    read = reference.readings(symbol, scaling)
+    if read:
+        return read[0][1]
+    stated = _literature(reference, symbol)
+    return None if stated is None else stated[0] * reference.scaling.ratio(symbol, scaling)
+
+
+def _literature(reference: Reference, symbol: str) -> tuple[float, float, str] | None:
+    """Value, relative uncertainty and method of a derivative that the source has by another method."""
+    for kind in reference.literature:
+        for v in kind.values:
+            if v.symbol == symbol and v.value is not None:
+                return v.value, kind.uncertainty, kind.method
+    return None
+
+
+def _against(
+    study: Study, budget: Budget, own: Coefficient, fits: tuple[FitResult, ...], tests: tuple[Reference, ...]
+) -> tuple[Validation, str] | None:
+    """The comparison with the first test that has the derivative, and why it has no verdict."""
+    ours = next(f.coefficients for f in fits if own.symbol in f.coefficients and f.coefficients[own.symbol] is own)
+    for r in tests:
+        other = f"another body: {r.body}" if r.body != own.body else ""
+        for campaign in r.campaigns:
+            measured = _budget(study, campaign, own.symbol)
+            theirs = next((f.coefficients for f in study.fits if f.campaign == campaign and f.sweeps), None)
+            if measured is None or theirs is None or theirs.datum != ours.datum:
+                continue
+            if np.allclose(theirs.reference_point, ours.reference_point, atol=1e-6):
+                made = validation(budget, measured, theirs.scaling.ratio(own.symbol, ours.scaling))
+                return made, other or ("" if made.u_measured is not None else "the test has no U95")
+        stated = _literature(r, own.symbol)
+        if stated is not None and _published(study, fits, r, own.symbol, ours.scaling) is not None:
+            value, share, method = stated
+            size = abs(value) * share
+            test = replace(
+                budget, campaign=f"{r.name}, {method}", value=value, u95=size, parts=(), unassessed=(), kind="literature",
+            )  # fmt: skip
+            ratio = r.scaling.ratio(own.symbol, ours.scaling)
+            return validation(budget, test, ratio), "; ".join(filter(None, (other, f"another method: {method}")))
+    return None
+
+
+def _missing(study: Study, tow: PlannedTow, symbol: str, own: Coefficient | None) -> tuple[str, str]:
+    """What stands in the place of a value, and why."""
+    if not tow.campaign:
+        return NOT_TOWED, f"there is no campaign {listed(tow.absent)} yet"
+    variable = _variable(symbol)
+    left_out = _left_out(study, tow.campaign, symbol)
+    if not any(np.any(_moving(t, variable)) for t in _tables(study, tow.campaign)):
+        return NOT_RUN, f"no run with {variable}"
+    if left_out:
+        return OPEN, left_out
+    refused = study.unfitted.get(tow.campaign, "")
+    if own is None or own.status is Status.NO_TABLE:
+        return OPEN, refused or f"no fit of {variable}"
+    return OPEN, own.status.replace("_", " ")
+
+
+def _left_out(study: Study, campaign: str, symbol: str) -> str:
+    """Which runs of a motion do not count, by their state."""
+    variable, component = _variable(symbol), symbol[:1]
+    states: Counter[str] = Counter()
+    runs = 0
+    for t in _tables(study, campaign):
+        if component not in t.forces:
+            continue
+        moving = [int(i) for i in np.flatnonzero(_moving(t, variable)) if not (t.variants and t.variants[i])]
+        apart = {e.row for e in t.exclusions if not e.status and e.component in ("", component)}  # of other grids
+        own = {e.row: e.status for e in t.exclusions if e.status and e.component in ("", component)}
+        states.update(own[i] for i in moving if i in own and i not in apart)
+        runs += sum(i not in apart for i in moving)
+    said = ", ".join(f"{n} {state}" for state, n in sorted(states.items()))
+    return f"{states.total()} of {runs} runs with {variable} left out: {said}" if states else ""
+
+
+def _variable(symbol: str) -> str:
+    """What moves; empty for a force at rest."""
+    return next(iter(derivative(symbol).factors), "")
+
+
+def _tables(study: Study, campaign: str) -> tuple[ForceTable, ...]:
+    return tuple(t for t in study.tables if t.campaign == campaign)
+
+
+def _moving(table: ForceTable, variable: str) -> NDArray[np.bool_]:
+    """Rows, (n,), that move in this variable beyond rounding, and in no other of drift, attack, rates and controls."""
+    length = table.scaling.length
+    names = [*LINEAR[1:], *ANGULAR, *table.controls]
+    moves = {m: np.abs(table.primed_motion(m, length)) > AT_REST for m in names}
+    own = moves.pop(variable, np.full(len(table), not variable))
+    return np.asarray(own & ~np.any(list(moves.values()), axis=0))

@@ -1,0 +1,75 @@
+"""Static captive tests of the SIMMAN workshops: one row of means a condition, in the axes and units that they ask for.
+
+Oscillating tests in the same columns are files of a list of runs, which the importer pmm reads.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from coeflab.core.errors import InputError
+from coeflab.core.options import NoOptions, parse_options
+from coeflab.tables.dialect import is_house_table
+from coeflab.tables.monitor_files import head, kind_of
+from coeflab.tables.monitors import raw_table
+from coeflab.tables.raw_table import RawTable, Stated
+from coeflab.tables.simman_files import STATED, captive_test, is_record
+
+summary = "static captive tests in the columns that the SIMMAN workshops ask for"
+reads = "captive tests of SIMMAN (X Y N, u v r, udot vdot rdot)"
+citations = (
+    "SIMMAN (2014): Workshop on Verification and Validation of Ship Manoeuvring Simulation Methods, Instructions: Format of "
+    "Model Test Results; Coordinate Systems. simman2014.dk.",
+)
+
+DELIMITERS = {",": "comma", ";": "semicolon", "\t": "tab", " ": "blanks"}
+MEANT = ("X", "Y", "N", "u", "v", "r")
+
+
+def recognises(path: Path) -> bool:
+    """Whether a file has the columns of a captive test of SIMMAN, and is no table of ours."""
+    return path.is_file() and kind_of(head(path)) == "simman" and not is_house_table(path)
+
+
+def raw(path: Path, options: Mapping[str, Any] | None = None) -> RawTable:
+    """Read a table of static tests.
+
+    Parameters
+    ----------
+    path : Path
+    options : mapping, optional
+        None are known.
+
+    Returns
+    -------
+    RawTable
+        Forces and velocities mean what their names say; position, heading, time and accelerations are left alone. The axes are
+        stated; the reference point and whether the forces contain inertia are not.
+
+    Raises
+    ------
+    InputError
+        Another content, broken lines, or the time series of an oscillating test.
+    """
+    parse_options(NoOptions, options or {}, "importers.simman")
+    monitor, units, delimiter = captive_test(path)
+    if not len(monitor):
+        raise InputError("a header and no whole rows", "rows of numbers", file=path, line=monitor.header_line)
+    if is_record(dict(zip(monitor.names, monitor.columns, strict=True))):
+        raise InputError(
+            "the time series of an oscillating test", "means of static tests, one row a condition", file=path,
+            line=monitor.header_line,
+            advice='Name it in the list of runs of a campaign with importer = "pmm": coeflab fit reads it there.',
+        )  # fmt: skip
+    columns = [
+        (j, name, unit, name if name in MEANT else "ignore")
+        for j, (name, unit) in enumerate(zip(monitor.names, units, strict=True))
+    ]
+    return raw_table(
+        monitor, path, columns, (path,),
+        {"format": "SIMMAN captive test", "delimiter": DELIMITERS[delimiter], "units": "as written, else SI"},
+        {"axes.frame": Stated("FRD", "SIMMAN 2014, Coordinate Systems")},
+        (f"{path.name}: model scale and SI units, as {STATED} asks",),
+    )  # fmt: skip

@@ -1,0 +1,128 @@
+"""The folder of a tow: what ``tow.json`` says of it, and whether another tow is in the way."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from coeflab.core.errors import InputError, shown
+from coeflab.core.files import shipped
+from coeflab.core.provenance import sha256_of
+from coeflab.core.version import VERSION
+from coeflab.tank.jobs import JOB, STATE, Job
+from coeflab.tank.tank import Tank
+
+KIND = "coeflab tow 1"
+PLAN, TANK, BODY = "tow.json", "tank.toml", "body/body.stl"
+CAMPAIGN, REPORT = "campaign", "report"
+OWN = (TANK, "body", ".lock", CAMPAIGN)  # what a tow may have left that was stopped before its plan was written
+
+
+def plan_text(folder: Path, tank: Tank, body: str, version: str, jobs: Sequence[Job]) -> bytes:
+    """``tow.json``: conditions, jobs with their keys, and what they depend on.
+
+    Parameters
+    ----------
+    folder : Path
+        With the body's surface in it.
+    tank : Tank
+    body, version : str
+        Names of the body and of the solver as it is installed.
+    jobs : sequence of Job
+    """
+    density = tank.conditions.density
+    content = {
+        "kind": KIND, "coeflab": VERSION, "name": tank.name, "title": tank.title, "body": body,
+        "body_file": _portable(tank.body, folder), "body_sha256": sha256_of(tank.body),
+        "surface_sha256": sha256_of(folder / BODY), "solver": tank.solver, "version": version, "runner": tank.runner,
+        "jobs": {job.name: job.key for job in jobs},
+        "conditions": [
+            {
+                "name": c.name, "kind": str(c.kind), "half": str(c.half), "grid": c.grid, "variant": dict(c.variant),
+                "velocity": c.velocity.tolist(), "rates": c.rates.tolist(), "controls": dict(c.controls),
+                # of one unit of a primed force and of a primed moment: the table of runs shows primes
+                "units": [tank.scaling.unit(x, density, c.speed) for x in ("Y", "N")],
+            }
+            for c in tank.matrix
+        ],
+    }  # fmt: skip
+    return (json.dumps(content, indent=1) + "\n").encode()
+
+
+def _portable(path: Path, folder: Path) -> str:
+    """A path that holds when folder and body are moved together; of a shipped body its name."""
+    inside = shipped("geometry").resolve()
+    if path.resolve().is_relative_to(inside):
+        return path.resolve().relative_to(inside).parts[0]
+    return Path(os.path.relpath(path, folder)).as_posix()
+
+
+def body_file(folder: Path, plan: dict[str, Any]) -> Path:
+    """The body.toml of a tow."""
+    name = plan["body_file"]
+    inside = shipped("geometry") / name
+    return inside if "/" not in name and inside.is_dir() else Path(os.path.normpath(folder / name))
+
+
+def read_plan(folder: Path) -> dict[str, Any]:
+    """What ``tow.json`` says.
+
+    Raises
+    ------
+    InputError
+        No tow is in the folder, or one of another release.
+    """
+    path = folder / PLAN
+    advice = "`coeflab tow BODY --out FOLDER` begins one."
+    try:
+        content: dict[str, Any] = json.loads(path.read_bytes())
+        kind = content["kind"]
+    except OSError:
+        raise InputError("no tow", f"a folder with a {PLAN}", file=folder, advice=advice) from None
+    except (ValueError, KeyError, TypeError):
+        raise InputError("no plan of a tow", KIND, file=path, advice=advice) from None
+    if kind != KIND:
+        raise InputError(shown(kind), KIND, file=path, key="kind", advice="Go on with the release that began it.")
+    return content
+
+
+def refuse_other(folder: Path, tank: Tank) -> None:
+    """Refuse a folder that holds another tow, or files of something else.
+
+    Raises
+    ------
+    InputError
+        With what is there.
+    """
+    if not folder.exists():
+        return
+    if not folder.is_dir():
+        raise InputError("a file", "a folder", file=folder, column="--out")
+    if not (folder / PLAN).exists():
+        if any(p.name not in OWN for p in folder.iterdir()):
+            raise InputError(f"a folder without {PLAN}, which is not empty", "a new folder, or that of a tow", file=folder,
+                             advice="Name another --out.")  # fmt: skip
+        return
+    there = read_plan(folder)
+    if (there["name"], there["solver"]) != (tank.name, tank.solver):
+        raise InputError(f"the tow of {there['name']} by {there['solver']}", f"that of {tank.name} by {tank.solver}",
+                         file=folder, advice="Name another --out: a folder holds one tow.")  # fmt: skip
+
+
+def forget(folder: Path, own: set[Path]) -> None:
+    """Take jobs out of the plan that are not in the matrix any more; what they computed stays, and counts again with them."""
+    for job in _of_every_job(folder, JOB):
+        if job.parent not in own:
+            job.unlink()
+
+
+def has_begun(folder: Path) -> bool:
+    """Whether some job of the folder was started."""
+    return bool(_of_every_job(folder, STATE))
+
+
+def _of_every_job(folder: Path, name: str) -> list[Path]:
+    return sorted(folder.glob(f"*/{name}")) + sorted(folder.glob(f"mesh/*/{name}"))

@@ -1,0 +1,383 @@
+"""One job, carried out: ``python -m coeflab.tank.job FOLDER``.
+
+Its steps run one after another, each with its log. The solver is watched: it is stopped on its plateau, when it diverges and
+when this process is asked to end (SIGTERM, SIGINT). Whatever ends this process, the solver ends with it, ``state.json`` shows
+it, and the next attempt goes on from what the solver wrote last.
+
+A plateau is looked for at fixed lengths of the history, so that the result does not depend on when this process looked.
+
+The exit code is 0 for a job that is kept (finished, unconverged), 1 for one that diverged or crashed, 2 for one that cannot be
+carried out, 3 for one that was stopped and goes on.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from math import nan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from coeflab.core.errors import CoeflabError, InputError, OutputError, shown
+from coeflab.tank.jobs import PATIENCE, Job, JobState, Progressed, Step, only_one, progress, read_job, write_progress
+from coeflab.tank.processes import end_session, ends_with, memory, started
+
+if TYPE_CHECKING:
+    from coeflab.tables.raw_table import RawTable, Run
+    from coeflab.tank.plateau import Verdict
+    from coeflab.tank.solvers import TowSolver
+
+GRACE, KILL = 60.0, 10.0  # s in which a solver has to write and end when it is asked to, and to end when it is made to
+NOTICE, BEAT = 0.2, 5.0  # s until a signal is noticed, and between signs of life
+EARLIEST, LATEST, SHARE = 2.0, 60.0, 50.0  # s between two looks at the history; times what one takes of a core
+FIRST, SPACING, LEAST = (
+    50,
+    1.1,
+    10,
+)  # rows at which a plateau is looked for: the first, the ratio to the next, the least step
+FULL = 16e6  # bytes that are left of a full disk
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # unless the environment says otherwise
+FAILED, REFUSED, STOPPED = 1, 2, 3  # exit codes
+CODES = {JobState.DIVERGED: FAILED, JobState.CRASHED: FAILED, JobState.STOPPED: STOPPED}
+
+
+@dataclass(slots=True)
+class Asked:
+    """How often this process was asked to end."""
+
+    times: int = 0
+
+
+def carry_out(folder: Path, alone: bool = False) -> Progressed:
+    """Carry out the job of a folder, from the start or from what its solver wrote last, and say how it ended.
+
+    Parameters
+    ----------
+    folder : Path
+    alone : bool
+        The caller, such as a scheduler that requeues, knows that no other machine carries the job out.
+
+    Returns
+    -------
+    Progressed
+        As ``state.json`` has it. A job that is kept is left alone.
+
+    Raises
+    ------
+    InputError
+        The folder has no job, or another process carries it out.
+    OutputError
+        The folder cannot be written.
+    """
+    job = read_job(folder)
+    with only_one(job.folder, "job", PATIENCE) as lock:
+        before = progress(job)
+        if before.state.is_kept:
+            return before
+        if before.state is JobState.RUNNING and not alone:
+            raise InputError(f"a job that process {before.process} on {before.host} carries out", "one job at a time in a folder",
+                             file=job.folder, advice="Wait for it, or end that process.")  # fmt: skip
+        with asked_to_end() as asked:
+            return _Attempt(job, before, lock, asked).made()
+
+
+@contextmanager
+def asked_to_end() -> Iterator[Asked]:
+    """Count SIGTERM and SIGINT instead of ending by them."""
+    asked = Asked()
+
+    def count(_number: int, _frame: object) -> None:
+        asked.times += 1
+
+    before = {number: signal.signal(number, count) for number in (signal.SIGTERM, signal.SIGINT)}
+    try:
+        yield asked
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def lengths(rows: int) -> Iterator[int]:
+    """Rows of a history at which a plateau is looked for, up to those that there are."""
+    n = FIRST
+    while n <= rows:
+        yield n
+        n = max(n + LEAST, int(SPACING * n))
+
+
+def until(run: Run, rows: int) -> Run:
+    """A run as it was when its history had so many rows; patches end at the same iteration or time."""
+    history = _head(run.history, rows)
+    at = history.meaning("iteration") or history.meaning("time")
+    patches = {}
+    for name, table in run.patches.items():
+        its = table.meaning("iteration") or table.meaning("time")
+        count = rows if at is None or its is None else int((its.values <= at.values[-1]).sum())
+        patches[name] = _head(table, count)
+    return replace(run, history=history, patches=patches)
+
+
+def _head(table: RawTable, rows: int) -> RawTable:
+    columns = tuple(replace(c, values=c.values[:rows], texts=c.texts[:rows]) for c in table.columns)
+    return replace(table, columns=columns, lines=table.lines[:rows], row_labels=table.row_labels[:rows])
+
+
+class _Attempt:
+    """One attempt at a job."""
+
+    def __init__(self, job: Job, before: Progressed, lock: int, asked: Asked) -> None:
+        self.job, self.before, self.lock, self.asked = job, before, lock, asked
+        self.began = time.monotonic()
+        me = os.getpid()
+        self.now = Progressed(
+            JobState.RUNNING, job.key, seconds=before.seconds, memory=before.memory, process=me,
+            host=socket.gethostname(), started=started(me),
+        )  # fmt: skip
+        self.solver: TowSolver | None = None
+        self.verdict: Verdict | None = None
+        self.took = 0.0  # s of this process for the last look
+        self.looked = 0  # rows at which a plateau was looked for last
+        self.pace: tuple[float, float] | None = None  # time and iteration of the first look
+        self.killed = ""  # what is to be said of a solver that did not end by itself
+        self.stopped = False
+
+    def made(self) -> Progressed:
+        """Carry out the steps; whatever happens, no process of a step is left and the state says how it ended."""
+        try:
+            self._say()
+            steps, at = self._steps()
+            self._say(resumed_from=at, iteration=at)
+            code = 0
+            for step in steps:
+                self._say(step=step.name)
+                code = self._run(step)
+                self.stopped = self.stopped or (self.asked.times > 0 and step is not steps[-1])
+                if code or self.stopped:
+                    break
+            self._end(code)
+        except CoeflabError as why:
+            self._say(state=JobState.CRASHED, left=nan, why=str(why))
+        except BaseException as why:
+            with suppress(OutputError):
+                self._say(state=JobState.CRASHED, left=nan, why=f"{type(why).__name__}: {shown(why)}")
+            raise
+        return self.now
+
+    def _steps(self) -> tuple[tuple[Step, ...], float]:
+        """What is left to do, and the iteration from which it goes on."""
+        resumed = self._plugin().resumed if self.before.state.goes_on else None
+        return resumed(self.job) if resumed is not None else (self.job.steps, nan)
+
+    def _plugin(self) -> TowSolver:
+        if self.solver is None:
+            from coeflab.tank.solvers import SOLVERS
+
+            self.solver = SOLVERS.load(self.job.solver)
+        return self.solver
+
+    def _say(self, **changes: Any) -> None:
+        spent = self.before.seconds + time.monotonic() - self.began
+        self.now = replace(self.now, seconds=spent, **changes)
+        write_progress(self.job.folder, self.now)
+
+    def _run(self, step: Step) -> int:
+        """Run one step to its end; its exit code, negative for a signal."""
+        log = self.job.folder / f"log.{step.name}"
+        _kept(log)
+        try:
+            with log.open("wb") as stream:
+                process = subprocess.Popen(
+                    step.command, cwd=self.job.folder, stdin=subprocess.DEVNULL, stdout=stream, stderr=subprocess.STDOUT,
+                    env={**ONE_THREAD, **os.environ}, start_new_session=True, pass_fds=(self.lock,),
+                    preexec_fn=ends_with(os.getpid()),  # noqa: PLW1509 - no threads here
+                )  # fmt: skip
+        except OSError as why:
+            said = f"{step.command[0]} cannot be started: {why.strerror or why}"
+            raise OutputError(said) from None
+        try:
+            return self._watch(step, process)
+        finally:
+            if process.poll() is None:
+                end_session(process.pid, KILL)
+            process.wait()
+
+    def _watch(self, step: Step, process: subprocess.Popen[bytes]) -> int:
+        """Wait for the end of a step, give signs of life, and look at the history of a solver."""
+        begun = time.monotonic()
+        if step.watched:
+            self._plugin()  # imported while the solver starts, too
+        beat, look = begun + NOTICE, begun + EARLIEST
+        while True:
+            with suppress(subprocess.TimeoutExpired):
+                return process.wait(NOTICE)
+            now = time.monotonic()
+            if self.asked.times:
+                return self._stop(step, process)
+            if now >= beat:
+                self._say(memory=max(self.now.memory, memory(process.pid)))
+                beat = now + min(max(now - begun, NOTICE), BEAT)
+            if step.watched and now >= look:
+                self._look()
+                if self.verdict is not None and (self.verdict.settled or self.verdict.diverged):
+                    return self._stop(step, process)
+                look = time.monotonic() + min(max(SHARE * self.took, EARLIEST), LATEST)
+
+    def _look(self) -> None:
+        """Read the history and look for a plateau at the lengths that it has reached since the last look."""
+        history = self._plugin().history
+        if history is None:
+            return
+        begun = time.process_time()
+        with suppress(InputError, OSError):  # nothing written yet, or half a line
+            run = history(self.job.folder)
+            self._judge(run, [n for n in lengths(len(run.history)) if n > self.looked])
+        self.took = time.process_time() - begun
+
+    def _judge(self, run: Run, rows: Sequence[int]) -> None:
+        from coeflab.tank.plateau import on_plateau
+
+        at = run.history.meaning("iteration") or run.history.meaning("time")
+        iteration = float(at.values[-1]) if at is not None and len(at.values) else float(len(run.history))
+        for n in rows:
+            self.looked, self.verdict = n, on_plateau(until(run, n))
+            if self.verdict.settled or self.verdict.diverged:
+                break
+        changes: dict[str, Any] = {}
+        if self.verdict is not None:
+            means = self.verdict.plateau.means
+            changes = {
+                "means": {c: m.value for c, m in means.items()}, "errors": {c: m.error for c, m in means.items()},
+                "plateau": self.looked if self.verdict.settled else 0, "why": self.verdict.why,
+            }  # fmt: skip
+        self._say(iteration=iteration, left=self._left(iteration), **changes)
+
+    def _left(self, iteration: float) -> float:
+        """Seconds to the last iteration, at the pace since the first look."""
+        now = time.monotonic()
+        if self.pace is None:
+            self.pace = now, iteration
+        then, first = self.pace
+        return (self.job.iterations - iteration) * (now - then) / (iteration - first) if iteration > first else nan
+
+    def _stop(self, step: Step, process: subprocess.Popen[bytes]) -> int:
+        """End a step; a solver is asked to write first, unless it diverged or somebody asks a second time."""
+        settled = self.verdict is not None and self.verdict.settled
+        diverged = self.verdict is not None and self.verdict.diverged
+        self.stopped = not settled and not diverged
+        stop = self._plugin().stop if step.watched and not diverged else None
+        if stop is not None:
+            stop(self.job.folder)
+            end = time.monotonic() + GRACE
+            while time.monotonic() < end and self.asked.times < 2:
+                with suppress(subprocess.TimeoutExpired):
+                    process.wait(NOTICE)
+                    return 0
+            self.killed = f"{step.name} did not end within {GRACE:g} s when it was asked to, and was killed"
+        self._say(memory=max(self.now.memory, memory(process.pid)))
+        end_session(process.pid, KILL)
+        code = process.wait()
+        return 0 if settled else code
+
+    def _end(self, code: int) -> None:
+        """Say how the job ended."""
+        if self.stopped:
+            self._say(state=JobState.STOPPED, left=nan, why="asked to end")
+            return
+        plugin = self._plugin()
+        watched = plugin.history is not None and any(step.watched for step in self.job.steps)
+        if watched and not self.now.plateau:
+            self._judge_whole()
+        remarks, reason = plugin.ended(self.job) if plugin.ended is not None else ((), "")
+        if self.killed:
+            remarks = (*remarks, self.killed)
+        state, why = JobState.FINISHED, ""
+        if self.verdict is not None and self.verdict.diverged:
+            state, why = JobState.DIVERGED, self.verdict.why
+        elif code or (reason and not self.killed):
+            state = JobState.DIVERGED if _signal_of(code) == "SIGFPE" else JobState.CRASHED
+            why = "; ".join(filter(None, (reason, self._last_words(code) if code else "")))
+        elif watched and not self.now.plateau:
+            state, why = JobState.UNCONVERGED, self.now.why or "no history of forces"
+        self._say(state=state, left=nan, why=why, remarks=tuple(remarks))
+
+    def _judge_whole(self) -> None:
+        """Look at the history of a solver that ended by itself: at the lengths that are left, and at its whole."""
+        history = self._plugin().history
+        try:
+            run = history(self.job.folder) if history is not None else None
+        except (InputError, OSError) as why:
+            self._say(why=str(why))
+            return
+        if run is not None and len(run.history):
+            rows = len(run.history)
+            self._judge(run, sorted({rows, *(n for n in lengths(rows) if n > self.looked)}))
+
+    def _last_words(self, code: int) -> str:
+        """What shows a crash: a full disk, else the last line of the log."""
+        log = self.job.folder / f"log.{self.now.step}"
+        by = _signal_of(code)
+        how = f"ended by {by}" if by else f"exit code {code}"
+        how += ", as by a system without memory" * (by == "SIGKILL")
+        with suppress(OSError):
+            if disk_is_full(self.job.folder):
+                return f"the disk is full ({self.now.step}: {how})"
+            lines = log.read_text(errors="replace").splitlines()
+            number = max((i for i, line in enumerate(lines, 1) if line.strip()), default=0)
+            if number:
+                return f"{self.now.step}: {how}; {log.name}:{number}: {shown(lines[number - 1].strip())}"
+        return f"{self.now.step}: {how}"
+
+
+def _signal_of(code: int) -> str:
+    """Name of the signal that ended a program; a shell and mpirun add 128 to its number."""
+    number = -code if code < 0 else code - 128
+    return signal.Signals(number).name if number in set(signal.Signals) else ""
+
+
+def disk_is_full(folder: Path) -> bool:
+    """Whether next to nothing can be written there any more."""
+    return shutil.disk_usage(folder).free < FULL
+
+
+def _kept(log: Path) -> None:
+    """Move the log of an earlier attempt aside: log.simpleFoam.1 is the first."""
+    if log.exists():
+        number = 1
+        while log.with_name(f"{log.name}.{number}").exists():
+            number += 1
+        log.replace(log.with_name(f"{log.name}.{number}"))
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Carry out the job that the command line names; the exit code."""
+    parser = argparse.ArgumentParser(prog="python -m coeflab.tank.job", description="Carry out one job of a tow.")
+    parser.add_argument("folder", type=Path, help="folder of the job")
+    parser.add_argument("--alone", action="store_true", help="no other machine carries it out, whatever its state says")
+    parser.add_argument(
+        "--end-with", type=int, default=0, metavar="PID", help="stop when that process, the parent, is gone"
+    )
+    parser.add_argument("--nice", type=int, default=0, metavar="N", help="lower the priority by so much")
+    given = parser.parse_args(arguments)
+    if given.end_with:
+        ends_with(given.end_with)()
+    if given.nice:
+        os.nice(given.nice)
+    try:
+        found = carry_out(given.folder, given.alone)
+    except CoeflabError as why:
+        print(f"error: {why}", file=sys.stderr)  # noqa: T201 - this is a command of its own
+        return REFUSED
+    return CODES.get(found.state, 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

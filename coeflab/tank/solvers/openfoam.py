@@ -1,0 +1,299 @@
+"""OpenFOAM, of openfoam.com and openfoam.org: steady RANS by simpleFoam on meshes of snappyHexMesh, forces of every patch."""
+
+from __future__ import annotations
+
+import functools
+import re
+import shutil
+import subprocess
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from operator import itemgetter
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+
+from coeflab.core.declarations import ABOVE_ZERO, Flag, Pure, Within, one_of
+from coeflab.core.errors import InputError
+from coeflab.core.files import write_all
+from coeflab.core.text.foam import FoamCase
+from coeflab.law.symbols import COMPONENTS
+from coeflab.tables.importers import openfoam
+from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run
+from coeflab.tank.jobs import Job, Step
+from coeflab.tank.openfoam import case, rendered, step
+from coeflab.tank.openfoam.mesh import expected_cells, mesh_ended, mesh_job
+from coeflab.tank.openfoam.mesh_sizes import MeshKeys
+from coeflab.tank.solvers import Installation
+from coeflab.tank.tank import Tank
+from coeflab.tank.test_matrix import Half, TowCondition
+from coeflab.tank.towed_body import TowedBody, towed
+
+summary = "steady RANS by simpleFoam of OpenFOAM on meshes of snappyHexMesh; the arm as a rotating frame"
+citations = (
+    "Weller, Tabor, Jasak and Fureby (1998): A tensorial approach to computational continuum mechanics using "
+    "object-oriented techniques. Computers in Physics 12, 620-631",
+    "Menter (1994): Two-equation eddy-viscosity turbulence models for engineering applications. AIAA Journal 32, 1598-1605",
+    "Shih, Liou, Shabbir, Yang and Zhu (1995): A new k-epsilon eddy viscosity model for high Reynolds number turbulent flows. "
+    "Computers and Fluids 24, 227-238",
+    "Spalart and Allmaras (1994): A one-equation turbulence model for aerodynamic flows. La Recherche Aerospatiale 1, 5-21",
+    "Van Doormaal and Raithby (1984): Enhancements of the SIMPLE method for predicting incompressible fluid flows. "
+    "Numerical Heat Transfer 7, 147-163",
+)
+
+SOLVER, TOOLS = "simpleFoam", ("blockMesh", "snappyHexMesh", "checkMesh", "topoSet", "decomposePar", "simpleFoam")
+MODELS = {
+    "k-omega SST": "kOmegaSST",
+    "realizable k-epsilon": "realizableKE",
+    "Spalart-Allmaras": "SpalartAllmaras",
+    "laminar": "",
+}
+# No force on a body is as large: a flat plate across the flow has about one of its own area.
+BOUND, SETTLED = 100.0, 20
+USUAL_ITERATIONS = 350.0  # until the plateau of a body with appendages
+SECONDS_A_CELL = 2.1e-6  # an iteration on one core
+BYTES_A_CELL, BYTES_A_PROCESS = 1.05e3, 6e7
+PARALLEL = 0.9  # of the ideal speed-up is left with every doubling of the cores
+WHOLE_NUMBER = Within(
+    lambda v: "" if v >= 1.0 and v == int(v) else "a whole number, one or more", schema={"minimum": 1}
+)
+Count = Annotated[Pure, WHOLE_NUMBER]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OpenFOAM(MeshKeys):
+    """OpenFOAM: the flow, and how its meshes are made.
+
+    Attributes
+    ----------
+    turbulence : {"k-omega SST", "realizable k-epsilon", "Spalart-Allmaras", "laminar"}
+    intensity : float
+        Of the turbulence in the water, over the speed of the condition.
+    viscosity_ratio : float
+        Of its eddy viscosity to the viscosity of the water.
+    iterations : int
+        At most; a run ends on the plateau of its forces.
+    checkpoint : int
+        Iterations after which a run writes its fields, from which it goes on when it was stopped.
+    simplec : bool
+        SIMPLEC; false for the plain SIMPLE, slower and safer on distorted cells.
+    """
+
+    turbulence: Annotated[str, one_of(*MODELS)] = "k-omega SST"
+    intensity: Annotated[Pure, ABOVE_ZERO] = 0.004
+    viscosity_ratio: Annotated[Pure, ABOVE_ZERO] = 10.0
+    iterations: Count = 800
+    checkpoint: Count = 100
+    simplec: Flag = True
+
+
+options = OpenFOAM
+
+
+@functools.cache
+def installed() -> Installation:
+    """What is installed here: the version as simpleFoam says it."""
+    missing = [tool for tool in TOOLS if shutil.which(tool) is None]
+    if missing:
+        what = (
+            f"OpenFOAM is not installed: no {', '.join(missing)} on the PATH. Debian: apt-get install openfoam; others: "
+            "openfoam.com or openfoam.org, then source its etc/bashrc. --solver external writes the runs for any other solver."
+        )
+        return Installation("", what)
+    said = subprocess.run(
+        step("help", SOLVER, "-help").command, capture_output=True, text=True, timeout=60, check=False
+    ).stdout
+    using, build = (re.search(rf"^{w}:\s*(.*)$", said, re.MULTILINE) for w in ("Using", "Build"))
+    number = re.search(r"v?\d[\w.]*", using[1]) if using is not None else None
+    text = f"OpenFOAM {number[0]}" if number is not None else "OpenFOAM of unknown version"
+    return Installation(f"{text}, {build[1].strip()}" if build is not None and build[1].strip() else text)
+
+
+def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
+    """Write the meshes and cases below the folder, and give their jobs, meshes first.
+
+    Raises
+    ------
+    InputError
+        No viscosity, or what `coeflab.tank.openfoam.mesh.mesh_job` and `coeflab.tank.towed_body.towed` raise.
+    OutputError
+        A folder cannot be written.
+    """
+    given = OpenFOAM(**tank.options)
+    version = installed().version
+    meshes: dict[tuple[Any, ...], tuple[TowedBody, Job]] = {}
+    runs = []
+    for condition in tank.matrix:
+        domain = float(condition.variant.get("domain", 1.0))
+        which = (condition.grid, condition.half, tuple(sorted(condition.controls.items())), domain)
+        if which not in meshes:
+            turned = (
+                towed(body.body, tank.reference_point, condition.controls) if any(condition.controls.values()) else body
+            )
+            made = mesh_job(
+                tank,
+                turned,
+                tank.grid(condition.grid),
+                condition.half,
+                condition.controls,
+                given,
+                folder,
+                version,
+                domain,
+            )
+            meshes[which] = turned, _with_zone(made)
+        turned, mesh = meshes[which]
+        runs.append(_run(tank, turned, condition, given, mesh, folder / condition.name, version))
+    return (*(mesh for _, mesh in meshes.values()), *runs)
+
+
+def _with_zone(mesh: Job) -> Job:
+    """The mesh with a last step that puts all cells into the zone of the rotating frame."""
+    write_all(mesh.folder, {"system/topoSetDict": rendered("case/system/topoSetDict")})
+    return replace(mesh, steps=(*mesh.steps, step("topoSet", "topoSet", "-constant")))
+
+
+def _run(
+    tank: Tank, body: TowedBody, condition: TowCondition, given: OpenFOAM, mesh: Job, folder: Path, version: str
+) -> Job:  # fmt: skip
+    """Write the case of one condition."""
+    folder = folder.resolve()
+    viscosity = tank.conditions.viscosity
+    if viscosity is None:
+        raise InputError("no viscosity", "the kinematic viscosity of the water", column="conditions.viscosity")
+    said = condition.variant.get("turbulence", given.turbulence)
+    if said not in MODELS:
+        raise InputError(f'turbulence "{said}"', " or ".join(f'"{m}"' for m in MODELS), column="study.turbulence")
+    model, most = MODELS[said], int(float(condition.variant.get("iterations", given.iterations)))
+    speed = condition.speed or case.fastest(body, condition)
+    fields = case.turbulent_fields(model, given.wall, speed, viscosity, given.intensity, given.viscosity_ratio)
+    files = case.case_files(
+        tank, body, condition, fields, model, simplec=given.simplec, iterations=most, checkpoint=int(given.checkpoint)
+    )
+    case.placed(folder, files, mesh.folder)
+    cells, cores = expected_cells(mesh.folder), tank.cores
+    steps = [Step("clean", ("sh", "-c", "rm -rf processor* postProcessing [1-9]*"))]
+    steps += [step("decomposePar", "decomposePar")] * (cores > 1)
+    steps += [step(SOLVER, SOLVER, cores=cores, watched=True)]
+    speed_up = cores * PARALLEL ** np.log2(cores)
+    return Job(
+        condition.name, folder, "openfoam", tuple(steps), (mesh.name,), cores,
+        memory=cells * BYTES_A_CELL + cores * BYTES_A_PROCESS,
+        seconds=float(min(most, USUAL_ITERATIONS) * cells * SECONDS_A_CELL / speed_up),
+        key=case.digest(files, mesh.key, version), iterations=float(most),
+    )  # fmt: skip
+
+
+def history(folder: Path) -> Run:
+    """The run so far, also while the solver writes: forces of the whole body and of every patch, FRD, N and N m.
+
+    Raises
+    ------
+    InputError
+        Files that cannot be read.
+    """
+    if not _has_rows(folder):
+        return Run(folder, folder.name, RawTable(folder, ()), ended=Ended.EMPTY, why="no iteration yet")
+    run = openfoam.run(folder, {"function": "forces", "rotation": "body"})
+    half, divided, pairs, length, fastest = _towing(folder)
+    patches = {
+        n: _whole_body(t, half) for n, t in run.patches.items() if n in divided or n not in map(itemgetter(0), pairs)
+    }
+    for mine, image in pairs:
+        if mine in run.patches:
+            patches |= {mine: run.patches[mine], image: _mirrored(run.patches[mine], half)}
+    run = replace(run, history=_whole_body(run.history, half), patches=patches)
+    density = float(str(run.history.stated["conditions.density"].value))
+    grown = _too_large(run.history, 0.5 * density * fastest**2 * length**2, length)
+    if grown:
+        return replace(run, ended=Ended.DIVERGED, why=grown)
+    if run.ended is Ended.CRASHED and not run.why.startswith("log"):
+        return replace(run, ended=Ended.WHOLE, why="")  # a line that the solver is writing now
+    return run
+
+
+def _towing(folder: Path) -> tuple[Half, tuple[str, ...], tuple[tuple[str, str], ...], float, float]:
+    """Half, patches that the cut divides, patches and their images, length of the body, speed of its fastest point."""
+    about = FoamCase(folder)
+    towing = about.read("constant/towProperties")
+    said = [about.value(towing, n) for n in ("half", "divided", "mirrored", "length", "fastest")]
+    try:
+        half, divided, pairs, length, fastest = (v[0] for v in said if v is not None)
+        return Half(half.strip('"')), tuple(divided), tuple((a, b) for a, b in pairs), float(length), float(fastest)
+    except (ValueError, AttributeError, TypeError):
+        raise InputError(
+            "not what coeflab writes", "half, divided, mirrored, length, fastest", file=folder / "constant/towProperties",
+            advice="`coeflab tow` writes the case anew.",
+        ) from None  # fmt: skip
+
+
+def _has_rows(folder: Path) -> bool:
+    """Whether the forces of one iteration are there, and their moments."""
+    files = [f for n in ("force*.dat", "moment*.dat") for f in (folder / "postProcessing/forces").glob(f"*/{n}")]
+    return bool(files) and all(_has_a_row(f) for f in files)
+
+
+def _has_a_row(file: Path) -> bool:
+    with file.open("rb") as stream:
+        return any(line.endswith(b"\n") and not line.startswith(b"#") for line in stream)
+
+
+def _whole_body(table: RawTable, half: Half) -> RawTable:
+    """Forces of a half doubled; those that are zero by symmetry are left out."""
+    if half is Half.WHOLE:
+        return table
+    even = case.EVEN[half]
+    columns = [
+        replace(c, values=2.0 * c.values) if c.means in even else c
+        for c in table.columns if c.means in even or c.means not in COMPONENTS
+    ]  # fmt: skip
+    return replace(table, columns=tuple(columns))
+
+
+def _mirrored(table: RawTable, half: Half) -> RawTable:
+    """Forces on the image of a patch."""
+    odd = set(COMPONENTS) - set(case.EVEN[half])
+    return replace(table, columns=tuple(replace(c, values=-c.values) if c.means in odd else c for c in table.columns))
+
+
+def _too_large(table: RawTable, force: float, length: float) -> str:
+    """What shows that the forces grew beyond anything physical; empty where they did not."""
+    by_means: Mapping[str, RawColumn] = {c.means: c for c in table.columns}
+    for name, scale in (*((n, force) for n in "XYZ"), *((n, force * length) for n in "KMN")):
+        if name in by_means and len(values := by_means[name].values) > SETTLED:
+            over = np.flatnonzero(np.abs(values[SETTLED:]) > BOUND * scale)
+            if over.size:
+                row = SETTLED + int(over[0])
+                return f"{name} of {values[row]:.3g} at iteration {row + 1}: more than {BOUND:g} times the dynamic pressure"
+    return ""
+
+
+def stop(folder: Path) -> None:
+    """Ask the solver to write its fields after the iteration and to end."""
+    case.set_stop(folder, "writeNow")
+
+
+def resumed(job: Job) -> tuple[tuple[Step, ...], float]:
+    """The steps that carry a run on from the fields that it wrote last, and their iteration; a mesh is made anew.
+
+    A folder of fields that was not written to its end is removed.
+    """
+    if not any(s.watched for s in job.steps):
+        return job.steps, float("nan")
+    case.set_stop(job.folder, "endTime")
+    times = case.written_times(job.folder)
+    if not times:
+        return job.steps, float("nan")
+    case.remove_after(job.folder, times[-1])
+    return tuple(s for s in job.steps if s.watched), times[-1]
+
+
+def ended(job: Job) -> tuple[tuple[str, ...], str]:
+    """Remarks on a job that ended, and why it is not sound."""
+    if not any(s.watched for s in job.steps):
+        return mesh_ended(job)
+    run = history(job.folder)
+    if run.ended is not Ended.WHOLE:
+        return (), run.why
+    return run.history.remarks, ""

@@ -1,0 +1,453 @@
+"""The virtual tow tank from end to end: a body and a tank.toml become cases, runs, a campaign, fits and a report in one folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coeflab.bodies.readers import read_body
+from coeflab.core.declarations import declared
+from coeflab.core.errors import CoeflabError, InputError
+from coeflab.core.files import write_all, write_atomically
+from coeflab.core.provenance import sha256_of
+from coeflab.core.text.toml import read_toml
+from coeflab.core.types import brief
+from coeflab.study.plan import DEFAULT_FITS, table_at
+from coeflab.study.study import Plan, PlannedTow, Study
+from coeflab.study.towed import TowedRow
+from coeflab.study.towed import towed as compared
+from coeflab.tables.force_table import ForceTable
+from coeflab.tables.raw_table import RawTable, Run
+from coeflab.tables.reading import read_tables
+from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
+from coeflab.tank.declaration import TankFile, declared_body, default_tank, default_text, read_tank
+from coeflab.tank.folder import (
+    BODY,
+    CAMPAIGN,
+    PLAN,
+    REPORT,
+    TANK,
+    body_file,
+    forget,
+    plan_text,
+    read_plan,
+    refuse_other,
+)
+from coeflab.tank.job import until
+from coeflab.tank.jobs import (
+    Job,
+    JobState,
+    Progressed,
+    only_one,
+    outstanding,
+    progress,
+    read_job,
+    write_job,
+    write_progress,
+)
+from coeflab.tank.runners import RUNNERS
+from coeflab.tank.solvers import SOLVERS, Installation, TowSolver
+from coeflab.tank.tank import Tank
+from coeflab.tank.towed_body import TowedBody, stl, towed
+from coeflab.workbench import rendered, run
+
+FEWEST = 3  # settings of a sweep: an intercept, a slope and an error
+Look = Callable[[], None]
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Tow:
+    """A folder with everything that is to be computed in it.
+
+    Attributes
+    ----------
+    folder : Path
+        Absolute.
+    tank : Tank
+    body : TowedBody
+    installed : Installation
+        Of the solver.
+    jobs : tuple of Job
+        Meshes and runs in an order in which they can be carried out; none of a method without runs.
+    """
+
+    folder: Path
+    tank: Tank
+    body: TowedBody
+    installed: Installation
+    jobs: tuple[Job, ...] = ()
+
+    @property
+    def solver(self) -> TowSolver:
+        """The plugin."""
+        return SOLVERS.load(self.tank.solver)
+
+    @property
+    def of(self) -> dict[str, Job]:
+        """The jobs by their names."""
+        return {job.name: job for job in self.jobs}
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What an earlier start left of a job.
+
+    Attributes
+    ----------
+    name : str
+    state : JobState
+    what : str
+        ``kept``, ``goes on from iteration 240``, ``run anew`` ...
+    why : str
+        Of what is run anew.
+    """
+
+    name: str
+    state: JobState
+    what: str
+    why: str = ""
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Collected:
+    """What a tow has given so far.
+
+    Attributes
+    ----------
+    runs : tuple of TowedRun
+        Every condition of the matrix.
+    study : Study or None
+        Fits of the campaign; None where nothing can be fitted.
+    unfitted : str
+        Why there is no study.
+    files : tuple of Path
+        That were written.
+    """
+
+    runs: tuple[TowedRun, ...]
+    study: Study | None = None
+    unfitted: str = ""
+    files: tuple[Path, ...] = ()
+
+    @property
+    def six(self) -> tuple[TowedRow, ...]:
+        """Every one of the six derivatives, one without a value with its reason."""
+        if self.study is None:
+            return tuple(TowedRow(s, None, None, "open", self.unfitted, ()) for s in SIX)
+        tables = self.study.tables
+        return tuple(_with_count(row, tables) for row in compared(self.study)[0].rows)
+
+    @property
+    def failed(self) -> tuple[TowedRun, ...]:
+        """Conditions that were run and do not count."""
+        return tuple(r for r in self.runs if not r.counts and r.state is not JobState.WAITING)
+
+
+def _with_count(row: TowedRow, tables: Sequence[ForceTable]) -> TowedRow:
+    """A derivative without a value with the number of runs that count, where these are too few for a fit."""
+    own = [t for t in tables if row.symbol[1] in t.varies]
+    if row.coefficient is not None or not own:
+        return row
+    runs = sum(max((len(np.unique(t.setting[mask])) for mask in t.usable.values()), default=0) for t in own)
+    return row if runs >= FEWEST else replace(row, why=f"{runs} runs with {row.symbol[1]} count, {FEWEST} are needed")
+
+
+def read(body: Path | None, matrix: Path | None, solver: str = "", runner: str = "") -> tuple[Tank, TowedBody]:
+    """The tank and the body that a person means.
+
+    Parameters
+    ----------
+    body : Path or None
+        Folder of a body.toml, or the file; None where tank.toml names it.
+    matrix : Path or None
+        A tank.toml; without one the default matrix.
+    solver, runner : str
+        In the place of those of the file.
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong with the files, or a body that cannot be towed.
+    PluginError
+        No such solver or runner.
+    """
+    file = body if body is not None else declared_body(matrix) if matrix is not None else None
+    if file is None:
+        raise InputError("no body", "a folder with a body.toml, or a shipped name", column="BODY")
+    file = (file / "body.toml" if file.is_dir() else file).resolve()
+    own = read_body(file)
+    point = own.reference_point
+    if matrix is not None:
+        said = declared(TankFile, read_toml(matrix)).tank.reference_point
+        point = point if said is None else said
+    surface = towed(own, point)
+    if matrix is None:
+        return default_tank(file, surface, solver=solver, runner=runner), surface
+    return read_tank(matrix, surface, body_file=file, solver=solver, runner=runner), surface
+
+
+def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = None) -> Tow:
+    """Write body, meshes and cases below a folder, with the jobs that compute them; equal files are left alone.
+
+    Parameters
+    ----------
+    tank : Tank
+    body : TowedBody
+    folder : Path
+        New, or with this tow in it.
+    matrix : Path, optional
+        The tank.toml, of which a copy is kept.
+
+    Raises
+    ------
+    InputError
+        Another tow is in the folder, or is being carried out there.
+    OutputError
+        The folder cannot be written.
+    """
+    folder = folder.absolute()
+    solver = SOLVERS.load(tank.solver)
+    installed = solver.installed()
+    refuse_other(folder, tank)
+    with only_one(folder, "tow"):
+        own = default_text(body.body).encode() if matrix is None else matrix.read_bytes()
+        write_all(folder, {TANK: own, BODY: stl(body)})
+        jobs: tuple[Job, ...] = ()
+        if solver.jobs is not None:
+            with SOLVERS.guarded(tank.solver):
+                jobs = tuple(solver.jobs(tank, body, folder))
+        for job in jobs:
+            write_job(job)
+        forget(folder, {job.folder for job in jobs})
+        tow = Tow(folder, tank, body, installed, jobs)
+        write_atomically(folder / PLAN, plan_text(folder, tank, body.body.name, installed.version, jobs))
+    return tow
+
+
+def reopened(
+    folder: Path, matrix: Path | None = None, solver: str = "", runner: str = ""
+) -> tuple[Tank, TowedBody, Path]:
+    """Tank and body of a tow as its folder has them, and the tank.toml; a new one in its place where it is given.
+
+    Raises
+    ------
+    InputError
+        No tow is in the folder, or its files do not do any more.
+    """
+    plan = read_plan(folder)
+    own = matrix if matrix is not None else folder / TANK
+    tank, body = read(body_file(folder, plan), own, solver or plan["solver"], runner or plan["runner"])
+    return tank, body, own
+
+
+def opened(folder: Path) -> Tow:
+    """A tow as its folder has it; nothing is written, so that another process may carry it out meanwhile.
+
+    Raises
+    ------
+    InputError
+        No tow is in the folder, or its files do not do any more.
+    """
+    tank, body, _ = reopened(folder)
+    jobs = tuple(read_job(folder / name) for name in read_plan(folder)["jobs"])
+    return Tow(folder.absolute(), tank, body, SOLVERS.load(tank.solver).installed(), jobs)
+
+
+def kept(tow: Tow, before: Mapping[str, Any] | None = None) -> tuple[Kept, ...]:
+    """What happens to each job when the tow goes on: kept, gone on with, or run anew and why.
+
+    Parameters
+    ----------
+    tow : Tow
+    before : mapping, optional
+        ``tow.json`` as it was before it was laid out again; it tells what changed.
+    """
+    return tuple(_fate(tow, job, before) for job in tow.jobs)
+
+
+def _fate(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> Kept:
+    now = progress(job)
+    if now.state is JobState.WAITING:
+        return Kept(job.name, now.state, "to be run")
+    if now.state is JobState.CHANGED:
+        return Kept(job.name, now.state, "run anew", _changed(tow, job, before))
+    if _may_go_on(job, now):
+        what = f"goes on from iteration {now.iteration:.0f} to {job.iterations:.0f} at most"
+        return Kept(job.name, JobState.STOPPED, what, "more iterations are allowed")
+    if now.state.is_kept:
+        return Kept(job.name, now.state, f"kept, {now.state}")
+    at = (
+        f"goes on from what it wrote last, iteration {now.iteration:.0f} was reached"
+        if now.iteration > 0
+        else "is begun again"
+    )
+    return Kept(job.name, now.state, at, now.why)
+
+
+def _may_go_on(job: Job, now: Progressed) -> bool:
+    """Whether a run that ended without a plateau has iterations left, because more are allowed now."""
+    return now.state is JobState.UNCONVERGED and job.iterations > now.iteration
+
+
+def _changed(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> str:
+    """What made the key of a job another one, as far as it shows."""
+    if before is not None:
+        if before.get("version") != tow.installed.version:
+            return f"the solver was {before.get('version') or 'not installed'}, now {tow.installed.version or 'not installed'}"
+        if before.get("surface_sha256") != sha256_of(tow.folder / BODY):
+            return "the body's surface changed"
+        keys = before.get("jobs", {})
+        if any(keys.get(name) != tow.of[name].key for name in job.needs if name in tow.of):
+            return f"its mesh changed ({', '.join(job.needs)})"
+        return "its case changed"
+    return "its mesh, case or solver changed"
+
+
+def carried_out(tow: Tow, cores: int, look: Look) -> None:
+    """Carry out what is not finished, by the runner of the tank; returns when nothing is left that can be.
+
+    Parameters
+    ----------
+    tow : Tow
+    cores : int
+        Budget of the runner, where it has one; 0 leaves that of tank.toml.
+    look : callable
+        Is called a few times a second.
+
+    Raises
+    ------
+    InputError
+        The solver is not installed.
+    CoeflabError
+        The runner cannot work.
+    """
+    for job in tow.jobs:
+        now = progress(job)
+        if _may_go_on(job, now):
+            write_progress(job.folder, replace(now, state=JobState.STOPPED, why="more iterations are allowed"))
+    jobs = outstanding(tow.jobs)
+    if not jobs:
+        return
+    require_installed(tow)
+    runner = RUNNERS.load(tow.tank.runner)
+    options = runner.options(**_with_cores(tow, cores))
+    with RUNNERS.guarded(tow.tank.runner), only_one(tow.folder, "tow"):
+        runner.carry_out(jobs, tow.folder, options, look)
+
+
+def _with_cores(tow: Tow, cores: int) -> dict[str, Any]:
+    options = dict(tow.tank.runner_options)
+    if cores:
+        names = getattr(RUNNERS.load(tow.tank.runner).options, "__dataclass_fields__", {})
+        if "cores" not in names:
+            raise InputError(f"--cores with the runner {tow.tank.runner}", "a runner with a budget of cores, such as local",
+                             column="--cores")  # fmt: skip
+        options["cores"] = cores
+    return options
+
+
+def require_installed(tow: Tow) -> None:
+    """Raise where the solver is not installed, with what to do.
+
+    Raises
+    ------
+    InputError
+    """
+    if tow.installed.missing:
+        others = [n for n in SOLVERS.usable() if n != tow.tank.solver and not SOLVERS.load(n).installed().missing]
+        instead = f" Or take --solver {' or --solver '.join(others)}, which needs nothing installed." if others else ""
+        raise InputError(f"no {tow.tank.solver}", tow.installed.missing.rstrip("."), column="solver",
+                         advice=f"The cases are in {tow.folder}.{instead}".strip())  # fmt: skip
+
+
+def collected(tow: Tow, fitted: bool = True) -> Collected:
+    """Write the campaign of what is finished so far and, if wanted, fit it and write the report.
+
+    Raises
+    ------
+    InputError
+        A history that cannot be read; a table that an outside solver gives.
+    """
+    runs = _runs(tow)
+    inputs = {"body.toml": tow.tank.body, "tank.toml": tow.folder / TANK}
+    files = campaign_files(tow.tank, tow.body, runs, tow.installed.version or tow.tank.solver, inputs)
+    folder = tow.folder / CAMPAIGN
+    write_all(folder, files)
+    for stale in sorted(folder.glob("*.csv")) if folder.is_dir() else ():
+        if stale.name not in files:
+            stale.unlink()
+    written = tuple(folder / name for name in files)
+    if not fitted:
+        return Collected(runs, files=written)
+    if not files or not _has_a_sweep(folder):
+        return Collected(runs, files=written, unfitted=f"no sweep has {FEWEST} runs that count")
+    try:
+        study = _study(tow, folder)
+    except CoeflabError as why:  # the campaign stands, whatever a fit makes of it
+        return Collected(runs, files=written, unfitted=str(why))
+    report = rendered(study)
+    write_all(tow.folder / REPORT, report)
+    return Collected(runs, study, files=(*written, *(tow.folder / REPORT / name for name in report)))
+
+
+def _runs(tow: Tow) -> tuple[TowedRun, ...]:
+    solver, jobs = tow.solver, tow.of
+    if solver.table is not None:
+        with SOLVERS.guarded(tow.tank.solver):
+            table: RawTable = solver.table(tow.tank, tow.body, tow.folder)
+        return rows_of(tow.tank, table)
+    states = {name: progress(job) for name, job in jobs.items()}
+    out = []
+    for condition in tow.tank.matrix:
+        job = jobs.get(condition.name)
+        if job is None:
+            out.append(TowedRun(condition, JobState.WAITING, "no job of that name"))
+            continue
+        remarks = [r for name in job.needs if name in states for r in states[name].remarks]
+        now = states[condition.name]
+        out.append(towed_run(condition, now, jobs, job, _history(tow, job, now), remarks))
+    return tuple(out)
+
+
+def _history(tow: Tow, job: Job, now: Progressed) -> Run | None:
+    """The history up to where the plateau was recognised: how long the solver took to stop must not count."""
+    if now.state in (JobState.WAITING, JobState.CHANGED) or tow.solver.history is None:
+        return None
+    try:
+        with SOLVERS.guarded(tow.tank.solver):
+            found = tow.solver.history(job.folder)
+    except InputError:
+        if now.state.is_kept:
+            raise
+        return None
+    return until(found, now.plateau) if now.plateau else found
+
+
+def _study(tow: Tow, campaign: Path) -> Study:
+    """The six derivatives as far as the campaign gives them: a table with too few runs is left out and named.
+
+    Raises
+    ------
+    InputError
+        No table has runs enough.
+    """
+    tank = tow.tank
+    planned = PlannedTow(tank.title, tow.body.body.name, tank.name, added=campaign)
+    return run(
+        Plan(
+            name=tank.name, title=tank.title, tables=(table_at(campaign, DEFAULT_FITS),), scaling=tank.scaling,
+            conditions=tank.conditions, body=tank.body, wanted=SIX, tows=(planned,),
+        )
+    )  # fmt: skip
+
+
+def _has_a_sweep(campaign: Path) -> bool:
+    tables = read_tables(table_at(campaign))
+    return any(len(np.unique(t.setting[mask])) >= FEWEST for t in tables for mask in t.usable.values())

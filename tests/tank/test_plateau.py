@@ -1,0 +1,85 @@
+"""When a run may end."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run
+from coeflab.tank.plateau import on_plateau, settling
+
+ROWS = np.arange(400.0)
+NOISE = np.random.default_rng(18)
+
+
+def table(**columns: np.ndarray) -> RawTable:
+    return RawTable(Path("run"), tuple(RawColumn(n, "N", v, means=n) for n, v in columns.items()))
+
+
+def run(y: np.ndarray, ended: Ended = Ended.WHOLE, **patches: np.ndarray) -> Run:
+    return Run(
+        Path("run"), "run", table(X=np.full(len(y), -20.0), Y=y, N=3.0 * y),
+        patches={n: table(X=np.full(len(v), -5.0), Y=v, N=v) for n, v in patches.items()}, ended=ended, why="wild" * (ended is Ended.DIVERGED),
+    )  # fmt: skip
+
+
+def noisy(values: np.ndarray, share: float = 0.002) -> np.ndarray:
+    return values * (1.0 + share * NOISE.standard_normal(len(values)))
+
+
+def test_a_history_that_stays_is_on_its_plateau_and_says_its_mean() -> None:
+    verdict = on_plateau(run(noisy(np.full(400, 50.0)), hull=noisy(np.full(400, 30.0))))
+    assert (verdict.settled, verdict.why, verdict.diverged) == (True, "", False)
+    assert verdict.plateau.means["Y"].value == pytest.approx(50.0, abs=0.05)
+
+
+def test_the_transient_alone_is_no_plateau() -> None:
+    start = 50.0 + 40.0 * np.exp(-ROWS / 15.0)
+    assert not on_plateau(run(start[:80])).settled
+    assert on_plateau(run(start)).settled
+
+
+def test_a_patch_that_still_decays_holds_the_run_even_where_the_sum_stays() -> None:
+    sail = 20.0 + 8.0 * np.exp(-ROWS / 150.0)
+    verdict = on_plateau(run(noisy(np.full(400, 50.0)), sail=sail, hull=50.0 - sail))
+    assert not verdict.settled
+    assert "Y(sail)" in verdict.why
+    assert verdict.plateau.why == ""
+
+
+def test_a_small_patch_matters_by_the_whole_body() -> None:
+    # The force on a cap of a thousandth of the body's may still move by a tenth of itself.
+    cap = 0.05 + 0.01 * np.exp(-ROWS / 200.0)
+    cut = Run(Path("run"), "run", table(Y=noisy(np.full(400, 50.0))), patches={"cap": table(Y=cap)})
+    assert on_plateau(cut).settled
+
+
+def test_shares_by_pressure_and_friction_are_no_patches() -> None:
+    drifting = 20.0 + 0.1 * ROWS
+    assert on_plateau(run(noisy(np.full(400, 50.0)), pressure=drifting, viscous=drifting)).settled
+
+
+@pytest.mark.parametrize("ended", [Ended.WHOLE, Ended.DIVERGED])
+def test_what_diverges_is_said(ended: Ended) -> None:
+    grown = np.full(400, 50.0) if ended is Ended.DIVERGED else np.where(ROWS > 350, 1e9, 50.0)
+    verdict = on_plateau(run(grown, ended))
+    assert (verdict.settled, verdict.diverged, bool(verdict.why)) == (False, True, True)
+
+
+def test_nothing_yet_is_neither() -> None:
+    verdict = on_plateau(Run(Path("run"), "run", RawTable(Path("run"), ()), ended=Ended.EMPTY, why="no iteration yet"))
+    assert (verdict.settled, verdict.diverged) == (False, False)
+
+
+@pytest.mark.parametrize("decay", [30.0, 60.0, 90.0])
+def test_a_geometric_approach_is_seen_to_its_limit(decay: float) -> None:
+    values = 10.0 + 2.0 * np.exp(-np.arange(150) / decay)
+    assert values.mean() + settling(values, 1e-9) == pytest.approx(10.0, abs=0.01)
+
+
+def test_noise_approaches_nothing() -> None:
+    generator = np.random.default_rng(3)
+    seen = [settling(generator.standard_normal(150), 1.0 / np.sqrt(150)) != 0.0 for _ in range(400)]
+    assert np.mean(seen) < 0.02
