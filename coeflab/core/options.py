@@ -132,6 +132,8 @@ def described(kind: type) -> tuple[Described, ...]:
 
 def _with_unit(key: Takes) -> str:
     unit = key.schema.get("unit", "1")
+    if "enum" in key.schema:
+        return ", ".join(toml_value(word) for word in key.schema["enum"])
     return key.words if unit == "1" else f"{key.words}, bare in {unit} or with its unit"
 
 

@@ -68,6 +68,7 @@ class OpenFOAM(MeshKeys):
     Attributes
     ----------
     turbulence : {"k-omega SST", "realizable k-epsilon", "Spalart-Allmaras", "laminar"}
+        Model; a wall that is resolved or not is said by ``wall``.
     intensity : float
         Of the turbulence in the water, over the speed of the condition.
     viscosity_ratio : float
