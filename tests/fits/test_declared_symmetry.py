@@ -154,7 +154,14 @@ def test_attack_from_drift_is_said_and_adds_nothing(tables: Reader, one_side: Fi
     stated = 'by_symmetry = "drift.csv"'
     both = tables(BOTH, stated, drift=drift, attack=attack)
     assert [t.by_symmetry for t in both] == ["", "synthetic/drift.csv"]
-    slopes = values(fitted(both))
+    found_both = fitted(both)
+    slopes = values(found_both)
+    names = [c.symbol for c in found_both.coefficients.coefficients]
+    cross = found_both.coefficients.covariance[names.index("Yv"), names.index("Zw")]
+    yv, zw = (found_both.coefficients.coefficients[names.index(s)] for s in ("Yv", "Zw"))
+    assert cross == pytest.approx((zw.parts.random or 0.0) ** 2 / 4.0, rel=1e-5)
+    assert "not run: synthetic/drift.csv turned by symmetry" in zw.estimator
+    assert "not run" not in yv.estimator
     for symbol, found in values(one_side).items():
         assert slopes[symbol] == pytest.approx(found, rel=1e-9)
     assert slopes["Zw"] == pytest.approx(slopes["Yv"], rel=1e-6)
