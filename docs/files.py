@@ -10,8 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from coeflab.cli.schema import KINDS
-from coeflab.cli.schema import schema
+from coeflab.cli.schema import KINDS, schema
 
 HEAD = """# Files that people write
 
@@ -79,7 +78,11 @@ def _takes(field: dict[str, Any]) -> str:
     if field.get("type") == "array":
         inner = field.get("items", {})
         table = "$ref" in inner or "properties" in inner
+        if inner.get("type") == ["number", "string"] and "maxItems" not in field:
+            return "list of numbers"
         return "tables" if table else f"list of {field['minItems']}" if "maxItems" in field else "list of texts"
+    if field.get("type") == "integer":
+        return "whole number"
     if field.get("type") == ["number", "string"]:
         return "number" + (
             " above zero" if "exclusiveMinimum" in field else " of zero or more" if "minimum" in field else ""

@@ -50,15 +50,21 @@ def explain(registry: Registry[Any], plugin: str) -> None:
 
 def options_of(registry: Registry[Any], plugin: str) -> Table:
     """Every option of a plugin: what it takes, its default, what it means. No rows where it has none."""
+    from coeflab.core.declarations import Declaration
     from coeflab.core.options import described
     from coeflab.core.table import Table
 
-    kind = registry.load(plugin).Options
+    loaded = registry.load(plugin)
+    declared = getattr(loaded, "options", None)
+    kind = declared if isinstance(declared, type) and issubclass(declared, Declaration) else loaded.Options
     with registry.guarded(plugin, "has options that cannot be read"):
         rows = tuple((o.name, o.takes, o.default, o.meaning) for o in described(kind))
     notes = (
         f"On the command line: coeflab fit TABLE --fit {plugin} --{rows[0][0].replace('_', '-')} VALUE; in a plan: [table.options.{plugin}].",
     ) if rows and registry.package == "coeflab.fits" else ()  # fmt: skip
+    if rows and kind is declared:
+        section = registry.package.rpartition(".")[2].removeprefix("tow_").removesuffix("s")
+        notes = (f"In tank.toml: [{section}.{plugin}].",)
     return Table(
         f"Options of {plugin}", ("option", "takes", "default", "meaning"), rows, notes, frozenset({0, 1, 2, 3})
     )

@@ -163,8 +163,8 @@ class Declaration:
         content = handler.resolve_ref_schema(reference)
         said = meanings(cls)
         content["description"] = " ".join((inspect.getdoc(cls) or "").partition("\n\n")[0].replace("``", "").split())
-        content["properties"] = {_key(name): field for name, field in content["properties"].items()}
-        content["required"] = [_key(name) for name in content.get("required", ())]
+        content["properties"] = {key_of(name): field for name, field in content["properties"].items()}
+        content["required"] = [key_of(name) for name in content.get("required", ())]
         for name, field in content["properties"].items():
             for default in ("title", *(["default"] if field.get("default", "") is None else [])):
                 field.pop(default, None)
@@ -183,7 +183,8 @@ def _attribute(key: str) -> str:
     return f"{key}_" if keyword.iskeyword(key.rstrip("_")) else key
 
 
-def _key(attribute: str) -> str:
+def key_of(attribute: str) -> str:
+    """The key of a field: words of Python, such as class, without the underscore behind."""
     return attribute[:-1] if attribute.endswith("_") and keyword.iskeyword(attribute.rstrip("_")) else attribute
 
 
@@ -196,6 +197,13 @@ def meanings(kind: type) -> dict[str, str]:
             flat = " ".join(textwrap.dedent(said).split()).replace("``", "")
             out |= dict.fromkeys((n.strip() for n in head.partition(" : ")[0].split(",")), flat)
     return out
+
+
+def taken(kind: type) -> dict[str, Takes]:
+    """What every key of a declaration takes, given that it is there."""
+    hints = {f.name: _hints(cast(Any, kind))[f.name] for f in dataclasses.fields(cast(Any, kind))}
+    optional = {n: next((a for a in typing.get_args(h) if hasattr(a, "__metadata__")), h) for n, h in hints.items()}
+    return {n: _takes(h if hasattr(h, "__metadata__") else optional[n]) for n, h in hints.items()}
 
 
 def number_in(dimension: str) -> Takes:
@@ -402,7 +410,7 @@ def _complaint(
 ) -> InputError:
     """One of pydantic's errors in our words."""
     loc, sort = error["loc"], error["type"]
-    at: Loc = (*above, *(part if isinstance(part, int) else _key(part) for part in loc))
+    at: Loc = (*above, *(part if isinstance(part, int) else key_of(part) for part in loc))
     advice, cls = "", InputError
     if sort == "value_error":
         why = error["ctx"]["error"].why
@@ -412,7 +420,7 @@ def _complaint(
         takes = _takes(_field(kind, loc))
         found, expected, advice = "nothing", takes.words, takes.absent or f"Add {name_of(at)}."
     elif sort == "unexpected_keyword_argument":
-        known = sorted(_key(f.name) for f in dataclasses.fields(_field(kind, loc[:-1])))
+        known = sorted(key_of(f.name) for f in dataclasses.fields(_field(kind, loc[:-1])))
         near = difflib.get_close_matches(str(at[-1]), known, n=1)
         found, expected = "an unknown key", "one of " + ", ".join(known)
         advice = f"Did you mean {name_of((*at[:-1], near[0]))}?" if near else ""

@@ -9,8 +9,11 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-from coeflab.core.declarations import Takes, meanings
+import numpy as np
+
+from coeflab.core.declarations import Declaration, Takes, key_of, meanings, taken
 from coeflab.core.errors import InputError, shown, together
+from coeflab.core.text.toml import value as toml_value
 from coeflab.core.units import SI, quantity
 
 Options = TypeVar("Options")
@@ -113,12 +116,33 @@ class NoOptions:
 
 
 def described(kind: type) -> tuple[Described, ...]:
-    """Every option of an options dataclass, its meaning from the Attributes of the docstring."""
+    """Every option of an options dataclass or a declaration, its meaning from the Attributes of the docstring."""
     said = meanings(kind)
+    if issubclass(kind, Declaration):
+        keys = taken(kind)
+        return tuple(
+            Described(key_of(f.name), _with_unit(keys[f.name]), _default_of(f), said.get(f.name, ""))
+            for f in dataclasses.fields(cast(Any, kind))
+        )
     return tuple(
         Described(f.name, f.metadata["takes"].words, _default(f), said.get(f.name, ""))
         for f in dataclasses.fields(cast(Any, kind))
     )
+
+
+def _with_unit(key: Takes) -> str:
+    unit = key.schema.get("unit", "1")
+    if "enum" in key.schema:
+        return ", ".join(toml_value(word) for word in key.schema["enum"])
+    return key.words if unit == "1" else f"{key.words}, bare in {unit} or with its unit"
+
+
+def _default_of(field: dataclasses.Field[Any]) -> str:
+    """The default of a key as a file would have it; empty of one that must be given or is found by itself."""
+    made = field.default if field.default_factory is dataclasses.MISSING else field.default_factory()
+    if made is dataclasses.MISSING or made is None or isinstance(made, (Mapping, np.ndarray)):
+        return ""
+    return toml_value(list(made) if isinstance(made, tuple) else made)
 
 
 def _default(field: dataclasses.Field[Any]) -> str:

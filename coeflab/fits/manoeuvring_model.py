@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.core.errors import InputError
+from coeflab.core.errors import InputError, shown
 from coeflab.core.options import one_of, parse_options, words
 from coeflab.core.types import Array, brief
 from coeflab.fits.joint.model import joint_models
@@ -29,7 +29,16 @@ from coeflab.fits.rows.sweeps import secant
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
-from coeflab.law.terms import SETS, NamedTerm, canonical, read_equation, read_term, read_terms, split_equations
+from coeflab.law.terms import (
+    SETS,
+    Equation,
+    NamedTerm,
+    canonical,
+    read_equation,
+    read_term,
+    read_terms,
+    split_equations,
+)
 from coeflab.tables.force_table import AT_REST, ForceTable
 
 
@@ -256,6 +265,18 @@ def _covariance(spread: Array, models: Sequence[FittedModel], coefficients: Sequ
     return np.asarray(out)
 
 
+def _not_their_own_images(equations: Sequence[Equation], tables: Sequence[ForceTable]) -> None:
+    """Refuse to tie components of which one is the other's, turned: every reading would count twice."""
+    turned = next((t for t in tables if t.by_symmetry in {o.name for o in tables}), None)
+    between = next((e for e in equations if len({symbol[0] for symbol, _ in e.weights}) > 1), None)
+    if turned is None or between is None:
+        return
+    raise InputError(
+        f"{shown(between)} over {turned.name}, which is {turned.by_symmetry} turned by symmetry", "rows that were run",
+        column="manoeuvring_model.constraints", advice="Leave the equation out: it holds by construction.",
+    )  # fmt: skip
+
+
 def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, Any]) -> FitResult:
     """Fit the model over all tables of one or several campaigns.
 
@@ -281,6 +302,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     given = {k: split_equations(o) if k == "constraints" and isinstance(o, str) else o for k, o in options.items()}
     chosen = parse_options(Options, given, "manoeuvring_model")
     equations = [read_equation(c, "manoeuvring_model.constraints") for c in chosen.constraints]
+    _not_their_own_images(equations, tables)
     apart, tables = differences(tables, scaling.length), about_one_point(tables)
     asked = asked_terms(chosen.terms, _set_of(chosen) or "none", chosen.components, tables,
                         intercepts=chosen.intercepts == "yes", place="manoeuvring_model")  # fmt: skip

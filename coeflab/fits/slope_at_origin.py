@@ -202,6 +202,7 @@ def _sweep(
         offset=offset,
         one_size=bool(single),
         symmetry=plane,
+        by_symmetry=rows.table.by_symmetry,
         borrowed=rows.rest[0].name if rows.rest is not None and component in rows.rest[0].forces and not odd else "",
     )
     return made, origin
@@ -243,7 +244,8 @@ def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
         campaign=sweep.campaign,
         estimator=estimator[sweep.target]
         + (f" without point {out}" if out else "")
-        + (f", with the rest row of {sweep.borrowed}" if sweep.borrowed else ""),
+        + (f", with the rest row of {sweep.borrowed}" if sweep.borrowed else "")
+        + (f", not run: {sweep.by_symmetry} turned by symmetry" if sweep.by_symmetry else ""),
         window=sweep.window,
         n_points=int(sweep.used.sum()),
         citation=citation,
@@ -258,6 +260,11 @@ def _row_keys(sweep: Sweep) -> list[tuple[str, int]]:
         keys.append((label, seen[label]))
         seen[label] += 1
     return keys
+
+
+def _readings_of(sweep: Sweep) -> str:
+    """The table that was run."""
+    return sweep.by_symmetry or sweep.table
 
 
 def _covariance(sweeps: list[Sweep], coefficients: list[Coefficient]) -> Array:
@@ -279,7 +286,7 @@ def _covariance(sweeps: list[Sweep], coefficients: list[Coefficient]) -> Array:
     for i in range(k):
         for j in range(i + 1, k):
             a, b, ci, cj = moved[i], moved[j], coefficients[i], coefficients[j]
-            same = sweeps[i].table == sweeps[j].table
+            same = _readings_of(sweeps[i]) == _readings_of(sweeps[j])
             if a is None or b is None or not same or ci.parts.random is None or cj.parts.random is None:
                 continue
             size = float(np.linalg.norm(a) * np.linalg.norm(b))

@@ -30,7 +30,7 @@ from coeflab.law.coefficient import Coefficient, CoefficientSet
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.terms import Term, design, symmetric
-from coeflab.tables.force_table import ForceTable
+from coeflab.tables.force_table import ForceTable, counted_once
 
 summary = "sparse force law: the terms of a library that the data ask for (pysindy)"
 citations = ("brunton2016", "kaptanoglu2022", "fasel2022", "chen2008", "mackinnon1985", "bell2002")
@@ -194,6 +194,7 @@ def fit(tables: Sequence[ForceTable], scaling: Scaling, options: Mapping[str, An
     """
     chosen = parse_options(Options, options, "sparse")
     run = scaled_optimizer(chosen.optimizer)
+    tables = counted_once(tables)
     variables = chosen.variables or moving(tables)
     if not variables:
         raise InputError(

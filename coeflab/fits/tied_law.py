@@ -29,7 +29,9 @@ from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.terms import SETS, NamedTerm, read_term
-from coeflab.tables.force_table import AT_REST, ForceTable
+from coeflab.tables.campaign import PORT_STARBOARD
+from coeflab.tables.campaign import UP_DOWN as ALIKE
+from coeflab.tables.force_table import AT_REST, ForceTable, counted_once
 
 summary = "force law over the whole range: v|v|, v^3, cross terms, with the slopes held at slope_at_origin"
 citations = ("hurvich1989", "gertler1967", "feldman1979", "mackinnon1985", "bell2002")
@@ -133,8 +135,16 @@ def _rows(component: str, tables: Sequence[ForceTable], variables: Sequence[str]
     return _Rows({v: np.concatenate(p) for v, p in xs.items()}, np.concatenate(ys), np.concatenate(at), tuple(names))
 
 
-def _forms(component: str, v: str) -> list[tuple[NamedTerm, ...]]:
-    """Forms over one variable to choose from, the simplest first."""
+def _plane(component: str) -> str:
+    """The symmetry of a body that leaves no such force at rest; none does so for X."""
+    return "" if component == "X" else ALIKE if component in "ZM" else PORT_STARBOARD
+
+
+def _forms(component: str, v: str, alike: bool) -> list[tuple[NamedTerm, ...]]:
+    """Forms over one variable to choose from, the simplest first.
+
+    ``alike``: the body is declared to be alike above and below.
+    """
 
     def named(*suffixes: str) -> tuple[NamedTerm, ...]:
         return tuple(read_term(component + s, "tied_law") for s in suffixes)
@@ -142,8 +152,12 @@ def _forms(component: str, v: str) -> list[tuple[NamedTerm, ...]]:
     odd = [named(), named(f"{v}|{v}|"), named(v * 3), named(f"{v}|{v}|", v * 3)]
     even = [named(), named(v * 4)]
     own, other, least = (even, odd, v) if component == "X" else (odd, [named()], v * 2)
-    # Nothing makes a body alike above and below: there what is even has an odd part, and the reverse.
-    both = [(*f, *named(least), *g) for f in own for g in other] if v in UP_DOWN and component in "XZM" else []
+    # Unless that is declared, a body is not alike above and below: there what is even has an odd part, and the reverse.
+    both = (
+        [(*f, *named(least), *g) for f in own for g in other]
+        if v in UP_DOWN and component in "XZM" and not alike
+        else []
+    )
     return sorted((*own, *both), key=len)
 
 
@@ -193,11 +207,18 @@ def _simplest(laws: Sequence[tuple[tuple[NamedTerm, ...], _Law]]) -> tuple[tuple
 
 
 def _chosen(
-    component: str, rows: _Rows, bases: Mapping[str, tuple[NamedTerm, float]], *, constant: bool
+    component: str,
+    rows: _Rows,
+    bases: Mapping[str, tuple[NamedTerm, float]],
+    *,
+    constant: bool,
+    declared: tuple[str, ...],
 ) -> _Law | None:
     """The law over the whole range or, where it misses points there, over the widest range in which it meets them."""
     variables = [v for v in rows.x if np.any(rows.moved(v))]
-    apart = not constant and not any(not t.term.factors for t, _ in bases.values())
+    apart = (
+        not constant and not any(not t.term.factors for t, _ in bases.values()) and _plane(component) not in declared
+    )
     own = (read_term(f"{component}0", "tied_law"),) if constant else ()
 
     def over(some: _Rows) -> _Law | None:
@@ -209,7 +230,7 @@ def _chosen(
         law, chosen = None, dict.fromkeys(variables, tuple[NamedTerm, ...]())
         for v in (*variables, *variables):
             laws = []
-            for form in _forms(component, v):
+            for form in _forms(component, v, ALIKE in declared):
                 each = (*always, *(t for terms in (chosen | {v: form}).values() for t in terms))
                 laws.append((form, _fitted(some, bases, each, apart=apart)))
             found = _simplest([(form, f) for form, f in laws if f is not None])
@@ -305,7 +326,8 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
         With ``tied``: to which fit, how the terms move with its coefficients, and the forces at rest that no law holds.
     """
     chosen = parse_options(Options, options, "tied_law")
-    among, length = found.coefficients, scaling.length
+    among, length, tables = found.coefficients, scaling.length, counted_once(tables)
+    declared = tuple(s for s in tables[0].symmetry if all(s in t.symmetry for t in tables))
     every: list[Coefficient] = []
     blocks, moves, rest = [], [], []
     for component in COMPONENTS:
@@ -314,8 +336,8 @@ def complete(found: FitResult, tables: Sequence[ForceTable], scaling: Scaling, o
         if not variables:
             continue
         rows = _rows(component, tables, variables, length)
-        constant = chosen.at_rest == "law" and component in "ZM"
-        law = _chosen(component, rows, bases, constant=constant) if len(rows.y) else None
+        constant = chosen.at_rest == "law" and component in "ZM" and ALIKE not in declared
+        law = _chosen(component, rows, bases, constant=constant, declared=declared) if len(rows.y) else None
         if law is None:
             continue
         rest += [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -35,6 +35,9 @@ SAME_SIZE = 0.02  # of the largest |x|: one radius, or one setting of a sweep, a
 def _range(values: Array) -> str:
     low, high = (f"{float(f(values)):.5g}" for f in (np.min, np.max))
     return low if low == high else f"{low} to {high}"
+
+
+COUNTED_THERE = "by symmetry a row of {}: it counts there"
 
 
 @dataclass(frozen=True, slots=True)
@@ -330,3 +333,34 @@ class ForceTable:
             for component in [e.component] if e.component else usable:
                 usable[component][e.row] = False
         return replace(self, usable=usable, exclusions=tuple(kept), notes=(*self.notes, "doubtful cells in use"))
+
+
+def counted_once(tables: Sequence[ForceTable], *, axial: bool = True) -> list[ForceTable]:
+    """The tables without the readings that symmetry only repeats, so that these narrow no fit over several tables.
+
+    Of a table by symmetry whose origin is among the tables, rows at rest go, and X of every row: a turn about x leaves both as
+    they are. What it turns into another component stays.
+
+    Parameters
+    ----------
+    tables : sequence of ForceTable
+    axial : bool
+        Take X out as well; a fit over the motions of one plane alone meets no X twice.
+    """
+    names = {t.name for t in tables}
+    out = []
+    for table in tables:
+        if table.by_symmetry not in names:
+            out.append(table)
+            continue
+        moving = np.zeros(len(table), dtype=bool)
+        for m in (*MOTIONS[1:], *table.controls):
+            moving |= np.abs(table.primed_motion(m, table.scaling.length)) > AT_REST
+        usable, more = {}, []
+        for c, mask in table.usable.items():
+            usable[c] = mask & moving & (not axial or c != "X")
+            why = COUNTED_THERE.format(table.by_symmetry)
+            lines = table.lines or (0,) * len(table)
+            more += [Exclusion(int(i), lines[i], c, why) for i in np.flatnonzero(mask & ~usable[c])]
+        out.append(replace(table, usable=usable, exclusions=(*table.exclusions, *more)))
+    return out

@@ -6,6 +6,7 @@ plane: what the mirror says is declared, not run.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -25,6 +26,7 @@ ONE_SIDE, BOTH_SIDES = (2.0, 4.0, 6.0, 8.0, 10.0, 12.0), (2.0, 4.0, 8.0, 12.0)
 ONE_TURN, BOTH_TURNS = (1 / 6, 1 / 3, 1 / 2, 2 / 3, 5 / 6, 1.0), (1 / 6, 1 / 3, 2 / 3, 1.0)
 LARGEST_RATE = 0.5  # r'; half of it and less, three rates at least, is what oscillation tests reach
 KEEPS = {"dr": UP_DOWN, "ds": PORT_STARBOARD, "db": PORT_STARBOARD}  # mirror that a deflected pair of controls leaves
+_NO_NAME = re.compile(r"[^A-Za-z0-9_.+-]+")
 EXACT = 1e-9  # smaller components of a motion are rounding
 
 
@@ -380,7 +382,7 @@ def with_studies(matrix: Sequence[TowCondition], studies: Sequence[Study]) -> tu
 
 
 def _varied(condition: TowCondition, what: str, value: str) -> TowCondition:
-    name = f"{condition.name}_{what}_{value}"
+    name = f"{condition.name}_{what}_{_NO_NAME.sub('-', value)}"
     if what == "grid":
         return replace(condition, name=name, grid=value)
     return replace(condition, name=name, variant={what: value})

@@ -8,7 +8,7 @@ writes ``slope_table.csv`` beside this file, with the campaigns so far. Seeds ar
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -177,6 +177,33 @@ def run_round(design: str, number: int, campaigns: int, studied: int, families: 
             out[i, j, :, 1], out[i, j, :, 2] = s.u95, true_form_u95(truth, x, y)
             if name in STUDY:
                 out[i, j, :studied, 3] = [study_u95(x, row) for row in y[:studied]]
+    return out
+
+
+NOT_ODD = ("offset", "asymmetric", "even part")
+DECLARED = ("six", "even", "uneven")
+
+
+def declared_round(design: str, number: int, campaigns: int, families: Sequence[str]) -> Array:
+    """(family, noise, campaign, 2) of one side of a force that is odd by declaration: inside the interval, U95 over the slope.
+
+    ``six`` has the angles of the tow tank's default, 2 to 12 degrees; none has a row at rest, which says nothing of an odd force.
+    """
+    rng = np.random.default_rng((2026, 18, DECLARED.index(design), number))
+    n, reach = int(rng.integers(9, 24)), float(np.sin(np.radians(rng.uniform(10.0, 18.0))))
+    x = np.sin(np.radians(np.arange(2.0, 13.0, 2.0)))
+    if design != "six":
+        x = np.linspace(0.0, reach, n)[1:] if design == "even" else np.sort(rng.uniform(0.02 * reach, reach, n))
+    prepared = prepare(x, odd=True)
+    out = np.full((len(families), len(NOISE), campaigns, 2), np.nan)
+    for i, name in enumerate(families):
+        truth = FAMILIES[name]
+        force = truth.curve(x)
+        for j, noise in enumerate(NOISE):
+            shocks = rng.standard_normal((campaigns, len(x))) * np.abs(force).max()
+            s = estimate_many(prepared, force + noise * shocks)
+            out[i, j, :, 0] = (s.lower <= truth.slope) & (truth.slope <= s.upper)
+            out[i, j, :, 1] = s.u95 / abs(truth.slope)
     return out
 
 

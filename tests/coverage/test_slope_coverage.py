@@ -7,7 +7,17 @@ import csv
 import numpy as np
 import pytest
 
-from tests.coverage.slope_campaigns import DESIGNS, FAMILIES, NOISE, POLYNOMIAL, STUDY, TABLE, run_round
+from tests.coverage.slope_campaigns import (
+    DESIGNS,
+    FAMILIES,
+    NOISE,
+    NOT_ODD,
+    POLYNOMIAL,
+    STUDY,
+    TABLE,
+    declared_round,
+    run_round,
+)
 
 SMOKE = ("v|v| + v3", "opposed signs", "tanh", "onset", "even part")
 # What the table does not reach, by name: cells below 90 %; noise (%) at which the median U95 is more than 3 times that
@@ -58,6 +68,13 @@ def test_few_campaigns_cover_in_nine_of_ten(design: str) -> None:
     assert np.isfinite(cells[..., 1]).all()
     assert cells[..., 0].mean() > 0.93
     assert cells[..., 0].mean((1, 2)).min() > 0.85
+
+
+@pytest.mark.slow
+def test_one_side_of_a_force_that_is_odd_by_declaration_covers() -> None:
+    cells = declared_round("six", 1000, 16, [f for f in SMOKE if f not in NOT_ODD])
+    assert np.isfinite(cells).all()
+    assert cells[..., 0].mean() > 0.93
 
 
 def test_the_committed_table_is_whole_and_covers_94_percent_over_all(rows: list[dict[str, str]]) -> None:

@@ -12,6 +12,9 @@ from typing import Any
 import pytest
 
 from coeflab.bodies.readers import BODIES
+from coeflab.cli.formats import options_of
+from coeflab.core.declarations import Declaration, validated
+from coeflab.core.options import described
 from coeflab.core.provenance import WORKS
 from coeflab.core.registry import Registry, registries
 from coeflab.fits import FITS
@@ -20,6 +23,7 @@ from coeflab.report.formats import REPORTERS
 from coeflab.study.checks import CHECKS
 from coeflab.tables.importers import IMPORTERS
 
+TANK = ("coeflab.tow_solvers", "coeflab.tow_runners")
 ROOMS = registries()
 PLUGINS = [pytest.param(room, name, id=f"{room.package}.{name}") for room in ROOMS for name in room.names()]
 
@@ -57,6 +61,17 @@ def test_contract(room: Registry[Any], name: str) -> None:
     assert all(c in WORKS or re.search(r"\b(19|20)\d\d\b", c) for c in plugin.citations)
     assert dataclasses.is_dataclass(plugin.Options)
     assert inspect.getdoc(plugin)
+
+
+@pytest.mark.parametrize(("room", "name"), [p for p in PLUGINS if p.values[0].package in TANK])
+def test_what_tank_toml_says_to_a_plugin_is_declared_and_explained(room: Registry[Any], name: str) -> None:
+    declared = room.load(name).options
+    assert issubclass(declared, Declaration)
+    assert validated(declared, {}) is not None  # a tank.toml need not say anything of it
+    for key in described(declared):
+        assert key.meaning, key.name
+        assert key.takes
+    assert [row[0] for row in options_of(room, name).rows] == [key.name for key in described(declared)]
 
 
 @pytest.mark.parametrize(("room", "name"), PLUGINS)

@@ -167,6 +167,9 @@ def test_a_study_changes_one_thing_at_a_time() -> None:
     assert [(c.grid, dict(c.variant)) for c in new[:3]] == [
         ("coarse", {}), ("fine", {}), ("medium", {"domain": "1.5"})
     ]  # fmt: skip
+    (spaced,) = with_studies(matrix, (Study(("drift+4",), {"turbulence": ("realizable k-epsilon",)}),))[len(matrix) :]
+    assert spaced.name == "drift+4_turbulence_realizable-k-epsilon"
+    assert dict(spaced.variant) == {"turbulence": "realizable k-epsilon"}
     assert np.array_equal(new[0].velocity, next(c for c in matrix if c.name == "drift+4").velocity)
     with pytest.raises(InputError, match='"drift\\+5"; expected a condition of the matrix'):
         with_studies(matrix, (Study(("drift+5",), {"grid": ("fine",)}),))

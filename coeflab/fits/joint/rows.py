@@ -23,7 +23,7 @@ from coeflab.fits.statistics.least_squares import Index
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS
 from coeflab.law.terms import Equation, NamedTerm, design, read_term
-from coeflab.tables.force_table import AT_REST, ForceTable
+from coeflab.tables.force_table import AT_REST, ForceTable, counted_once
 
 
 @brief
@@ -186,7 +186,7 @@ ROUNDED = 1e-6  # lengths in feet that were converted with different digits
 
 
 def about_one_point(tables: Sequence[ForceTable]) -> tuple[ForceTable, ...]:
-    """All tables about the reference point of the first.
+    """All tables about the reference point of the first, every reading once.
 
     Raises
     ------
@@ -200,7 +200,7 @@ def about_one_point(tables: Sequence[ForceTable]) -> tuple[ForceTable, ...]:
                 f"{first.campaign} measures points from {shown(first.datum.id)}, {t.campaign} from {shown(t.datum.id)}; state "
                 "the reference points of both from one datum."
             )
-    return tuple(t.about(first.reference_point) for t in tables)
+    return tuple(t.about(first.reference_point) for t in counted_once(tables))
 
 
 def one_length(tables: Sequence[ForceTable]) -> Scaling:

@@ -211,6 +211,8 @@ class Sweep:
         Whether all settings have one size, so that they determine neither slope nor curvature.
     symmetry : str
         Declared symmetry by which a sweep of one side is odd or even; empty where both sides were run or none is declared.
+    by_symmetry : str
+        Table whose rows these are, turned by a declared symmetry; empty for rows that were run.
     """
 
     symbol: str
@@ -245,6 +247,7 @@ class Sweep:
     borrowed: str = ""
     one_size: bool = False
     symmetry: str = ""
+    by_symmetry: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "x", locked(self.x))

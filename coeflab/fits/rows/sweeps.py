@@ -31,7 +31,7 @@ from coeflab.fits.statistics.slopes import is_one_sided
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, FORCES
 from coeflab.law.terms import canonical
-from coeflab.tables.force_table import AT_REST, SAME_SIZE, Exclusion, ForceTable
+from coeflab.tables.force_table import AT_REST, SAME_SIZE, Exclusion, ForceTable, counted_once
 
 INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
 ASTERN = "does not run ahead (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
@@ -248,7 +248,7 @@ def only_moving(
     """
     free = {"u"} | {m for v in variables for m in MOVED_BY.get(v, (v,))}
     kept, statements = [], []
-    for table in tables:
+    for table in counted_once(tables, axial=len(variables) > 1):
         still = np.ones(len(table), dtype=bool)
         for name in ("v", "w", "p", "q", "r", *table.controls):
             if name not in free:

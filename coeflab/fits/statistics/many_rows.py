@@ -215,7 +215,7 @@ def copies(rows: Array) -> tuple[NDArray[np.bool_], bool]:
 
 
 def images(x: Array, y: Array, sign: float) -> NDArray[np.bool_]:
-    """Rows, (n,), whose exact mirror image stands earlier.
+    """Rows, (n,), that are the exact mirror image of another: of each pair the one on the side with fewer rows.
 
     Parameters
     ----------
@@ -223,13 +223,9 @@ def images(x: Array, y: Array, sign: float) -> NDArray[np.bool_]:
     sign : float
         Of the image of y: -1 of an odd, 1 of an even force.
     """
-    seen: set[tuple[float, float]] = set()
-    out = np.zeros(len(x), bool)
-    for i, (a, b) in enumerate(zip(x.tolist(), y.tolist())):
-        out[i] = a != 0.0 and (-a, sign * b) in seen
-        if not out[i]:
-            seen.add((a, b))
-    return out
+    kept = 1.0 if np.count_nonzero(x > 0.0) >= np.count_nonzero(x < 0.0) else -1.0
+    there = {(a, b) for a, b in zip(x.tolist(), y.tolist()) if a * kept > 0.0}
+    return np.array([a * kept < 0.0 and (-a, sign * b) in there for a, b in zip(x.tolist(), y.tolist())], dtype=bool)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -38,7 +38,7 @@ BY_SYMMETRY = {Half.WHOLE: "", Half.UPPER: "Z K M", Half.PORT: "Y K N"}  # zero,
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Options(Declaration):
+class External(Declaration):
     """``[solver.external]``: forces that come from elsewhere.
 
     Attributes
@@ -54,7 +54,7 @@ class Options(Declaration):
     made_by: takes.Words = ""
 
 
-options = Options
+options = External
 
 
 def installed() -> Installation:

@@ -19,7 +19,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
 from coeflab.core.text.foam import FoamCase
 from coeflab.law.symbols import COMPONENTS
-from coeflab.tables.importers import openfoam
+from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run
 from coeflab.tank.jobs import Job, Step
 from coeflab.tank.openfoam import case, rendered, step
@@ -51,9 +51,9 @@ MODELS = {
 }
 # No force on a body is as large: a flat plate across the flow has about one of its own area.
 BOUND, SETTLED = 100.0, 20
-USUAL_ITERATIONS = 350.0  # until the plateau of a body with appendages
-SECONDS_A_CELL = 2.1e-6  # an iteration on one core
-BYTES_A_CELL, BYTES_A_PROCESS = 1.05e3, 6e7
+USUAL_ITERATIONS = 400.0  # until the plateau of a body with appendages
+SECONDS_A_CELL = 2.2e-6  # an iteration on one core
+BYTES_A_CELL, BYTES_A_PROCESS = 1.05e3, 1.5e8
 PARALLEL = 0.9  # of the ideal speed-up is left with every doubling of the cores
 WHOLE_NUMBER = Within(
     lambda v: "" if v >= 1.0 and v == int(v) else "a whole number, one or more", schema={"minimum": 1}
@@ -68,6 +68,7 @@ class OpenFOAM(MeshKeys):
     Attributes
     ----------
     turbulence : {"k-omega SST", "realizable k-epsilon", "Spalart-Allmaras", "laminar"}
+        Model; a wall that is resolved or not is said by ``wall``.
     intensity : float
         Of the turbulence in the water, over the speed of the condition.
     viscosity_ratio : float
@@ -195,7 +196,8 @@ def history(folder: Path) -> Run:
     """
     if not _has_rows(folder):
         return Run(folder, folder.name, RawTable(folder, ()), ended=Ended.EMPTY, why="no iteration yet")
-    run = openfoam.run(folder, {"function": "forces", "rotation": "body"})
+    read = IMPORTERS.load("openfoam").run
+    run = read(folder, {"function": "forces", "rotation": "body"})  # type: ignore[misc]  # that importer reads runs
     half, divided, pairs, length, fastest = _towing(folder)
     patches = {
         n: _whole_body(t, half) for n, t in run.patches.items() if n in divided or n not in map(itemgetter(0), pairs)
