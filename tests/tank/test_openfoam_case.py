@@ -166,6 +166,12 @@ def test_a_body_that_is_not_its_own_image_is_towed_whole(jobs: Jobs, tmp_path: P
         openfoam.jobs(towed.tank(condition), replace(body, vertices=moved), tmp_path)
 
 
+def test_a_part_cannot_have_the_name_of_something_else(jobs: Jobs, tmp_path: Path) -> None:
+    body = replace(towed.surface(), patches=("hull", "far"))
+    with pytest.raises(InputError, match="a part named far"):
+        openfoam.jobs(towed.tank(towed.MATRIX[0]), body, tmp_path)
+
+
 def test_before_the_first_iteration_the_history_is_empty(jobs: Jobs) -> None:
     job = jobs(towed.tank(towed.MATRIX[0]))["straight"]
     assert openfoam.history(job.folder).ended is Ended.EMPTY
