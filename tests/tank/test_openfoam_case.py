@@ -188,8 +188,11 @@ def test_forces_beyond_anything_physical_are_divergence(jobs: Jobs) -> None:
 
 def test_a_crash_is_said_with_the_log(jobs: Jobs) -> None:
     job = jobs(towed.tank(towed.MATRIX[0]))["straight"]
-    log = "Exec   : simpleFoam\nBuild  : 1912\n--> FOAM FATAL ERROR: cannot find file\n"
-    (written(job.folder, 30) / "log.simpleFoam").write_text(log)
+    banner = "Exec   : simpleFoam\nBuild  : 1912\ntrapFpe: Floating point exception trapping enabled (FOAM_SIGFPE).\n"
+    log = written(job.folder, 30) / "log.simpleFoam"
+    log.write_text(banner + "Time = 30\n")
+    assert openfoam.ended(job)[1] == ""
+    log.write_text(banner + "--> FOAM FATAL ERROR: cannot find file\n")
     assert "FOAM FATAL" in openfoam.ended(job)[1]
 
 

@@ -151,7 +151,8 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
 def _with_zone(mesh: Job) -> Job:
     """The mesh with a last step that puts all cells into the zone of the rotating frame."""
     write_all(mesh.folder, {"system/topoSetDict": rendered("case/system/topoSetDict")})
-    return replace(mesh, steps=(*mesh.steps, step("topoSet", "topoSet", "-constant")))
+    steps = (*mesh.steps, step("topoSet", "topoSet", "-constant"))
+    return replace(mesh, steps=steps, cells=expected_cells(mesh.folder))
 
 
 def _run(
@@ -181,7 +182,7 @@ def _run(
         condition.name, folder, "openfoam", tuple(steps), (mesh.name,), cores,
         memory=cells * BYTES_A_CELL + cores * BYTES_A_PROCESS,
         seconds=float(min(most, USUAL_ITERATIONS) * cells * SECONDS_A_CELL / speed_up),
-        key=case.digest(files, mesh.key, version), iterations=float(most),
+        key=case.digest(files, mesh.key, version), iterations=float(most), cells=cells,
     )  # fmt: skip
 
 
