@@ -109,6 +109,11 @@ def test_a_stop_is_taken_back_and_a_torn_field_is_not_started_from(jobs: Jobs) -
     steps, at = openfoam.resumed(job)
     assert ([s.name for s in steps], at) == (["simpleFoam"], 100.0)
     assert not (job.folder / "processor0/200").exists()
+    names = {
+        n: [s.name for s in openfoam.resumed(jobs(towed.tank(towed.MATRIX[0], cores=n))["straight"])[0]] for n in (1, 3)
+    }
+    anew = ["reconstructPar", "cleanProcessors"]
+    assert names == {1: [*anew, "simpleFoam"], 3: [*anew, "decomposePar", "simpleFoam"]}
     assert "stopAt          endTime;" in (job.folder / "system/controlDict").read_text()
     shutil.rmtree(job.folder / "processor0/100")
     steps, at = openfoam.resumed(job)

@@ -332,6 +332,11 @@ def _is_whole(field: Path) -> bool:
     return False
 
 
+def shares(folder: Path) -> int:
+    """Processes among which a run is divided; 0 for one that is not."""
+    return len(list(folder.glob("processor[0-9]*")))
+
+
 def remove_after(folder: Path, last: float) -> None:
     """Remove fields of later times, which the solver would start from, and which it did not write whole."""
     for part in (folder, *folder.glob("processor[0-9]*")):

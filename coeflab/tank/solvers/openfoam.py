@@ -42,7 +42,10 @@ citations = (
     "Numerical Heat Transfer 7, 147-163",
 )
 
-SOLVER, TOOLS = "simpleFoam", ("blockMesh", "snappyHexMesh", "checkMesh", "topoSet", "decomposePar", "simpleFoam")
+SOLVER, TOOLS = (
+    "simpleFoam",
+    ("blockMesh", "snappyHexMesh", "checkMesh", "topoSet", "decomposePar", "reconstructPar", "simpleFoam"),
+)
 MODELS = {
     "k-omega SST": "kOmegaSST",
     "realizable k-epsilon": "realizableKE",
@@ -55,6 +58,7 @@ USUAL_ITERATIONS = 400.0  # until the plateau of a body with appendages
 SECONDS_A_CELL = 2.2e-6  # an iteration on one core
 BYTES_A_CELL, BYTES_A_PROCESS = 1.05e3, 1.5e8
 PARALLEL = 0.9  # of the ideal speed-up is left with every doubling of the cores
+WITHOUT_SHARES = Step("cleanProcessors", ("sh", "-c", "rm -rf processor*"))
 WHOLE_NUMBER = Within(
     lambda v: "" if v >= 1.0 and v == int(v) else "a whole number, one or more", schema={"minimum": 1}
 )
@@ -288,7 +292,13 @@ def resumed(job: Job) -> tuple[tuple[Step, ...], float]:
     if not times:
         return job.steps, float("nan")
     case.remove_after(job.folder, times[-1])
-    return tuple(s for s in job.steps if s.watched), times[-1]
+    shares, wanted = case.shares(job.folder), job.cores if job.cores > 1 else 0
+    steps: tuple[Step, ...] = ()
+    if shares != wanted:  # it was begun on another number of cores
+        if shares:
+            steps = (step("reconstructPar", "reconstructPar", "-latestTime"), WITHOUT_SHARES)
+        steps += tuple(s for s in job.steps if s.name == "decomposePar")
+    return (*steps, *(s for s in job.steps if s.watched)), times[-1]
 
 
 def ended(job: Job) -> tuple[tuple[str, ...], str]:
