@@ -37,6 +37,7 @@ SIDES = {
 }
 CUT_SIDE = {Half.PORT: ("y", 1), Half.UPPER: ("z", 1)}
 SEED_DISTANCE = 4.0  # in cells of the patch
+THIN = 10  # more layers than that are too thin for the usual limits of quality
 MOST_CELLS = 100_000_000  # where snappyHexMesh stops; a tow is refused before, by the cells expected
 # Of OpenFOAM 1912, measured on meshes of 20,000 to 600,000 cells; the last steps have one core only.
 SECONDS_AT_LEAST, SECONDS_A_CELL, SECONDS_A_FACE, SPEEDUP, SECONDS_ALONE = 1.0, 1.25e-4, 6.5e-4, 0.6, 1.5e-5
@@ -139,6 +140,7 @@ def _files(body: TowedBody, sizes: MeshSizes, half: Half, cores: int) -> dict[st
         "between_levels": BETWEEN_LEVELS,
         "most_cells": MOST_CELLS,
         "cores": cores,
+        "thin_layers": any(made.count > THIN for made in sizes.layers.values()),
     }
     names = ("blockMeshDict", "snappyHexMeshDict", *WITHOUT_VALUES, *(("decomposeParDict",) if cores > 1 else ()))
     contents = {f"system/{name}": rendered(f"mesh/{name}", **values) for name in names}
