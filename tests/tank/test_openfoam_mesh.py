@@ -122,7 +122,12 @@ def test_sizes_that_cannot_be(body: TowedBody, keys: MeshKeys, half: Half, visco
 
 @pytest.mark.parametrize(
     ("given", "said"),
-    [({"beside": 0.2}, "0.5 or more"), ({"cells": {"sail": "many"}}, "cells.sail"), ({"wall": "law"}, '"functions"')],
+    [
+        ({"beside": 0.2}, "0.5 or more"),
+        ({"cells": {"sail": "many"}}, "cells.sail"),
+        ({"wall": "law"}, '"functions"'),
+        ({"most_cells": 1e9}, "3e+07 at most"),
+    ],
 )
 def test_keys_that_cannot_be(given: Mapping[str, object], said: str) -> None:
     with pytest.raises(InputError, match=re.escape(said)):
@@ -165,6 +170,12 @@ def test_names_say_what_is_meshed() -> None:
 def test_too_many_cells_are_refused_before_anything_is_written(body: TowedBody, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"a mesh of about .*e\+04 cells for the grid coarse.*1e\+03 at most"):
         job(body, tmp_path, MeshKeys(wall="none", most_cells=1000.0))
+    for many in (
+        {"cells_per_length": 1e5},
+        {"cells": {"rudder_upper": 1e5}},
+    ):  # more than memory can hold, even to count
+        with pytest.raises(InputError, match=r"a mesh of about .*e\+\d\d cells"):
+            job(body, tmp_path, MeshKeys(wall="none", **many))  # type: ignore[arg-type]
     assert not list(tmp_path.iterdir())
 
 

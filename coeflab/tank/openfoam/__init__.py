@@ -47,7 +47,17 @@ def step(name: str, *command: str, cores: int = 1, watched: bool = False) -> Ste
     launcher, parallel = [], []
     if cores > 1:
         environment += ["OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"]
-        launcher = ["mpirun", "-np", str(cores), "--oversubscribe", "--bind-to", "none"]
+        launcher = [
+            "mpirun",
+            "-np",
+            str(cores),
+            "--oversubscribe",
+            "--bind-to",
+            "none",
+            "--mca",
+            "mpi_yield_when_idle",
+            "1",
+        ]
         parallel = ["-parallel"]
     front = ["env", *environment] if environment else []
     return Step(name, (*front, *launcher, *command, *parallel), watched)

@@ -17,7 +17,15 @@ from coeflab.tank.jobs import Job, Step
 from coeflab.tank.openfoam import rendered, step
 from coeflab.tank.openfoam.cell_count import BETWEEN_LEVELS, cell_count
 from coeflab.tank.openfoam.mesh_made import MADE, PLANNED, expected_cells, mesh_ended
-from coeflab.tank.openfoam.mesh_sizes import GROWTH, LAST_LAYER, SYMMETRY_AXIS, MeshKeys, MeshSizes, mesh_sizes
+from coeflab.tank.openfoam.mesh_sizes import (
+    GROWTH,
+    LAST_LAYER,
+    MOST_CELLS,
+    SYMMETRY_AXIS,
+    MeshKeys,
+    MeshSizes,
+    mesh_sizes,
+)
 from coeflab.tank.tank import Grid, Tank
 from coeflab.tank.test_matrix import Half
 from coeflab.tank.towed_body import TowedBody, stl
@@ -37,7 +45,7 @@ SIDES = {
 }
 CUT_SIDE = {Half.PORT: ("y", 1), Half.UPPER: ("z", 1)}
 SEED_DISTANCE = 4.0  # in cells of the patch
-MOST_CELLS = 100_000_000  # where snappyHexMesh stops; a tow is refused before, by the cells expected
+THIN = 10  # more layers than that are too thin for the usual limits of quality
 # Of OpenFOAM 1912, measured on meshes of 20,000 to 600,000 cells; the last steps have one core only.
 SECONDS_AT_LEAST, SECONDS_A_CELL, SECONDS_A_FACE, SPEEDUP, SECONDS_ALONE = 1.0, 1.25e-4, 6.5e-4, 0.6, 1.5e-5
 BYTES_AT_LEAST, BYTES_A_CELL = 80e6, 1750.0
@@ -137,8 +145,9 @@ def _files(body: TowedBody, sizes: MeshSizes, half: Half, cores: int) -> dict[st
         "last_layer": LAST_LAYER,
         "inside": sizes.inside,
         "between_levels": BETWEEN_LEVELS,
-        "most_cells": MOST_CELLS,
+        "most_cells": round(2.0 * MOST_CELLS),  # a tow is refused before, by the cells expected
         "cores": cores,
+        "thin_layers": any(made.count > THIN for made in sizes.layers.values()),
     }
     names = ("blockMeshDict", "snappyHexMeshDict", *WITHOUT_VALUES, *(("decomposeParDict",) if cores > 1 else ()))
     contents = {f"system/{name}": rendered(f"mesh/{name}", **values) for name in names}

@@ -97,12 +97,11 @@ def expected_cells(folder: Path) -> float:
 def _read(folder: Path, planned: Mapping[str, Any]) -> MeshMade:
     checked = (folder / "log.checkMesh").read_text(errors="replace")
     surface, volume = _body_in_mesh(folder / "constant" / "polyMesh", list(planned["surface"]))
+    asked = {patch: count for patch, count in planned["layers"].items() if planned["surface"][patch] > 0.0}
     snapped = (folder / "log.snappyHexMesh").read_text(errors="replace")
     return MeshMade(
         cells=int(_after("cells:", checked)),
-        layers={
-            patch: mean / planned["layers"][patch] for patch, mean in _layers(snapped) if patch in planned["layers"]
-        },
+        layers=dict.fromkeys(asked, 0.0) | {p: mean / asked[p] for p, mean in _layers(snapped) if p in asked},
         surface={name: surface[name] / area for name, area in planned["surface"].items() if area > 0.0},
         volume=volume / planned["volume"],
         non_orthogonality=_after("Mesh non-orthogonality Max:", checked),
@@ -126,8 +125,7 @@ def _layers(log: str) -> Iterator[tuple[str, float]]:
 
 
 def _remarks(made: MeshMade, planned: Mapping[str, Any]) -> Iterator[str]:
-    few = {patch: made.layers.get(patch, 0.0) for patch in planned["layers"] if planned["surface"][patch] > 0.0}
-    few = {patch: share for patch, share in few.items() if share < planned["coverage"]}
+    few = {patch: share for patch, share in made.layers.items() if share < planned["coverage"]}
     if few:
         words = ", ".join(f"{share:.0%} of {patch}" for patch, share in few.items())
         yield f"layers cover {words}; {planned['coverage']:.0%} is asked for"

@@ -25,6 +25,10 @@ Positive = Annotated[Pure, ABOVE_ZERO]
 Distance = Annotated[
     Pure, Within(lambda v: "0.5 or more, else the body fills the domain" if v < 0.5 else "", schema={"minimum": 0.5})
 ]
+MOST_CELLS = 3e7  # some 50 GB of memory
+Countable = Annotated[
+    Positive, Within(lambda v: f"{MOST_CELLS:g} at most" if v > MOST_CELLS else "", schema={"maximum": MOST_CELLS})
+]
 
 Y_PLUS = {"functions": 60.0, "resolved": 0.8}
 GROWTH, LAST_LAYER = 1.3, 0.35  # of layers; the last one over the cell that it lies on
@@ -68,7 +72,7 @@ class MeshKeys(Declaration):
     behind: Distance = 2.0
     beside: Distance = 1.4
     coverage: Positive = 0.8
-    most_cells: Positive = 6e6
+    most_cells: Countable = 6e6
 
     def check(self) -> None:
         """Cells of a patch are numbers."""
