@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import sys
 import tempfile
 import time
 from collections.abc import Iterator
@@ -16,7 +17,7 @@ import pytest
 from coeflab.core.declarations import validated
 from coeflab.core.errors import CoeflabError, InputError
 from coeflab.tank.job import carry_out as carried_out
-from coeflab.tank.jobs import Job, JobState, Progressed, progress, read_progress, write_progress
+from coeflab.tank.jobs import Job, JobState, Progressed, Step, progress, read_progress, write_job, write_progress
 from coeflab.tank.runners import slurm
 from coeflab.tank.runners.slurm import Slurm, arrays, carry_out
 from tests.consumers.one_node_slurm import MISSING, OneNodeSlurm, one_node_slurm
@@ -87,7 +88,7 @@ def test_a_run_whose_node_dies_and_whose_wall_time_ends_goes_on_from_what_it_wro
     run = prepared(tow, "drift +4", ("mesh/medium",), pause=0.3, fields=5)
     broken, behind = prepared(tow, "mesh/fine", fails="crash"), prepared(tow, "fine", ("mesh/fine",))
     jobs = [replace(job, memory=1e8) for job in (mesh, broken, run, quick, behind)]
-    chosen = Slurm(wall_time=60.0, notice=55.0, setup=("export TOWED=1",))
+    chosen = Slurm(wall_time=60.0, notice=55.0)
     with pytest.raises(KeyboardInterrupt):
         carry_out(jobs, tow, chosen, interrupted)
     given = ids(tow)
@@ -123,7 +124,15 @@ def test_a_run_whose_node_dies_and_whose_wall_time_ends_goes_on_from_what_it_wro
 
 @needs_slurm
 @pytest.mark.slow
-def test_jobs_that_changed_or_are_given_up_leave_the_queue(cluster: OneNodeSlurm, tmp_path: Path) -> None:
+def test_a_job_gets_its_cores_and_jobs_that_changed_or_are_given_up_leave_the_queue(
+    cluster: OneNodeSlurm, tmp_path: Path
+) -> None:
+    shell = Step("ask", ("sh", "-c", "echo $SLURM_NTASKS $SLURM_JOB_NUM_NODES $TOWED > tasks"))
+    wide = replace(prepared(tmp_path / "wide", "run", cores=2), steps=(shell,))
+    write_job(wide)
+    carry_out([wide], tmp_path / "wide", Slurm(setup=("export TOWED=yes",)), nothing)
+    assert (wide.folder / "tasks").read_text().split() == ["2", "1", "yes"]  # mpirun finds as many slots
+
     cluster.ask("scontrol", "update", f"NodeName={cluster.node}", "State=DRAIN", "Reason=test")
     job = prepared(tmp_path / "x", "run")
     with pytest.raises(InputError, match=r"refuses.*invalid partition specified: nowhere"):
@@ -148,6 +157,35 @@ def test_jobs_that_need_the_same_make_an_array(tmp_path: Path) -> None:
     runs = [prepared(tmp_path, f"r{i}", (f"m{1 + i % 2}",), cores=1 + (i == 3)) for i in range(4)]
     found = arrays([meshes[0], runs[0], meshes[1], *runs[1:]])
     assert [[job.name for job in group] for group in found] == [["m1", "m2"], ["r0", "r2"], ["r1"], ["r3"]]
+
+
+def test_what_slurm_is_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tow = tmp_path / "a tow, 1"
+    (tmp_path / "srun").touch()
+    (tmp_path / "squeue").touch()
+    (tmp_path / "sbatch").write_text('#!/bin/sh\ncat "$1" >> asked; echo Submitted batch job $(grep -c ^exec asked)0\n')
+    for name in ("srun", "sbatch", "squeue"):
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+    monkeypatch.chdir(tmp_path)
+    mesh = replace(prepared(tow, "mesh/m", cores=4), memory=2e9)
+    runs = [replace(prepared(tow, name, ("mesh/m", "kept")), memory=1e9) for name in ("a", "b")]
+    extra = {"qos": "long", "exclusive": True, "hold": False}
+    chosen = Slurm(
+        partition="cpu", account="naval", wall_time=5400.0, notice=90.0, at_once=1, setup=("echo on",), extra=extra
+    )
+    with pytest.raises(KeyboardInterrupt):
+        carry_out([mesh, *runs], tow, chosen, interrupted)
+    _, first, second = (tmp_path / "asked").read_text().split("#!/bin/bash")
+    common = {"job-name=coeflab_a_tow__1", "time=90", "signal=B:USR2@90", "partition=cpu", "account=naval", "qos=long"}
+    common |= {"requeue", "exclusive", "kill-on-invalid-dep=yes", "open-mode=append", "nodes=1"}
+    asked = [set(re.findall("^#SBATCH --(.*)", one, re.MULTILINE)) for one in (first, second)]
+    for found, own in zip(
+        asked, ({"ntasks=4", "mem=3000M"}, {"ntasks=1", "mem=1500M", "array=0-1%1", "dependency=afterok:10"})
+    ):
+        assert {line for line in found if not line.startswith("output=")} == common | own
+    assert second.index("echo on") < second.index(f"exec {sys.executable} -u -m submitit")
+    assert ids(tow) == {"mesh/m": "10", "a": "20_0", "b": "20_1"}
 
 
 @pytest.mark.parametrize(("state", "ended", "said"), [
