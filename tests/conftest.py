@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator
+import shutil
+import tempfile
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +21,7 @@ from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import read_tables, run
+from tests.consumers.one_node_slurm import OneNodeSlurm, one_node_slurm
 
 # How long an example takes says how busy the machine is, not whether it is right.
 settings.register_profile("unhurried", deadline=None)
@@ -65,6 +68,17 @@ def read_table(write_campaign: Callable[..., Path]) -> Callable[..., ForceTable]
         return read_tables(PlannedTable(write_campaign(csv, **pieces), ()))[0]
 
     return read
+
+
+@pytest.fixture
+def cluster(monkeypatch: pytest.MonkeyPatch) -> Iterator[OneNodeSlurm]:
+    """A Slurm of one node, which sbatch and its like find."""
+    folder = Path(tempfile.mkdtemp(prefix="slurm"))  # a socket's path is short
+    with one_node_slurm(folder) as started:
+        for name, value in started.environment.items():
+            monkeypatch.setenv(name, value)
+        yield started
+    shutil.rmtree(folder)
 
 
 @pytest.hookimpl(wrapper=True)

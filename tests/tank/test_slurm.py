@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
-import tempfile
+import sys
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -16,26 +14,20 @@ import pytest
 from coeflab.core.declarations import validated
 from coeflab.core.errors import CoeflabError, InputError
 from coeflab.tank.job import carry_out as carried_out
-from coeflab.tank.jobs import Job, JobState, Progressed, progress, read_progress, write_progress
+from coeflab.tank.jobs import Job, JobState, Progressed, Step, progress, read_progress, write_job, write_progress
 from coeflab.tank.runners import slurm
 from coeflab.tank.runners.slurm import Slurm, arrays, carry_out
-from tests.consumers.one_node_slurm import MISSING, OneNodeSlurm, one_node_slurm
-from tests.tank.slow_solver import CASE, HISTORY, prepared
+from tests.consumers.one_node_slurm import MISSING, OneNodeSlurm
+from tests.tank.slow_solver import CASE, FIELDS, HISTORY, prepared
 
-pytestmark = pytest.mark.usefixtures("slow")
 needs_slurm = pytest.mark.skipif(
     bool(MISSING), reason=f"{', '.join(MISSING)} not installed: apt-get install slurm-wlm munge"
 )
 
 
-@pytest.fixture
-def cluster(slow: None, monkeypatch: pytest.MonkeyPatch) -> Iterator[OneNodeSlurm]:
-    folder = Path(tempfile.mkdtemp(prefix="slurm"))  # a socket's path is short
-    with one_node_slurm(folder) as started:
-        for name, value in started.environment.items():
-            monkeypatch.setenv(name, value)
-        yield started
-    shutil.rmtree(folder)
+@pytest.fixture(autouse=True)
+def _plugins(slow: None) -> None:
+    """The slow solver, before a cluster takes the environment over."""
 
 
 def nothing() -> None:
@@ -57,6 +49,7 @@ class Fate:
     cluster: OneNodeSlurm
     run: Job
     died: float = 0.0
+    wrote: float = 0.0
     back: bool = False
     attempts: list[Progressed] = field(default_factory=list)
 
@@ -68,6 +61,7 @@ class Fate:
             history = self.run.folder / HISTORY
             if not self.died and history.is_file() and len(history.read_text().splitlines()) > 7:
                 self.cluster.kill_node()
+                self.wrote = float((self.run.folder / FIELDS).read_text())
                 self.died = time.monotonic()
         # slurmctld misses a job on a node that comes back BatchStartTimeout + MessageTimeout after it gave it the job
         if self.died and not self.back and time.monotonic() - self.died > 3.0:
@@ -87,7 +81,8 @@ def test_a_run_whose_node_dies_and_whose_wall_time_ends_goes_on_from_what_it_wro
     run = prepared(tow, "drift +4", ("mesh/medium",), pause=0.3, fields=5)
     broken, behind = prepared(tow, "mesh/fine", fails="crash"), prepared(tow, "fine", ("mesh/fine",))
     jobs = [replace(job, memory=1e8) for job in (mesh, broken, run, quick, behind)]
-    chosen = Slurm(wall_time=60.0, notice=55.0, setup=("export TOWED=1",))
+    # Slurm looks at wall times every 30 s and is up to as early: never before an attempt has run for 5 s
+    chosen = Slurm(wall_time=60.0, notice=25.0)
     with pytest.raises(KeyboardInterrupt):
         carry_out(jobs, tow, chosen, interrupted)
     given = ids(tow)
@@ -113,7 +108,7 @@ def test_a_run_whose_node_dies_and_whose_wall_time_ends_goes_on_from_what_it_wro
     # from the start, from the fields of a node that died, and from what the end of the wall time made it write
     last = (*fate.attempts, states["drift +4"])[-1].resumed_from
     assert len({attempt.process for attempt in fate.attempts}) >= 2
-    assert fate.attempts[1].resumed_from == 5.0
+    assert fate.attempts[1].resumed_from == fate.wrote >= 5.0
     assert fate.attempts[1].resumed_from < last == states["drift +4"].resumed_from
     log = (tow / ".runner/slurm" / f"{given['drift +4']}_0_log.out").read_text()
     assert len(re.findall("Starting with JobEnvironment", log)) == 3
@@ -123,7 +118,15 @@ def test_a_run_whose_node_dies_and_whose_wall_time_ends_goes_on_from_what_it_wro
 
 @needs_slurm
 @pytest.mark.slow
-def test_jobs_that_changed_or_are_given_up_leave_the_queue(cluster: OneNodeSlurm, tmp_path: Path) -> None:
+def test_a_job_gets_its_cores_and_jobs_that_changed_or_are_given_up_leave_the_queue(
+    cluster: OneNodeSlurm, tmp_path: Path
+) -> None:
+    shell = Step("ask", ("sh", "-c", "echo $SLURM_NTASKS $SLURM_JOB_NUM_NODES $TOWED > tasks"))
+    wide = replace(prepared(tmp_path / "wide", "run", cores=2), steps=(shell,))
+    write_job(wide)
+    carry_out([wide], tmp_path / "wide", Slurm(setup=("export TOWED=yes",)), nothing)
+    assert (wide.folder / "tasks").read_text().split() == ["2", "1", "yes"]  # mpirun finds as many slots
+
     cluster.ask("scontrol", "update", f"NodeName={cluster.node}", "State=DRAIN", "Reason=test")
     job = prepared(tmp_path / "x", "run")
     with pytest.raises(InputError, match=r"refuses.*invalid partition specified: nowhere"):
@@ -148,6 +151,36 @@ def test_jobs_that_need_the_same_make_an_array(tmp_path: Path) -> None:
     runs = [prepared(tmp_path, f"r{i}", (f"m{1 + i % 2}",), cores=1 + (i == 3)) for i in range(4)]
     found = arrays([meshes[0], runs[0], meshes[1], *runs[1:]])
     assert [[job.name for job in group] for group in found] == [["m1", "m2"], ["r0", "r2"], ["r1"], ["r3"]]
+
+
+def test_what_slurm_is_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tow = tmp_path / "a tow, 1"
+    (tmp_path / "srun").touch()
+    (tmp_path / "squeue").touch()
+    (tmp_path / "sbatch").write_text('#!/bin/sh\ncat "$1" >> asked; echo Submitted batch job $(grep -c ^exec asked)0\n')
+    for name in ("srun", "sbatch", "squeue"):
+        (tmp_path / name).chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+    monkeypatch.chdir(tmp_path)
+    mesh = replace(prepared(tow, "mesh/m", cores=4), memory=2e9)
+    runs = [replace(prepared(tow, name, ("mesh/m", "kept")), memory=1e9) for name in ("a", "b")]
+    extra = {"qos": "long", "exclusive": True, "hold": False}
+    chosen = Slurm(
+        partition="cpu", account="naval", wall_time=5400.0, notice=90.0, at_once=1, setup=("echo on",), extra=extra
+    )
+    with pytest.raises(KeyboardInterrupt):
+        carry_out([mesh, *runs], tow, chosen, interrupted)
+    _, first, second = (tmp_path / "asked").read_text().split("#!/bin/bash")
+    common = {"time=90", "signal=B:USR2@90", "partition=cpu", "account=naval", "qos=long"}
+    common |= {"requeue", "exclusive", "kill-on-invalid-dep=yes", "open-mode=append", "nodes=1"}
+    asked = [set(re.findall("^#SBATCH --(.*)", one, re.MULTILINE)) for one in (first, second)]
+    for found, own in zip(
+        asked, ({"ntasks=4", "mem=3000M"}, {"ntasks=1", "mem=1500M", "array=0-1%1", "dependency=afterok:10"})
+    ):
+        assert {line for line in found if not line.startswith(("output=", "job-name="))} == common | own
+        assert any(re.fullmatch("job-name=coeflab_a_tow__1_[0-9a-f]{6}", line) for line in found)
+    assert second.index("echo on") < second.index(f"exec {sys.executable} -u -m submitit")
+    assert ids(tow) == {"mesh/m": "10", "a": "20_0", "b": "20_1"}
 
 
 @pytest.mark.parametrize(("state", "ended", "said"), [

@@ -6,6 +6,7 @@ attempt goes on from what the solver wrote last. The nodes need the folder of th
 
 from __future__ import annotations
 
+import hashlib
 import importlib.util
 import json
 import logging
@@ -28,7 +29,7 @@ from coeflab.core import declarations as takes
 from coeflab.core.declarations import Declaration
 from coeflab.core.errors import CoeflabError, InputError, shown
 from coeflab.core.files import write_atomically
-from coeflab.tank.jobs import Job, JobState, Progressed, progress, write_progress
+from coeflab.tank.jobs import Job, JobState, Progressed, read_progress, write_progress
 
 summary = "a cluster under Slurm: arrays of jobs, requeued at their wall time or when a node dies"
 citations = (
@@ -228,15 +229,19 @@ def carry_out(jobs: Sequence[Job], folder: Path, options: Slurm, look: Callable[
     kept = folder / ".runner" / LEFT
     queue, keys = _left(kept, folder)
     waiting = _taken_over(jobs, queue, keys)
-    fresh = [job for job in jobs if job.name not in waiting]
+    given: list[str] = []
     try:
-        for group in arrays(fresh):
+        for group in arrays([job for job in jobs if job.name not in waiting]):
             before = [queue.ids[job.name] for job in jobs if job.name in group[0].needs]
             queue.ids.update(_submitted(group, before, queue.name, folder / ".runner" / "slurm", options))
             keys.update({job.name: job.key for job in group})
+            given += [job.name for job in group]
             content = {name: {"id": number, "key": keys[name]} for name, number in queue.ids.items()}
             write_atomically(kept, (json.dumps(content, indent=1) + "\n").encode())
         _watched(jobs, queue, look)
+    except InputError:
+        queue.cancel(given)
+        raise
     except (KeyboardInterrupt, SystemExit):
         if options.cancel:
             queue.cancel(job.name for job in jobs)
@@ -260,7 +265,8 @@ def _left(file: Path, folder: Path) -> tuple[Queue, dict[str, str]]:
     content: dict[str, dict[str, str]] = {}
     with suppress(FileNotFoundError, ValueError):
         content = json.loads(file.read_bytes())
-    name = "coeflab_" + re.sub(r"[^A-Za-z0-9_.-]", "_", folder.name)
+    own = hashlib.sha256(str(folder.absolute()).encode()).hexdigest()[:6]
+    name = f"coeflab_{re.sub(r'[^A-Za-z0-9_.-]', '_', folder.name)}_{own}"
     return Queue(name, {n: c["id"] for n, c in content.items()}), {n: c["key"] for n, c in content.items()}
 
 
@@ -288,7 +294,7 @@ def _submitted(group: Sequence[Job], before: Sequence[str], name: str, folder: P
 
     Raises
     ------
-    CoeflabError
+    InputError
         Slurm refuses it.
     """
     import submitit
@@ -299,8 +305,8 @@ def _submitted(group: Sequence[Job], before: Sequence[str], name: str, folder: P
     executor = submitit.SlurmExecutor(
         folder, max_num_timeout=options.attempts - 1, python=f"exec {shlex.quote(sys.executable)}"
     )
-    extra = {"ntasks": group[0].cores, "signal": f"B:{SIGNAL}@{options.notice:.0f}", "requeue": True}
-    extra |= {"kill-on-invalid-dep": "yes"}
+    extra = {"ntasks": group[0].cores, "signal": f"B:{SIGNAL}@{options.notice:.0f}"}
+    extra |= {"requeue": True, "kill-on-invalid-dep": "yes"}
     extra |= {option: value for option, value in options.extra.items() if value is not False}
     memory = options.memory * max(job.memory for job in group)
     chosen = {
@@ -348,7 +354,7 @@ def _watched(jobs: Sequence[Job], queue: Queue, look: Callable[[], None]) -> Non
 
 def _ended(job: Job, number: str, state: str) -> None:
     """Say in the job's own file how Slurm ended it, where the job could not."""
-    found = progress(job)
+    found = read_progress(job.folder)
     if found.state is JobState.RUNNING:
         killed = "it took more memory than was asked for: set memory in [runner.slurm]"
         why = killed if state == "OUT_OF_MEMORY" else "`coeflab tow --continue` carries it on"
