@@ -283,12 +283,13 @@ def _fate(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> Kept:
         return Kept(job.name, JobState.STOPPED, what, "more iterations are allowed")
     if now.state.is_kept:
         return Kept(job.name, now.state, f"kept, {now.state}")
-    at = (
-        f"goes on from what it wrote last, iteration {now.iteration:.0f} was reached"
-        if now.iteration > 0
-        else "is begun again"
+    reached = f" (it had reached {now.iteration:.0f})" if now.iteration > 0 else ""
+    return Kept(
+        job.name,
+        now.state,
+        f"goes on from what it wrote last{reached}",
+        "" if now.state is JobState.STOPPED else now.why,
     )
-    return Kept(job.name, now.state, at, now.why)
 
 
 def _may_go_on(job: Job, now: Progressed) -> bool:
@@ -361,10 +362,8 @@ def require_installed(tow: Tow) -> None:
     InputError
     """
     if tow.installed.missing:
-        others = [n for n in SOLVERS.usable() if n != tow.tank.solver and not SOLVERS.load(n).installed().missing]
-        instead = f" Or take --solver {' or --solver '.join(others)}, which needs nothing installed." if others else ""
-        raise InputError(f"no {tow.tank.solver}", tow.installed.missing.rstrip("."), column="solver",
-                         advice=f"The cases are in {tow.folder}.{instead}".strip())  # fmt: skip
+        raise InputError(f"the solver {tow.tank.solver}, which is not installed", "one that is", column="solver",
+                         advice=f"{tow.installed.missing} The cases are in {tow.folder}.")  # fmt: skip
 
 
 def collected(tow: Tow, fitted: bool = True) -> Collected:
