@@ -90,7 +90,7 @@ def test_a_dry_run_says_what_it_will_take_and_leaves_nothing(tmp_path: Path, env
     done = run(tmp_path, environment, "tow_spheroid", "--matrix", "tank.toml", "--dry-run", "--cores", "2")
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith(
-        "spheroid: 6 conditions on 1 mesh by planted 1, about 3 min on 2 cores, up to 400\nMB."
+        "spheroid: 6 conditions on 1 mesh by planted 1, about 3 min on 2 cores, up to\n400 MB."
     )
     assert max(map(len, done.stdout.splitlines())) <= 80
     assert "  mesh/medium_upper                             50k  100 MB   5 s\n" in done.stdout
