@@ -17,7 +17,7 @@ EXAMPLE = "coeflab validate suboff"
 
 
 def command(
-    name: str = typer.Argument(..., help="Name of the validation: suboff, huuv, flyingfish or thauv."),
+    name: str = typer.Argument(..., help="Name of the validation: suboff, huuv, flyingfish, thauv or tank."),
     out: Path | None = typer.Option(None, help="Folder for the files; default reports/NAME."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),

@@ -174,6 +174,10 @@ WORKS: dict[str, str] = {
     "Statistics 38(2), 2010.",
     "wolff2004": "U. Wolff, Monte Carlo errors with less errors, Computer Physics Communications 156, 2004.",
     "kendall1954": "M. G. Kendall, Note on bias in the estimation of autocorrelation, Biometrika 41, 1954.",
+    "lamb1918": "H. Lamb, The Inertia-Coefficients of an Ellipsoid Moving in Fluid, Aeronautical Research Committee, Reports and "
+    "Memoranda 623, 1918.",
+    "whicker1958": "L. F. Whicker, L. F. Fehlner, Free-Stream Characteristics of a Family of Low-Aspect-Ratio, All-Movable Control "
+    "Surfaces for Application to Ship Design, David Taylor Model Basin Report 933, 1958.",
     "lamb1932": "H. Lamb, Hydrodynamics, 6th edition, Cambridge, 1932, sections 114, 115 and 121 a.",
     "carlson1995": "B. C. Carlson, Numerical computation of real or complex elliptic integrals, Numerical Algorithms 10, "
     "1995.",

@@ -20,12 +20,12 @@ from coeflab.core.provenance import sha256_of
 from coeflab.core.text.toml import quoted, value
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
-from coeflab.core.wording import one_line
+from coeflab.core.wording import natural, one_line
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, FORCES, LINEAR, MOTIONS
 from coeflab.tables.campaign import FILE, FOURFOLD
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import RawTable, Run
-from coeflab.tables.runs import RunSummary, natural, summarised
+from coeflab.tables.runs import RunSummary, summarised
 from coeflab.tank.jobs import Job, JobState, Progressed
 from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import Half, Kind, TowCondition

@@ -34,6 +34,7 @@ STOP_AT = re.compile(r"^(stopAt\s+)\w+;", re.MULTILINE)
 EVEN = {Half.PORT: ("X", "Z", "M"), Half.UPPER: ("X", "Y", "N")}
 ACROSS = {Half.PORT: 1, Half.UPPER: 2}
 SAME = 0.01  # of the length and of the area: how well the image of a patch has to fit the patch on the other side
+ON_PLANE = 1e-5  # of the body's length: what ends this near to the plane of the cut does not cross it
 ALIKE = ("system/decomposeParDict",)  # does not count for the key: how many processes share a run
 ONCE = (
     "constant/transportProperties",
@@ -183,7 +184,7 @@ def split(body: TowedBody, half: Half) -> tuple[tuple[str, ...], tuple[tuple[str
         across = corners[mine][:, :, axis]
         area = float(areas[mine].sum())
         centre = np.average(corners[mine].mean(axis=1), axis=0, weights=areas[mine])
-        if across.min() < -near and across.max() > near:
+        if across.min() < -ON_PLANE * body.length and across.max() > ON_PLANE * body.length:
             divided.append(name)
         else:
             (inside if centre[axis] < 0.0 else outside)[name] = (centre, area)

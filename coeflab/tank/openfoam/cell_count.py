@@ -7,6 +7,7 @@ level, cells about them so that levels follow each other in steps, and those ins
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,26 +24,43 @@ GOLDEN = np.array([0.7548776662466927, 0.5698402909980532])  # R2 sequence: poin
 Keys = NDArray[np.int64]
 
 
-def cell_count(body: TowedBody, sizes: MeshSizes) -> float:
-    """Cells that the mesh will have, layers included.
+@dataclass(frozen=True, slots=True)
+class CellCount:
+    """What a mesh will have.
+
+    Attributes
+    ----------
+    cells : float
+        Layers included.
+    faces : float
+        On the body.
+    """
+
+    cells: float
+    faces: float
+
+
+def cell_count(body: TowedBody, sizes: MeshSizes) -> CellCount:
+    """What the mesh of a body will have; within a fifth on the meshes that were made of it.
 
     Parameters
     ----------
     body : TowedBody
     sizes : MeshSizes
     """
-    points, normals, levels, faces = _sampled(body, sizes)
+    points, normals, levels, on_body = _sampled(body, sizes)
     refined = _refined(points, levels, sizes)
-    leaves = sizes.counts.prod() + 7 * sum(map(len, refined))
-    return float(leaves - _inside(refined, points, normals, sizes) + faces)
+    layers = sum(faces * sizes.layers[name].count for name, faces in on_body.items() if name in sizes.layers)
+    leaves = float(sizes.counts.prod()) + 7.0 * sum(map(len, refined))
+    return CellCount(leaves - _inside(refined, points, normals, sizes) + layers, sum(on_body.values()))
 
 
-def _sampled(body: TowedBody, sizes: MeshSizes) -> tuple[Array, Array, NDArray[np.int64], float]:
-    """Points on the surface in the domain, its normals and levels there, and cells in all layers."""
+def _sampled(body: TowedBody, sizes: MeshSizes) -> tuple[Array, Array, NDArray[np.int64], dict[str, float]]:
+    """Points on the surface in the domain, its normals and levels there, and faces on each patch."""
     corners = body.vertices[body.faces]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2.0
     areas = np.linalg.norm(across, axis=1)
-    points, normals, levels, layered = [], [], [], 0.0
+    points, normals, levels, on_body = [], [], [], {}
     for k, name in enumerate(body.patches):
         here = np.flatnonzero((body.patch == k) & (areas > 0.0))
         if not here.size:
@@ -58,9 +76,8 @@ def _sampled(body: TowedBody, sizes: MeshSizes) -> tuple[Array, Array, NDArray[n
         points.append(found[wet])
         normals.append(normal[wet])
         levels.append(np.full(wet.sum(), sizes.levels[name]))
-        if name in sizes.layers:
-            layered += sizes.layers[name].count * wet.sum() / SAMPLES
-    return np.concatenate(points), np.concatenate(normals), np.concatenate(levels), layered
+        on_body[name] = float(wet.sum()) / SAMPLES
+    return np.concatenate(points), np.concatenate(normals), np.concatenate(levels), on_body
 
 
 def _refined(points: Array, levels: NDArray[np.int64], sizes: MeshSizes) -> list[Keys]:

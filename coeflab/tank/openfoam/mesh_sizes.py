@@ -31,7 +31,7 @@ GROWTH, LAST_LAYER = 1.3, 0.35  # of layers; the last one over the cell that it 
 MOST_LAYERS = 30
 FAR_CELL = 0.082  # edge of the cells far away, over the distance from the body to the sides of the domain
 CELLS_IN_RADIUS, FINER_AT_ENDS, END_DEPTH = 4.0, 2, 0.01
-APPENDED, CARRIES = 0.5, 0.2
+APPENDED = SHORT = 0.5  # of the body's length: an appendage by its chord, a part of the hull by its extent
 SYMMETRY_AXIS = {Half.PORT: 1, Half.UPPER: 2}
 
 
@@ -67,7 +67,7 @@ class MeshKeys(Declaration):
     ahead: Distance = 1.4
     behind: Distance = 2.0
     beside: Distance = 1.4
-    coverage: Positive = 0.9
+    coverage: Positive = 0.8
     most_cells: Positive = 6e6
 
     def check(self) -> None:
@@ -239,14 +239,14 @@ def _appended(body: TowedBody, patch: str) -> bool:
 def _level(
     body: TowedBody, patch: str, points: Array, base: float, below: int, keys: MeshKeys, patches: Mapping[str, Array]
 ) -> int:
-    """From cells along a chord; a part of the hull that appendages stand on, along a fifth of it or more, is one finer."""
+    """From cells along a chord; a short part of the hull on which appendages stand, such as the stern, is one finer."""
     if _appended(body, patch) or patch in keys.cells:
         count = keys.cells.get(patch, keys.cells_per_chord)
         return max(round(float(np.log2(base * count / body.chord.get(patch, body.length)))), 1)
     start, end = points[:, 0].min(), points[:, 0].max()
     others = (other[:, 0] for name, other in patches.items() if _appended(body, name))
-    carried = sum(max(min(end, x.max()) - max(start, x.min()), 0.0) for x in others)
-    return below + int(carried > CARRIES * (end - start))
+    carries = any(start < x.mean() < end for x in others)
+    return below + int(carries and end - start < SHORT * body.length)
 
 
 def _hull_regions(body: TowedBody, hull: Array, edge: float, below: int) -> Iterator[Region]:

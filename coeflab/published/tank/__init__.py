@@ -1,0 +1,1 @@
+"""The tow tank against theory."""
