@@ -181,7 +181,7 @@ def _run(
         condition.name, folder, "openfoam", tuple(steps), (mesh.name,), cores,
         memory=cells * BYTES_A_CELL + cores * BYTES_A_PROCESS,
         seconds=float(min(most, USUAL_ITERATIONS) * cells * SECONDS_A_CELL / speed_up),
-        key=case.digest(files, mesh.key, version), iterations=float(most),
+        key=case.digest(files, mesh.key, version), iterations=float(most), cells=float(cells),
     )  # fmt: skip
 
 
