@@ -32,6 +32,7 @@ from coeflab.tank.folder import (
     REPORT,
     TANK,
     body_file,
+    copied,
     forget,
     plan_text,
     read_plan,
@@ -217,7 +218,7 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
     installed = solver.installed()
     refuse_other(folder, tank)
     with only_one(folder, "tow"):
-        own = default_text(body.body).encode() if matrix is None else matrix.read_bytes()
+        own = default_text(body.body).encode() if matrix is None else copied(matrix, folder)
         write_all(folder, {TANK: own, BODY: stl(body)})
         jobs: tuple[Job, ...] = ()
         if solver.jobs is not None:

@@ -202,6 +202,21 @@ def test_an_outside_solver_fills_a_table_in(tmp_path: Path, whole: tuple[Tow, Co
     assert values["Mw"] == pytest.approx(1.3e-2, rel=1e-2)
 
 
+def test_paths_of_a_copied_tank_lead_where_they_led(tmp_path: Path) -> None:
+    mine = tmp_path / "bodies" / "mine"
+    mine.mkdir(parents=True)
+    (mine / "body.toml").write_bytes((shipped("geometry") / "tow_spheroid" / "body.toml").read_bytes())
+    text = HEAD.format(name="mine", solver="external", yaw=TWO).replace(
+        "[tank]", '[tank]\nbody = "bodies/mine"  # near'
+    )
+    (tmp_path / "tank.toml").write_text(text + '[solver.external]\ntable = "filled.csv"\n')
+    tank, body = room.read(None, tmp_path / "tank.toml")
+    room.laid_out(tank, body, tmp_path / "runs" / "x", tmp_path / "tank.toml")
+    again, _, _ = room.reopened(tmp_path / "runs" / "x")
+    assert again.body == tank.body
+    assert Path(again.options["table"]).resolve() == (tmp_path / "filled.csv").resolve()
+
+
 def test_no_tow_in_the_folder(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no tow"):
         room.opened(tmp_path)
