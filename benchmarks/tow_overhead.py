@@ -80,8 +80,6 @@ def main() -> None:
         control.write_text(re.sub(r"(?m)^endTime\s.*$", f"endTime {made_iterations};", control.read_text()))
         environment = () if os.environ.get("WM_PROJECT_DIR") else ("env", "WM_PROJECT_DIR=/usr/share/openfoam")
         plain_wall, plain = timed(*environment, "simpleFoam", cwd=bare)
-        for name in ("drift+4", "drift+12", "straight"):
-            shutil.rmtree(folder / "x" / name)
         collected = timed(coeflab, "tow", "x", "--collect", cwd=folder)
     print(f"{count} cells, {made_iterations} iterations: job {own:.1f} s of processor, {wall:.1f} s of wall;")
     print(f"bare simpleFoam {plain:.1f} s and {plain_wall:.1f} s")
