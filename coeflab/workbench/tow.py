@@ -235,7 +235,15 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
 def reopened(
     folder: Path, matrix: Path | None = None, solver: str = "", runner: str = ""
 ) -> tuple[Tank, TowedBody, Path]:
-    """Tank and body of a tow as its folder has them, and the tank.toml; a new one in its place where it is given.
+    """Tank and body of a tow as its folder has them, and the tank.toml.
+
+    Parameters
+    ----------
+    folder : Path
+    matrix : Path, optional
+        A tank.toml in the place of that of the folder.
+    solver, runner : str
+        In the place of those that the tow was begun with.
 
     Raises
     ------
