@@ -21,11 +21,12 @@ from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import ANGULAR, LINEAR, derivative, primed
 from coeflab.study.study import PlannedTow, Study
 from coeflab.study.validation import Validation, validation
+from coeflab.tables.campaign import FOURFOLD
 from coeflab.tables.force_table import AT_REST, ForceTable
 from coeflab.vehicle.reference import Reference
 
 # A quarter of a turn about x: v -> w, Y -> Z, N -> -M, r -> -q.
-FOURFOLD = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}
+TURNED = {"Zw": ("Yv", 1.0), "Mw": ("Nv", -1.0), "Zq": ("Yr", -1.0), "Mq": ("Nr", 1.0)}
 NOT_TOWED, NOT_RUN, OPEN = "not towed", "not run", "open"
 
 
@@ -123,7 +124,8 @@ def _row(
 ) -> TowedRow:
     scaling = fits[0].coefficients.scaling if fits else study.plan.scaling
     published = tuple(_published(study, fits, r, symbol, scaling) for r in columns)
-    source, sign = FOURFOLD.get(symbol, ("", 1.0)) if tow.fourfold else ("", 1.0)
+    fourfold = tow.fourfold or any(FOURFOLD in t.symmetry for t in _tables(study, tow.campaign))
+    source, sign = TURNED.get(symbol, ("", 1.0)) if fourfold else ("", 1.0)
     own = _coefficient(fits, source or symbol)
     budget = _budget(study, tow.campaign, source or symbol)
     u_grid = None if budget is None else budget.part("grid")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -24,7 +23,6 @@ from coeflab.tables.runs import find_runs
 Progress = Callable[[str], None]
 GENERAL = "table"  # any delimited text: those of one tool come first
 MATRIX = "matrix"  # in the column of studies: a row of none
-_CHANGES = re.compile(r"(\w+)\s*=\s*([^\s=]+)(?!\s*=)(?=\s|$)")
 OF_RUNS = ("names", "run_list", "state")
 
 
@@ -167,16 +165,19 @@ def with_declarations(
 
 
 def _variants(read: Cells, column: str) -> tuple[str, ...]:
-    """What a study changed in every row, as ``name = value``; several changes one after the other."""
+    """What a study changed in every row, as ``name = value``; several changes with a comma between."""
     out = []
-    for row, text in enumerate(map(str.strip, read.texts(column))):
-        pairs = [] if text in ("", MATRIX) else _CHANGES.findall(text)
-        if text not in ("", MATRIX) and (_CHANGES.sub("", text).strip() or any(n not in STUDIES for n, _ in pairs)):
-            raise InputError(
-                shown(text), f"blank, {MATRIX}, or what a study changed: {', '.join(f'{n} = ...' for n in STUDIES)}",
-                file=read.file, line=read.line(row), column=column,
-            )  # fmt: skip
-        out.append(Verbatim(" ".join(f"{name} = {value}" for name, value in pairs)))
+    for row, text in enumerate(read.texts(column)):
+        pairs = []
+        for part in () if text.strip() in ("", MATRIX) else text.split(","):
+            name, sign, value = map(str.strip, part.partition("="))
+            if name not in STUDIES or not sign or not value or "=" in value:
+                raise InputError(
+                    shown(text), f"blank, {MATRIX}, or what a study changed: {', '.join(f'{n} = ...' for n in STUDIES)}",
+                    file=read.file, line=read.line(row), column=column,
+                )  # fmt: skip
+            pairs.append(f"{name} = {value}")
+        out.append(Verbatim(", ".join(pairs)))
     return tuple(out)
 
 

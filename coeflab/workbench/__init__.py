@@ -103,7 +103,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         scaling = plan.scaling or read[0].scaling
         is_ours = planned.campaign in ours
         enough = [t for t in read if _has_points(t)] if is_ours else read
-        for name in planned.fits:
+        for name in planned.fits if enough else ():
             try:
                 fitted, found = _fitted(name, enough, scaling, planned.options.get(name, {}), fits)
             except InputError as why:

@@ -24,13 +24,13 @@ from coeflab.tables.importers import PlannedTable
 from coeflab.tables.reading import read_tables
 
 # beta, grid, cells, iterations, X, Y, Z, K, M, N, se_Y, se_N, se_X, wall: 4 deg of the bare hull with one thing changed.
-ROW = "4,A,{cells},250,-39.4,{Y},0,0,0,{N},.12,.06,.07,347,{variant},{doubtful}"
+ROW = '4,A,{cells},250,-39.4,{Y},0,0,0,{N},.12,.06,.07,347,"{variant}",{doubtful}'
 CHANGED = (
     ("domain = 1.5", 700000, 18.622, 146.47, ""),
-    ("turbulence = kEpsilon", 607541, 20.522, 145.47, ""),
+    ("turbulence = realizable k-epsilon", 607541, 20.522, 145.47, ""),
     ("turbulence = SpalartAllmaras", 607541, 17.522, 146.97, ""),
     ("iterations=500", 607541, 18.022, 146.49, ""),
-    ("domain=1.5 turbulence=kEpsilon", 700000, 99.0, 999.0, ""),
+    ("domain=1.5, turbulence=kEpsilon", 700000, 99.0, 999.0, ""),
 )
 
 
@@ -148,20 +148,35 @@ def test_a_validation_holds_all_but_the_turbulence_model(
 
 
 def test_a_run_that_did_not_converge_is_not_judged(tmp_path: Path) -> None:
-    changed = (("turbulence = kEpsilon", 607541, 30.0, 146.0, "Y"), CHANGED[2])
+    changed = (("turbulence = realizable k-epsilon", 607541, 30.0, 146.0, "Y"), CHANGED[2])
     drift = read_tables(PlannedTable(campaign(tmp_path / "c", changed), ()))[0]
     (found,) = variant_studies(drift, "Y")
     assert found.changed == (("turbulence = SpalartAllmaras", 17.522),)
 
 
+def test_a_study_of_the_iterations_judges_a_run_that_ended_sooner(tmp_path: Path) -> None:
+    changed = (
+        ("iterations = 60", 607541, 19.522, 146.0, "Y N,unconverged"),
+        ("iterations = 70", 607541, 9.0, 9.0, "Y N,diverged"),
+    )
+    folder = campaign(tmp_path / "c", changed)
+    head, *rows = (folder / "drift.csv").read_text().splitlines()
+    rows = [row if row.endswith(("ged", "unconverged")) else f"{row},converged" for row in rows]
+    (folder / "drift.csv").write_text("\n".join([f"{head},status", *rows]) + "\n")
+    text = (folder / "campaign.toml").read_text().replace('labels = ["grid"]', 'labels = ["grid", "status"]', 1)
+    (folder / "campaign.toml").write_text(text)
+    (found,) = variant_studies(read_tables(PlannedTable(folder, ()))[0], "Y")
+    assert found.changed == (("iterations = 60", 19.522),)
+
+
 def test_another_grid_is_judged_for_the_domain_only(tmp_path: Path) -> None:
-    changed = (("turbulence = kEpsilon", 192998, 20.0, 146.0, ""), ("domain = 2", 900000, 18.0, 146.0, ""))
+    changed = (("turbulence = realizable k-epsilon", 192998, 20.0, 146.0, ""), ("domain = 2", 900000, 18.0, 146.0, ""))
     drift = read_tables(PlannedTable(campaign(tmp_path / "c", changed), ()))[0]
     assert [s.name for s in variant_studies(drift, "Y")] == ["domain size"]
 
 
 @pytest.mark.parametrize(
-    "text", ["kEpsilon", "model = kEpsilon", "domain =", "domain = 1.5 = 2", "domain = very large"]
+    "text", ["kEpsilon", "model = kEpsilon", "domain =", "domain = 1.5 = 2", "domain = 1.5, model = k"]
 )
 def test_a_change_of_no_known_study_is_refused_by_line(tmp_path: Path, text: str) -> None:
     folder = campaign(tmp_path / "c", ((text, 1000, 1.0, 1.0, ""),))
@@ -176,8 +191,8 @@ def test_the_tables_name_what_was_changed(with_studies: tuple[FitResult, dict[st
     at = next(i for i, r in enumerate(shown.rows) if r[:2] == ("turbulence model", "Y"))
     assert [r[3:6] for r in shown.rows[at : at + 3]] == [
         ("in use", "18.522", "0.0 %"),
-        ("turbulence = kEpsilon", "20.522", "10.8 %"),
+        ("turbulence = realizable k-epsilon", "20.522", "10.8 %"),
         ("turbulence = SpalartAllmaras", "17.522", "5.4 %"),
     ]
     notes = " ".join(budget_table(with_studies[1]["Yv"]).notes)
-    assert "turbulence model: 18.52 in use, kEpsilon 20.52, SpalartAllmaras 17.52" in notes
+    assert "turbulence model: 18.52 in use, realizable k-epsilon 20.52, SpalartAllmaras 17.52" in notes

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.closed_forms import low_aspect_lift_slope, spheroid_munk_slope
+from coeflab.core.files import shipped
+from coeflab.core.text.toml import read_toml
 from coeflab.published.tank.acceptance import ASPECT, LAMB, PLANE, SPHEROID, acceptance, inertia_of_spheroid
 from coeflab.report.acceptance import Basis
 
@@ -44,6 +46,20 @@ def test_the_munk_moment_by_printed_coefficients() -> None:
     """At c/a = 6.01: -2 (0.918 - 0.045) pi / 6 / 6.01^2."""
     assert spheroid_munk_slope(6.01, 1.0) == pytest.approx(-2.0 * (0.918 - 0.045) * np.pi / 6.0 / 6.01**2, rel=2e-3)
     assert spheroid_munk_slope(12.02, 2.0) == pytest.approx(spheroid_munk_slope(6.01, 1.0))
+
+
+@pytest.mark.parametrize(("file", "name"), [("plane", PLANE), ("spheroid", SPHEROID)])
+def test_the_shipped_tanks_make_the_campaigns_that_are_read(file: str, name: str) -> None:
+    tank = read_toml(shipped("cfd_data") / "tank" / f"{file}.toml").content
+    assert tank["tank"]["name"] == name
+    assert len(tank["matrix"]["drift"]) >= 3
+    assert (shipped("geometry") / tank["tank"]["body"] / "body.toml").is_file()
+
+
+def test_the_aspect_ratio_is_that_of_the_shipped_plane() -> None:
+    fin = read_toml(shipped("geometry") / "naca0020_plane" / "body.toml").content["fin"][0]
+    span, root, tip = (float(str(fin[k]).split()[0]) for k in ("tip", "root_chord", "tip_chord"))
+    assert 2.0 * span / (0.5 * (root + tip)) == pytest.approx(ASPECT, abs=1e-3)
 
 
 def test_a_sphere_has_no_munk_moment() -> None:
@@ -111,6 +127,18 @@ def test_tows_stand_beside_theory(ideal: Path) -> None:
     assert spheroid.rows[0].difference == pytest.approx(0.1, abs=1e-3)  # the moment is negative
     assert found.holds
     assert any(s.startswith("Yv' = -0.001") for s in spheroid.statements)
+
+
+def test_too_few_converged_runs_leave_it_open(tmp_path: Path) -> None:
+    towed(tmp_path, SPHEROID, -0.001, -0.02, 0.0)
+    table = tmp_path / SPHEROID / "drift.csv"
+    head, *rows = table.read_text().splitlines()
+    table.write_text(
+        "\n".join([f"{head},uncertain", *(f"{row},X Y N" for row in rows[:-2]), *(f"{r}," for r in rows[-2:])])
+    )
+    found = acceptance(tmp_path)
+    assert [t.key for t in found.tables] == ["lamb"]
+    assert any(s.startswith(f"Open: {SPHEROID} has 2 usable points") for s in found.statements)
 
 
 def test_a_stalled_plane_fails(tmp_path: Path) -> None:

@@ -346,20 +346,21 @@ def test_a_job_stops_when_its_parent_is_killed(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_killed_job_is_not_taken_up_before_its_solver_has_ended(
-    tmp_path: Path, start: Callable[..., subprocess.Popen[bytes]]
+    tmp_path: Path, start: Callable[..., subprocess.Popen[bytes]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A solver that outlives its watcher, as where a system does not tell it, holds the folder."""
-    job = prepared(tmp_path, pause=0.005)
-    with only_one(job.folder, "job") as lock:
-        orphan = subprocess.Popen(("sleep", "1"), pass_fds=(lock,))
+    job = prepared(tmp_path)
+    deaf = ("sh", "-c", "trap '' TERM; touch begun; until [ -e enough ]; do sleep .05; done")
+    write_job(replace(job, steps=(replace(job.steps[0], name="deaf", command=deaf),)))
     process = start(job.folder)
-    time.sleep(0.7)
-    assert orphan.poll() is None
-    assert rows(job.folder) == 0
-    wait(lambda: rows(job.folder) > 0)
-    assert orphan.poll() is not None
-    process.terminate()
-    orphan.wait()
+    wait((job.folder / "begun").exists)
+    process.kill()
+    process.wait()
+    monkeypatch.setattr(carried, "PATIENCE", 0.2)
+    with pytest.raises(InputError, match=f"a job that process {process.pid} on"):
+        carry_out(job.folder)
+    monkeypatch.setattr(carried, "PATIENCE", 20.0)
+    (job.folder / "enough").touch()
+    assert carry_out(job.folder).state is JobState.FINISHED
 
 
 def test_memory_is_that_of_all_processes_of_a_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

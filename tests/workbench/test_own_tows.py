@@ -154,6 +154,22 @@ def test_runs_left_out_are_counted_beside_a_value_too(bodies: tuple[Towed, ...])
     assert by["Yv"].why == "1 of 6 runs with v left out: 1 drifting"
 
 
+def test_a_tow_without_any_converged_run_has_its_reasons(folder: Path, tmp_path: Path) -> None:
+    tow_of_the_bare_hull(
+        tmp_path, "suboff_tow_aff8", "suboff_aff8", lambda line: line.replace("converged,", "drifting,X Y Z K M N")
+    )
+    text = (folder / "plan.toml").read_text()
+    head = text[: text.index('[[table]]\ncampaign = "suboff_roddy_2"')]
+    table = '[[table]]\ncampaign = "suboff_roddy_3"\nfits = ["slope_at_origin"]\n'
+    aff8 = text[text.index('[[tow]]\nname = "AFF-8"') :]
+    (tmp_path / "plan.toml").write_text(head + table + aff8)
+    (found,) = towed(run(read_plan(tmp_path / "plan.toml")))
+    by = {r.symbol: (r.missing, r.why) for r in found.rows}
+    assert by["Nv"] == (OPEN, "6 of 6 runs with v left out: 6 drifting")
+    assert by["Nr"] == (OPEN, "6 of 6 runs with r left out: 6 drifting")
+    assert by["Zw"][0] == NOT_RUN
+
+
 def test_without_any_tow_the_study_stands(folder: Path, tmp_path: Path) -> None:
     shutil.copy(folder / "published.toml", tmp_path)
     (tmp_path / "plan.toml").write_text(

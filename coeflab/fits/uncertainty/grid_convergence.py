@@ -344,6 +344,7 @@ def _expansion(f: Array, h: Array, w: Array, orders: tuple[float, ...], free: bo
 
 
 MANY = 3
+WITHOUT_PLATEAU = {"too short", "drifting", "unconverged"}
 AT_REST = 1e-4  # of the largest motion in the table: rounding of a printed angle, not a motion
 
 
@@ -456,6 +457,7 @@ def variant_studies(table: ForceTable, component: str) -> tuple[VariantStudy, ..
     The half-width is that of a rectangular distribution about the value in use that reaches to the farthest of the others,
     JCGM 100:2008, 4.3.7: 2 / sqrt 3 times the largest distance; a distance below the iteration noise of both values counts
     as that noise. Rows of other grids than the row in use, where cells are known and the domain is the same, are not judged.
+    Nor are runs that did not converge, but for those that a study of the iterations ended sooner.
     """
     if component not in table.forces or not any(table.variants):
         return ()
@@ -467,8 +469,13 @@ def variant_studies(table: ForceTable, component: str) -> tuple[VariantStudy, ..
         alike = [int(i) for i in np.flatnonzero((setting == setting[row]) & sound)]
         if any(i != row and not _changed(table, i) and table.usable[component][i] for i in alike):
             continue
+        sooner = [int(i) for i in np.flatnonzero(setting == setting[row]) if _ended_sooner(table, component, int(i))]
         for name, part in STUDIES.items():
-            rows = [i for i in alike if _changed(table, i) == name and (name == "domain" or _one_grid(table, row, i))]
+            rows = [
+                i
+                for i in (*alike, *sooner)
+                if _changed(table, i) == name and (name == "domain" or _one_grid(table, row, i))
+            ]
             if not rows:
                 continue
             apart = np.maximum(np.abs(force[rows] - force[row]), np.hypot(noise[rows], noise[row]))
@@ -485,6 +492,13 @@ def _changed(table: ForceTable, row: int) -> str:
     """Name of the study that a row belongs to; ``several`` of one with several changes, empty for one of the matrix itself."""
     names = table.variants[row].split(" = ") if table.variants else [""]
     return names[0] if len(names) < MANY else "several"
+
+
+def _ended_sooner(table: ForceTable, component: str, row: int) -> bool:
+    """Whether a row of a study of the iterations has a force, but no plateau."""
+    states = {e.status for e in table.exclusions if e.row == row and e.status}
+    ended = bool(states) and states <= WITHOUT_PLATEAU
+    return ended and _changed(table, row) == "iterations" and bool(np.isfinite(table.forces[component][row]))
 
 
 def _one_grid(table: ForceTable, a: int, b: int) -> bool:

@@ -128,7 +128,8 @@ def own_tow(found: Towed) -> Table:
     where = f"Campaign {found.tow.campaign}{absent}." if found.tow.campaign else ""
     every = len(found.rows) > 1 and len(said) == 1
     reasons = [f"{'All' if every else ', '.join(symbols)}: {why}." for why, symbols in said.items() if why]
-    grid = "" if any(r.u_grid for r in found.rows) or not found.tow.campaign else "No grid study: not in U95."
+    assessed = any(r.u_grid for r in found.rows) or all(r.value is None for r in found.rows)
+    grid = "" if assessed else "No grid study: not in U95."
     notes = tuple(n for n in (where, *reasons, grid, found.tow.note) if n)
     headers = ("", "tow", "U95", "grid", *found.columns)
     return Table(f"Own tow: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
