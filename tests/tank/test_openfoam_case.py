@@ -109,6 +109,11 @@ def test_a_stop_is_taken_back_and_a_torn_field_is_not_started_from(jobs: Jobs) -
     steps, at = openfoam.resumed(job)
     assert ([s.name for s in steps], at) == (["simpleFoam"], 100.0)
     assert not (job.folder / "processor0/200").exists()
+    names = {
+        n: [s.name for s in openfoam.resumed(jobs(towed.tank(towed.MATRIX[0], cores=n))["straight"])[0]] for n in (1, 3)
+    }
+    anew = ["reconstructPar", "cleanProcessors"]
+    assert names == {1: [*anew, "simpleFoam"], 3: [*anew, "decomposePar", "simpleFoam"]}
     assert "stopAt          endTime;" in (job.folder / "system/controlDict").read_text()
     shutil.rmtree(job.folder / "processor0/100")
     steps, at = openfoam.resumed(job)
@@ -166,6 +171,12 @@ def test_a_body_that_is_not_its_own_image_is_towed_whole(jobs: Jobs, tmp_path: P
         openfoam.jobs(towed.tank(condition), replace(body, vertices=moved), tmp_path)
 
 
+def test_a_part_cannot_have_the_name_of_something_else(jobs: Jobs, tmp_path: Path) -> None:
+    body = replace(towed.surface(), patches=("hull", "far"))
+    with pytest.raises(InputError, match="a part named far"):
+        openfoam.jobs(towed.tank(towed.MATRIX[0]), body, tmp_path)
+
+
 def test_before_the_first_iteration_the_history_is_empty(jobs: Jobs) -> None:
     job = jobs(towed.tank(towed.MATRIX[0]))["straight"]
     assert openfoam.history(job.folder).ended is Ended.EMPTY
@@ -182,8 +193,11 @@ def test_forces_beyond_anything_physical_are_divergence(jobs: Jobs) -> None:
 
 def test_a_crash_is_said_with_the_log(jobs: Jobs) -> None:
     job = jobs(towed.tank(towed.MATRIX[0]))["straight"]
-    log = "Exec   : simpleFoam\nBuild  : 1912\n--> FOAM FATAL ERROR: cannot find file\n"
-    (written(job.folder, 30) / "log.simpleFoam").write_text(log)
+    banner = "Exec   : simpleFoam\nBuild  : 1912\ntrapFpe: Floating point exception trapping enabled (FOAM_SIGFPE).\n"
+    log = written(job.folder, 30) / "log.simpleFoam"
+    log.write_text(banner + "Time = 30\n")
+    assert openfoam.ended(job)[1] == ""
+    log.write_text(banner + "--> FOAM FATAL ERROR: cannot find file\n")
     assert "FOAM FATAL" in openfoam.ended(job)[1]
 
 

@@ -36,6 +36,17 @@ ACROSS = {Half.PORT: 1, Half.UPPER: 2}
 SAME = 0.01  # of the length and of the area: how well the image of a patch has to fit the patch on the other side
 ON_PLANE = 1e-5  # of the body's length: what ends this near to the plane of the cut does not cross it
 ALIKE = ("system/decomposeParDict",)  # does not count for the key: how many processes share a run
+SOMETIMES = {"constant/MRFProperties", "0/k", "0/omega", "0/epsilon", "0/nut", "0/nuTilda"}  # not in every case
+TAKEN = {
+    "forces",
+    "yPlus",
+    "pressure",
+    "viscous",
+    "internal",
+    "porous",
+    "far",
+    "cut",
+}  # names of other things than patches
 ONCE = (
     "constant/transportProperties",
     "constant/physicalProperties",
@@ -230,9 +241,19 @@ def case_files(
         At most.
     checkpoint : int
         Iterations after which fields are written.
+
+    Raises
+    ------
+    InputError
+        A patch has a name that is taken, or a half is asked for of a body that is not its own image.
     """
     water, centre = frame(condition.velocity, condition.rates)
     rate = float(np.linalg.norm(condition.rates))
+    if taken := TAKEN.intersection(body.patches):
+        raise InputError(
+            f"a part named {sorted(taken)[0]}", f"any name but {', '.join(sorted(TAKEN))}", file=tank.body,
+            advice="OpenFOAM, or coeflab in its cases, calls something else so.",
+        )  # fmt: skip
     divided, pairs = split(body, condition.half)
     values = {
         "divided": divided, "pairs": pairs, "parts": (*divided, *(mine for mine, _ in pairs)),
@@ -267,10 +288,8 @@ def digest(files: Mapping[str, bytes], *more: str) -> str:
 def placed(folder: Path, files: Mapping[str, bytes], mesh: Path) -> None:
     """Write the files and the link to the mesh; what is there and equal is left alone, a field or a frame too many is removed."""
     write_all(folder, files)
-    for name in ("0", "constant"):
-        for file in (folder / name).iterdir():
-            if file.is_file() and not file.is_symlink() and f"{name}/{file.name}" not in files:
-                file.unlink()
+    for name in SOMETIMES - files.keys():
+        (folder / name).unlink(missing_ok=True)
     link, target = folder / "constant/polyMesh", Path(os.path.relpath(mesh / "constant/polyMesh", folder / "constant"))
     if not link.is_symlink() or link.readlink() != target:
         link.unlink(missing_ok=True)
@@ -297,7 +316,7 @@ def set_stop(folder: Path, at: str) -> None:
 def written_times(folder: Path) -> list[float]:
     """Times at which every process has written every field whole, latest last."""
     parts = sorted(folder.glob("processor[0-9]*")) or [folder]
-    names = {f.name for f in (folder / "0").iterdir()} | {"phi"}
+    names = {f.name for f in (folder / "0").iterdir() if f.suffix == ""} | {"phi"}
     times = [
         {t.name for t in p.iterdir() if re.fullmatch(r"\d+(\.\d+)?", t.name) and float(t.name) > 0.0} for p in parts
     ]
@@ -311,6 +330,11 @@ def _is_whole(field: Path) -> bool:
         stream.seek(max(0, field.stat().st_size - 200))
         return FOOT in stream.read()
     return False
+
+
+def shares(folder: Path) -> int:
+    """Processes among which a run is divided; 0 for one that is not."""
+    return len(list(folder.glob("processor[0-9]*")))
 
 
 def remove_after(folder: Path, last: float) -> None:

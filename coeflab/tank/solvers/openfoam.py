@@ -19,7 +19,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
 from coeflab.core.text.foam import FoamCase
 from coeflab.law.symbols import COMPONENTS
-from coeflab.tables.importers import openfoam
+from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run
 from coeflab.tank.jobs import Job, Step
 from coeflab.tank.openfoam import case, rendered, step
@@ -42,7 +42,10 @@ citations = (
     "Numerical Heat Transfer 7, 147-163",
 )
 
-SOLVER, TOOLS = "simpleFoam", ("blockMesh", "snappyHexMesh", "checkMesh", "topoSet", "decomposePar", "simpleFoam")
+SOLVER, TOOLS = (
+    "simpleFoam",
+    ("blockMesh", "snappyHexMesh", "checkMesh", "topoSet", "decomposePar", "reconstructPar", "simpleFoam"),
+)
 MODELS = {
     "k-omega SST": "kOmegaSST",
     "realizable k-epsilon": "realizableKE",
@@ -51,10 +54,11 @@ MODELS = {
 }
 # No force on a body is as large: a flat plate across the flow has about one of its own area.
 BOUND, SETTLED = 100.0, 20
-USUAL_ITERATIONS = 350.0  # until the plateau of a body with appendages
-SECONDS_A_CELL = 2.1e-6  # an iteration on one core
-BYTES_A_CELL, BYTES_A_PROCESS = 1.05e3, 6e7
+USUAL_ITERATIONS = 400.0  # until the plateau of a body with appendages
+SECONDS_A_CELL = 2.2e-6  # an iteration on one core
+BYTES_A_CELL, BYTES_A_PROCESS = 1.05e3, 1.5e8
 PARALLEL = 0.9  # of the ideal speed-up is left with every doubling of the cores
+WITHOUT_SHARES = Step("cleanProcessors", ("sh", "-c", "rm -rf processor*"))
 WHOLE_NUMBER = Within(
     lambda v: "" if v >= 1.0 and v == int(v) else "a whole number, one or more", schema={"minimum": 1}
 )
@@ -151,7 +155,8 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
 def _with_zone(mesh: Job) -> Job:
     """The mesh with a last step that puts all cells into the zone of the rotating frame."""
     write_all(mesh.folder, {"system/topoSetDict": rendered("case/system/topoSetDict")})
-    return replace(mesh, steps=(*mesh.steps, step("topoSet", "topoSet", "-constant")))
+    steps = (*mesh.steps, step("topoSet", "topoSet", "-constant"))
+    return replace(mesh, steps=steps, cells=expected_cells(mesh.folder))
 
 
 def _run(
@@ -181,7 +186,7 @@ def _run(
         condition.name, folder, "openfoam", tuple(steps), (mesh.name,), cores,
         memory=cells * BYTES_A_CELL + cores * BYTES_A_PROCESS,
         seconds=float(min(most, USUAL_ITERATIONS) * cells * SECONDS_A_CELL / speed_up),
-        key=case.digest(files, mesh.key, version), iterations=float(most), cells=float(cells),
+        key=case.digest(files, mesh.key, version), iterations=float(most), cells=cells,
     )  # fmt: skip
 
 
@@ -195,7 +200,8 @@ def history(folder: Path) -> Run:
     """
     if not _has_rows(folder):
         return Run(folder, folder.name, RawTable(folder, ()), ended=Ended.EMPTY, why="no iteration yet")
-    run = openfoam.run(folder, {"function": "forces", "rotation": "body"})
+    read = IMPORTERS.load("openfoam").run
+    run = read(folder, {"function": "forces", "rotation": "body"})  # type: ignore[misc]  # that importer reads runs
     half, divided, pairs, length, fastest = _towing(folder)
     patches = {
         n: _whole_body(t, half) for n, t in run.patches.items() if n in divided or n not in map(itemgetter(0), pairs)
@@ -286,7 +292,13 @@ def resumed(job: Job) -> tuple[tuple[Step, ...], float]:
     if not times:
         return job.steps, float("nan")
     case.remove_after(job.folder, times[-1])
-    return tuple(s for s in job.steps if s.watched), times[-1]
+    shares, wanted = case.shares(job.folder), job.cores if job.cores > 1 else 0
+    steps: tuple[Step, ...] = ()
+    if shares != wanted:  # it was begun on another number of cores
+        if shares:
+            steps = (step("reconstructPar", "reconstructPar", "-latestTime"), WITHOUT_SHARES)
+        steps += tuple(s for s in job.steps if s.name == "decomposePar")
+    return (*steps, *(s for s in job.steps if s.watched)), times[-1]
 
 
 def ended(job: Job) -> tuple[tuple[str, ...], str]:
