@@ -80,7 +80,9 @@ options = Planted
 
 def installed() -> Installation:
     version = os.environ.get("PLANTED_VERSION", "planted 1")
-    return Installation(version, "" if version else "the planted solver (apt install planted)")
+    return Installation(
+        version, "" if version else "Planted is not installed: apt install planted. Or take --solver external."
+    )
 
 
 def forces(tank: Tank, condition: TowCondition) -> dict[str, float]:

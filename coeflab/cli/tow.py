@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 import tempfile
+import textwrap
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -58,7 +59,7 @@ def command(
     on. Exit code 1 when a condition did not converge.
     """
     from coeflab.core.errors import InputError
-    from coeflab.core.files import located, typed
+    from coeflab.core.files import typed
     from coeflab.tank.folder import PLAN, has_begun
 
     modes = {"--dry-run": dry_run, "--continue": go_on, "--status": status, "--collect": collect}
@@ -77,11 +78,11 @@ def command(
     if not body and out is not None and (out / PLAN).is_file():
         if not go_on and not dry_run and has_begun(out):
             _refuse_begun(out)
-        _tow(None, matrix, solver, out, dry_run, runner, cores, json)
+        _tow("", matrix, solver, out, dry_run, runner, cores, json)
         return
     if not body and matrix is None:
         raise InputError("no body", "a body.toml, its folder or a shipped body; or the folder of a tow", column="BODY")
-    _tow(located(body, "geometry") if body else None, matrix, solver, out, dry_run, runner, cores, json, go_on)
+    _tow(body, matrix, solver, out, dry_run, runner, cores, json, go_on)
 
 
 def _folder(out: Path | None, body: str) -> Path:
@@ -103,13 +104,15 @@ def _refuse_begun(folder: Path) -> None:
 
 
 def _tow(
-    body: Path | None, matrix: Path | None, solver: str, out: Path | None, dry_run: bool, runner: str, cores: int,
-    json: bool, go_on: bool = True,
+    said: str, matrix: Path | None, solver: str, out: Path | None, dry_run: bool, runner: str, cores: int, json: bool,
+    go_on: bool = True,
 ) -> None:  # fmt: skip
     """Lay out, and unless it is a dry run, carry out and collect."""
+    from coeflab.core.files import located
     from coeflab.tank.folder import PLAN, has_begun, read_plan, refuse_other
     from coeflab.workbench import tow as tank_room
 
+    body = located(said, "geometry") if said else None
     with show.progress(json) as say:
         say("reading the body")
         own = matrix
@@ -129,7 +132,7 @@ def _tow(
             say("writing the cases")
             tow = tank_room.laid_out(tank, surface, place, own)
         if dry_run:
-            asked = [*([str(body)] if body else []), *(["--matrix", str(matrix)] if matrix else [])]
+            asked = [*([said] if said else []), *(["--matrix", str(matrix)] if matrix else [])]
             asked += ["--solver", solver] if solver else []
             _dry(tow, before, asked, None if place != folder else folder, cores, json)
             return
@@ -184,10 +187,11 @@ def _dry(
     if own and memory > 0.9 * own:
         show.sentence(f"The largest job takes {tables.size(memory, 'B')} of this machine's {tables.size(own, 'B')}.")
     if missing:
-        show.sentence(f"To install: {missing}")
-        show.sentence("Without it: --solver external writes a run list and an empty table for any solver.")
-    for stated in tow.tank.by_symmetry:
-        show.sentence(f"Not run, by symmetry: {stated}.")
+        show.sentence(missing)
+    if tow.tank.by_symmetry:
+        show.text("By symmetry, not run:")
+        for stated in tow.tank.by_symmetry:
+            show.lines(textwrap.fill(stated, 79, initial_indent="  ", subsequent_indent="    "))
     show.text()
     show.table(tables.planned(tow.tank, tow.jobs))
     if before is not None:
@@ -220,7 +224,8 @@ def _fates(tow: Tow, before: Mapping[str, Any] | None) -> None:
     others = [k for k in found if k not in same and k not in waiting]
     show.text(f"Kept: {len(same)} of {len(found)}; to be run: {len(waiting)}")
     for k in others:
-        show.sentence(f"  {k.name}: {k.what}" + (f", {k.why}" if k.why else "") + ".")
+        line = f"{k.name}: {k.what}" + (f", {k.why}" if k.why else "")
+        show.lines(textwrap.fill(line, 79, initial_indent="  ", subsequent_indent="    ", break_long_words=False))
     dropped = [] if before is None else [n for n in before.get("jobs", {}) if n not in tow.of]
     if dropped:
         show.sentence(f"Not in the matrix any more, left on disk: {', '.join(dropped)}.")
@@ -286,7 +291,7 @@ def _live(tow: Tow, json: bool) -> Iterator[Any]:
                 trouble[:] = [str(why)]
         if not on_terminal and not json:
             for r in over:
-                show.text(_ended(r, shown, rows))
+                show.lines(_ended(r, shown, rows))
         return rows
 
     if not on_terminal:
@@ -343,9 +348,14 @@ def _ended(row: JobRow, shown: Mapping[str, Any], rows: Sequence[JobRow]) -> str
 
     cells = tables.states((row,), shown).rows[0]
     values = "".join(f", 1e3 {v}" for v in cells[3:5] if v)
-    why = f": {row.progress.why}" if row.progress.why else ""
-    at = f" at iteration {cells[2]}" if cells[2] else ""
-    return f"{row.job.name}: {cells[1]}{at}{values}{why} ({tables.counted(rows)})"
+    at = f" at {cells[2]}" if cells[2] else ""
+    said = f"{row.job.name}: {cells[1]}{at}{values} ({tables.counted(rows).partition(' finished')[0]})"
+    return "\n".join(
+        [
+            said,
+            *(textwrap.wrap(row.progress.why, 75, initial_indent="  ", subsequent_indent="  ", break_long_words=False)),
+        ]
+    )
 
 
 def _status(folder: Path, json: bool) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped
 from coeflab.core.provenance import sha256_of
+from coeflab.core.text.toml import quoted, read_toml
 from coeflab.core.version import VERSION
 from coeflab.tank.jobs import JOB, STATE, Job
 from coeflab.tank.tank import Tank
@@ -58,6 +59,32 @@ def _portable(path: Path, folder: Path) -> str:
     if path.resolve().is_relative_to(inside):
         return path.resolve().relative_to(inside).parts[0]
     return Path(os.path.relpath(path, folder)).as_posix()
+
+
+def copied(matrix: Path, folder: Path) -> bytes:
+    """A tank.toml as it was written, its paths as they are seen from the folder of the tow.
+
+    Parameters
+    ----------
+    matrix : Path
+    folder : Path
+    """
+    file = read_toml(matrix)
+    lines = file.text.split("\n")
+    for place, kind in ((("tank", "body"), "geometry"), (("solver", "external", "table"), "cfd_data")):
+        named: Any = file.content
+        for key in place:
+            named = named.get(key) if isinstance(named, dict) else None
+        at = file.line(place)
+        if not isinstance(named, str) or at is None or matrix.parent.resolve() == folder.resolve():
+            continue
+        beside = (matrix.parent / named).resolve()
+        if not beside.exists() and (shipped(kind) / named).exists():
+            continue  # the name of something shipped
+        before, key, _ = lines[at - 1].partition(place[-1])
+        if key and "=" in lines[at - 1]:
+            lines[at - 1] = f"{before}{key} = {quoted(Path(os.path.relpath(beside, folder.resolve())).as_posix())}"
+    return "\n".join(lines).encode()
 
 
 def body_file(folder: Path, plan: dict[str, Any]) -> Path:

@@ -32,6 +32,7 @@ from coeflab.tank.folder import (
     REPORT,
     TANK,
     body_file,
+    copied,
     forget,
     plan_text,
     read_plan,
@@ -217,7 +218,7 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
     installed = solver.installed()
     refuse_other(folder, tank)
     with only_one(folder, "tow"):
-        own = default_text(body.body).encode() if matrix is None else matrix.read_bytes()
+        own = default_text(body.body).encode() if matrix is None else copied(matrix, folder)
         write_all(folder, {TANK: own, BODY: stl(body)})
         jobs: tuple[Job, ...] = ()
         if solver.jobs is not None:
@@ -234,7 +235,15 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
 def reopened(
     folder: Path, matrix: Path | None = None, solver: str = "", runner: str = ""
 ) -> tuple[Tank, TowedBody, Path]:
-    """Tank and body of a tow as its folder has them, and the tank.toml; a new one in its place where it is given.
+    """Tank and body of a tow as its folder has them, and the tank.toml.
+
+    Parameters
+    ----------
+    folder : Path
+    matrix : Path, optional
+        A tank.toml in the place of that of the folder.
+    solver, runner : str
+        In the place of those that the tow was begun with.
 
     Raises
     ------
@@ -283,12 +292,13 @@ def _fate(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> Kept:
         return Kept(job.name, JobState.STOPPED, what, "more iterations are allowed")
     if now.state.is_kept:
         return Kept(job.name, now.state, f"kept, {now.state}")
-    at = (
-        f"goes on from what it wrote last, iteration {now.iteration:.0f} was reached"
-        if now.iteration > 0
-        else "is begun again"
+    reached = f" (it had reached {now.iteration:.0f})" if now.iteration > 0 else ""
+    return Kept(
+        job.name,
+        now.state,
+        f"goes on from what it wrote last{reached}",
+        "" if now.state is JobState.STOPPED else now.why,
     )
-    return Kept(job.name, now.state, at, now.why)
 
 
 def _may_go_on(job: Job, now: Progressed) -> bool:
@@ -361,10 +371,8 @@ def require_installed(tow: Tow) -> None:
     InputError
     """
     if tow.installed.missing:
-        others = [n for n in SOLVERS.usable() if n != tow.tank.solver and not SOLVERS.load(n).installed().missing]
-        instead = f" Or take --solver {' or --solver '.join(others)}, which needs nothing installed." if others else ""
-        raise InputError(f"no {tow.tank.solver}", tow.installed.missing.rstrip("."), column="solver",
-                         advice=f"The cases are in {tow.folder}.{instead}".strip())  # fmt: skip
+        raise InputError(f"the solver {tow.tank.solver}, which is not installed", "one that is", column="solver",
+                         advice=f"{tow.installed.missing} The cases are in {tow.folder}.")  # fmt: skip
 
 
 def collected(tow: Tow, fitted: bool = True) -> Collected:

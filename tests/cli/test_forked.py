@@ -35,6 +35,7 @@ def written(folder: Path) -> dict[str, bytes]:
         ("trim", HUUV, "--command", "left=60", "--command", "right=0", "--json"),
         ("uncertainty", SAMPLE, "--manoeuvre", "zigzag", "--help-options"),
         ("glide", "no_such_glider"),
+        ("tow", "no_such_tow", "--status"),
         ("nonsense",),
     ],
     ids=lambda words: words[0],

@@ -98,6 +98,8 @@ def test_a_finished_tow_is_kept_and_gives_the_same_bytes(whole: tuple[Tow, Colle
     again = room.laid_out(tow.tank, tow.body, tow.folder, tow.folder / "tank.toml")
     assert set(states(again).values()) == {JobState.FINISHED}
     room.carried_out(again, 0, lambda: pytest.fail("nothing is left to run"))
+    with (tow.folder / "drift+6" / "history.csv").open("a") as late:  # as of a solver that was slow to stop
+        late.write("161,-9,-9,-9\n")
     room.collected(again, fitted=False)
     assert {p.name: p.read_bytes() for p in (tow.folder / CAMPAIGN).rglob("*") if p.is_file()} == before
 
@@ -200,6 +202,21 @@ def test_an_outside_solver_fills_a_table_in(tmp_path: Path, whole: tuple[Tow, Co
     values = {r.symbol: r.value for r in room.collected(tow).six}
     assert values["Yv"] == pytest.approx(-6e-3, rel=1e-2)
     assert values["Mw"] == pytest.approx(1.3e-2, rel=1e-2)
+
+
+def test_paths_of_a_copied_tank_lead_where_they_led(tmp_path: Path) -> None:
+    mine = tmp_path / "bodies" / "mine"
+    mine.mkdir(parents=True)
+    (mine / "body.toml").write_bytes((shipped("geometry") / "tow_spheroid" / "body.toml").read_bytes())
+    text = HEAD.format(name="mine", solver="external", yaw=TWO).replace(
+        "[tank]", '[tank]\nbody = "bodies/mine"  # near'
+    )
+    (tmp_path / "tank.toml").write_text(text + '[solver.external]\ntable = "filled.csv"\n')
+    tank, body = room.read(None, tmp_path / "tank.toml")
+    room.laid_out(tank, body, tmp_path / "runs" / "x", tmp_path / "tank.toml")
+    again, _, _ = room.reopened(tmp_path / "runs" / "x")
+    assert again.body == tank.body
+    assert Path(again.options["table"]).resolve() == (tmp_path / "filled.csv").resolve()
 
 
 def test_no_tow_in_the_folder(tmp_path: Path) -> None:

@@ -125,6 +125,7 @@ def mesh_job(
         memory=BYTES_AT_LEAST * cores + BYTES_A_CELL * cells,
         seconds=SECONDS_AT_LEAST + shared + SECONDS_ALONE * cells,
         key=_key(contents, version),
+        cells=float(cells),
     )
 
 
