@@ -19,7 +19,7 @@ pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(shutil.which("simpleFoam") is None, reason="OpenFOAM is not installed"),
 ]
-# Re 1000, laminar: 14,000 cells settle within 220 iterations.
+# Re 1000, laminar: 17,491 cells settle within 220 iterations.
 TANK = """
 [tank]
 name = "finned_spheroid"
