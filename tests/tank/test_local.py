@@ -14,7 +14,7 @@ import pytest
 
 from coeflab.core.declarations import validated
 from coeflab.core.errors import CoeflabError, InputError, OutputError
-from coeflab.tank.jobs import STATE, JobState, outstanding, progress
+from coeflab.tank.jobs import STATE, Job, JobState, outstanding, progress
 from coeflab.tank.runners import RUNNERS, local
 from coeflab.tank.states import states_of
 from tests.tank.slow_solver import prepared, rows, solvers_in, wait
@@ -74,6 +74,27 @@ def test_what_fits_begins_and_what_is_too_large_for_the_memory_runs_alone(
     assert list(startable([c], large[:1], 3)) == []
     needy = replace(c, needs=("a",))
     assert list(startable([needy], [a], 9)) == []
+
+
+def test_every_job_that_fits_begins_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun: list[str] = []
+
+    class Alive:
+        def poll(self) -> None:
+            return None
+
+    def began(job: Job, _nice: int) -> Alive:
+        begun.append(job.name)
+        return Alive()
+
+    def look() -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(local, "_begun", began)
+    monkeypatch.setattr(local, "_end", lambda _processes: None)
+    with pytest.raises(KeyboardInterrupt):
+        local.carry_out([prepared(tmp_path, n) for n in "abcd"], tmp_path, local.Local(cores=3), look)
+    assert begun == ["a", "b", "c"]
 
 
 @pytest.mark.slow

@@ -84,7 +84,7 @@ def carry_out(jobs: Sequence[Job], folder: Path, options: Local, look: Callable[
             full = bool(waiting) and disk_is_full(folder)
             if full and not running:
                 raise OutputError(f"the disk of {folder} is full. Free some space, then go on with --continue.")
-            for job in () if full else _startable(waiting, [j for j, _ in running], budget):
+            for job in () if full else tuple(_startable(waiting, [j for j, _ in running], budget)):
                 waiting.remove(job)
                 running.append((job, _begun(job, int(options.nice))))
             look()
