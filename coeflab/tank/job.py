@@ -4,7 +4,8 @@ Its steps run one after another, each with its log. The solver is watched: it is
 when this process is asked to end (SIGTERM, SIGINT). Whatever ends this process, the solver ends with it, ``state.json`` shows
 it, and the next attempt goes on from what the solver wrote last.
 
-A plateau is looked for at fixed lengths of the history, so that the result does not depend on when this process looked.
+A plateau is looked for at fixed lengths of the history, so that the result does not depend on when this process looked. A run
+that has to make all its iterations is judged at its end.
 
 The exit code is 0 for a job that is kept (finished, unconverged), 1 for one that diverged or crashed, 2 for one that cannot be
 carried out, 3 for one that was stopped and goes on.
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 
 GRACE, KILL = 60.0, 10.0  # s in which a solver has to write and end when it is asked to, and to end when it is made to
 NOTICE, BEAT = 0.2, 5.0  # s until a signal is noticed, and between signs of life
+TOGETHER = 2.0  # s in which a signal that goes to all processes of a job has reached this one, too
 EARLIEST, LATEST, SHARE = 2.0, 60.0, 50.0  # s between two looks at the history; times what one takes of a core
 FIRST, SPACING, LEAST = (
     50,
@@ -47,6 +49,7 @@ FIRST, SPACING, LEAST = (
 FULL = 16e6  # bytes that are left of a full disk
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # unless the environment says otherwise
 FAILED, REFUSED, STOPPED = 1, 2, 3  # exit codes
+ASKING = ("SIGTERM", "SIGINT")
 CODES = {JobState.DIVERGED: FAILED, JobState.CRASHED: FAILED, JobState.STOPPED: STOPPED}
 
 
@@ -160,7 +163,9 @@ class _Attempt:
             for step in steps:
                 self._say(step=step.name)
                 code = self._run(step)
-                self.stopped = self.stopped or (self.asked.times > 0 and step is not steps[-1])
+                self.stopped = (
+                    self.stopped or (self.asked.times > 0 and step is not steps[-1]) or self._ended_with_us(code)
+                )
                 if code or self.stopped:
                     break
             self._end(code)
@@ -210,6 +215,15 @@ class _Attempt:
                 end_session(process.pid, KILL)
             process.wait()
 
+    def _ended_with_us(self, code: int) -> bool:
+        """Whether a step was ended by a signal that this process got as well, as by a scheduler that ends a whole tree."""
+        if not code or self.now.plateau or (self.verdict is not None and self.verdict.diverged):
+            return False
+        end = time.monotonic() + TOGETHER
+        while _signal_of(code) in ASKING and not self.asked.times and time.monotonic() < end:
+            time.sleep(NOTICE)
+        return self.asked.times > 0
+
     def _watch(self, step: Step, process: subprocess.Popen[bytes]) -> int:
         """Wait for the end of a step, give signs of life, and look at the history of a solver."""
         begun = time.monotonic()
@@ -227,7 +241,7 @@ class _Attempt:
                 beat = now + min(max(now - begun, NOTICE), BEAT)
             if step.watched and now >= look:
                 self._look()
-                if self.verdict is not None and (self.verdict.settled or self.verdict.diverged):
+                if self.verdict is not None and (self.verdict.diverged or self.now.plateau):
                     return self._stop(step, process)
                 look = time.monotonic() + min(max(SHARE * self.took, EARLIEST), LATEST)
 
@@ -242,21 +256,22 @@ class _Attempt:
             self._judge(run, [n for n in lengths(len(run.history)) if n > self.looked])
         self.took = time.process_time() - begun
 
-    def _judge(self, run: Run, rows: Sequence[int]) -> None:
+    def _judge(self, run: Run, rows: Sequence[int], ends: bool = False) -> None:
         from coeflab.tank.plateau import on_plateau
 
         at = run.history.meaning("iteration") or run.history.meaning("time")
         iteration = float(at.values[-1]) if at is not None and len(at.values) else float(len(run.history))
         for n in rows:
             self.looked, self.verdict = n, on_plateau(until(run, n))
-            if self.verdict.settled or self.verdict.diverged:
+            if self.verdict.diverged or (self.verdict.settled and not self.job.to_the_end):
                 break
+        counts = self.verdict is not None and self.verdict.settled and (ends or not self.job.to_the_end)
         changes: dict[str, Any] = {}
         if self.verdict is not None:
             means = self.verdict.plateau.means
             changes = {
                 "means": {c: m.value for c, m in means.items()}, "errors": {c: m.error for c, m in means.items()},
-                "plateau": self.looked if self.verdict.settled else 0, "why": self.verdict.why,
+                "plateau": self.looked if counts else 0, "why": self.verdict.why,
             }  # fmt: skip
         self._say(iteration=iteration, left=self._left(iteration), **changes)
 
@@ -270,7 +285,7 @@ class _Attempt:
 
     def _stop(self, step: Step, process: subprocess.Popen[bytes]) -> int:
         """End a step; a solver is asked to write first, unless it diverged or somebody asks a second time."""
-        settled = self.verdict is not None and self.verdict.settled
+        settled = self.now.plateau > 0
         diverged = self.verdict is not None and self.verdict.diverged
         self.stopped = not settled and not diverged
         stop = self._plugin().stop if step.watched and not diverged else None
@@ -319,7 +334,8 @@ class _Attempt:
             return
         if run is not None and len(run.history):
             rows = len(run.history)
-            self._judge(run, sorted({rows, *(n for n in lengths(rows) if n > self.looked)}))
+            left = () if self.job.to_the_end else (n for n in lengths(rows) if n > self.looked)
+            self._judge(run, sorted({rows, *left}), ends=True)
 
     def _last_words(self, code: int) -> str:
         """What shows a crash: a full disk, else the last line of the log."""

@@ -105,6 +105,8 @@ class Job:
         That the solver makes at most; NaN where it counts none.
     cells : float
         Of its grid, as expected; 0 where that is unknown.
+    to_the_end : bool
+        Makes all its iterations, whether it is on a plateau before or not: a study of their number.
     """
 
     name: str
@@ -118,6 +120,7 @@ class Job:
     key: str = ""
     iterations: float = nan
     cells: float = 0.0
+    to_the_end: bool = False
 
 
 @brief

@@ -210,6 +210,16 @@ def test_a_run_is_stopped_on_its_plateau_and_its_result_does_not_depend_on_when_
     assert (stopped.state, stopped.plateau, dict(stopped.means)) == (whole.state, whole.plateau, dict(whole.means))
 
 
+def test_a_run_of_a_study_of_iterations_makes_them_all(tmp_path: Path) -> None:
+    usual = prepared(tmp_path, "usual", pause=0.002)
+    whole = replace(prepared(tmp_path, "whole", pause=0.002), to_the_end=True)
+    write_job(whole)
+    stopped, found = carry_out(usual.folder), carry_out(whole.folder)
+    assert stopped.iteration < 400.0
+    assert (found.state, found.iteration, found.plateau) == (JobState.FINISHED, 400.0, 400)
+    assert dict(found.means) != dict(stopped.means)
+
+
 def test_a_run_that_diverges_is_ended_and_said_to(tmp_path: Path) -> None:
     job = prepared(tmp_path, iterations=100_000, pause=0.005, fails="diverge")
     found = carry_out(job.folder)
@@ -329,6 +339,30 @@ def test_sigterm_lets_the_solver_write_what_it_has(
     assert now.state is JobState.STOPPED
     assert slow_solver.resumed(job)[1] == rows(job.folder)
     assert now.seconds > 0.1
+
+
+@pytest.mark.slow
+def test_a_signal_to_the_whole_tree_stops_a_job_even_where_the_solver_dies_first(
+    tmp_path: Path, start: Callable[..., subprocess.Popen[bytes]]
+) -> None:
+    job = prepared(tmp_path, iterations=100_000, pause=0.02)
+    process = start(job.folder)
+    wait(lambda: rows(job.folder) > 5)
+    for solver in solvers_in(job.folder):
+        os.kill(solver, signal.SIGTERM)
+    wait(lambda: not solvers_in(job.folder))
+    process.terminate()
+    assert process.wait() == carried.STOPPED
+    assert progress(job).state is JobState.STOPPED
+
+
+def test_a_solver_that_alone_is_ended_by_a_signal_crashed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(carried, "TOGETHER", 0.05)
+    job = prepared(tmp_path)
+    write_job(replace(job, steps=(replace(job.steps[0], command=("sh", "-c", "kill -TERM $$")),)))
+    found = carry_out(job.folder)
+    assert found.state is JobState.CRASHED
+    assert "ended by SIGTERM" in found.why
 
 
 @pytest.mark.slow

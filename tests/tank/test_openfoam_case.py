@@ -67,6 +67,16 @@ def test_a_case_is_left_alone_where_nothing_changed_and_mended_where_it_did(jobs
     assert (straight.folder / "constant/polyMesh").readlink() == Path("../../mesh/medium/constant/polyMesh")
 
 
+def test_a_run_of_a_study_of_iterations_is_of_their_number(jobs: Jobs) -> None:
+    studied = [replace(towed.MATRIX[0], name=f"to{n}", variant={"iterations": n}) for n in ("500", "1000")]
+    found = jobs(towed.tank(towed.MATRIX[0], *studied))
+    assert {n: (j.to_the_end, j.iterations) for n, j in found.items() if not n.startswith("mesh")} == {
+        "straight": (False, 400.0), "to500": (True, 500.0), "to1000": (True, 1000.0),
+    }  # fmt: skip
+    assert found["to500"].key != found["to1000"].key
+    assert found["to1000"].seconds == 2.0 * found["to500"].seconds
+
+
 def test_the_key_is_of_what_changes_the_result(jobs: Jobs) -> None:
     def key(*matrix: towed.TowCondition, **more: object) -> str:
         return jobs(towed.tank(*(matrix or towed.MATRIX[:1]), **more))["straight"].key

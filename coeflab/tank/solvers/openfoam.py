@@ -172,6 +172,7 @@ def _run(
     if said not in MODELS:
         raise InputError(f'turbulence "{said}"', " or ".join(f'"{m}"' for m in MODELS), column="study.turbulence")
     model, most = MODELS[said], int(float(condition.variant.get("iterations", given.iterations)))
+    to_the_end = "iterations" in condition.variant
     speed = condition.speed or case.fastest(body, condition)
     fields = case.turbulent_fields(model, given.wall, speed, viscosity, given.intensity, given.viscosity_ratio)
     files = case.case_files(
@@ -186,8 +187,9 @@ def _run(
     return Job(
         condition.name, folder, "openfoam", tuple(steps), (mesh.name,), cores,
         memory=cells * BYTES_A_CELL + cores * BYTES_A_PROCESS,
-        seconds=float(min(most, USUAL_ITERATIONS) * cells * SECONDS_A_CELL / speed_up),
-        key=case.digest(files, mesh.key, version), iterations=float(most), cells=cells,
+        seconds=float((most if to_the_end else min(most, USUAL_ITERATIONS)) * cells * SECONDS_A_CELL / speed_up),
+        key=case.digest(files, mesh.key, version, *([str(most)] if to_the_end else ())),
+        iterations=float(most), cells=cells, to_the_end=to_the_end,
     )  # fmt: skip
 
 
