@@ -35,7 +35,7 @@ CALIBRATED_ROWS = (
 )
 TIMES_A_BATCH = 4.0  # autocorrelation times
 SHARE = 0.01  # of a value: a drift below it, or a whole window within it, does not matter
-OF_THE_WHOLE = 0.05  # a component counts as at least this share of the whole force, or of the whole moment
+OF_THE_WHOLE = 0.05  # a component counts as at least this share of the whole force, or moment: see `scales`
 SIGNIFICANCE = 0.03
 LONGEST = 20_000  # rows; longer histories are first averaged in blocks, which changes no mean over whole blocks
 DIGITS = 1e-6  # no error is below half a unit of the sixth digit of the whole force: histories are written to as many
@@ -240,7 +240,28 @@ def mean_of(values: Array, tolerance: float, floor: float, significance: float =
     return Mean(value, max(error, floor), batches - 1.0, time, trend, trend_error, status)
 
 
-def plateau(forces: Mapping[str, Array], at: Array | None = None, groups: Mapping[str, str] | None = None) -> Plateau:
+def scales(sizes: Mapping[str, float], groups: Mapping[str, str], length: float = 0.0) -> dict[str, float]:
+    """The whole force, or moment, that each column belongs to: a component that is zero by symmetry is judged by that.
+
+    Parameters
+    ----------
+    sizes : mapping of str to float
+        Of each column.
+    groups : mapping of str to str
+        Columns of one vector have one text.
+    length : float
+        Of the body, m. Where it is given, and columns begin with X Y Z K M N, the whole moment is at least that of the whole
+        force on an arm of this length: of a body that symmetry leaves without any moment, the moment's own size is rounding.
+        A hundredth of a twentieth of it moves the line of action of the force by a two-thousandth of the length.
+    """
+    whole = {g: float(np.hypot.reduce([sizes[c] for c in sizes if groups[c] == g])) for g in set(groups.values())}
+    force = max((whole[groups[c]] for c in sizes if c[:1] in FORCES), default=0.0) if length else 0.0
+    return {c: max(whole[groups[c]], length * force * (c[:1] in MOMENTS)) for c in sizes}
+
+
+def plateau(
+    forces: Mapping[str, Array], at: Array | None = None, groups: Mapping[str, str] | None = None, length: float = 0.0
+) -> Plateau:
     """The plateau that all forces and moments of a run share.
 
     Parameters
@@ -251,6 +272,8 @@ def plateau(forces: Mapping[str, Array], at: Array | None = None, groups: Mappin
         Time of every row; forces at unequal steps are interpolated to equal ones.
     groups : mapping of str to str, optional
         Columns of one vector have one text; by default forces, and moments.
+    length : float
+        Of the body, m, where it is known: see `scales`.
 
     Returns
     -------
@@ -281,7 +304,7 @@ def plateau(forces: Mapping[str, Array], at: Array | None = None, groups: Mappin
         steps = steps[:, n % block :].reshape(len(names), -1, block).mean(axis=2)
     late = steps[:, steps.shape[1] // 2 :]
     size = dict(zip(names, np.abs(late.mean(axis=1)), strict=True))
-    whole = {c: float(np.hypot.reduce([size[g] for g in names if group[g] == group[c]])) for c in names}
+    whole = scales(size, group, length)
     tolerance = {c: SHARE * max(size[c], OF_THE_WHOLE * whole[c]) for c in names}
     starts = [
         plateau_start(row) if float(np.ptp(row)) > tolerance[c] else (0, True)

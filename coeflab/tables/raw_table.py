@@ -162,6 +162,8 @@ class Run:
     ended : Ended
     why : str
         What shows it, with file and line; empty for a whole run.
+    length : float
+        Of the body, m: the arm that makes a scale of moments of a force; 0 where nobody says.
     """
 
     path: Path
@@ -171,6 +173,7 @@ class Run:
     patches: Mapping[str, RawTable] = field(default_factory=dict)
     ended: Ended = Ended.WHOLE
     why: str = ""
+    length: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("conditions", "patches"):

@@ -15,7 +15,7 @@ import numpy as np
 
 from coeflab.core.types import Array, brief
 from coeflab.law.symbols import COMPONENTS, FORCES
-from coeflab.tables.histories import CALIBRATED_ROWS, OF_THE_WHOLE, SHARE, Convergence, Mean, Plateau, plateau
+from coeflab.tables.histories import CALIBRATED_ROWS, OF_THE_WHOLE, SHARE, Convergence, Mean, Plateau, plateau, scales
 from coeflab.tables.raw_table import Ended, Run
 
 CITATIONS = (
@@ -57,7 +57,7 @@ def on_plateau(history: Run) -> Verdict:
         Of which the patches are parts of the body; the shares by pressure and friction are passed over.
     """
     whole = {c.means: c.values for c in history.history.columns if c.means in COMPONENTS}
-    found = plateau(whole or {"X": np.empty(0)})
+    found = plateau(whole or {"X": np.empty(0)}, length=history.length)
     if history.ended is Ended.DIVERGED or found.status is Convergence.DIVERGED:
         return Verdict(False, history.why or found.why, True, found)
     if found.status is Convergence.EMPTY:
@@ -69,22 +69,22 @@ def on_plateau(history: Run) -> Verdict:
     rows = min(map(len, columns.values()))
     columns = {n: v[:rows] for n, v in columns.items()}
     groups = {n: "force" if n[0] in FORCES else "moment" for n in columns}
-    both = plateau(columns, groups=groups)
-    why = both.why
+    both = plateau(columns, groups=groups, length=history.length)
+    why = both.why or found.why
     if both.status is Convergence.CONVERGED:
         if both.rows < CALIBRATED_ROWS:
             why = f"{both.rows} rows on the plateau, {CALIBRATED_ROWS} needed"
         else:
-            why = _still_settling({n: v[both.start :] for n, v in columns.items()}, both.means, groups)
+            scale = scales({n: abs(m.value) for n, m in both.means.items()}, groups, history.length)
+            why = why or _still_settling({n: v[both.start :] for n, v in columns.items()}, both.means, scale)
     return Verdict(not why, why, False, found)
 
 
-def _still_settling(columns: Mapping[str, Array], means: Mapping[str, Mean], groups: Mapping[str, str]) -> str:
+def _still_settling(columns: Mapping[str, Array], means: Mapping[str, Mean], scale: Mapping[str, float]) -> str:
     """The columns that run towards another value by more than a share of it; empty where none does."""
     out = []
     for name, values in columns.items():
-        whole = float(np.hypot.reduce([means[n].value for n in columns if groups[n] == groups[name]]))
-        tolerance = SHARE * max(abs(means[name].value), OF_THE_WHOLE * whole)
+        tolerance = SHARE * max(abs(means[name].value), OF_THE_WHOLE * scale[name])
         left = settling(values, means[name].error)
         if abs(left) > tolerance:
             out.append(f"{name} by {left:+.2g}")

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run
+from coeflab.tables.runs import summarised
 from coeflab.tank.plateau import on_plateau, settling
 
 ROWS = np.arange(400.0)
@@ -54,6 +57,22 @@ def test_a_small_patch_matters_by_the_whole_body() -> None:
     cap = 0.05 + 0.01 * np.exp(-ROWS / 200.0)
     cut = Run(Path("run"), "run", table(Y=noisy(np.full(400, 50.0))), patches={"cap": table(Y=cap)})
     assert on_plateau(cut).settled
+
+
+@pytest.mark.parametrize("length", [0.0, 4.0])
+def test_what_symmetry_makes_zero_is_judged_by_the_force_and_the_length(length: float) -> None:
+    # A body straight ahead: its Y and N are the rounding of the mesh, and wander for ever.
+    wander = 2e-4 * np.cumsum(NOISE.standard_normal(400))
+    straight = Run(
+        Path("run"), "run", table(X=noisy(np.full(400, -38.0)), Y=wander, N=wander),
+        patches={"stern": table(X=noisy(np.full(400, -7.0)), Y=wander, N=wander)}, length=length,
+    )  # fmt: skip
+    verdict = on_plateau(straight)
+    assert verdict.settled == (length > 0.0), verdict.why
+    assert (summarised(straight, "straight").status is Convergence.CONVERGED) == (length > 0.0)
+    # A moment that is one is judged by itself all the same.
+    moving = on_plateau(replace(straight, history=table(X=np.full(400, -38.0), Y=wander, N=30.0 + 0.01 * ROWS)))
+    assert "N" in moving.why
 
 
 def test_shares_by_pressure_and_friction_are_no_patches() -> None:

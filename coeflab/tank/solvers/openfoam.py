@@ -212,7 +212,7 @@ def history(folder: Path) -> Run:
     for mine, image in pairs:
         if mine in run.patches:
             patches |= {mine: run.patches[mine], image: _mirrored(run.patches[mine], half)}
-    run = replace(run, history=_whole_body(run.history, half), patches=patches)
+    run = replace(run, history=_whole_body(run.history, half), patches=patches, length=length)
     density = float(str(run.history.stated["conditions.density"].value))
     grown = _too_large(run.history, 0.5 * density * fastest**2 * length**2, length)
     if grown:
