@@ -27,6 +27,7 @@ from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.runs import RunSummary, summarised
 from coeflab.tank.jobs import Job, JobState, Progressed
+from coeflab.tank.plateau import until
 from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import Half, Kind, TowCondition
 from coeflab.tank.towed_body import TowedBody
@@ -102,15 +103,16 @@ def towed_run(
         All of the tow, for the mesh.
     job : Job
     history : Run or None
-        As the solver reads it; None where there is none.
+        As the solver reads it, up to where the plateau was recognised; None where there is none.
     mesh_remarks : sequence of str
     """
+    counted = None if history is None else until(history, len(history.history), progressed.first)
     meshes = [jobs[name].key for name in job.needs if name in jobs]
     return TowedRun(
         condition,
         progressed.state,
         progressed.why,
-        None if history is None or not len(history.history) else summarised(history, condition.name),
+        None if counted is None or not len(counted.history) else summarised(counted, condition.name),
         (*mesh_remarks, *progressed.remarks),
         job.key,
         "+".join(meshes),

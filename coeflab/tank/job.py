@@ -33,7 +33,7 @@ from coeflab.tank.jobs import PATIENCE, Job, JobState, Progressed, Step, only_on
 from coeflab.tank.processes import end_session, ends_with, memory, started
 
 if TYPE_CHECKING:
-    from coeflab.tables.raw_table import RawTable, Run
+    from coeflab.tables.raw_table import Run
     from coeflab.tank.plateau import Verdict
     from coeflab.tank.solvers import TowSolver
 
@@ -115,23 +115,6 @@ def lengths(rows: int) -> Iterator[int]:
     while n <= rows:
         yield n
         n = max(n + LEAST, int(SPACING * n))
-
-
-def until(run: Run, rows: int) -> Run:
-    """A run as it was when its history had so many rows; patches end at the same iteration or time."""
-    history = _head(run.history, rows)
-    at = history.meaning("iteration") or history.meaning("time")
-    patches = {}
-    for name, table in run.patches.items():
-        its = table.meaning("iteration") or table.meaning("time")
-        count = rows if at is None or its is None else int((its.values <= at.values[-1]).sum())
-        patches[name] = _head(table, count)
-    return replace(run, history=history, patches=patches)
-
-
-def _head(table: RawTable, rows: int) -> RawTable:
-    columns = tuple(replace(c, values=c.values[:rows], texts=c.texts[:rows]) for c in table.columns)
-    return replace(table, columns=columns, lines=table.lines[:rows], row_labels=table.row_labels[:rows])
 
 
 class _Attempt:
@@ -257,7 +240,7 @@ class _Attempt:
         self.took = time.process_time() - begun
 
     def _judge(self, run: Run, rows: Sequence[int], ends: bool = False) -> None:
-        from coeflab.tank.plateau import on_plateau
+        from coeflab.tank.plateau import on_plateau, until
 
         at = run.history.meaning("iteration") or run.history.meaning("time")
         iteration = float(at.values[-1]) if at is not None and len(at.values) else float(len(run.history))
@@ -271,7 +254,8 @@ class _Attempt:
             means = self.verdict.plateau.means
             changes = {
                 "means": {c: m.value for c, m in means.items()}, "errors": {c: m.error for c, m in means.items()},
-                "plateau": self.looked if counts else 0, "why": self.verdict.why,
+                "plateau": self.looked if counts else 0, "first": self.verdict.first if counts else 0,
+                "why": self.verdict.why,
             }  # fmt: skip
         self._say(iteration=iteration, left=self._left(iteration), **changes)
 

@@ -38,7 +38,6 @@ from coeflab.tank.folder import (
     read_plan,
     refuse_other,
 )
-from coeflab.tank.job import until
 from coeflab.tank.jobs import (
     Job,
     JobState,
@@ -50,6 +49,7 @@ from coeflab.tank.jobs import (
     write_job,
     write_progress,
 )
+from coeflab.tank.plateau import until
 from coeflab.tank.runners import RUNNERS
 from coeflab.tank.solvers import SOLVERS, Installation, TowSolver
 from coeflab.tank.tank import Tank

@@ -19,7 +19,7 @@ import pytest
 from coeflab.core import files
 from coeflab.core.errors import InputError, OutputError
 from coeflab.tank import job as carried
-from coeflab.tank.job import carry_out, lengths, main, until
+from coeflab.tank.job import carry_out, lengths, main
 from coeflab.tank.jobs import (
     STATE,
     JobState,
@@ -32,6 +32,7 @@ from coeflab.tank.jobs import (
     write_job,
     write_progress,
 )
+from coeflab.tank.plateau import until
 from coeflab.tank.processes import lives, of_session, started
 from coeflab.tank.states import states_of, time_left
 from tests.tank import slow_solver
@@ -211,8 +212,8 @@ def test_a_run_is_stopped_on_its_plateau_and_its_result_does_not_depend_on_when_
 
 
 def test_a_run_of_a_study_of_iterations_makes_them_all(tmp_path: Path) -> None:
-    usual = prepared(tmp_path, "usual", pause=0.002)
-    whole = replace(prepared(tmp_path, "whole", pause=0.002), to_the_end=True)
+    usual = prepared(tmp_path, "usual", pause=0.001)
+    whole = replace(prepared(tmp_path, "whole", pause=0.0005), to_the_end=True)
     write_job(whole)
     stopped, found = carry_out(usual.folder), carry_out(whole.folder)
     assert stopped.iteration < 400.0
@@ -298,6 +299,8 @@ def test_a_shortened_run_ends_at_one_iteration_in_all_its_patches(tmp_path: Path
     run = until(slow_solver.history(job.folder), 51)
     assert [len(run.history), len(run.patches["hull"])] == [51, 51]
     assert run.history.columns[0].values[-1] == 51.0
+    late = until(run, 51, 20)
+    assert [t.columns[0].values[0] for t in (late.history, late.patches["hull"])] == [21.0, 21.0]
 
 
 # --- killed ----------------------------------------------------------------------------------------------------------

@@ -11,7 +11,8 @@ import pytest
 from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run
 from coeflab.tables.runs import summarised
-from coeflab.tank.plateau import on_plateau, settling
+from coeflab.tank.job import lengths
+from coeflab.tank.plateau import on_plateau, settling, until
 
 ROWS = np.arange(400.0)
 NOISE = np.random.default_rng(18)
@@ -102,3 +103,38 @@ def test_noise_approaches_nothing() -> None:
     generator = np.random.default_rng(3)
     seen = [settling(generator.standard_normal(150), 1.0 / np.sqrt(150)) != 0.0 for _ in range(400)]
     assert np.mean(seen) < 0.02
+
+
+def first_settled(y: np.ndarray) -> tuple[int, float] | None:
+    for rows in lengths(len(y)):
+        verdict = on_plateau(until(run(y, hull=0.7 * y), rows))
+        if verdict.settled:
+            return rows, verdict.plateau.means["Y"].value
+    return None
+
+
+@pytest.mark.parametrize("tau", [30.0, 100.0, 150.0])
+def test_a_smooth_approach_ends_where_its_last_quarter_stays_and_is_right(tau: float) -> None:
+    found = first_settled(50.0 * (1.0 + 0.5 * np.exp(-np.arange(1000.0) / tau)))
+    assert found is not None
+    assert found[0] < 7.0 * max(tau, 40.0)  # a plateau from the first half on takes 8 of them
+    assert found[1] == pytest.approx(50.0, rel=0.005)
+
+
+@pytest.mark.parametrize("period", [150.0, 300.0, 400.0])
+def test_the_crest_of_a_wave_is_no_plateau(period: float) -> None:
+    turns = 2.0 * np.pi * np.arange(800.0) / period
+    assert first_settled(50.0 + 1.5 * np.cos(turns)) is None
+    assert first_settled(50.0 + 1.5 * np.sin(turns)) is None
+
+
+def test_a_line_and_a_walk_are_no_plateau() -> None:
+    assert first_settled(50.0 + 0.02 * np.arange(800.0)) is None
+    assert first_settled(50.0 + 0.1 * np.cumsum(NOISE.standard_normal(800))) is None
+
+
+def test_what_came_before_the_last_quarter_counts_for_nothing() -> None:
+    decay = run(50.0 * (1.0 + 0.5 * np.exp(-np.arange(655.0) / 100.0)))
+    verdict = on_plateau(decay)
+    assert (verdict.settled, verdict.first) == (True, 655 - 655 // 4)
+    assert summarised(until(decay, 655, verdict.first), "run").status is Convergence.CONVERGED
