@@ -155,8 +155,9 @@ def rows_of(tank: Tank, table: RawTable) -> tuple[TowedRun, ...]:
 
 
 def campaign_files(
-    tank: Tank, body: TowedBody, runs: Sequence[TowedRun], version: str, inputs: Mapping[str, Path] | None = None
-) -> dict[str, bytes]:
+    tank: Tank, body: TowedBody, runs: Sequence[TowedRun], version: str, inputs: Mapping[str, Path] | None = None,
+    stated: str = "",
+) -> dict[str, bytes]:  # fmt: skip
     """The files of the campaign folder, by name: tables, campaign.toml, runs.csv, and a short history of each run.
 
     Parameters
@@ -169,6 +170,8 @@ def campaign_files(
         Of the solver.
     inputs : mapping of str to Path, optional
         Files whose sha256 is written down: ``body.toml``, ``tank.toml``.
+    stated : str
+        Who made the rows, and the table, where they are no runs of ours: then nothing is said of how they came about.
 
     Returns
     -------
@@ -187,7 +190,7 @@ def campaign_files(
         declared.append(_declared(name, group, notes, origin))
     if not declared:
         return {}
-    files[FILE] = _campaign_text(tank, body, runs, version, inputs or {}, declared, tuple(turned)).encode()
+    files[FILE] = _campaign_text(tank, body, runs, version, inputs or {}, declared, tuple(turned), stated).encode()
     files[RUNS] = _runs_text(runs)
     for r in runs:
         if r.history is not None and len(r.history.history):
@@ -365,7 +368,7 @@ def _declared(name: str, group: Sequence[TowedRun], names: Mapping[str, list[str
 
 def _campaign_text(
     tank: Tank, body: TowedBody, runs: Sequence[TowedRun], version: str, inputs: Mapping[str, Path],
-    declared: Sequence[str], turned: Sequence[str],
+    declared: Sequence[str], turned: Sequence[str], made: str,
 ) -> str:  # fmt: skip
     finished = sum(r.counts for r in runs)
     stated = [*tank.by_symmetry, *(f"{t}.csv from {_SOURCES[t]}.csv by fourfold symmetry" for t in turned)]
@@ -376,8 +379,12 @@ def _campaign_text(
         "(iteration noise only). Halves of the body are doubled. Meshes, cases and states: runs.csv."
         + (f" {files}." if files else "")
     )
+    if made:
+        how = f"As the table gives it: {made}, read by coeflab {VERSION}." + (f" {files}." if files else "")
     grids = {r.condition.grid for r in runs}
-    scatter = "iteration noise per point (se_); " + (
+    errors = any(r.summary is not None and r.summary.errors for r in runs)
+    own = ("errors per point (se_) as the table states them; " if errors else "no errors stated; ") if made else ""
+    scatter = (own or "iteration noise per point (se_); ") + (
         f"grids {', '.join(g.name for g in tank.grids if g.name in grids)} for chosen conditions"
         if len(grids) > 1
         else "one grid: grid error not assessed"
@@ -385,7 +392,7 @@ def _campaign_text(
     sections: dict[str, dict[str, Any]] = {
         "campaign": {
             "name": tank.name, "title": tank.title, "body": body.body.name, "symmetry": list(tank.symmetry) or None,
-            "notes": " ".join([f"{finished} of {len(runs)} conditions converged.", *(f"By symmetry: {s}." for s in stated)]),
+            "notes": " ".join([f"{finished} of {len(runs)} conditions {'given' if made else 'converged'}.", *(f"By symmetry: {s}." for s in stated)]),
         },
         "axes": {
             "frame": "FRD", "datum": tank.datum.id, "datum_note": tank.datum.note or None,
@@ -397,7 +404,7 @@ def _campaign_text(
             "reynolds": at.reynolds_on(tank.scaling.length),
         },
         "source": {
-            "citation": f"coeflab tow of {body.body.name}, {version}",
+            "citation": f"{body.body.name}: {made}" if made else f"coeflab tow of {body.body.name}, {version}",
             "kind": "cfd", "how_obtained": how, "stated_uncertainty": f"{scatter}; modelling error not assessed",
         },
     }  # fmt: skip

@@ -406,7 +406,7 @@ def default_text(body: Body, at: Conditions = FRESH_WATER) -> str:
 # The virtual tow tank of {body.name}: coeflab tow {body.name} --matrix tank.toml --out runs/{body.name}
 [tank]
 name = {quoted(body.name)}
-solver = "openfoam"                  # estimate and external need nothing installed; coeflab formats tow_solvers
+solver = "openfoam"                  # external needs nothing installed; coeflab formats tow_solvers
 cores = 1                            # that one run takes
 # reference_point = {value([float(v) for v in body.reference_point])}   # of velocities and moments; the body's unless given
 # symmetry = false                   # tow both sides of the whole body, whatever its mirrors

@@ -383,9 +383,9 @@ def collected(tow: Tow, fitted: bool = True) -> Collected:
     InputError
         A history that cannot be read; a table that an outside solver gives.
     """
-    runs = _runs(tow)
+    runs, stated = _runs(tow)
     inputs = {"body.toml": tow.tank.body, "tank.toml": tow.folder / TANK}
-    files = campaign_files(tow.tank, tow.body, runs, tow.installed.version or tow.tank.solver, inputs)
+    files = campaign_files(tow.tank, tow.body, runs, tow.installed.version or tow.tank.solver, inputs, stated)
     folder = tow.folder / CAMPAIGN
     write_all(folder, files)
     for stale in sorted(folder.glob("*.csv")) if folder.is_dir() else ():
@@ -405,12 +405,14 @@ def collected(tow: Tow, fitted: bool = True) -> Collected:
     return Collected(runs, study, files=(*written, *(tow.folder / REPORT / name for name in report)))
 
 
-def _runs(tow: Tow) -> tuple[TowedRun, ...]:
+def _runs(tow: Tow) -> tuple[tuple[TowedRun, ...], str]:
+    """Every condition as it came out, and what is stated of forces that no run of ours gave."""
     solver, jobs = tow.solver, tow.of
     if solver.table is not None:
         with SOLVERS.guarded(tow.tank.solver):
             table: RawTable = solver.table(tow.tank, tow.body, tow.folder)
-        return rows_of(tow.tank, table)
+        made = table.stated.get("source.how_obtained")
+        return rows_of(tow.tank, table), f"{made.value if made is not None else tow.tank.solver} ({table.path.name})"
     states = {name: progress(job) for name, job in jobs.items()}
     out = []
     for condition in tow.tank.matrix:
@@ -421,7 +423,7 @@ def _runs(tow: Tow) -> tuple[TowedRun, ...]:
         remarks = [r for name in job.needs if name in states for r in states[name].remarks]
         now = states[condition.name]
         out.append(towed_run(condition, now, jobs, job, _history(tow, job, now), remarks))
-    return tuple(out)
+    return tuple(out), ""
 
 
 def _history(tow: Tow, job: Job, now: Progressed) -> Run | None:

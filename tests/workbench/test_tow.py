@@ -185,6 +185,7 @@ def test_a_solver_that_is_not_installed(tmp_path: Path, monkeypatch: pytest.Monk
 def test_an_outside_solver_fills_a_table_in(tmp_path: Path, whole: tuple[Tow, Collected]) -> None:
     body = whole[0].body
     matrix = tank_file(tmp_path, solver="external")
+    matrix.write_text(matrix.read_text() + '[solver.external]\nmade_by = "panel code 3"\n')
     tank = read_tank(matrix, body, body_file=whole[0].tank.body)
     tow = room.laid_out(tank, body, tmp_path / "x", matrix)
     assert towed(tow).unfitted == "no sweep has 3 runs that count"
@@ -202,6 +203,9 @@ def test_an_outside_solver_fills_a_table_in(tmp_path: Path, whole: tuple[Tow, Co
     values = {r.symbol: r.value for r in room.collected(tow).six}
     assert values["Yv"] == pytest.approx(-6e-3, rel=1e-2)
     assert values["Mw"] == pytest.approx(1.3e-2, rel=1e-2)
+    said = (tow.folder / "campaign" / "campaign.toml").read_text()
+    assert "As the table gives it: panel code 3 (forces.csv), read by coeflab" in said
+    assert not any(word in said for word in ("plateau", "batch", "iteration noise", "doubled", "converged"))
 
 
 def test_paths_of_a_copied_tank_lead_where_they_led(tmp_path: Path) -> None:
