@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -108,6 +109,7 @@ def towed(
     return TowedBody(body, vertices, faces, patches, patch, chord, (x, y, z), fourfold)
 
 
+@functools.lru_cache(maxsize=1)  # every mesh of a tow has the same
 def stl(towed: TowedBody) -> bytes:
     """The surface as an ASCII STL, one solid a patch, m; the same bytes for the same surface."""
     corners = towed.vertices[towed.faces]

@@ -8,6 +8,7 @@ and the forces are those of the water alone, without any inertia of a frame.
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import os
 import re
@@ -161,6 +162,7 @@ def turbulent_fields(
     return (eddy, kinetic, Field("epsilon", "[0 2 -3 0 0 0 0]", start, far, "epsilonWallFunction", far))
 
 
+@functools.lru_cache(maxsize=2)  # all conditions of a half have the same
 def split(body: TowedBody, half: Half) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...]]:
     """Which patches the cut divides, and which lie in the half as the image of one that does not.
 
