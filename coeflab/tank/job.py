@@ -226,7 +226,7 @@ class _Attempt:
                 self._look()
                 if self.verdict is not None and (self.verdict.diverged or self.now.plateau):
                     return self._stop(step, process)
-                look = time.monotonic() + min(max(SHARE * self.took, EARLIEST), LATEST)
+                look = time.monotonic() + min(max(SHARE * self.took, EARLIEST, self._until_next()), LATEST)
 
     def _look(self) -> None:
         """Read the history and look for a plateau at the lengths that it has reached since the last look."""
@@ -258,6 +258,14 @@ class _Attempt:
                 "why": self.verdict.why,
             }  # fmt: skip
         self._say(iteration=iteration, left=self._left(iteration), **changes)
+
+    def _until_next(self) -> float:
+        """Seconds until the history has the next length at which it is judged, at the pace since the first look."""
+        if self.pace is None or not self.now.iteration > self.pace[1]:
+            return 0.0
+        then, first = self.pace
+        following = next(n for n in lengths(int(2 * self.looked + 2 * FIRST)) if n > self.looked)
+        return (following - self.now.iteration) * (time.monotonic() - then) / (self.now.iteration - first)
 
     def _left(self, iteration: float) -> float:
         """Seconds to the last iteration, at the pace since the first look."""

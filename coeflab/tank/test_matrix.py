@@ -11,13 +11,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief, locked
 from coeflab.tables.campaign import FOURFOLD, PORT_STARBOARD, UP_DOWN
-from coeflab.tank.towed_body import TowedBody
+
+if TYPE_CHECKING:
+    from coeflab.tank.towed_body import TowedBody
 
 # Sizes of drift and attack, deg. Small ones carry the slope at the origin, large ones show how it bends.
 ONE_SIDE, BOTH_SIDES = (2.0, 4.0, 6.0, 8.0, 10.0, 12.0), (2.0, 4.0, 8.0, 12.0)

@@ -18,6 +18,7 @@ import pytest
 
 from coeflab.core import files
 from coeflab.core.errors import InputError, OutputError
+from coeflab.tables.raw_table import Run
 from coeflab.tank import job as carried
 from coeflab.tank.job import carry_out, lengths, main
 from coeflab.tank.jobs import (
@@ -219,6 +220,19 @@ def test_a_run_of_a_study_of_iterations_makes_them_all(tmp_path: Path) -> None:
     assert stopped.iteration < 400.0
     assert (found.state, found.iteration, found.plateau) == (JobState.FINISHED, 400.0, 400)
     assert dict(found.means) != dict(stopped.means)
+
+
+def test_a_history_is_not_read_before_it_has_the_next_length(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    looks, read = [], slow_solver.history
+
+    def counted(folder: Path) -> Run:
+        looks.append(rows(folder))
+        return read(folder)
+
+    monkeypatch.setattr(slow_solver, "history", counted)
+    found = carry_out(prepared(tmp_path, iterations=150, pause=0.005).folder)
+    assert found.state is JobState.UNCONVERGED
+    assert len(looks) < 3 * len(list(lengths(150)))  # without waiting for rows one every 0.02 s: about 40
 
 
 def test_a_run_that_diverges_is_ended_and_said_to(tmp_path: Path) -> None:

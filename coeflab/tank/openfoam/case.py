@@ -17,6 +17,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,7 +27,9 @@ from coeflab.core.types import Array
 from coeflab.tank.openfoam import rendered
 from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import Half, TowCondition
-from coeflab.tank.towed_body import TowedBody
+
+if TYPE_CHECKING:
+    from coeflab.tank.towed_body import TowedBody
 
 C_MU = 0.09
 FOOT = b"// ****"  # with which OpenFOAM ends every field that it has written whole

@@ -8,13 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array
 from coeflab.tank.openfoam.mesh_sizes import MOST_CELLS, MeshSizes
-from coeflab.tank.towed_body import TowedBody
+
+if TYPE_CHECKING:
+    from coeflab.tank.towed_body import TowedBody
 
 BETWEEN_LEVELS = 3  # cells of a level before the next
 SAMPLES = 5.0  # points on the surface a cell's face

@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -28,7 +28,9 @@ from coeflab.tank.openfoam.mesh_sizes import (
 )
 from coeflab.tank.tank import Grid, Tank
 from coeflab.tank.test_matrix import Half
-from coeflab.tank.towed_body import TowedBody, stl
+
+if TYPE_CHECKING:
+    from coeflab.tank.towed_body import TowedBody
 
 __all__ = ["CUT", "FAR", "expected_cells", "mesh_ended", "mesh_job", "mesh_name"]
 
@@ -130,6 +132,8 @@ def mesh_job(
 
 
 def _files(body: TowedBody, sizes: MeshSizes, half: Half, cores: int) -> dict[str, bytes]:
+    from coeflab.tank.towed_body import stl
+
     whole = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))])
     cut = [CUT_SIDE[half]] if half is not Half.WHOLE else []
     boundary = [{"name": FAR, "type": "patch", "faces": [face for side, face in SIDES.items() if side not in cut]}]

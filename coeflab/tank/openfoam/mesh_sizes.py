@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
@@ -18,7 +18,9 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.scaling import Conditions
 from coeflab.tank.test_matrix import Half
-from coeflab.tank.towed_body import TowedBody
+
+if TYPE_CHECKING:
+    from coeflab.tank.towed_body import TowedBody
 
 Wall = Annotated[str, one_of("functions", "resolved", "none")]
 Positive = Annotated[Pure, ABOVE_ZERO]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from coeflab.core.declarations import Declaration
 from coeflab.core.registry import Plugin, Registry
@@ -13,7 +13,9 @@ from coeflab.core.types import brief
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tank.jobs import Job, Step
 from coeflab.tank.tank import Tank
-from coeflab.tank.towed_body import TowedBody
+
+if TYPE_CHECKING:
+    from coeflab.tank.towed_body import TowedBody
 
 
 @brief

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from operator import itemgetter
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
@@ -28,7 +28,9 @@ from coeflab.tank.openfoam.mesh_sizes import MeshKeys
 from coeflab.tank.solvers import Installation
 from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import Half, TowCondition
-from coeflab.tank.towed_body import TowedBody, towed
+
+if TYPE_CHECKING:
+    from coeflab.tank.towed_body import TowedBody
 
 summary = "steady RANS by simpleFoam of OpenFOAM on meshes of snappyHexMesh; the arm as a rotating frame"
 citations = (
@@ -125,6 +127,8 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
     OutputError
         A folder cannot be written.
     """
+    from coeflab.tank.towed_body import towed  # not imported by the process that watches a run
+
     given = OpenFOAM(**tank.options)
     version = installed().version
     meshes: dict[tuple[Any, ...], tuple[TowedBody, Job]] = {}
