@@ -27,7 +27,7 @@ from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.runs import RunSummary, summarised
 from coeflab.tank.jobs import Job, JobState, Progressed
-from coeflab.tank.plateau import until
+from coeflab.tank.plateau import on_plateau, until
 from coeflab.tank.tank import Tank
 from coeflab.tank.test_matrix import Half, Kind, TowCondition
 from coeflab.tank.towed_body import TowedBody
@@ -106,7 +106,9 @@ def towed_run(
         As the solver reads it, up to where the plateau was recognised; None where there is none.
     mesh_remarks : sequence of str
     """
-    counted = None if history is None else until(history, len(history.history), progressed.first)
+    counted = history
+    if history is not None and progressed.plateau:
+        counted = until(history, len(history.history), on_plateau(history).first)
     meshes = [jobs[name].key for name in job.needs if name in jobs]
     return TowedRun(
         condition,

@@ -254,8 +254,7 @@ class _Attempt:
             means = self.verdict.plateau.means
             changes = {
                 "means": {c: m.value for c, m in means.items()}, "errors": {c: m.error for c, m in means.items()},
-                "plateau": self.looked if counts else 0, "first": self.verdict.first if counts else 0,
-                "why": self.verdict.why,
+                "plateau": self.looked if counts else 0, "why": self.verdict.why,
             }  # fmt: skip
         self._say(iteration=iteration, left=self._left(iteration), **changes)
 

@@ -152,8 +152,6 @@ class Progressed:
     plateau : int
         Rows of the history within which the plateau was recognised; what the solver wrote until it stopped comes after them
         and counts for nothing, so that a result does not depend on when somebody looked. 0 without a plateau.
-    first : int
-        Rows before the part of the history that was judged; they count for nothing either.
     resumed_from : float
         Iteration or time from which the last attempt went on; NaN for one from the start.
     why : str
@@ -178,7 +176,6 @@ class Progressed:
     resumed_from: float = nan
     why: str = ""
     remarks: tuple[str, ...] = ()
-    first: int = 0
 
     def __post_init__(self) -> None:
         for name in ("means", "errors"):

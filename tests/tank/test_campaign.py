@@ -17,10 +17,11 @@ from coeflab.tables.histories import Convergence
 from coeflab.tables.raw_table import RawColumn, RawTable, Run, Stated
 from coeflab.tables.reading import read_tables
 from coeflab.tables.runs import RunSummary
-from coeflab.tank.campaign import TowedRun, campaign_files, rows_of, short_history
+from coeflab.tank.campaign import TowedRun, campaign_files, rows_of, short_history, towed_run
 from coeflab.tank.declaration import read_tank
-from coeflab.tank.jobs import JobState
+from coeflab.tank.jobs import Job, JobState, Progressed
 from coeflab.tank.tank import Tank
+from coeflab.tank.test_matrix import Kind, TowCondition
 from tests.planted_tank import forces
 from tests.tank.towed_bodies import BODY_FILE, with_mirrors
 
@@ -179,3 +180,16 @@ def test_a_short_history_keeps_its_ends() -> None:
     lines = short_history(Run(Path(), "x", RawTable(Path(), (at, y))), 50).decode().splitlines()
     assert (lines[0], lines[1], lines[-1]) == ("iteration,Y [N]", "1,0", "1000,999")
     assert len(lines) == 51
+
+
+def test_a_smooth_approach_counts_from_where_it_was_judged() -> None:
+    rows = np.arange(655.0)
+    columns = [RawColumn(c, "N", 50.0 * (1.0 + 0.5 * np.exp(-rows / 100.0)), means=c) for c in ("X", "Y")]
+    history = Run(Path("run"), "run", RawTable(Path("run"), tuple(columns)))
+    job = Job("run", Path("run"), "slow", ())
+    condition = TowCondition("run", Kind.DRIFT, np.array([1.0, 0.1, 0.0]), np.zeros(3))
+    found = towed_run(condition, Progressed(JobState.FINISHED, plateau=655), {}, job, history)
+    assert found.counts
+    assert found.summary is not None
+    assert found.summary.means["Y"] == pytest.approx(50.0, rel=0.005)
+    assert found.history is history
