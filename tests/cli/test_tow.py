@@ -54,7 +54,8 @@ def run(folder: Path, environment: dict[str, str], *arguments: str) -> Done:
 @contextmanager
 def begun(folder: Path, environment: dict[str, str], *arguments: str) -> Iterator[subprocess.Popen[str]]:
     """A tow that runs until its end or that of the block."""
-    command = [str(COEFLAB), "tow", *arguments]
+    # A shell that starts the tests in the background has them ignore Ctrl-C.
+    command = ["env", "--default-signal=INT", str(COEFLAB), "tow", *arguments]
     process = subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                                text=True)  # fmt: skip
     try:
