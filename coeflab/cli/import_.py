@@ -109,7 +109,7 @@ def command(
     from coeflab.core.files import typed, write_all
     from coeflab.tables.imported import checked, contents
     from coeflab.tables.mapping import assigned
-    from coeflab.tables.questions import assumed, stated_settings, understood
+    from coeflab.tables.questions import assumed, doubtful_setting, stated_settings, understood
     from coeflab.tables.reading import importer_of, read_raw
 
     file, out = typed(path), typed(out)
@@ -127,6 +127,9 @@ def command(
         columns, settings = _asked(raw, said.columns, settings, found, yes)
     else:
         columns, settings = _without_asking(file, found, settings, yes)
+        _listed(
+            "Check", [f"warning, {key}: {why}" for key in settings if (why := doubtful_setting(raw, settings, key))]
+        )
     known = assigned(raw, columns)
     made = contents(raw, importer, said.options, known, columns, settings)
     table = checked(made, raw, columns)
@@ -273,8 +276,9 @@ def _asked(
     raw: RawTable, said: Mapping[str, ColumnMap], settings: Mapping[str, Setting], found: Understood, yes: bool
 ) -> Settled:
     """Everything, asked for where it is open; a default only where the file or clear evidence gives one."""
-    from coeflab.tables.questions import understood
+    from coeflab.tables.questions import doubtful_setting, understood
 
+    _listed("Check", [f"warning, {key}: {why}" for key in settings if (why := doubtful_setting(raw, settings, key))])
     answers = {**said, **_asked_columns(raw, found)}
     settings = dict(settings)
     shown = {e.text for e in found.shows}
@@ -293,6 +297,10 @@ def _asked(
         while one.key not in settings:
             try:
                 settings[one.key] = _taken(one, str(typer.prompt(f"  {one.key}", default=one.default or None)))
+                if why := doubtful_setting(raw, settings, one.key):
+                    show.sentence(f"  warning: {why}.")
+                    if not typer.confirm("  Keep it?", default=None):
+                        del settings[one.key]
             except InputError as why:
                 show.error(f"  {why}")
 

@@ -18,7 +18,7 @@ from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.text.toml import read_toml
 from coeflab.core.units import quantity
-from coeflab.law.scaling import Scaling
+from coeflab.law.scaling import Scaling, doubtful_size, speaks_of_air
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import (
     CENTRES,
@@ -221,6 +221,20 @@ def stated_settings(raw: RawTable) -> dict[str, Setting]:
             plain = list(map(float, said.value)) if isinstance(said.value, tuple) else said.value
             out[key] = Setting(plain, f"stated: {said.place}")
     return out
+
+
+def doubtful_setting(raw: RawTable, settings: Settings, key: str) -> str:
+    """Why the number of a key is probably one in another unit; empty where it is a usual one, or the file states it."""
+    one = settings[key]
+    sizes = {"conditions.density": "density", "conditions.speed": "speed", "scaling.length": "length"}
+    if key not in sizes or one.origin.startswith("stated"):
+        return ""
+    texts = [
+        raw.path.name,
+        raw.dialect.get("importer", ""),
+        *(s.value for k, s in settings.items() if k.startswith(("campaign.", "source."))),
+    ]
+    return doubtful_size(key, quantity(one.value, sizes[key]), speaks_of_air(texts))
 
 
 def frame_of(settings: Settings) -> Axes | None:

@@ -10,6 +10,7 @@ import shlex
 import subprocess
 from importlib.resources import files
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,6 +20,8 @@ from typer.testing import CliRunner
 from coeflab.cli import app
 from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.provenance import sha256_of
+from coeflab.core.table import Severity
+from coeflab.study.checks import conditions
 from coeflab.tables.campaign import read_campaign
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.force_table import ForceTable
@@ -413,6 +416,34 @@ def on_a_terminal(folder: Path, command: list[str], answers: str) -> tuple[int, 
             seen += block
     os.close(ours)
     return process.returncode, seen.decode().replace("\r\n", "\n")
+
+
+def in_check(table: ForceTable) -> list[str]:
+    """What the check of conditions warns of."""
+    return [c.subject for c in conditions.check(SimpleNamespace(tables=[table])) if c.severity is Severity.WARN]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("key", "typed", "said"), [
+    ("conditions.density", "1.025", 'is it g/cm^3? Then write "1.025 g/cm^3"'),
+    ("scaling.length", "3000", 'is it in mm? Then write "3000 mm"'),
+    ("scaling.length", "0.004", "is it in km?"),
+    ("conditions.speed", "2000", 'is it in mm/s? Then write "2000 mm/s"'),
+])  # fmt: skip
+def test_a_number_in_another_unit_is_a_warning(drift: Path, tmp_path: Path, key: str, typed: str, said: str) -> None:
+    """At import and by the check of conditions; not for what is written with its unit."""
+    ask = ("import", drift, "--out", tmp_path / "out", "--yes", "--force")
+    done = invoke(*ask, *sets(**{key: typed}))
+    assert done.exit_code == 0, done.output
+    assert f"warning, {key}: " in " ".join(done.output.split())
+    assert said in " ".join(done.output.split())
+    name = key.partition(".")[2]
+    assert in_check(table_of(tmp_path / "out")) == [f"out unit of {name}"]
+    if "g/cm" not in said:
+        return
+    for more in ({key: "1.025 g/cm^3"}, {key: typed, "source.citation": "wind tunnel of X"}):
+        done = invoke(*ask, *sets(**more))
+        assert "warning" not in done.output
+        assert in_check(table_of(tmp_path / "out")) == []
 
 
 @pytest.mark.slow
