@@ -7,7 +7,7 @@ import shlex
 import sys
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +19,9 @@ from coeflab.core.errors import InputError
 if TYPE_CHECKING:
     from coeflab.tables.column_map import ColumnMap
     from coeflab.tables.force_table import ForceTable
+    from coeflab.tables.proposals import Proposal
     from coeflab.tables.questions import Question, Setting, Understood
-    from coeflab.tables.raw_table import RawTable
+    from coeflab.tables.raw_table import RawColumn, RawTable
 
 
 EXAMPLE = "coeflab import drift.csv --out cfd_data/mine"
@@ -296,13 +297,44 @@ def _asked(
         show.sentence(f"{one.asks}." + (f" Default: {one.why}." if one.default else ""))
         while one.key not in settings:
             try:
-                settings[one.key] = _taken(one, str(typer.prompt(f"  {one.key}", default=one.default or None)))
+                settings[one.key] = _taken(
+                    one, str(typer.prompt(f"  {one.key}", default=one.default or one.on_enter or None))
+                )
                 if why := doubtful_setting(raw, settings, one.key):
                     show.sentence(f"  warning: {why}.")
                     if not typer.confirm("  Keep it?", default=None):
                         del settings[one.key]
             except InputError as why:
                 show.error(f"  {why}")
+
+
+def _with_sizes(offered: Sequence[tuple[RawColumn, Proposal]]) -> list[tuple[RawColumn, Proposal]]:
+    """Proposals whose coefficients have their area and length, which are asked once for all."""
+    from coeflab.core.errors import shown
+    from coeflab.core.units import quantity
+    from coeflab.tables.proposals import OPEN
+
+    out = list(offered)
+    for letter, dimension, unit, example in (("A", "area", "m^2", "0.2 m^2"), ("L", "length", "m", "4.26 m")):
+        want = f"{letter}={OPEN}"
+        named = [column.name for column, offer in out if want in offer.text]
+        if not named:
+            continue
+        whose = "by 1/2 rho U^2 A" if letter == "A" else "of moments, by 1/2 rho U^2 A L"
+        show.sentence(f"{dimension.capitalize()} {letter} of the coefficients {', '.join(named)} ({whose}), such as {example}; "
+                      "Enter: each column is asked.")  # fmt: skip
+        while typed := str(typer.prompt(f"  {letter}", default="", show_default=False)).strip():
+            try:
+                size = quantity(float(typed) if typed.replace(".", "", 1).isdigit() else typed, dimension)
+            except InputError as why:
+                show.error(f"  {why}")
+                continue
+            if size <= 0.0:
+                show.error(f"  found {shown(typed)}; expected a number above zero")
+                continue
+            out = [(c, replace(o, text=o.text.replace(want, f"{letter}={size!r} {unit}"))) for c, o in out]
+            break
+    return out
 
 
 def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
@@ -312,12 +344,13 @@ def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
 
     out: dict[str, ColumnMap] = {}
     doubts = {column.name: (column, Proposal(str(said), why)) for column, said, why in found.doubts}
-    whole = [(column, offer) for column, offer in found.open if offer.whole and column.name not in doubts]
+    opened = _with_sizes(found.open)
+    whole = [(column, offer) for column, offer in opened if offer.whole and column.name not in doubts]
     if whole:
         show.sentence("Proposed by name and unit: " + "; ".join(f"{c.name} = {o.text}" for c, o in whole) + ".")
         if typer.confirm("  All of them right?", default=None):
             out = {column.name: read_column_map(offer.text) for column, offer in whole}
-    for column, offer in ({c.name: (c, o) for c, o in found.open} | doubts).values():
+    for column, offer in ({c.name: (c, o) for c, o in opened} | doubts).values():
         if column.name in out or error_of(column, out):
             continue
         hint = f"{offer.text}: {offer.why}" if offer.text else offer.why
