@@ -18,6 +18,7 @@ from coeflab.core.errors import InputError
 
 if TYPE_CHECKING:
     from coeflab.tables.column_map import ColumnMap
+    from coeflab.tables.conditions import NoConditionError
     from coeflab.tables.force_table import ForceTable
     from coeflab.tables.proposals import Proposal
     from coeflab.tables.questions import Question, Setting, Understood
@@ -108,6 +109,7 @@ def command(
     """
     from coeflab.core.errors import OutputError
     from coeflab.core.files import typed, write_all
+    from coeflab.tables.conditions import NoConditionError
     from coeflab.tables.imported import checked, contents
     from coeflab.tables.mapping import assigned
     from coeflab.tables.questions import assumed, doubtful_setting, stated_settings, understood
@@ -118,8 +120,15 @@ def command(
         raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
     said = _said(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
     importer = importer_of(file, said.importer)
-    with show.narrated(), show.progress(False) as say:
-        raw = read_raw(file, importer, said.options, say)
+    try:
+        with show.narrated(), show.progress(False) as say:
+            raw = read_raw(file, importer, said.options, say)
+    except NoConditionError as why:
+        if name or runs or not sys.stdin.isatty():
+            raise
+        said.options["names"] = _asked_pattern(why)
+        with show.narrated(), show.progress(False) as say:
+            raw = read_raw(file, importer, said.options, say)
     said.columns |= _mapped(map_, raw)
     settings = assumed(out) | stated_settings(raw) | said.settings
     found = understood(raw, said.columns, settings, yes)
@@ -138,6 +147,34 @@ def command(
     _written(out, table, settings)
 
 
+def _asked_pattern(open_: NoConditionError) -> str:
+    """The pattern of the runs' names, proposed, with what it makes of them, and confirmed."""
+    from coeflab.tables.conditions import SPELT, UNNAMED, name_pattern
+
+    show.sentence(f"No file states an angle, rate or speed for {len(open_.runs)} runs, such as {', '.join(open_.runs[:FEW])}. A pattern of "
+                  f"their names says it: {{beta:deg}} for a number, * for any text. {SPELT}.")  # fmt: skip
+    if UNNAMED in open_.pattern:
+        show.sentence(f"They look like {open_.pattern}, with NAME beta, alpha, r, U ... and its UNIT.")
+    default = open_.pattern if UNNAMED not in open_.pattern else ""
+    while True:
+        try:
+            pattern = name_pattern(str(typer.prompt("  --name", default=default or None)).strip(" '\""))
+        except InputError as why:
+            show.error(f"  {why}")
+            continue
+        read = {run: pattern.conditions(run) for run in open_.runs}
+        if unfit := [run for run, found in read.items() if not found]:
+            show.error(f"  The name {unfit[0]} does not fit. {SPELT}.")
+            continue
+        told = [
+            f"{run}: " + ", ".join(f"{key} = {one}".partition(" (name")[0] for key, one in (found or {}).items())
+            for run, found in read.items()
+        ]
+        _listed("Read as", told)
+        if typer.confirm("  Is that what they are, number, sign and unit?", default=None):
+            return pattern.text
+
+
 def described(raw: RawTable, importer: str, found: Understood) -> None:
     """Print what a file is, its columns, what it says of itself and what its numbers show."""
     from coeflab.report.tables import raw_tables
@@ -153,7 +190,7 @@ def described(raw: RawTable, importer: str, found: Understood) -> None:
     _listed("The numbers show", [e.text for e in found.shows])
 
 
-MOST = 12
+MOST, FEW = 12, 3
 
 
 def _listed(title: str, texts: Sequence[str]) -> None:

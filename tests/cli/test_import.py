@@ -475,6 +475,26 @@ def test_places_and_sizes_are_asked_with_examples(tmp_path: Path, monkeypatch: p
     assert table.arm_point.tolist() == table.reference_point.tolist() == [0.0, 0.0, 0.0]
 
 
+def test_a_pattern_of_names_is_proposed_shown_and_confirmed(
+    runs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Enter takes it; a wrong one is asked again; what it reads is shown and has to be confirmed."""
+    said = {k: v for k, v in SAID.items() if not k.startswith("conditions.")} | {"axes.beta": "-"}
+    sets_ = [a for k, v in said.items() for a in ("--set", f"{k}={v}")]
+    done = answered(
+        monkeypatch, ["b{beta:deg}", "", "n", "", "y", "", ""], "import", runs, "--out", tmp_path / "out", *sets_
+    )
+    assert done.exit_code == 0, done.output
+    text = " ".join(done.output.split())
+    for part in ("--name [b{beta:deg:m=-}]", "The name bm4 does not fit. A minus is - unless the pattern spells it", "bm8: beta = -8 deg",
+                 "Is that what they are, number, sign and unit?"):  # fmt: skip
+        assert part in text, (part, text)
+    assert np.degrees(np.arcsin(table_of(tmp_path / "out").motion["v"] / 2.0)) == pytest.approx(
+        [-b for b in RUNS.values()]
+    )
+    assert "b{beta:deg:m=-}" in (tmp_path / "out" / "mapping.toml").read_text()
+
+
 @pytest.mark.parametrize(("typed", "read"), [
     ("0", [0.0, 0.0, 0.0]), ("0 0 0", [0, 0, 0]), ("-2.1 0 0.3", [-2.1, 0, 0.3]), ("[-2, 0, 0]", [-2, 0, 0]), ("-2; 0; 0", [-2, 0, 0]),
     ("7 ft, 0, 0", ["7 ft", 0, 0]),
