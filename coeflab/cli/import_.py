@@ -123,10 +123,10 @@ def command(
     try:
         with show.narrated(), show.progress(False) as say:
             raw = read_raw(file, importer, said.options, say)
-    except NoConditionError as why:
+    except NoConditionError as unsaid:
         if name or runs or not sys.stdin.isatty():
             raise
-        said.options["names"] = _asked_pattern(why)
+        said.options["names"] = _asked_pattern(unsaid)
         with show.narrated(), show.progress(False) as say:
             raw = read_raw(file, importer, said.options, say)
     said.columns |= _mapped(map_, raw)

@@ -226,7 +226,7 @@ def likely_pattern(names: Sequence[str]) -> str:
     split = [_DIGITS.split(text) for text in texts]
     if len(texts) < 2 or len({len(parts) for parts in split}) != 1 or len(split[0]) < 3:
         return ""
-    columns = list(zip(*split, strict=True))
+    columns: list[tuple[str, ...]] = list(zip(*split, strict=True))
     out, taken = "", set()
     for i in range(0, len(columns) - 1, 2):
         before, numbers = columns[i], columns[i + 1]
