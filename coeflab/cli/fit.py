@@ -49,6 +49,7 @@ def command(
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the fit, and stop."),
     include_uncertain: bool = typer.Option(False, help="Use cells that the source marks as doubtful."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
+    wide: bool = typer.Option(False, "--wide", help="Print every column of the coefficients, however long the lines."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Fit the coefficients of a table, or of several jointly, and show how they were made.
@@ -110,7 +111,7 @@ def command(
             out["next"] = [as_json.next_runs(f, s, next_runs) for f in study.fits for s in f.sweeps if s.next_runs(1)]
         show.json_object(out)
     else:
-        _print(study, wanted, next_runs)
+        _print(study, wanted, next_runs, wide)
         if diagnostics:
             _diagnose(study)
         if figure is not None:
@@ -203,7 +204,7 @@ def _diagnose(study: Study) -> None:
         show.table(model_tables.correlations(model))
 
 
-def _print(study: Study, symbols: list[str], count: int) -> None:
+def _print(study: Study, symbols: list[str], count: int, wide: bool) -> None:
     from coeflab.cli.run import findings
     from coeflab.report.tables import models as joint_tables
     from coeflab.report.tables import models as model_tables
@@ -216,21 +217,22 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
     if left_out := tables.unused(study.tables):
         show.sentence(left_out)
     show.text()
-    show.table(tables.coefficients(study))
+    table = show.table if wide else show.folded
+    table(tables.coefficients(study) if wide else tables.coefficients_in(study, show.width()))
     models = tuple(m for f in study.fits for m in f.models)
     for model in models:
-        show.table(noun_tables.terms(model))
-        show.table(budget_tables.shared(model))
+        table(noun_tables.terms(model))
+        table(budget_tables.shared(model))
     for f in study.fits:
-        show.table(oscillation_tables.explained(f, study.fits))
-        show.table(oscillation_tables.over_frequency(f))
-    show.table(model_tables.quality(models))
-    show.table(joint_tables.campaigns(study.fits))
+        table(oscillation_tables.explained(f, study.fits))
+        table(oscillation_tables.over_frequency(f))
+    table(model_tables.quality(models))
+    table(joint_tables.campaigns(study.fits))
     known = {s.symbol: s for f in study.fits for s in f.sweeps}
     for symbol in symbols:
         sweep = known[symbol]
         for content in (tables.sensitivity(sweep), tables.left_out(sweep), tables.estimators(sweep)):
-            show.table(content)
+            table(content)
     for f in study.fits if count else ():
-        show.table(tables.next_points(f, count))
-    findings(study.checks)
+        table(tables.next_points(f, count))
+    findings(study.checks, folded=not wide)

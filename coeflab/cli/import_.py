@@ -7,7 +7,7 @@ import shlex
 import sys
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,9 +18,11 @@ from coeflab.core.errors import InputError
 
 if TYPE_CHECKING:
     from coeflab.tables.column_map import ColumnMap
+    from coeflab.tables.conditions import NoConditionError
     from coeflab.tables.force_table import ForceTable
+    from coeflab.tables.proposals import Proposal
     from coeflab.tables.questions import Question, Setting, Understood
-    from coeflab.tables.raw_table import RawTable
+    from coeflab.tables.raw_table import RawColumn, RawTable
 
 
 EXAMPLE = "coeflab import drift.csv --out cfd_data/mine"
@@ -107,9 +109,10 @@ def command(
     """
     from coeflab.core.errors import OutputError
     from coeflab.core.files import typed, write_all
+    from coeflab.tables.conditions import NoConditionError
     from coeflab.tables.imported import checked, contents
     from coeflab.tables.mapping import assigned
-    from coeflab.tables.questions import assumed, stated_settings, understood
+    from coeflab.tables.questions import assumed, doubtful_setting, stated_settings, understood
     from coeflab.tables.reading import importer_of, read_raw
 
     file, out = typed(path), typed(out)
@@ -117,8 +120,15 @@ def command(
         raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
     said = _said(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
     importer = importer_of(file, said.importer)
-    with show.narrated(), show.progress(False) as say:
-        raw = read_raw(file, importer, said.options, say)
+    try:
+        with show.narrated(), show.progress(False) as say:
+            raw = read_raw(file, importer, said.options, say)
+    except NoConditionError as unsaid:
+        if name or runs or not sys.stdin.isatty():
+            raise
+        said.options["names"] = _asked_pattern(unsaid)
+        with show.narrated(), show.progress(False) as say:
+            raw = read_raw(file, importer, said.options, say)
     said.columns |= _mapped(map_, raw)
     settings = assumed(out) | stated_settings(raw) | said.settings
     found = understood(raw, said.columns, settings, yes)
@@ -127,11 +137,42 @@ def command(
         columns, settings = _asked(raw, said.columns, settings, found, yes)
     else:
         columns, settings = _without_asking(file, found, settings, yes)
+        _listed(
+            "Check", [f"warning, {key}: {why}" for key in settings if (why := doubtful_setting(raw, settings, key))]
+        )
     known = assigned(raw, columns)
     made = contents(raw, importer, said.options, known, columns, settings)
     table = checked(made, raw, columns)
     write_all(out, made)
     _written(out, table, settings)
+
+
+def _asked_pattern(open_: NoConditionError) -> str:
+    """The pattern of the runs' names, proposed, with what it makes of them, and confirmed."""
+    from coeflab.tables.conditions import SPELT, UNNAMED, name_pattern
+
+    show.sentence(f"No file states an angle, rate or speed for {len(open_.runs)} runs, such as {', '.join(open_.runs[:FEW])}. A pattern of "
+                  f"their names says it: {{beta:deg}} for a number, * for any text. {SPELT}.")  # fmt: skip
+    if UNNAMED in open_.pattern:
+        show.sentence(f"They look like {open_.pattern}, with NAME beta, alpha, r, U ... and its UNIT.")
+    default = open_.pattern if UNNAMED not in open_.pattern else ""
+    while True:
+        try:
+            pattern = name_pattern(str(typer.prompt("  --name", default=default or None)).strip(" '\""))
+        except InputError as why:
+            show.error(f"  {why}")
+            continue
+        read = {run: pattern.conditions(run) for run in open_.runs}
+        if unfit := [run for run, found in read.items() if not found]:
+            show.error(f"  The name {unfit[0]} does not fit. {SPELT}.")
+            continue
+        told = [
+            f"{run}: " + ", ".join(f"{key} = {one}".partition(" (name")[0] for key, one in (found or {}).items())
+            for run, found in read.items()
+        ]
+        _listed("Read as", told)
+        if typer.confirm("  Is that what they are, number, sign and unit?", default=None):
+            return pattern.text
 
 
 def described(raw: RawTable, importer: str, found: Understood) -> None:
@@ -149,7 +190,7 @@ def described(raw: RawTable, importer: str, found: Understood) -> None:
     _listed("The numbers show", [e.text for e in found.shows])
 
 
-MOST = 12
+MOST, FEW = 12, 3
 
 
 def _listed(title: str, texts: Sequence[str]) -> None:
@@ -273,8 +314,9 @@ def _asked(
     raw: RawTable, said: Mapping[str, ColumnMap], settings: Mapping[str, Setting], found: Understood, yes: bool
 ) -> Settled:
     """Everything, asked for where it is open; a default only where the file or clear evidence gives one."""
-    from coeflab.tables.questions import understood
+    from coeflab.tables.questions import doubtful_setting, understood
 
+    _listed("Check", [f"warning, {key}: {why}" for key in settings if (why := doubtful_setting(raw, settings, key))])
     answers = {**said, **_asked_columns(raw, found)}
     settings = dict(settings)
     shown = {e.text for e in found.shows}
@@ -292,9 +334,44 @@ def _asked(
         show.sentence(f"{one.asks}." + (f" Default: {one.why}." if one.default else ""))
         while one.key not in settings:
             try:
-                settings[one.key] = _taken(one, str(typer.prompt(f"  {one.key}", default=one.default or None)))
+                settings[one.key] = _taken(
+                    one, str(typer.prompt(f"  {one.key}", default=one.default or one.on_enter or None))
+                )
+                if why := doubtful_setting(raw, settings, one.key):
+                    show.sentence(f"  warning: {why}.")
+                    if not typer.confirm("  Keep it?", default=None):
+                        del settings[one.key]
             except InputError as why:
                 show.error(f"  {why}")
+
+
+def _with_sizes(offered: Sequence[tuple[RawColumn, Proposal]]) -> list[tuple[RawColumn, Proposal]]:
+    """Proposals whose coefficients have their area and length, which are asked once for all."""
+    from coeflab.core.errors import shown
+    from coeflab.core.units import quantity
+    from coeflab.tables.proposals import OPEN
+
+    out = list(offered)
+    for letter, dimension, unit, example in (("A", "area", "m^2", "0.2 m^2"), ("L", "length", "m", "4.26 m")):
+        want = f"{letter}={OPEN}"
+        named = [column.name for column, offer in out if want in offer.text]
+        if not named:
+            continue
+        whose = "by 1/2 rho U^2 A" if letter == "A" else "of moments, by 1/2 rho U^2 A L"
+        show.sentence(f"{dimension.capitalize()} {letter} of the coefficients {', '.join(named)} ({whose}), such as {example}; "
+                      "Enter: each column is asked.")  # fmt: skip
+        while typed := str(typer.prompt(f"  {letter}", default="", show_default=False)).strip():
+            try:
+                size = quantity(float(typed) if typed.replace(".", "", 1).isdigit() else typed, dimension)
+            except InputError as why:
+                show.error(f"  {why}")
+                continue
+            if size <= 0.0:
+                show.error(f"  found {shown(typed)}; expected a number above zero")
+                continue
+            out = [(c, replace(o, text=o.text.replace(want, f"{letter}={size!r} {unit}"))) for c, o in out]
+            break
+    return out
 
 
 def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
@@ -304,12 +381,13 @@ def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
 
     out: dict[str, ColumnMap] = {}
     doubts = {column.name: (column, Proposal(str(said), why)) for column, said, why in found.doubts}
-    whole = [(column, offer) for column, offer in found.open if offer.whole and column.name not in doubts]
+    opened = _with_sizes(found.open)
+    whole = [(column, offer) for column, offer in opened if offer.whole and column.name not in doubts]
     if whole:
         show.sentence("Proposed by name and unit: " + "; ".join(f"{c.name} = {o.text}" for c, o in whole) + ".")
         if typer.confirm("  All of them right?", default=None):
             out = {column.name: read_column_map(offer.text) for column, offer in whole}
-    for column, offer in ({c.name: (c, o) for c, o in found.open} | doubts).values():
+    for column, offer in ({c.name: (c, o) for c, o in opened} | doubts).values():
         if column.name in out or error_of(column, out):
             continue
         hint = f"{offer.text}: {offer.why}" if offer.text else offer.why

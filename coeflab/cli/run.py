@@ -121,12 +121,17 @@ def summarise(study: Study) -> None:
             show.text(line)
 
 
-def findings(found: Sequence[Check]) -> None:
-    """Warnings and failures; the rest is counted."""
+def findings(found: Sequence[Check], folded: bool = False) -> None:
+    """Warnings and failures, as a table or as sentences folded to 80 columns; the rest is counted."""
     from coeflab.core.table import Severity
     from coeflab.report.tables import results as tables
 
     grave = {Severity.FAIL, Severity.WARN}
-    show.table(tables.checks([c for c in found if c.severity in grave]))
+    shown = tables.checks([c for c in found if c.severity in grave])
+    if folded:
+        for severity, name, subject, statistic, rule, comment in shown.rows:
+            show.sentence(f"{severity}, {name}, {subject}: {statistic}; expected {rule}. {comment}".rstrip())
+    else:
+        show.table(shown)
     counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
     show.text("Checks: " + ", ".join(f"{n} {name}" for name, n in counts.items()) + ".")

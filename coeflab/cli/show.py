@@ -64,6 +64,13 @@ def table(content: Table) -> None:
         _plain(content)
 
 
+def width() -> int:
+    """Letters of a line: of the terminal, at least 80, and 80 in a pipe."""
+    import shutil
+
+    return max(shutil.get_terminal_size().columns, 80) if sys.stdout.isatty() else 80
+
+
 def folded(content: Table) -> None:
     """A table whose notes are folded to 80 columns."""
     import textwrap

@@ -48,6 +48,11 @@ _LONGEST = 40
 # Exponents are single digits: the units library would compute 9^9^9 for ever.
 _NAME = r"[A-Za-zµμ°]+(?:\s*(?:\^|\*\*)\s*-?\s*[1-9])?"
 _UNIT = re.compile(rf"\s*(?:1\s*/\s*)?{_NAME}(?:(?:\s*[*/·]\s*|\s+){_NAME})*\s*")
+# kg/m3, m/s2, m s-1 and N.m: digits behind lengths and times, a minus before a digit and a point between letters mean one thing.
+_EXPONENT = re.compile(r"\b(mm|cm|dm|m|km|in|inch|ft|s|sec|min)-?[1-4]\b")
+_BEHIND = re.compile(r"(?<=[A-Za-z])(?=-?[1-4])")
+_POINT = re.compile(r"(?<=[A-Za-z0-9])\.(?=[A-Za-z])")
+_RAISED = str.maketrans("\u00b9\u00b2\u00b3\u2074\u207b\u2212\u22c5", "1234--\u00b7")
 _HEADER = re.compile(r"^(?P<name>[^\[\]]+?)\s*\[(?P<unit>[^\[\]]*)\]$")
 _COMMA = re.compile(r",\s*\d")
 _NUMBER = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*$")
@@ -76,6 +81,12 @@ def parse_header(text: str) -> Header:
     return Header(clean, match["name"], match["unit"].strip()) if match else Header(clean, clean, None)
 
 
+def _spelled(unit: str) -> str:
+    """The unit with ``^`` before exponents and ``*`` for a point between units."""
+    plain = _POINT.sub("*", unit.translate(_RAISED))
+    return _EXPONENT.sub(lambda found: _BEHIND.sub("^", found[0]), plain)
+
+
 @functools.cache
 def factor(unit: str, dimension: str) -> float:
     """Factor that turns a number in ``unit`` into SI.
@@ -83,7 +94,8 @@ def factor(unit: str, dimension: str) -> float:
     Parameters
     ----------
     unit : str
-        For example ``lbf``, ``ft*lbf``, ``kn``, ``deg/s``; ``-`` for a pure number.
+        For example ``lbf``, ``ft*lbf``, ``kn``, ``deg/s``, ``kg/m^3`` or ``kg/m3``, ``N*m``, ``N.m`` or ``Nm``; ``-`` for a
+        pure number.
     dimension : str
         A key of `SI`.
 
@@ -100,7 +112,8 @@ def factor(unit: str, dimension: str) -> float:
         raise UnitsError(f"[{unit}]", expected)
     if unit in _TWO_MEANINGS:
         raise UnitsError(f"[{unit}], which is degrees or gon", expected, advice="Write deg or gon.")
-    plain = unit.replace("(", " ").replace(")", " ")
+    spelled = unit if len(unit) > _LONGEST else _spelled(unit)
+    plain = spelled.replace("(", " ").replace(")", " ")
     if unit not in _WRITTEN and (len(unit) > _LONGEST or not _UNIT.fullmatch(plain)):
         raise UnitsError(f"the unreadable unit {shown(unit)}", expected)
     import pint
@@ -108,7 +121,7 @@ def factor(unit: str, dimension: str) -> float:
     registry = _registry()
     si = SI[dimension] or "dimensionless"
     try:
-        one = registry.Quantity(1.0, registry.parse_units(_WRITTEN.get(unit, unit.replace("·", "*"))))
+        one = registry.Quantity(1.0, registry.parse_units(_WRITTEN.get(unit, spelled.replace("·", "*"))))
         value, double = float(one.to(si).magnitude), float((2.0 * one).to(si).magnitude)
         turns = dict(one.to_root_units().unit_items()).get("radian", 0)
     except pint.DimensionalityError:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Annotated, ClassVar, overload
 
@@ -25,6 +27,41 @@ QUANTITIES: dict[str, tuple[int, int, int]] = {
     "m": (0, 3, 1),
     **dict.fromkeys(["I", "Ix", "Iy", "Iz", "Ixy", "Iyz", "Izx"], (0, 5, 1)),
 }
+
+GRAMS = (0.9, 1.1)  # kg/m^3 of hot or high air, and g/cm^3 of water
+LENGTHS = (0.05, 400.0)  # m, of models and ships
+FASTEST = 60.0  # m/s in water
+_AIR = re.compile(
+    r"\b(?:air|airship|aircraft|luft|wind)\b|wind.?tunnel|windkanal|kinematic|rhoinf|openfoam", re.IGNORECASE
+)
+
+
+def speaks_of_air(texts: Iterable[object]) -> bool:
+    """Whether a title, a body or a source names air, a wind tunnel or forces of a solver by density 1."""
+    return any(_AIR.search(str(text)) for text in texts)
+
+
+def doubtful_size(key: str, number: float, in_air: bool = False) -> str:
+    """Why a number in SI is probably one in another unit; empty where it is a usual one.
+
+    Parameters
+    ----------
+    key : str
+        conditions.density, conditions.speed or scaling.length; of others nothing is said.
+    number : float
+        kg/m^3, m/s or m.
+    in_air : bool
+        The test was run in air.
+    """
+    if key == "conditions.density" and GRAMS[0] <= number <= GRAMS[1] and not in_air:
+        return f'{number:g} kg/m^3 is thin air: is it g/cm^3? Then write "{number:g} g/cm^3"'
+    if key == "scaling.length" and not LENGTHS[0] <= number <= LENGTHS[1]:
+        unit = "mm" if number > LENGTHS[1] else "km"
+        no_hull = f"{number:g} m is the length of no hull or model ({LENGTHS[0]:g} to {LENGTHS[1]:g} m)"
+        return f'{no_hull}: is it in {unit}? Then write "{number:g} {unit}"'
+    if key == "conditions.speed" and number > FASTEST and not in_air:
+        return f'{number:g} m/s is no speed in water: is it in mm/s? Then write "{number:g} mm/s"'
+    return ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
@@ -12,6 +13,17 @@ from coeflab.core.units import SI, factor, quantity
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, CONTROLS, LINEAR, MOMENTS
 
 WORDS = ("label", "point", "cells", "uncertain", "ignore")
+WIND = {"drag": "X", "side": "Y", "lift": "Z"}  # along and across the flow, with the body axis whose scale they share
+FORCES = (*COMPONENTS, *WIND)
+WIND_NAMES = {
+    word: name
+    for name, words in {
+        "drag": "drag cd fd widerstand trainee dragforce cdrag fdrag",
+        "lift": "lift cl fl auftrieb portance liftforce clift flift",
+        "side": "crossforce crossflowforce cc",
+    }.items()
+    for word in words.split()
+}
 ANGLES = ("alpha", "beta")
 ROLES = {
     **dict.fromkeys(ANGLES, "angle"),
@@ -20,7 +32,7 @@ ROLES = {
     "density": "density",
     **dict.fromkeys((*LINEAR, *ANGULAR), "velocity"),
     **dict.fromkeys(CONTROLS, "control"),
-    **dict.fromkeys(COMPONENTS, "force"),
+    **dict.fromkeys(FORCES, "force"),
     **dict.fromkeys(WORDS, "word"),
 }
 DIMENSIONS = {
@@ -29,7 +41,7 @@ DIMENSIONS = {
     **dict.fromkeys(ANGULAR, "rate"),
     "R": "length",
     "density": "density",
-    **{c: "moment" if c in MOMENTS else "force" for c in COMPONENTS},
+    **{c: "moment" if c in MOMENTS else "force" for c in FORCES},
 }
 EXAMPLES = {
     "angle": "deg", "speed": "m/s", "rate": "deg/s", "force": "N", "moment": "N*m", "length": "m", "density": "kg/m^3",
@@ -44,6 +56,7 @@ _ENTRY = re.compile(
 )
 _COEFFICIENT = re.compile(r"coefficient(?:[\s,]+A\s*=\s*(?P<area>.+?))?(?:[\s,]+L\s*=\s*(?P<length>.+?))?")
 _LONGEST = 120
+ACROSS = {"drag": "along", "lift": "across", "side": "across"}
 PER = {"force": "coefficient A=1.2 m^2", "moment": "coefficient A=1.2 m^2 L=4.26 m"}
 
 
@@ -54,7 +67,8 @@ class ColumnMap:
     Attributes
     ----------
     name : str
-        One of alpha beta U R density u v w p q r dr ds db X Y Z K M N, or label, point, cells, uncertain, ignore.
+        One of alpha beta U R density u v w p q r dr ds db X Y Z K M N lift drag side, or label, point, cells, uncertain,
+        ignore.
     unit : str
         Of the column; empty for the one that its file states, ``-`` for a prime or a coefficient.
     negative : bool
@@ -93,6 +107,11 @@ class ColumnMap:
         return DIMENSIONS.get(self.name, "none")
 
     @property
+    def component(self) -> str:
+        """The body axis whose scale a force shares: X of drag, Y of side, Z of lift."""
+        return WIND.get(self.name, self.name)
+
+    @property
     def pure(self) -> bool:
         """Whether its numbers have no unit: a prime or a coefficient."""
         return self.primed or bool(self.area)
@@ -103,6 +122,24 @@ class ColumnMap:
         if self.area:
             unit = f"coefficient A={self.area!r} m^2" + (f" L={self.length!r} m" if self.length else "")
         return f"{sign}{self.plain}{prime}" + (f" [{unit}]" if unit else "")
+
+
+def folded(name: str) -> str:
+    """Letters and digits of a name, small, without accents."""
+    plain = unicodedata.normalize("NFKD", name.casefold())
+    return "".join(c for c in plain if c.isalnum())
+
+
+def unturned(name: str, said: ColumnMap) -> str:
+    """A warning where a column whose name is that of lift or drag is called a force along a body axis; else empty."""
+    wind = WIND_NAMES.get(folded(name), "")
+    if not wind or said.error or said.name not in ("X", "Y", "Z"):
+        return ""
+    exact = str(replace(said, name=wind, negative=False))
+    return (
+        f"warning: {shown(name)} is read as {said}, a force along the body, but its name is that of {wind}, {ACROSS[wind]} "
+        f"the flow: slopes would lack C_D0, often a tenth and more. If it is {wind}, call it {exact}"
+    )
 
 
 def read_column_map(text: Any) -> ColumnMap:
@@ -136,11 +173,11 @@ def _checked(said: ColumnMap, text: str) -> ColumnMap:
         if said.unit or said.negative or said.primed:
             raise InputError(shown(text), f"{said.name} without sign, prime and unit")
         return said
-    if said.error and (said.name not in COMPONENTS or said.negative):
-        raise InputError(shown(text), "se_ before one of X Y Z K M N, without a sign")
+    if said.error and (said.name not in FORCES or said.negative):
+        raise InputError(shown(text), f"se_ before one of {' '.join(FORCES)}, without a sign")
     if said.primed:
-        if said.name not in (*COMPONENTS, *LINEAR, *ANGULAR):
-            raise InputError(shown(text), "a prime of X Y Z K M N u v w p q r only")
+        if said.name not in (*FORCES, *LINEAR, *ANGULAR):
+            raise InputError(shown(text), f"a prime of {' '.join((*COMPONENTS, *LINEAR, *ANGULAR, *WIND))} only")
         if said.unit not in ("", "-"):
             raise UnitsError(f"[{said.unit}]", f"[-] of {said.name}'", advice="Leave out ' for a dimensional column.")
         return replace(said, unit="-")
@@ -148,7 +185,7 @@ def _checked(said: ColumnMap, text: str) -> ColumnMap:
         return _coefficient(said, text)
     if said.unit == "-":
         advice = f"For the prime by the campaign's length write {said.name}' [-]"
-        if said.name in COMPONENTS:
+        if said.name in FORCES:
             advice += f"; for a coefficient by an area {said.plain} [{PER[said.dimension]}]"
         raise UnitsError("[-]", f"a unit of {said.dimension}, such as {EXAMPLES[said.dimension]}", advice=advice + ".")
     if said.unit:
@@ -159,10 +196,10 @@ def _checked(said: ColumnMap, text: str) -> ColumnMap:
 def _coefficient(said: ColumnMap, text: str) -> ColumnMap:
     match = _COEFFICIENT.fullmatch(said.unit)
     moment = said.dimension == "moment"
-    if match is None or not match["area"] or said.name not in COMPONENTS or moment != bool(match["length"]):
+    if match is None or not match["area"] or said.name not in FORCES or moment != bool(match["length"]):
         expected = f"{said.plain} [{PER['moment' if moment else 'force']}]"
         raise InputError(
-            shown(text), expected if said.name in COMPONENTS else "a coefficient of X Y Z K M N only",
+            shown(text), expected if said.name in FORCES else f"a coefficient of {' '.join(FORCES)} only",
             advice="By 1/2 rho U^2 A, moments by 1/2 rho U^2 A L; L is no part of a force's.",
         )  # fmt: skip
     area, length = _size("A", match["area"], "area"), _size("L", match["length"], "length") if moment else 0.0

@@ -42,6 +42,26 @@ _SPELLING = re.compile(r"([A-Za-z]{1,8})=([-+.])")
 _SCALE = re.compile(r"x([0-9]*\.?[0-9]+)")
 _QUANTITY = re.compile(r"([-+\u2212]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(\S.*)")
 _EXTENSION = re.compile(r"\.[A-Za-z]\w*$")
+# What a number in a name may be, by the word before it; a person confirms it.
+_WORDS = {
+    word: field
+    for field, words in {
+        "beta:deg": "b beta drift driftangle sideslip yaw yawangle", "alpha:deg": "a alpha aoa attack incidence pitch pitchangle",
+        "r:rad/s": "r yawrate", "q:rad/s": "q pitchrate", "p:rad/s": "rollrate", "U:m/s": "u speed velocity", "dr:deg": "dr rudder",
+        "ds:deg": "ds sternplane",
+    }.items()
+    for word in words.split()
+}  # fmt: skip
+_SIGNS = {
+    "": "",
+    "-": "",
+    "+": "",
+    **dict.fromkeys(("m", "n", "M", "N", "neg", "minus"), "-"),
+    **dict.fromkeys(("p", "P", "pos", "plus"), "+"),
+}
+_DIGITS = re.compile(r"([0-9]+(?:\.[0-9]+|p[0-9]+)?)")
+UNNAMED = "NAME:UNIT"
+SPELT = "A minus is - unless the pattern spells it: {beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4"
 _LONGEST, MOST_OPEN = 200, 3  # letters of a name, and asterisks and labels: each may end anywhere
 
 
@@ -180,6 +200,71 @@ def name_pattern(text: str) -> NamePattern:
     if twice := repeated(f.name for f in fields):
         raise fail(f"{listed(twice)} twice", "every name once")
     return NamePattern(text, tuple(fields), re.compile("".join(pieces) + _literal(rest)))
+
+
+def likely_pattern(names: Sequence[str]) -> str:
+    """The pattern that names of runs seem to have, to be confirmed: numbers that differ, between texts that do not.
+
+    What each number is follows from the word before it, else it is ``{NAME:UNIT}``; letters for signs and decimals are
+    spelt as `NamePattern` takes them.
+
+    Returns
+    -------
+    str
+        Empty where the names are of no one pattern, or of fewer than two.
+
+    Examples
+    --------
+    >>> likely_pattern(["drift_m12", "drift_p4", "drift_0"])
+    'drift_{beta:deg:m=-,p=+}'
+    """
+    lasts = [name.rpartition("/")[2] for name in names]
+    texts = lasts if len(set(lasts)) == len(lasts) else list(names)
+    ends = {found[0] if (found := _EXTENSION.search(text)) else "" for text in texts}
+    if len(ends) == 1:
+        texts = [text.removesuffix(next(iter(ends))) for text in texts]
+    split = [_DIGITS.split(text) for text in texts]
+    if len(texts) < 2 or len({len(parts) for parts in split}) != 1 or len(split[0]) < 3:
+        return ""
+    columns: list[tuple[str, ...]] = list(zip(*split, strict=True))
+    out, taken = "", set()
+    for i in range(0, len(columns) - 1, 2):
+        before, numbers = columns[i], columns[i + 1]
+        shared = "".join(letters[0] for letters in takewhile(lambda ls: len(set(ls)) == 1, zip(*before, strict=False)))
+        signs = {text.removeprefix(shared) for text in before}
+        if not signs <= set(_SIGNS):
+            return ""
+        if len(set(numbers)) == 1 and signs == {""}:
+            out += shared + numbers[0]
+            continue
+        spelt = [f"{sign}={_SIGNS[sign]}" for sign in sorted(signs) if _SIGNS[sign]]
+        spelt += ["p=."] * any("p" in number for number in numbers)
+        if len({word.partition("=")[0] for word in spelt}) < len(spelt):
+            return ""  # p cannot be both + and the decimal point
+        word = re.search(r"([A-Za-z]*)[^A-Za-z]*$", shared)
+        field = _WORDS.get(word[1].casefold() if word else "", UNNAMED)
+        field = UNNAMED if field in taken else field
+        taken.add(field)
+        out += shared + "{" + ":".join([field, *([",".join(spelt)] if spelt else [])]) + "}"
+    if len(set(columns[-1])) != 1 or not taken:
+        return ""
+    return out + columns[-1][0]
+
+
+class NoConditionError(InputError):
+    """Nobody says the conditions of any run; ``runs`` are their names, ``pattern`` the one that they seem to have."""
+
+    def __init__(self, runs: Sequence[str]) -> None:
+        self.runs = tuple(runs)
+        self.pattern = likely_pattern(runs)
+        sources = "a list of runs or a pattern of names, such as --name 'b{beta:deg}_r{r:rad/s}'"
+        proposed = f" If this is what they mean: --name '{self.pattern}'." if self.pattern else ""
+        if UNNAMED in self.pattern:
+            proposed = f" If their numbers are a setting: --name '{self.pattern}', with NAME beta, alpha, r, U ... and its UNIT."
+        super().__init__(
+            f"no angle, rate or speed for {named(runs)}", f"them in the files, {sources}",
+            advice=f"Nothing is taken from names unless a pattern says what they mean.{proposed}",
+        )  # fmt: skip
 
 
 def _literal(text: str) -> str:
@@ -470,8 +555,7 @@ def required(conditions: Mapping[str, Mapping[str, Condition]], pattern: NamePat
     known = [s for s in SETTINGS if any(s in c for c in conditions.values())]
     sources = "a list of runs or a pattern of names, such as --name 'b{beta:deg}_r{r:rad/s}'"
     if conditions and not known:
-        return [InputError(f"no angle, rate or speed for {named(list(conditions))}", f"them in the files, {sources}",
-                           advice="Nothing is taken from names unless a pattern says what they mean.")]  # fmt: skip
+        return [NoConditionError(list(conditions))]
     lacking: dict[tuple[str, ...], list[str]] = {}
     for name in known:
         lacking.setdefault(tuple(run for run, c in conditions.items() if name not in c), []).append(name)
@@ -479,7 +563,7 @@ def required(conditions: Mapping[str, Mapping[str, Condition]], pattern: NamePat
     for runs, names in lacking.items():
         if runs:
             unfit = pattern and any(pattern.conditions(r) is None for r in runs)
-            why = f"The name does not fit {shown(pattern.text)}. " if pattern and unfit else ""
+            why = f"The name does not fit {shown(pattern.text)}. {SPELT}. " if pattern and unfit else ""
             out.append(InputError(
                 f"no {listed(names)} for {named(runs)}", f"them in the files, {sources}, as for the other runs",
                 advice=f"{why}Where they are zero, a list of runs says so.",

@@ -16,6 +16,7 @@ from coeflab.core.errors import shown
 from coeflab.core.types import Array
 from coeflab.core.units import parse_header
 from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, MOTIONS
+from coeflab.tables.column_map import WIND
 from coeflab.tables.raw_table import RawColumn
 
 SNIFFED = 1 << 16
@@ -329,7 +330,7 @@ def raw_columns(
     return tuple(columns), remarks
 
 
-_HOUSE = frozenset({*COMPONENTS, *MOTIONS, *CONTROL_COLUMNS, "alpha", "beta", "U"})
+_HOUSE = frozenset({*COMPONENTS, *WIND, *MOTIONS, *CONTROL_COLUMNS, "alpha", "beta", "U"})
 _OPENFOAM = re.compile(
     r"^\s*#\s*(?:Force|Moment|Forces|Force coefficients|Moment coefficients|CofR|liftDir|dragDir|magUInf)\b"
     r"|^\s*#\s*Time\b.*(?:total_[xyz]|pressure_[xyz]|forces?\(|moments?\(|\(|\bC[mdls]\b)|^FoamFile\b"

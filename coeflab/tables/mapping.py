@@ -15,7 +15,7 @@ from coeflab.core.types import Array, brief
 from coeflab.core.units import factor
 from coeflab.core.wording import Verbatim, listed
 from coeflab.tables.campaign import Campaign, TableDeclaration
-from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map
+from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map, unturned
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.to_frd import BLANK, Columns, force_table, speed_of_rows
@@ -287,7 +287,7 @@ def _columns(raw: RawTable, known: Sequence[Assigned], campaign: Campaign) -> Co
     density = given["density"].get("density", np.full(len(rows), campaign.conditions.density))
     for one in known:
         if one.said.pure:
-            unit = campaign.scaling.unit(one.said.name, density, speed)
+            unit = campaign.scaling.unit(one.said.component, density, speed)
             if one.said.area:
                 unit = 0.5 * density * speed**2 * one.said.area * (one.said.length or 1.0)
             given[one.said.role][one.said.name] = given[one.said.role][one.said.name] * unit
@@ -395,7 +395,8 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
         replace(e, reason=e.reason.replace(BLANK, "no number in the source")) if e.component and not e.uncertain else e
         for e in out.exclusions
     )
-    said = [*_left_out(raw, known), *raw.remarks]
+    warned = [text for one in known if (text := unturned(one.column.name, one.said))]
+    said = [*warned, *_left_out(raw, known), *raw.remarks]
     more = [f"{len(said) - REMARKS} more remarks; coeflab inspect lists them"] if len(said) > REMARKS else []
     cells = next((one.values[rows] for one in known if one.said.name == "cells"), None)
     notes = (*out.notes, *said[:REMARKS], *more)

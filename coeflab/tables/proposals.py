@@ -6,7 +6,6 @@ Proposals are confirmed by a person, evidence is shown to one: nothing here deci
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -17,13 +16,25 @@ from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.types import Array
 from coeflab.core.units import factor
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS
-from coeflab.tables.column_map import EXAMPLES, ROLES, WORDS, ColumnMap, read_column_map
+from coeflab.tables.column_map import (
+    ACROSS,
+    EXAMPLES,
+    FORCES,
+    ROLES,
+    WIND,
+    WIND_NAMES,
+    WORDS,
+    ColumnMap,
+    folded,
+    read_column_map,
+    unturned,
+)
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
 
 OPEN = "?"
 UNKNOWN = "no known name"
-OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore"}  # names that coeflab's own tables have
+OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore", *WIND}  # names that coeflab's own tables have
 ALLOWED = {
     "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
     "length": "R", "density": "density",
@@ -65,10 +76,10 @@ COEFFICIENTS = {
     **dict(zip(("cmx", "cmy", "cmz"), MOMENTS, strict=True)),
     **dict(zip(("cfx", "cfy", "cfz"), COMPONENTS, strict=False)),
     **dict(zip(("cmroll", "cmpitch", "cmyaw"), MOMENTS, strict=True)),
+    **dict.fromkeys(("cd", "cdrag"), "drag"), **dict.fromkeys(("cl", "clift"), "lift"), "cc": "side",
     "croll": "K", "cpitch": "M", "cyaw": "N", "cside": "Y", "cs": "Y",
 }  # fmt: skip
-WIND = {"drag": "drag", "lift": "lift", "cd": "drag", "cl": "lift", "fd": "drag", "fl": "lift",
-        "widerstand": "drag", "auftrieb": "lift", "trainee": "drag", "portance": "lift"}  # fmt: skip
+TURNED = "{} the flow, turned to body axes by the alpha and beta of each row"
 UNITS = {"grad": "deg", "grd": "deg", "deg.": "deg", "sec": "s", "degree": "deg", "degrees": "deg", "°": "deg", "1/s": "rad/s", "s^-1": "rad/s", "n.m": "N*m",
          "n-m": "N*m", "knots": "kn", "kts": "kn", "newton": "N", "newtons": "N", "°/s": "deg/s"}  # fmt: skip
 _ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
@@ -96,12 +107,6 @@ class Proposal:
     def whole(self) -> bool:
         """Whether nothing has to be added."""
         return bool(self.text) and OPEN not in self.text
-
-
-def folded(name: str) -> str:
-    """Letters and digits of a name, small, without accents."""
-    plain = unicodedata.normalize("NFKD", name.casefold())
-    return "".join(c for c in plain if c.isalnum())
 
 
 def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> Proposal:
@@ -166,8 +171,9 @@ def _name(column: RawColumn) -> tuple[str, str, bool]:
     prefix, prime = "se_" if error else "", ""
     if bare.endswith("prime") or short.endswith("'"):
         bare, prime = bare.removesuffix("prime"), "'"
-    if bare in WIND and not error:
-        return "", f"{WIND[bare]} is along or across the flow: turn it to body axes X and Z first, or ignore it", False
+    if wind := WIND_NAMES.get(bare):
+        also = "; Cl of aircraft is also the rolling moment, K" if bare == "cl" else ""
+        return f"{prefix}{wind}{prime}", f"its name, {TURNED.format(ACROSS[wind])}{also}", False
     single = {c.casefold(): c for c in COMPONENTS} if prime or error else {}
     single |= {c: c for c in (*LINEAR, *ANGULAR)} if prime else {}
     name = NAMES.get(bare) or single.get(bare) or (COEFFICIENTS.get(bare, "") if not prime else "")
@@ -186,7 +192,7 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
         return Proposal(f"{name} [-]", why, certain)
     unit = UNITS.get(unit.casefold(), unit)
     moment = said.name in MOMENTS
-    is_coefficient = said.name in COMPONENTS and (
+    is_coefficient = said.name in FORCES and (
         unit in ("-", "1") or (not unit and folded(column.name) in COEFFICIENTS and not certain)
     )
     if is_coefficient:
@@ -266,11 +272,17 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
         Of the file, once it is known; without it the sign of an angle stays open.
     """
     data = {one.said.name: one.values for one in columns if one.said.role not in ("word", "error")}
+    out = [Evidence(why) for one in columns if (why := unturned(one.column.name, one.said))]
     angles = [one.said.name for one in columns if one.said.role == "angle"]
-    out: list[Evidence] = []
     for angle, component, flow, side, other in (
         ("beta", "Y", "v", "starboard", "port"), ("alpha", "Z", "w", "down", "up"),
     ):  # fmt: skip
+        across, turned_by = ("side", 1.0) if component == "Y" else ("lift", -1.0)
+        if across in data and angle in angles and (sign := trend(turned_by * data[across], data, angle)):
+            same = "the same sign" if sign * turned_by > 0 else "opposite signs"
+            out.append(Evidence(f"{across} and {angle} have {same}, and a slender body has {component}{flow}' < 0",
+                                f"axes.{angle}", f"{flow} = {'-' if sign > 0 else '+'}U sin({angle})"))  # fmt: skip
+            continue
         force = _frd(data, component, frame) if frame else data.get(component)
         if angle not in angles or force is None or not (sign := trend(force, data, angle)):
             continue
@@ -298,6 +310,8 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
         turn = f"r > 0 turns to {'starboard' if up > 0 else 'port'}: it {TURN.partition(':')[0]}"
         out += [Evidence(turn if up else f"r {TURN}")]
     out += _levers(data, {one.said.name: one.said for one in columns}, frame)
+    if "drag" in data and np.any(ok := np.isfinite(data["drag"])) and np.all(data["drag"][ok] < 0.0):
+        out.append(Evidence("warning: drag is below zero in every row: that is thrust, or -drag is meant"))
     x = _frd(data, "X", frame) if frame else data.get("X")
     x = np.empty(0) if x is None else x[np.isfinite(x)]
     if frame and x.size and np.all(x > 0):

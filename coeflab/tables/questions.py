@@ -18,7 +18,7 @@ from coeflab.core.errors import InputError, shown, together
 from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.text.toml import read_toml
 from coeflab.core.units import quantity
-from coeflab.law.scaling import Scaling
+from coeflab.law.scaling import Scaling, doubtful_size, speaks_of_air
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import (
     CENTRES,
@@ -50,7 +50,9 @@ FRAMES_ASKED = (
     "Axes of the forces: FRD (x forward, y starboard, z down), FLU (x forward, y port, z up), CFD (x aft, y starboard, "
     "z up), or three directions such as aft,port,down"
 )
-PLACE_ASKED = "x, y, z in m from the datum, x forward, y starboard, z down"
+PLACE_ASKED = "x, y, z in m from the datum, x forward, y starboard, z down, such as -2.1, 0, 0 (2.1 m aft of it), or 0 for the datum"
+PLACE_WANTED = "x, y, z in m, such as -2.1, 0, 0; 0 is the datum"
+PLACE_KEYS = ("axes.reference_point", "inertia.centre_of_gravity", "table.arm_point", "table.reference_point")
 INERTIA_ASKED = (
     "Do the forces contain the model's own inertia: true for a balance on a real rotating arm, false for a solver"
 )
@@ -91,6 +93,8 @@ class Question:
         What the default rests on.
     certain : bool
         The file itself gives the default.
+    on_enter : str
+        What Enter takes on a terminal, where a person sees it; ``--yes`` does not.
     """
 
     key: str
@@ -99,6 +103,7 @@ class Question:
     default: str = ""
     why: str = ""
     certain: bool = False
+    on_enter: str = ""
 
 
 def _sign(name: str) -> Callable[[Any], Any]:
@@ -123,7 +128,9 @@ def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:
     def parsed(typed: Any) -> Any:
         said = list(typed) if isinstance(typed, tuple) else typed
         if isinstance(said, str):
-            said = [_toml(part.strip(" \"'")) for part in said.strip(" []").split(",")]
+            inner = said.strip(" []()")
+            parts = inner.split("," if "," in inner else ";" if ";" in inner else None)
+            said = [_toml(part.strip(" \"'")) for part in parts]
         try:
             read(said, Path())
         except InputError as why:
@@ -134,6 +141,15 @@ def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:
         return said
 
     return parsed
+
+
+def _place(said: Any) -> Any:
+    if not isinstance(said, bool) and said in (0, "0"):
+        return [0.0, 0.0, 0.0]
+    try:
+        return _triple(POINT.read)(said)
+    except InputError as why:
+        raise type(why)(why.found, PLACE_WANTED, advice=why.advice) from None
 
 
 def _flag(said: Any) -> bool:
@@ -161,10 +177,7 @@ READERS: dict[str, Callable[[Any], Any]] = {
     "axes.frame": _frame,
     "axes.alpha": _sign("alpha"),
     "axes.beta": _sign("beta"),
-    "axes.reference_point": _triple(POINT.read),
-    "inertia.centre_of_gravity": _triple(POINT.read),
-    "table.arm_point": _triple(POINT.read),
-    "table.reference_point": _triple(POINT.read),
+    **dict.fromkeys(PLACE_KEYS, _place),
     "table.centre": _one_of(*CENTRES),
     "inertia.inertia": _triple(numbers(3, "inertia", "three numbers [Ix, Iy, Iz]").read),
     "inertia.mass": _measured("mass"),
@@ -223,6 +236,20 @@ def stated_settings(raw: RawTable) -> dict[str, Setting]:
     return out
 
 
+def doubtful_setting(raw: RawTable, settings: Settings, key: str) -> str:
+    """Why the number of a key is probably one in another unit; empty where it is a usual one, or the file states it."""
+    one = settings[key]
+    sizes = {"conditions.density": "density", "conditions.speed": "speed", "scaling.length": "length"}
+    if key not in sizes or one.origin.startswith("stated"):
+        return ""
+    texts = [
+        raw.path.name,
+        raw.dialect.get("importer", ""),
+        *(s.value for k, s in settings.items() if k.startswith(("campaign.", "source."))),
+    ]
+    return doubtful_size(key, quantity(one.value, sizes[key]), speaks_of_air(texts))
+
+
 def frame_of(settings: Settings) -> Axes | None:
     """The axes of the file, where they are known."""
     return parse_axes(settings["axes.frame"].value) if "axes.frame" in settings else None
@@ -258,11 +285,18 @@ def questions(
         out.append(Question(f"axes.{name}", asks, "SIGN", found.value if found else "", found.text if found else ""))
     at = raw.stated.get(POINT_OF)
     own = f". The file has {_point(at.value)} in its own axes from its own origin ({at.place})" if at else ""
+    here, turned = "", at.value if at else ""
+    if isinstance(turned, tuple) and len(turned) == 3 and (frame := frame_of(settings)):
+        here = ", ".join(f"{x + 0.0:.12g}" for x in frame.rotation @ np.array(turned))
+        own += f", in FRD ({here}): Enter takes it, if the datum is that origin"
+    known = settings[POINT_OF].value if POINT_OF in settings else None
+    same = ", ".join(map(str, known)) if isinstance(known, list) else ""
+    enter = "; Enter: the reference point" * bool(same)
     median = {role: _median(columns, role) for role in ("speed", "density")}
     why = {role: f"median of the column of {role}" if found else "" for role, found in median.items()}
     out += [
         Question("axes.datum", "Point of the body that places count from: nose, cg, midship ...", "POINT"),
-        Question(POINT_OF, f"Where the moments are about: {PLACE_ASKED}{own}", "X,Y,Z"),
+        Question(POINT_OF, f"Where the moments are about: {PLACE_ASKED}{own}", "X,Y,Z", on_enter=here),
         Question("scaling.length", "Length of the primes, m", "METRES"),
         Question("scaling.length_name", "Which length that is: LBP, LOA ...", "NAME"),
         *(
@@ -274,14 +308,16 @@ def questions(
     if arm:
         out += [
             Question("table.centre", f"Where the centre of the circle lies: {', '.join(CENTRES)}", "SIDE"),
-            Question("table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}", "X,Y,Z"),
+            Question("table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}{enter}", "X,Y,Z", on_enter=same),
         ]
     if arm or set(ANGULAR) & set(likely) or any(map(np.any, rates.values())):
         out.append(Question("table.contains_inertia", INERTIA_ASKED, "TRUE_OR_FALSE"))
     if (inside := settings.get("table.contains_inertia")) and inside.value is True:
         out += [
             Question("inertia.mass", "Mass of the model, kg", "MASS"),
-            Question("inertia.centre_of_gravity", f"Its centre of gravity: {PLACE_ASKED}", "X,Y,Z"),
+            Question(
+                "inertia.centre_of_gravity", f"Its centre of gravity: {PLACE_ASKED}{enter}", "X,Y,Z", on_enter=same
+            ),
         ]
         # About one axis alone the moment of inertia holds nothing: omega x I omega = 0.
         if np.any(np.sum([*rates.values()], axis=0) > 1) or (arm and "alpha" in angles):

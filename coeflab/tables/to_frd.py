@@ -6,7 +6,7 @@ Columns of a table in SI but in its own axes: what every importer makes of its f
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +19,7 @@ from coeflab.core.types import Array, brief
 from coeflab.law.rigid_body import rigid_body_force
 from coeflab.law.symbols import ANGULAR, COMPONENTS, LINEAR, MOTIONS
 from coeflab.tables.campaign import CENTRES, SIDES, SIGNED, Campaign, TableDeclaration, TowedInertia
+from coeflab.tables.column_map import WIND
 from coeflab.tables.force_table import Exclusion, ForceTable
 
 
@@ -44,7 +45,8 @@ class Columns:
     speed : (n,) array
         U, m/s.
     forces, errors : dict of str to array
-        X Y Z K M N and their standard errors, N and N m; NaN where blank.
+        X Y Z K M N and their standard errors, N and N m; NaN where blank. Of ``drag``, ``lift`` (up) and ``side`` (to
+        starboard), along and across the flow, `in_body_axes` makes X, Y and Z.
     labels : dict of str to list of str
     doubtful : tuple of frozenset of str
         For every row the plain names of columns whose digits are doubtful in the source.
@@ -146,6 +148,7 @@ def _first(where: NDArray[np.bool_]) -> int | None:
 
 BLANK, MARKED = "blank in the source", 'marked "uncertain" in the source'
 SYMMETRIC = ("X", "Z", "M")
+STRAIGHT, SIDEWAYS = 1e-12, 1e-3  # sine of an angle that is none; cosine of one beyond which Y says nothing of C
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
 TAKEN_OUT = "inertia of the model taken out"
 
@@ -154,7 +157,7 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     """Turn columns into the fluid's force on the body in FRD about the campaign's reference point.
 
     Moments that the table has about a point of its own are moved; one whose move needs a force that the table lacks is left
-    out, which the notes say.
+    left out, which the notes say. Lift and drag are turned to body axes, see `in_body_axes`.
 
     Raises
     ------
@@ -173,6 +176,12 @@ def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -
     point = campaign.reference_point if table.reference_point is None else table.reference_point
     motion = _motion(columns, campaign, table, point)
     notes = [] if campaign.axes.name == "FRD" else [f"axes turned from {campaign.axes.name} to FRD"]
+    if wind := [c for c in WIND if c in columns.forces]:
+        columns = in_body_axes(columns, campaign)
+        still = [f"{a} = 0" for a in ("alpha", "beta") if columns.angles and a not in columns.angles]
+        notes.append(
+            f"{', '.join(wind)} turned to body axes by the flow of each row" + f" ({', '.join(still)})" * bool(still)
+        )
     sources = _sources(campaign)
     usable, exclusions = _exclusions(columns, campaign, table, {c: s for c, (s, _) in sources.items()})
     forces = {c: sign * columns.forces[s] for c, (s, sign) in sources.items() if s in columns.forces}
@@ -266,6 +275,19 @@ def _undeclared(columns: Columns, campaign: Campaign, table: TableDeclaration) -
 
 def _motion(columns: Columns, campaign: Campaign, table: TableDeclaration, point: Array) -> dict[str, Array]:
     """Velocities in FRD at a point."""
+    linear = _linear(columns, campaign)
+    zero = np.zeros(len(columns))
+    if columns.radius is None:
+        angular = np.column_stack([columns.velocity.get(c, zero) for c in ANGULAR]) @ campaign.axes.rotation.T
+    else:
+        angular = _on_circle(columns, table.centre, linear)
+    if table.arm_point is not None:
+        linear = linear + np.cross(angular, point - table.arm_point)
+    return {**dict(zip(LINEAR, linear.T, strict=True)), **dict(zip(ANGULAR, angular.T, strict=True))}
+
+
+def _linear(columns: Columns, campaign: Campaign) -> Array:
+    """Velocities u v w in FRD, (n, 3), at the point that the table states them for."""
     linear_columns = [c for c in LINEAR if c in columns.velocity]
     if columns.angles and linear_columns:
         raise columns.fail(
@@ -289,13 +311,98 @@ def _motion(columns: Columns, campaign: Campaign, table: TableDeclaration, point
                 row = int(np.flatnonzero(rest < 0.0)[0])
                 raise columns.fail("a cross-flow faster than U", "v and w within U", row=row)
             linear[:, 0] = np.sqrt(rest)
-    if columns.radius is None:
-        angular = np.column_stack([columns.velocity.get(c, zero) for c in ANGULAR]) @ campaign.axes.rotation.T
-    else:
-        angular = _on_circle(columns, table.centre, linear)
-    if table.arm_point is not None:
-        linear = linear + np.cross(angular, point - table.arm_point)
-    return {**dict(zip(LINEAR, linear.T, strict=True)), **dict(zip(ANGULAR, angular.T, strict=True))}
+    return np.asarray(linear)
+
+
+def in_body_axes(columns: Columns, campaign: Campaign) -> Columns:
+    """Lift, drag and side force as X, Y, Z in the declared axes, by the flow of each row.
+
+    With L up, D aft and C to starboard, across and along the flow, and a, b of u = U cos(a) cos(b), v = U sin(b),
+    w = U sin(a) cos(b), in FRD::
+
+        X = -D cos(a) cos(b) - C cos(a) sin(b) + L sin(a)
+        Y = -D sin(b)        + C cos(b)
+        Z = -D sin(a) cos(b) - C sin(a) sin(b) - L cos(a)
+
+    Where the table has Y of the body in the place of C, C = (Y + D sin(b)) / cos(b). The flow is that of the row's angles
+    or velocities, before they are moved to another point. Standard errors become the bound sum |coefficient| se, which
+    holds for any correlation.
+
+    Notes
+    -----
+    The matrix of flow (wind) to body axes of the Society of Flight Test Engineers, Reference Handbook (2013), 6.2.3, applied
+    to (-D, C, -L).
+
+    Raises
+    ------
+    InputError
+        A part that X, Y or Z needs is missing: drag, lift at an incidence, the side force (or Y) at a drift angle, or the
+        flow itself; X or Z of the body beside drag, or Y beside side.
+    """
+    sources = _sources(campaign)
+    if complaints := list(_wind_complaints(columns, {c: s for c, (s, _) in sources.items()})):
+        raise together(complaints)
+    linear = _linear(columns, campaign)
+    u, sin_b, w = (linear / np.linalg.norm(linear, axis=1)[:, None]).T
+    cos_b = np.hypot(u, w)
+    inclined = cos_b > 0.0
+    cos_a, sin_a = (np.divide(part, cos_b, out=np.full(len(columns), rest), where=inclined) for part, rest in ((u, 1.0), (w, 0.0)))  # fmt: skip
+    made, (y, y_sign) = {"X": "drag", "Y": "side", "Z": "lift"}, sources["Y"]
+    parts: dict[str, dict[str, Array]] = {
+        "X": {"drag": -cos_a * cos_b, "side": -cos_a * sin_b, "lift": sin_a},
+        "Y": {"drag": -sin_b, "side": cos_b},
+        "Z": {"drag": -sin_a * cos_b, "side": -sin_a * sin_b, "lift": -cos_a},
+    }
+    if "side" not in columns.forces and y in columns.forces:
+        if (row := _first(cos_b < SIDEWAYS)) is not None:
+            raise columns.fail(
+                "a flow straight from the side", "a column side", row=row, advice="Y does not say it there."
+            )
+        for part, along in (("X", cos_a), ("Z", sin_a)):
+            of_y = {"drag": -along / cos_b, y: -y_sign * along * sin_b / cos_b}
+            parts[part] = of_y | {"lift": parts[part]["lift"]}
+    moved = {name: value for name, value in columns.forces.items() if name not in WIND}
+    errors = {name: value for name, value in columns.errors.items() if name not in WIND}
+    headers, doubtful = dict(columns.headers), [set(words) for words in columns.doubtful]
+    for part, of in made.items():
+        if of not in columns.forces:
+            continue
+        needed = {name: k for name, k in parts[part].items() if np.any(np.abs(k) > STRAIGHT)}
+        if (lacking := next((n for n in needed if n not in columns.forces), "")) and lacking in WIND:
+            angle, row = ("alpha", np.abs(sin_a)) if lacking == "lift" else ("beta", np.abs(sin_b))
+            raise columns.fail(
+                f"{of} without {lacking} at {angle} = {np.degrees(np.arcsin(min(row.max(), 1.0))):.3g} deg", f"a column {lacking}"
+                + f", or {y} of the body" * (lacking == "side"), row=int(np.argmax(row)), name=of,
+                advice=f"{part} of the body holds a part of it.",
+            )  # fmt: skip
+        own, sign = sources[part]
+        moved[own] = sign * np.asarray(sum(k * columns.forces[name] for name, k in needed.items()))
+        if all(name in columns.errors for name in needed):
+            errors[own] = np.asarray(sum(np.abs(k) * columns.errors[name] for name, k in needed.items()))
+        headers[own] = headers.get(of, of)
+        for row, words in enumerate(columns.doubtful):
+            doubtful[row] |= {own} if words & set(needed) else set()
+    return replace(columns, forces=moved, errors=errors, headers=headers, doubtful=tuple(map(frozenset, doubtful)))
+
+
+def _wind_complaints(columns: Columns, own: Mapping[str, str]) -> Iterator[InputError]:
+    """What is missing or doubled beside lift, drag and side force; ``own`` maps FRD components to the table's columns."""
+    wind = [c for c in WIND if c in columns.forces]
+    if "drag" not in wind:
+        yield columns.fail(f"{' and '.join(wind)} without drag", "a column drag", name=wind[0],
+                           advice="X, Y and Z of the body hold parts of the drag, C_D0 is one of the slope of Z.")  # fmt: skip
+    for part, beside in (("X", "drag"), ("Z", "drag"), ("Y", "side")):
+        if own[part] in columns.forces and beside in wind:
+            yield columns.fail(f"{' and '.join(wind)} beside {own[part]}", f"{beside} along the flow or {own[part]} along the body",
+                               name=own[part], advice="Ignore one of them, or import them as two tables.")  # fmt: skip
+    moving = [c for c in LINEAR if c in columns.velocity]
+    for force, angle in (("lift", "alpha"), ("side", "beta")):
+        if force in wind and angle not in columns.angles and not moving:
+            yield columns.fail(f"{force} without {angle}", f"a column {angle} [deg] (or u, v, w): {force} is across the flow",
+                               name=force)  # fmt: skip
+    if wind == ["drag"] and not columns.angles and not moving:
+        yield columns.fail("drag without a direction of the flow", "a column alpha or beta [deg], or u, v, w", name="drag",
+                           advice="In straight flow call it -X.")  # fmt: skip
 
 
 def _on_circle(columns: Columns, centre: str, linear: Array) -> Array:

@@ -10,20 +10,23 @@ import shlex
 import subprocess
 from importlib.resources import files
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from click.testing import Result
 from typer.testing import CliRunner
 
-from coeflab.cli import app
+from coeflab.cli import app, import_
 from coeflab.core.errors import CoeflabError, InputError
 from coeflab.core.provenance import sha256_of
+from coeflab.core.table import Severity
+from coeflab.study.checks import conditions
 from coeflab.tables.campaign import read_campaign
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
-from coeflab.tables.questions import Setting, understood
+from coeflab.tables.questions import Setting, questions, read_setting, understood
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.reading import read_tables
 from tests.cli.conftest import COEFLAB, Run
@@ -279,7 +282,7 @@ def test_a_rate_whose_sign_the_numbers_contradict_stays_open(tmp_path: Path) -> 
 
 @pytest.mark.parametrize(("arguments", "said"), [
     (("--set", "axes.reference_point=L/2"), 'found "L/2"'),
-    (("--set", "axes.reference_point=-1,2,0,0"), 'found "-1,2,0,0"; expected a point [x, y, z] in metres, FRD, from the datum. Write a decimal point.'),
+    (("--set", "axes.reference_point=-1,2,0,0"), 'found "-1,2,0,0"; expected x, y, z in m, such as -2.1, 0, 0; 0 is the datum. Write a decimal point.'),
     (("--set", "scaling.length=2,5"), 'found "2,5"; expected a number in m or a text with its unit, such as "2.5 m". Write a decimal point.'),
     (("--map", "Fy=Y [coefficient A=6.25]"), 'found "A=6.25"; expected A with its unit, such as 6.25 m^2'),
     (("--map", "Fy=Y [coefficient A=6,25 m^2]"), 'found "A=6,25 m^2"'),
@@ -413,6 +416,107 @@ def on_a_terminal(folder: Path, command: list[str], answers: str) -> tuple[int, 
             seen += block
     os.close(ours)
     return process.returncode, seen.decode().replace("\r\n", "\n")
+
+
+def in_check(table: ForceTable) -> list[str]:
+    """What the check of conditions warns of."""
+    return [c.subject for c in conditions.check(SimpleNamespace(tables=[table])) if c.severity is Severity.WARN]  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("key", "typed", "said"), [
+    ("conditions.density", "1.025", 'is it g/cm^3? Then write "1.025 g/cm^3"'),
+    ("scaling.length", "3000", 'is it in mm? Then write "3000 mm"'),
+    ("scaling.length", "0.004", "is it in km?"),
+    ("conditions.speed", "2000", 'is it in mm/s? Then write "2000 mm/s"'),
+])  # fmt: skip
+def test_a_number_in_another_unit_is_a_warning(drift: Path, tmp_path: Path, key: str, typed: str, said: str) -> None:
+    """At import and by the check of conditions; not for what is written with its unit."""
+    ask = ("import", drift, "--out", tmp_path / "out", "--yes", "--force")
+    done = invoke(*ask, *sets(**{key: typed}))
+    assert done.exit_code == 0, done.output
+    assert f"warning, {key}: " in " ".join(done.output.split())
+    assert said in " ".join(done.output.split())
+    name = key.partition(".")[2]
+    assert in_check(table_of(tmp_path / "out")) == [f"out unit of {name}"]
+    if "g/cm" not in said:
+        return
+    for more in ({key: "1.025 g/cm^3"}, {key: typed, "source.citation": "wind tunnel of X"}):
+        done = invoke(*ask, *sets(**more))
+        assert "warning" not in done.output
+        assert in_check(table_of(tmp_path / "out")) == []
+
+
+def answered(monkeypatch: pytest.MonkeyPatch, answers: list[str], *arguments: object) -> Result:
+    """What a command says to one who types these answers, as on a terminal."""
+    monkeypatch.setattr(import_, "sys", SimpleNamespace(stdin=SimpleNamespace(isatty=lambda: True)))
+    return CliRunner().invoke(app, [str(a) for a in arguments], input="\n".join(answers) + "\n")
+
+
+def test_places_and_sizes_are_asked_with_examples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Area and length once for all coefficients; 0 for the datum; Enter for the arm at the reference point; a doubtful density."""
+    file = tmp_path / "arm.csv"
+    file.write_text(
+        "Run,Drift (deg),R (m),CY,CN\n" + "".join(f"{i},{2 * i},{10 + i},{0.1 * i},{0.01 * i}\n" for i in range(1, 6))
+    )
+    answers = ["0.2", "L", "4 m", "y", "FRD", "-", "nose", "mid", "0 0 0", "4", "LOA", "1.025", "n", "1.025 g/cm3", "2",
+               "starboard", "", "yes", "10", "", "synthetic", ""]  # fmt: skip
+    done = answered(monkeypatch, answers, "import", file, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    said = " ".join(done.output.split())
+    for part in ("Area A of the coefficients CY, CN (by 1/2 rho U^2 A), such as 0.2 m^2", "Length L of the coefficients CN (of moments",
+                 "such as -2.1, 0, 0 (2.1 m aft of it), or 0 for the datum", 'found "mid"; expected x, y, z in m, such as -2.1, 0, 0',
+                 "is it g/cm^3? Then", "Keep it?", "table.arm_point [0, 0, 0]"):  # fmt: skip
+        assert part in said, (part, said)
+    text = (tmp_path / "out" / "mapping.toml").read_text()
+    assert 'CN = "N [coefficient A=0.2 m^2 L=4.0 m]"' in text
+    table = table_of(tmp_path / "out")
+    assert table.conditions.density == pytest.approx(1025.0)
+    assert table.arm_point is not None
+    assert table.arm_point.tolist() == table.reference_point.tolist() == [0.0, 0.0, 0.0]
+
+
+def test_a_pattern_of_names_is_proposed_shown_and_confirmed(
+    runs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Enter takes it; a wrong one is asked again; what it reads is shown and has to be confirmed."""
+    said = {k: v for k, v in SAID.items() if not k.startswith("conditions.")} | {"axes.beta": "-"}
+    sets_ = [a for k, v in said.items() for a in ("--set", f"{k}={v}")]
+    done = answered(
+        monkeypatch, ["b{beta:deg}", "", "n", "", "y", "", ""], "import", runs, "--out", tmp_path / "out", *sets_
+    )
+    assert done.exit_code == 0, done.output
+    text = " ".join(done.output.split())
+    for part in ("--name [b{beta:deg:m=-}]", "The name bm4 does not fit. A minus is - unless the pattern spells it", "bm8: beta = -8 deg",
+                 "Is that what they are, number, sign and unit?"):  # fmt: skip
+        assert part in text, (part, text)
+    assert np.degrees(np.arcsin(table_of(tmp_path / "out").motion["v"] / 2.0)) == pytest.approx(
+        [-b for b in RUNS.values()]
+    )
+    assert "b{beta:deg:m=-}" in (tmp_path / "out" / "mapping.toml").read_text()
+
+
+@pytest.mark.parametrize(("typed", "read"), [
+    ("0", [0.0, 0.0, 0.0]), ("0 0 0", [0, 0, 0]), ("-2.1 0 0.3", [-2.1, 0, 0.3]), ("[-2, 0, 0]", [-2, 0, 0]), ("-2; 0; 0", [-2, 0, 0]),
+    ("7 ft, 0, 0", ["7 ft", 0, 0]),
+])  # fmt: skip
+def test_ways_to_write_a_place(typed: str, read: list[object]) -> None:
+    assert read_setting("axes.reference_point", typed) == read
+
+
+@pytest.mark.parametrize("typed", ["1", "", "0 0", "1,2", "nose", "true", "false", "0 0 0 0", "-2,1 0 0"])
+def test_what_is_no_place_says_how_to_write_one(typed: str) -> None:
+    with pytest.raises(InputError, match=r"expected x, y, z in m, such as -2.1, 0, 0; 0 is the datum"):
+        read_setting("axes.reference_point", typed)
+
+
+def test_enter_takes_the_point_that_a_file_states_turned_to_frd_and_yes_does_not() -> None:
+    raw = RawTable(Path("t.csv"), (), stated={"axes.reference_point": Stated((1.2, 0.0, 0.3), "setup:7")})
+    asked = {q.key: q for q in questions(raw, (), {"axes.frame": Setting("CFD", "confirmed")})}
+    one = asked["axes.reference_point"]
+    assert (one.on_enter, one.default) == ("-1.2, 0, -0.3", "")
+    assert (
+        "The file has (1.2, 0, 0.3) in its own axes from its own origin (setup:7), in FRD (-1.2, 0, -0.3)" in one.asks
+    )
 
 
 @pytest.mark.slow

@@ -44,6 +44,19 @@ EXACT = [
     ("-", "none", 1.0),
     ("", "none", 1.0),
     ("percent", "none", 0.01),
+    ("kg/m3", "density", 1.0),
+    ("kg m-3", "density", 1.0),
+    ("g/cm3", "density", 1e3),
+    ("m2", "area", 1.0),
+    ("m²", "area", 1.0),
+    ("ft2", "area", 0.3048**2),
+    ("m/s2", "acceleration", 1.0),
+    ("m2/s", "viscosity", 1.0),
+    ("rad s-1", "rate", 1.0),
+    ("deg.s⁻¹", "rate", math.pi / 180.0),
+    ("N.m", "moment", 1.0),
+    ("kN.m", "moment", 1e3),
+    ("kg.m2", "inertia", 1.0),
 ]
 
 
@@ -57,7 +70,7 @@ def test_factors(unit: str, dimension: str, expected: float) -> None:
     [
         ("-", "angle"), ("", "angle"), ("deg", "none"), ("rad", "none"), ("1/s", "rate"), ("rev", "none"),
         ("N*m/rad", "moment"), ("N/rad", "force"), ("rad*m/s", "speed"), ("sr", "angle"), ("rad^2", "angle"),
-        ("kn", "force"), ("kN", "speed"), ("degC", "length"), ("N", "moment"), ("dB", "none"), ("m**0", "none"),
+        ("kn", "force"), ("kN", "speed"), ("degC", "length"), ("N", "moment"), ("dB", "none"), ("m**0", "none"), ("m0", "none"), ("N2", "force"), ("m-", "length"), ("m9", "volume"),
     ],
 )  # fmt: skip
 def test_refused(unit: str, dimension: str) -> None:

@@ -23,7 +23,7 @@ from coeflab.fits import FITS
 from coeflab.report.tables.results import inspected, unused
 from coeflab.tables.collect import Collected, collect
 from coeflab.tables.column_map import ColumnMap
-from coeflab.tables.conditions import name_pattern, read_run_list
+from coeflab.tables.conditions import likely_pattern, name_pattern, read_run_list
 from coeflab.tables.histories import Convergence
 from coeflab.tables.importers import IMPORTERS, PlannedTable
 from coeflab.tables.mapping import assigned, doubtful
@@ -385,6 +385,30 @@ def test_nothing_is_guessed(tmp_path: Path) -> None:
         collect(tmp_path, names="b{beta:deg}_r{r:rad/s}")
     assert "no beta and r for odd" in str(caught.value)
     assert 'does not fit "b{beta:deg}_r{r:rad/s}"' in str(caught.value)
+
+
+@pytest.mark.parametrize(("names", "pattern"), [
+    ("drift_m12 drift_p4 drift_0", "drift_{beta:deg:m=-,p=+}"), ("b-4_r0.1 b0_r0.2", "b{beta:deg}_r{r:rad/s}"),
+    ("bm4p5 b4 b0", "b{beta:deg:m=-,p=.}"), ("all/aoa_n2.csv all/aoa_2.csv", "aoa_{alpha:deg:n=-}"), ("run7_b4 run7_b8", "run7_b{beta:deg}"),
+    ("case1 case2", "case{NAME:UNIT}"), ("b4_b8 b6_b8 b6_b9", "b{beta:deg}_b{NAME:UNIT}"), ("fine_4 coarse_4", ""), ("b4", ""), ("x y", ""),
+    ("bp4p5 bm4", ""),
+])  # fmt: skip
+def test_the_pattern_that_names_seem_to_have(names: str, pattern: str) -> None:
+    assert likely_pattern(names.split()) == pattern
+
+
+def test_the_error_proposes_the_pattern_and_speaks_of_signs(tmp_path: Path) -> None:
+    for name in ("drift_m12", "drift_p4", "drift_0"):
+        write_run(tmp_path / name)
+    with pytest.raises(InputError) as caught:
+        collect(tmp_path)
+    assert "If this is what they mean: --name 'drift_{beta:deg:m=-,p=+}'." in str(caught.value)
+    with pytest.raises(InputError) as caught:
+        collect(tmp_path, names="drift_{beta:deg}")
+    assert "{beta:deg:m=-,p=+} reads m12 as -12 and p4 as 4" in str(caught.value)
+    beta = collect(tmp_path, names="drift_{beta:deg:m=-,p=+}").table.meaning("beta")
+    assert beta is not None
+    assert sorted(beta.values.tolist()) == pytest.approx([-12.0, 0.0, 4.0])
 
 
 def test_contradictions_name_both(tmp_path: Path) -> None:

@@ -192,7 +192,7 @@ def test_what_a_column_is_reads_as_it_is_written(text: str) -> None:
     ("Y [deg]", "found [deg], a unit of another dimension; expected a unit of force"),
     ("Q [N]", 'the unknown name "Q"'),
     ("label [N]", "label without sign, prime and unit"),
-    ("beta' [-]", "a prime of X Y Z K M N u v w p q r only"),
+    ("beta' [-]", "a prime of X Y Z K M N u v w p q r drag side lift only"),
     ("Y' [N]", "Leave out ' for a dimensional column"),
     ("Y [-]", "Y [coefficient A=1.2 m^2]"),
     ("N [coefficient A=1 m^2]", "N [coefficient A=1.2 m^2 L=4.26 m]"),
@@ -213,6 +213,108 @@ SIMPLE = {
     "scaling.length": "4.0", "scaling.length_name": '"LBP"', "conditions.density": "1000.0", "conditions.speed": "2.0",
     "source.kind": '"synthetic"', "source.citation": '"synthetic"', "table.contains_inertia": "false",
 }  # fmt: skip
+
+
+def in_wind_axes(frd: np.ndarray) -> np.ndarray:
+    """Drag, side force and lift of rows of `physics`: minus the part along the motion, that to starboard, that upwards."""
+    along = frd[:, :3] / np.linalg.norm(frd[:, :3], axis=1)[:, None]
+    up = np.cross(along, [0.0, 1.0, 0.0])
+    up *= -np.sign(up[:, 2:]) / np.linalg.norm(up, axis=1)[:, None]
+    starboard = np.cross(along, up)
+    return np.column_stack([np.sum(frd[:, 6:9] * axis, axis=1) for axis in (-along, starboard, up)])
+
+
+@pytest.mark.parametrize("side", [True, False], ids=["side", "Y"])
+@pytest.mark.parametrize("frame", ["FRD", "CFD"])
+@pytest.mark.parametrize("by", ["velocities", "angles"])
+def test_lift_and_drag_give_the_six_derivatives(tmp_path: Path, frame: str, by: str, side: bool) -> None:
+    """In place and imported, with a side force or with Y of the body, by a coefficient and in newtons."""
+    frd = physics(0.0)
+    if by == "angles":  # combined incidences; rates stay out of a table by angles of these axes
+        frd = frd[:18] + 0.0
+    own, wind = in_axes(frd, AXES[frame]), in_wind_axes(frd)
+    assert wind[np.abs(frd[:, 1]) + np.abs(frd[:, 2]) < 1e-12, 0] == pytest.approx(
+        0.0012 * 0.5 * RHO * SPEED**2 * LENGTH**2
+    )
+    area = 0.5 * RHO * SPEED**2 * AREA
+    columns: dict[str, tuple[np.ndarray, str]] = {
+        "CD": (wind[:, 0] / area, f"drag [coefficient A={AREA} m^2]"), "Lift": (-wind[:, 2], "-lift [N]"),
+        "Side": (wind[:, 1], "side [N]") if side else (own[:, 7], "Y [N]"),
+        "Mx": (own[:, 9], "K [N*m]"), "My": (own[:, 10], "M [N*m]"), "Mz": (own[:, 11], "N [N*m]"),
+    }  # fmt: skip
+    if by == "angles":
+        columns |= {
+            "a": (np.arctan2(frd[:, 2], frd[:, 0]), "alpha [rad]"),
+            "b": (-np.arcsin(frd[:, 1] / SPEED), "beta [rad]"),
+        }
+    else:
+        columns |= {f"v{m}": (own[:, i], f"{m} [{'m/s' if i < 3 else 'rad/s'}]") for i, m in enumerate(MOTIONS)}
+    file = tmp_path / "test.raw"
+    lines = [
+        ",".join(columns),
+        *(",".join(repr(float(v[row])) for v, _ in columns.values()) for row in range(len(frd))),
+    ]
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    settings = SIMPLE | {"axes.frame": f'"{frame}"', "axes.alpha": '"w = +U sin(alpha)"'}
+    if by == "velocities":
+        settings = {key: said for key, said in settings.items() if key not in ("axes.alpha", "axes.beta")}
+    said = {name: text for name, (_, text) in columns.items()}
+    for table in (by_columns(file, said, settings), by_import(file, said, settings)):
+        assert table.forces["X"] == pytest.approx(frd[:, 6], rel=1e-10)
+        found = derivatives(table)
+        for symbol in SIX if by == "velocities" else ("Yv", "Nv", "Zw", "Mw"):
+            assert found[symbol] == pytest.approx(PLANTED[symbol][0], rel=1e-10), symbol
+        assert any("turned to body axes" in note for note in table.notes)
+
+
+def test_lift_and_drag_at_incidence_and_drift_together(tmp_path: Path) -> None:
+    """The nine cosines by hand, at angles where no part of them is small, with errors and a doubtful lift."""
+    a, b, drag, side, lift = np.radians(20.0), np.radians(-30.0), 3.0, 5.0, 11.0
+    text = (
+        "a,b,D,se_D,C,L,se_L,which\n" + f"20,30,{drag},0.1,{side},{lift},0.2,\n20,30,{drag},0.1,{side},{lift},0.2,L\n"
+    )
+    (tmp_path / "t.raw").write_text(text)
+    said = {"a": "alpha [deg]", "b": "beta [deg]", "D": "drag [N]", "se_D": "se_drag [N]", "C": "side [N]", "L": "lift [N]",
+            "se_L": "se_lift [N]", "which": "uncertain"}  # fmt: skip
+    table = by_columns(tmp_path / "t.raw", said, SIMPLE | {"axes.alpha": '"w = +U sin(alpha)"'})
+    ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), np.sin(b)
+    expected = {"X": -drag * ca * cb - side * ca * sb + lift * sa, "Y": -drag * sb + side * cb,
+                "Z": -drag * sa * cb - side * sa * sb - lift * ca}  # fmt: skip
+    for part, force in expected.items():
+        assert table.forces[part][0] == pytest.approx(force, rel=1e-12)
+        assert table.usable[part].tolist() == [True, part == "Y"]
+    assert not table.errors  # the side force has none
+
+
+@pytest.mark.parametrize(("head", "row", "found"), [
+    ("alpha [deg],lift [N]", "4,1", "lift without drag"),
+    ("beta [deg],lift [N],drag [N]", "4,1,1", "lift without alpha"),
+    ("alpha [deg],side [N],drag [N]", "4,1,1", "side without beta"),
+    ("alpha [deg],drag [N],Y [N]", "4,1,1", "drag without lift at alpha = 4 deg"),
+    ("beta [deg],drag [N]", "4,1", "drag without side at beta = 4 deg"),
+    ("beta [deg],drag [N],side [N],Y [N]", "4,1,1,1", "drag and side beside Y"),
+    ("alpha [deg],drag [N],lift [N],Z [N]", "4,1,1,1", "drag and lift beside Z"),
+    ("r [rad/s],drag [N]", "0,1", "drag without a direction of the flow"),
+])  # fmt: skip
+def test_lift_and_drag_that_cannot_be_turned(write_campaign: object, head: str, row: str, found: str) -> None:
+    """Tables in our own names: one clear error."""
+    with pytest.raises(InputError) as why:
+        read_tables(PlannedTable(write_campaign(f"{head}\n{row}\n"), ()))  # type: ignore[operator]
+    assert f"found {found}" in str(why.value)
+    assert not why.value.others
+
+
+def test_a_lift_that_is_called_a_body_force_is_a_warning(tmp_path: Path) -> None:
+    said = {"aoa": "alpha [deg]", "CL": "-Z [coefficient A=0.2 m^2]", "CD": "-X [coefficient A=0.2 m^2]"}
+    (tmp_path / "t.raw").write_text("aoa,CL,CD\n-4,-0.1,0.03\n0,0,0.02\n4,0.1,0.03\n")
+    settings = SIMPLE | {"axes.alpha": '"w = +U sin(alpha)"'}
+    warned = [n for n in by_columns(tmp_path / "t.raw", said, settings).notes if n.startswith("warning")]
+    assert [n.partition(" is read")[0] for n in warned] == ['warning: "CL"', 'warning: "CD"']
+    assert "call it lift [coefficient A=0.2 m^2]" in warned[0]
+    exact = {n: s.replace("-Z", "lift").replace("-X", "drag") for n, s in said.items()}
+    assert not any(n.startswith("warning") for n in by_columns(tmp_path / "t.raw", exact, settings).notes)
+    known = assigned(raw(tmp_path / "t.raw", {}), {n: read_column_map(s) for n, s in exact.items()})
+    assert [(e.key, e.value) for e in evidence(known)] == [("axes.alpha", "w = +U sin(alpha)")]
 
 
 def read_raw_text(folder: Path, text: str, said: Mapping[str, str], **more: str) -> ForceTable:
@@ -284,8 +386,9 @@ PROPOSED = [
     ("Moment_x", "N m", "K [N m]"), ("Yaw moment", "Nm", "N [Nm]"), ("Querkraft", "N", "Y [N]"), ("CY", "-", "Y [coefficient A=?]"),
     ("CN", "", "N [coefficient A=? L=?]"), ("Y'", "", "Y' [-]"), ("r'", "-", "r' [-]"), ("N_prime", "", "N' [-]"),
     ("Beta", "°", "beta [deg]"), ("Drift angle", "deg", "beta [deg]"), ("β", "Grad", "beta [deg]"), ("Angle d'attaque", "deg", "alpha [deg]"),
-    ("yaw rate", "1/s", "r [rad/s]"), ("Speed", "kn", "U [kn]"), ("Fy", "", "Y [?]"), ("Fy", "m", "Y [?]"), ("Drag", "N", ""),
-    ("CL", "", ""), ("se_Fy", "N", "se_Y [N]"), ("Fy std", "N", ""), ("Cells", "", "cells"), ("Run", "", "point"), ("Comment", "", "ignore"),
+    ("yaw rate", "1/s", "r [rad/s]"), ("Speed", "kn", "U [kn]"), ("Fy", "", "Y [?]"), ("Fy", "m", "Y [?]"), ("Drag", "N", "drag [N]"),
+    ("CL", "", "lift [coefficient A=?]"), ("Cd", "-", "drag [coefficient A=?]"), ("Lift", "lbf", "lift [lbf]"), ("drag", "", "drag [?]"),
+    ("Cl", "", "lift [coefficient A=?]"), ("se_CD", "-", "se_drag [coefficient A=?]"), ("se_Fy", "N", "se_Y [N]"), ("Fy std", "N", ""), ("Cells", "", "cells"), ("Run", "", "point"), ("Comment", "", "ignore"),
     ("Geschw", "m/s", "U [m/s]"), ("Geschwindigkeit", "m/s", "U [m/s]"), ("velocity", "kn", "U [kn]"), ("Yaw Mom", "ft*lbf", "N [ft*lbf]"),
     ("Zeit", "s", "ignore"), ("time", "s", "ignore"), ("V", "m/s", ""),
     ("Rudder angle", "deg", "dr [deg]"), ("what", "", ""), ("y+", "", ""), ("x", "m", ""),

@@ -32,6 +32,45 @@ def coefficients(study: Study, campaign: str | None = None) -> Table:
     return noun_tables.coefficients([c for c in study.coefficients if campaign is None or c.campaign == campaign])
 
 
+# What a table of coefficients does without where a line is too narrow, the first one first.
+DROPPED = ("estimator", "campaign", "input", "n", "window", "random", "form")
+
+
+def coefficients_in(study: Study, width: int = 80) -> Table:
+    """`coefficients` for a line of that many letters: without columns of `DROPPED` as far as needed, and on one line what has no table.
+
+    Parameters
+    ----------
+    study : Study
+    width : int
+        At least that of symbol, value and U95, which stay.
+    """
+    whole = coefficients(study)
+    without = Status.NO_TABLE.replace("_", " ")
+    rows = [row for row in whole.rows if row[1] != without] or list(whole.rows)
+    campaigns = list(dict.fromkeys(row[whole.headers.index("campaign")] for row in rows))
+    absent = list(dict.fromkeys(row[0] for row in whole.rows if row[1] == without)) * (len(rows) < len(whole.rows))
+    chosen = list(range(len(whole.headers)))
+
+    def needed() -> int:
+        return sum(max(len(row[i]) for row in (whole.headers, *rows)) + 3 for i in chosen)
+
+    gone = []
+    for name in DROPPED if len(campaigns) < 2 else (*(n for n in DROPPED if n != "campaign"), "campaign"):
+        if needed() <= width:
+            break
+        chosen.remove(whole.headers.index(name))
+        gone.append(name)
+    notes = [note for note in whole.notes if not (absent and note.startswith(without))]
+    notes += [f"No table of the campaign varies the motion of {', '.join(absent)}."] if absent else []
+    notes += [f"Not shown: {', '.join(gone)}; --wide shows all."] if gone else []
+    of = f" of {campaigns[0]}" if len(campaigns) == 1 and "campaign" in gone and campaigns[0] != ABSENT else ""
+    kept = tuple(tuple(row[i] for i in chosen) for row in rows)
+    left = frozenset(chosen.index(i) for i in whole.left if i in chosen)
+    title = whole.title.replace("Coefficients", f"Coefficients{of}", 1)
+    return Table(title, tuple(whole.headers[i] for i in chosen), kept, tuple(notes), left)
+
+
 def headline(study: Study, symbols: Sequence[str] = ()) -> str:
     """The slopes at the origin with U95 and what it covers, in one sentence; empty where there is none.
 

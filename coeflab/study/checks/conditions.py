@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from coeflab.core.table import Check, Severity
+from coeflab.law.scaling import FASTEST, GRAMS, LENGTHS, doubtful_size, speaks_of_air
 from coeflab.law.symbols import ANGULAR
 from coeflab.study.study import Study
 from coeflab.tables.force_table import ForceTable
@@ -17,6 +18,11 @@ citations = ("ittc_water",)
 
 WATER = (985.0, 1040.0)  # kg/m^3: fresh at 55 deg C to the Red Sea
 AIR = (0.5, 1.6)  # kg/m^3: hot and high, cold and dense
+EXPECTED = {
+    "density": f"{WATER[0]:g} to {WATER[1]:g} kg/m^3, water, or a source that says air",
+    "speed": f"at most {FASTEST:g} m/s in water",
+    "length": f"{LENGTHS[0]:g} to {LENGTHS[1]:g} m",
+}
 REYNOLDS = 0.05  # what LOA in the place of LBP makes
 
 
@@ -40,6 +46,25 @@ def _water(name: str, low: float, high: float) -> Iterator[Check]:
         )  # fmt: skip
 
 
+def _sizes(t: ForceTable) -> Iterator[Check]:
+    """Numbers that are probably in another unit."""
+    in_air = (
+        speaks_of_air((t.title, t.body, t.source.citation, t.source.how_obtained))
+        or AIR[1] >= t.conditions.density > GRAMS[1]
+    )
+    at = {
+        "conditions.density": t.conditions.density,
+        "conditions.speed": t.conditions.speed,
+        "scaling.length": t.scaling.length,
+    }
+    for key, number in at.items():
+        if why := doubtful_size(key, number, in_air):
+            found, _, advice = why.partition(": ")
+            what = key.partition(".")[2]
+            yield Check("conditions", f"{t.campaign} unit of {what}", Severity.WARN, found, EXPECTED[what],
+                        f"{advice[:1].upper()}{advice[1:]} in campaign.toml.")  # fmt: skip
+
+
 def _carried(t: ForceTable) -> Iterator[Check]:
     """A balance that turns with its model and is said not to carry it."""
     turns = any(np.any(np.asarray(t.motion[m]) != 0.0) for m in ANGULAR)
@@ -54,6 +79,7 @@ def _carried(t: ForceTable) -> Iterator[Check]:
 def _found(t: ForceTable) -> Iterator[Check]:
     at = t.conditions
     yield from _water(t.campaign, at.density, at.density)
+    yield from _sizes(t)
     if at.viscosity is not None and at.reynolds is not None:
         own = at.speed * t.scaling.length / at.viscosity
         good = abs(own / at.reynolds - 1.0) <= REYNOLDS

@@ -16,8 +16,9 @@ from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.types import Array
 from coeflab.core.units import Header, factor
 from coeflab.core.wording import Verbatim
-from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS, MOTIONS
+from coeflab.law.symbols import ANGULAR, CONTROL_COLUMNS, LINEAR, MOMENTS, MOTIONS
 from coeflab.tables.campaign import Campaign, TableDeclaration
+from coeflab.tables.column_map import FORCES, WIND
 from coeflab.tables.dialect import is_house_table
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.to_frd import Columns, force_table, speed_of_rows
@@ -28,7 +29,7 @@ citations = ("sname1950",)
 ANGLES = ("alpha", "beta")
 UNCERTAIN, POINT = "uncertain", "point"
 EXAMPLES = {
-    **dict.fromkeys(("X", "Y", "Z"), "N"),
+    **dict.fromkeys(("X", "Y", "Z", *WIND), "N"),
     **dict.fromkeys(MOMENTS, "N*m"),
     **dict.fromkeys((*ANGLES, *CONTROL_COLUMNS), "deg"),
     **dict.fromkeys((*LINEAR, "U"), "m/s"),
@@ -54,7 +55,7 @@ def _kind(name: str) -> _Kind | None:
     primed = name.endswith("'")
     plain = name.removesuffix("'")
     force = plain.removeprefix("se_")
-    if force in COMPONENTS:
+    if force in FORCES:
         role = "error" if plain != force else "force"
         return _Kind(role, "moment" if force in MOMENTS else "force", force, primed)
     if plain in MOTIONS:
@@ -100,7 +101,7 @@ def _values(cells: Cells, header: Header, kind: _Kind) -> Array:
 
 
 def _unknown(cells: Cells, header: Header) -> InputError:
-    known = ", ".join((*ANGLES, *PLAIN, *MOTIONS, *CONTROL_COLUMNS, *COMPONENTS))
+    known = ", ".join((*ANGLES, *PLAIN, *MOTIONS, *CONTROL_COLUMNS, *FORCES))
     return InputError(
         f"the unknown column {shown(header.text)}",
         f"one of {known}, se_..., {POINT}, {UNCERTAIN}",
@@ -145,7 +146,7 @@ def _columns(cells: Cells, campaign: Campaign, table: TableDeclaration) -> Colum
     density = given["density"].get("density")
     for kind, values in primes:
         given[kind.role][kind.name] = values * campaign.scaling.unit(
-            kind.name, campaign.conditions.density if density is None else density, speed
+            WIND.get(kind.name, kind.name), campaign.conditions.density if density is None else density, speed
         )
     return Columns(
         file=cells.file,
