@@ -222,8 +222,15 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
         write_all(folder, {TANK: own, BODY: stl(body)})
         jobs: tuple[Job, ...] = ()
         if solver.jobs is not None:
-            with SOLVERS.guarded(tank.solver):
-                jobs = tuple(solver.jobs(tank, body, folder))
+            try:
+                with SOLVERS.guarded(tank.solver):
+                    jobs = tuple(solver.jobs(tank, body, folder))
+            except InputError as why:
+                key = why.column or ""
+                if why.file is not None or not key or matrix is None:
+                    raise
+                key = key if "." in key else f"solver.{tank.solver}.{key}"
+                raise read_toml(matrix).fail(key, why.found, why.expected, why.advice) from None
         for job in jobs:
             write_job(job)
         forget(folder, {job.folder for job in jobs})

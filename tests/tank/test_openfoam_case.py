@@ -18,7 +18,7 @@ from coeflab.tank.jobs import Job
 from coeflab.tank.openfoam import case
 from coeflab.tank.solvers import openfoam
 from coeflab.tank.tank import Tank
-from coeflab.tank.test_matrix import Half
+from coeflab.tank.test_matrix import Half, Kind
 from tests.tank import spheroid as towed
 
 Jobs = Callable[[Tank], dict[str, Job]]
@@ -43,6 +43,21 @@ def test_the_frame_gives_the_body_its_velocity(rates: tuple[float, ...]) -> None
 
 def test_the_centre_of_an_arm_is_to_starboard_of_a_turn_to_starboard() -> None:
     np.testing.assert_allclose(case.frame(np.array([2.0, 0, 0]), np.array([0, 0, 0.1]))[1], [0, 20, 0])
+
+
+def test_an_arm_whose_axis_lies_inside_the_tank_is_refused(jobs: Jobs, tmp_path: Path) -> None:
+    arm = next(c for c in towed.MATRIX if c.name == "arm")
+    tank = towed.tank(arm)
+    short = replace(arm, name="yaw+3", kind=Kind.ARM, rates=np.array([0.0, 0.0, 3.0]) * arm.speed / tank.scaling.length)
+    with pytest.raises(InputError, match=r"the axis of this arm of .* lies inside the tank") as why:
+        jobs(towed.tank(arm, short))
+    assert why.value.column == "matrix.yaw"
+    assert not list(tmp_path.iterdir())
+    largest = float(why.value.expected.split()[2])
+    near = {share: replace(short, rates=short.rates * share * largest / 3.0) for share in (1.0, 1.003)}
+    assert jobs(towed.tank(near[1.0]))
+    with pytest.raises(InputError):
+        jobs(towed.tank(near[1.003]))
 
 
 @pytest.mark.parametrize("condition", towed.MATRIX, ids=lambda c: c.name)

@@ -18,16 +18,17 @@ from coeflab.core.declarations import ABOVE_ZERO, Flag, Pure, Within, one_of
 from coeflab.core.errors import InputError
 from coeflab.core.files import write_all
 from coeflab.core.text.foam import FoamCase
+from coeflab.core.types import Array
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run
 from coeflab.tank.jobs import Job, Step
 from coeflab.tank.openfoam import case, rendered, step
 from coeflab.tank.openfoam.mesh import expected_cells, mesh_ended, mesh_job
-from coeflab.tank.openfoam.mesh_sizes import MeshKeys
+from coeflab.tank.openfoam.mesh_sizes import MeshKeys, mesh_sizes
 from coeflab.tank.solvers import Installation
 from coeflab.tank.tank import Tank
-from coeflab.tank.test_matrix import Half, TowCondition
+from coeflab.tank.test_matrix import Half, Kind, TowCondition
 
 if TYPE_CHECKING:
     from coeflab.tank.towed_body import TowedBody
@@ -123,7 +124,7 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
     Raises
     ------
     InputError
-        No viscosity, or what `coeflab.tank.openfoam.mesh.mesh_job` and `coeflab.tank.towed_body.towed` raise.
+        No viscosity, an arm whose axis lies in the domain, or what `coeflab.tank.openfoam.mesh.mesh_job` and `coeflab.tank.towed_body.towed` raise.
     OutputError
         A folder cannot be written.
     """
@@ -133,6 +134,7 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
     version = installed().version
     meshes: dict[tuple[Any, ...], tuple[TowedBody, Job]] = {}
     runs = []
+    _refuse_axes_inside(tank, body, given)
     for condition in tank.matrix:
         domain = float(condition.variant.get("domain", 1.0))
         which = (condition.grid, condition.half, tuple(sorted(condition.controls.items())), domain)
@@ -155,6 +157,38 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
         turned, mesh = meshes[which]
         runs.append(_run(tank, turned, condition, given, mesh, folder / condition.name, version))
     return (*(mesh for _, mesh in meshes.values()), *runs)
+
+
+def _refuse_axes_inside(tank: Tank, body: TowedBody, given: OpenFOAM) -> None:
+    """Refuse an arm so short that its axis lies in the domain: the body would swim in circles within its own tank."""
+    boxes: dict[tuple[Any, ...], tuple[Array, Array]] = {}
+    for condition in filter(lambda c: c.turns, tank.matrix):
+        domain = float(condition.variant.get("domain", 1.0))
+        which = (condition.grid, condition.half, domain)
+        if which not in boxes:
+            sizes = mesh_sizes(body, tank.grid(condition.grid).size, condition.half, given, tank.conditions, domain)
+            boxes[which] = sizes.low, sizes.high
+        low, high = boxes[which]
+        if case.axis_inside(condition.velocity, condition.rates, low, high):
+            _refuse_axis(tank, condition, low, high, f"beside = {given.beside * domain:g}")
+
+
+def _refuse_axis(tank: Tank, condition: TowCondition, low: Array, high: Array, beside: str) -> None:
+    fits, inside = 0.0, 1.0  # shares of the rates
+    while inside - fits > 1e-4:
+        half = 0.5 * (fits + inside)
+        is_inside = case.axis_inside(condition.velocity, half * condition.rates, low, high)
+        fits, inside = (fits, half) if is_inside else (half, inside)
+    vertical = abs(condition.rates[1]) > abs(condition.rates[2])
+    name, sweep = ("q'", "pitch") if vertical else ("r'", "yaw")
+    rate = float(np.linalg.norm(condition.rates)) * tank.scaling.length / (condition.speed or 1.0)
+    arm = float(np.linalg.norm(case.frame(condition.velocity, condition.rates)[1]))
+    raise InputError(
+        f"{name} = {rate:.3g} ({condition.name}): the axis of this arm of {arm:.3g} m lies inside the tank",
+        f"{name} = {np.floor(1e3 * rate * fits) / 1e3:g} at most with {beside}",
+        column="matrix.combined" if condition.kind is Kind.COMBINED else f"matrix.{sweep}",
+        advice="Leave larger rates out. A smaller solver.openfoam.beside makes the tank narrower, at the cost of blockage.",
+    )
 
 
 def _with_zone(mesh: Job) -> Job:
