@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -25,7 +26,7 @@ from coeflab.tank.test_matrix import TowCondition
 if TYPE_CHECKING:
     from coeflab.study.towed import TowedRow
 
-NAME, MOTION, LONGEST = 20, 17, 44  # letters
+NAME, MOTION, LONGEST, LONGEST_WHY = 20, 17, 44, 42  # letters
 LEAST = 1e-4  # of a thousandth of a primed unit
 # What a person looks for first, where not all rows fit.
 FIRST = (
@@ -162,11 +163,14 @@ def _with_error(value: float, error: float) -> str:
 
 
 def reasons(rows: Sequence[JobRow]) -> tuple[str, ...]:
-    """What shows the state of every job that ended badly, a line each."""
+    """What shows the state of every job that ended badly, whole, on as many lines as that takes."""
     bad = (JobState.CRASHED, JobState.DIVERGED, JobState.UNCONVERGED, JobState.STOPPED, JobState.CHANGED)
-    return tuple(
-        shortened(f"{r.job.name}: {r.progress.why}", 76) for r in rows if r.progress.state in bad and r.progress.why
-    )
+    said = (_whole(r.job.name, r.progress.why) for r in rows if r.progress.state in bad and r.progress.why)
+    return tuple(line for lines in said for line in lines)
+
+
+def _whole(name: str, why: str) -> list[str]:
+    return textwrap.wrap(f"{name}: {why}", 77, subsequent_indent="  ", break_on_hyphens=False)
 
 
 def counted(rows: Sequence[JobRow]) -> str:
@@ -211,9 +215,12 @@ def remarks(runs: Sequence[TowedRun]) -> dict[str, str]:
 
 def ended(runs: Sequence[TowedRun]) -> Table:
     """The conditions that do not count, each with its reason."""
-    rows = []
+    rows, notes = [], []
     for r in runs:
         if not r.counts:
             why = r.why or (r.summary.why if r.summary is not None else "")
-            rows.append((shortened(r.condition.name, NAME), r.status, shortened(why, 42)))
-    return Table("Without a converged result", ("condition", "state", "why"), tuple(rows), (), frozenset({0, 1, 2}))
+            fits = len(why) <= LONGEST_WHY
+            rows.append((shortened(r.condition.name, NAME), r.status, why if fits else "see below"))
+            notes += [] if fits else _whole(r.condition.name, why)
+    heads = ("condition", "state", "why")
+    return Table("Without a converged result", heads, tuple(rows), tuple(notes), frozenset({0, 1, 2}))
