@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError
 from coeflab.core.text.foam import FoamCase
 from coeflab.tables import openfoam_case
@@ -234,3 +235,10 @@ def test_the_installation_that_is_missing_is_said_with_the_advice(monkeypatch: p
     assert found.version == ""
     assert "apt-get install openfoam" in found.missing
     assert "external" in found.missing
+
+
+@pytest.mark.parametrize("given", ["many", 0, 2.5, True])
+def test_a_count_that_is_none_is_asked_for_as_a_whole_number(tmp_path: Path, given: object) -> None:
+    with pytest.raises(InputError, match="expected a whole number, one or more") as why:
+        validated(openfoam.OpenFOAM, {"iterations": given}, tmp_path / "tank.toml", lambda _: 3, ("solver", "openfoam"))
+    assert why.value.line == 3

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from coeflab.core.declarations import ABOVE_ZERO, Flag, Pure, Within, one_of
-from coeflab.core.errors import InputError
+from coeflab.core.declarations import ABOVE_ZERO, Flag, Pure, Takes, one_of
+from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
 from coeflab.core.text.foam import FoamCase
 from coeflab.core.types import Array
@@ -62,10 +62,16 @@ SECONDS_A_CELL = 2.2e-6  # an iteration on one core
 BYTES_A_CELL, BYTES_A_PROCESS = 1.05e3, 1.5e8
 PARALLEL = 0.9  # of the ideal speed-up is left with every doubling of the cores
 WITHOUT_SHARES = Step("cleanProcessors", ("sh", "-c", "rm -rf processor*"))
-WHOLE_NUMBER = Within(
-    lambda v: "" if v >= 1.0 and v == int(v) else "a whole number, one or more", schema={"minimum": 1}
-)
-Count = Annotated[Pure, WHOLE_NUMBER]
+COUNTED = "a whole number, one or more"
+
+
+def _counted(given: Any, _file: Path) -> int:
+    if isinstance(given, bool) or not isinstance(given, (int, float)) or given < 1 or given != int(min(given, 1e9)):
+        raise InputError(shown(given), COUNTED)
+    return int(given)
+
+
+Count = Annotated[int, Takes(COUNTED, _counted, {"type": "integer", "minimum": 1})]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
