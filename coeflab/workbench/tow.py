@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,9 +17,10 @@ from coeflab.core.files import write_all, write_atomically
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief
+from coeflab.law.symbols import ANGULAR, LINEAR
 from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import Plan, PlannedTow, Study
-from coeflab.study.towed import TowedRow
+from coeflab.study.towed import NOT_RUN, OPEN, TowedRow
 from coeflab.study.towed import towed as compared
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawTable, Run
@@ -53,6 +55,7 @@ from coeflab.tank.plateau import until
 from coeflab.tank.runners import RUNNERS
 from coeflab.tank.solvers import SOLVERS, Installation, TowSolver
 from coeflab.tank.tank import Tank
+from coeflab.tank.test_matrix import EXACT, TowCondition
 from coeflab.tank.towed_body import TowedBody, stl, towed
 from coeflab.workbench import rendered, run
 
@@ -143,12 +146,31 @@ class Collected:
         if self.study is None:
             return tuple(TowedRow(s, None, None, "open", self.unfitted, ()) for s in SIX)
         tables = self.study.tables
-        return tuple(_with_count(row, tables) for row in compared(self.study)[0].rows)
+        return tuple(_with_count(_left_out(row, self.runs), tables) for row in compared(self.study)[0].rows)
 
     @property
     def failed(self) -> tuple[TowedRun, ...]:
         """Conditions that were run and do not count."""
         return tuple(r for r in self.runs if not r.counts and r.state is not JobState.WAITING)
+
+
+def _left_out(row: TowedRow, runs: Sequence[TowedRun]) -> TowedRow:
+    """A derivative whose runs left no table, because none of them has a mean, with the states of these runs."""
+    if row.missing != NOT_RUN:
+        return row
+    variable = row.why.rpartition(" ")[2]
+    ended = [r for r in runs if variable in _moves(r.condition) and not r.condition.variant]
+    states = Counter(r.status for r in ended if not r.counts)
+    if not ended or all(r.state is JobState.WAITING for r in ended):
+        return row
+    said = ", ".join(f"{n} {state}" for state, n in sorted(states.items()))
+    return replace(row, missing=OPEN, why=f"{states.total()} of {len(ended)} runs with {variable} left out: {said}")
+
+
+def _moves(condition: TowCondition) -> tuple[str, ...]:
+    """What a condition moves in, besides ahead."""
+    motion = (*condition.velocity[1:], *condition.rates)
+    return tuple(m for m, x in zip((*LINEAR[1:], *ANGULAR), motion, strict=True) if abs(x) > EXACT * condition.speed)
 
 
 def _with_count(row: TowedRow, tables: Sequence[ForceTable]) -> TowedRow:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -145,6 +146,18 @@ def test_one_of_many_crashes_and_the_others_go_on(tmp_path: Path) -> None:
     room.carried_out(again, 0, lambda: None)
     assert (tow.folder / "yaw+0.2" / "log.solver").read_text().startswith("from 160")
     assert {n for n, s in states(again).items() if s is not JobState.FINISHED} == {"yaw+0.2"}
+
+
+def test_a_motion_whose_every_run_crashed_is_open_and_says_so(whole: tuple[Tow, Collected], tmp_path: Path) -> None:
+    made = whole[1]
+    crashed = [replace(r, state=JobState.CRASHED, summary=None) if r.condition.turns else r for r in made.runs]
+    assert made.study is not None
+    none = [t for t in made.study.tables if "r" not in t.varies]
+    lost = replace(made, runs=tuple(crashed), study=replace(made.study, tables=tuple(none)))
+    rows = {r.symbol: (r.missing, r.why) for r in lost.six}
+    assert rows["Yr"] == rows["Nr"] == ("open", "2 of 2 runs with r left out: 2 crashed")
+    waiting = [replace(r, state=JobState.WAITING) if r.condition.turns else r for r in crashed]
+    assert {r.why for r in replace(lost, runs=tuple(waiting)).six if r.symbol == "Yr"} == {"no run with r"}
 
 
 def test_conditions_taken_out_of_the_matrix_are_left_on_disk(tmp_path: Path) -> None:
