@@ -240,7 +240,7 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
     installed = solver.installed()
     refuse_other(folder, tank)
     with only_one(folder, "tow"):
-        own = default_text(body.body).encode() if matrix is None else copied(matrix, folder)
+        own = default_text(body).encode() if matrix is None else copied(matrix, folder)
         write_all(folder, {TANK: own, BODY: stl(body)})
         jobs: tuple[Job, ...] = ()
         if solver.jobs is not None:
