@@ -216,13 +216,15 @@ def _at_once(tow: Tow, budget: int) -> float:
 def _fates(tow: Tow, before: Mapping[str, Any] | None) -> None:
     """What is kept, and what is run anew and why."""
     from coeflab.tank.jobs import JobState
-    from coeflab.workbench.tow import kept
+    from coeflab.workbench.tow import ANEW, BEGINS, kept
 
     found = kept(tow, before)
     same = [k for k in found if k.state.is_kept]
     waiting = [k for k in found if k.state is JobState.WAITING]
     others = [k for k in found if k not in same and k not in waiting]
-    show.text(f"Kept: {len(same)} of {len(found)}; to be run: {len(waiting)}")
+    anew = [k for k in others if k.what in (ANEW, BEGINS)]
+    parts = (("go on", len(others) - len(anew)), ("run anew", len(anew)), ("to be run", len(waiting)))
+    show.text("; ".join([f"Kept: {len(same)} of {len(found)}", *(f"{what}: {n}" for what, n in parts)]))
     for k in others:
         line = f"{k.name}: {k.what}" + (f", {k.why}" if k.why else "")
         show.lines(textwrap.fill(line, 79, initial_indent="  ", subsequent_indent="    ", break_long_words=False))

@@ -60,6 +60,7 @@ from coeflab.tank.towed_body import TowedBody, stl, towed
 from coeflab.workbench import rendered, run
 
 FEWEST = 3  # settings of a sweep: an intercept, a slope and an error
+GOES_ON, BEGINS, ANEW = "goes on from what it wrote last", "begins anew, as it had written nothing", "run anew"
 Look = Callable[[], None]
 
 
@@ -315,19 +316,18 @@ def _fate(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> Kept:
     if now.state is JobState.WAITING:
         return Kept(job.name, now.state, "to be run")
     if now.state is JobState.CHANGED:
-        return Kept(job.name, now.state, "run anew", _changed(tow, job, before))
+        return Kept(job.name, now.state, ANEW, _changed(tow, job, before))
     if _may_go_on(job, now):
         what = f"goes on from iteration {now.iteration:.0f} to {job.iterations:.0f} at most"
         return Kept(job.name, JobState.STOPPED, what, "more iterations are allowed")
     if now.state.is_kept:
         return Kept(job.name, now.state, f"kept, {now.state}")
-    reached = f" (it had reached {now.iteration:.0f})" if now.iteration > 0 else ""
-    return Kept(
-        job.name,
-        now.state,
-        f"goes on from what it wrote last{reached}",
-        "" if now.state is JobState.STOPPED else now.why,
-    )
+    why = "" if now.state is JobState.STOPPED else now.why
+    if now.state is JobState.RUNNING or tow.solver.resumed is None:
+        return Kept(job.name, now.state, GOES_ON, why)
+    with SOLVERS.guarded(tow.tank.solver):
+        _, at = tow.solver.resumed(job)  # as the next attempt does first
+    return Kept(job.name, now.state, f"{GOES_ON}, iteration {at:.0f}" if at > 0.0 else BEGINS, why)
 
 
 def _may_go_on(job: Job, now: Progressed) -> bool:

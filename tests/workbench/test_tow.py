@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from coeflab.cli.tow import _fates
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.tank.declaration import read_tank
@@ -127,6 +128,18 @@ def test_what_changed_is_named_and_run_anew(tmp_path: Path, monkeypatch: pytest.
     newer = laid_out(tmp_path, tmp_path / "tank.toml")
     why = {k.why for k in room.kept(newer, before) if k.name != "straight"}
     assert why == {"the solver was planted 1, now planted 2"}
+
+
+def test_what_a_crashed_run_wrote_says_how_it_goes_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tow = laid_out(tmp_path, tank_file(tmp_path, '[solver.planted]\ncrashes = ["drift+6", "drift+9"]\n'))
+    room.carried_out(tow, 0, lambda: None)
+    head = (tow.folder / "drift+3" / "history.csv").read_text().splitlines()
+    (tow.folder / "drift+9" / "history.csv").write_text("\n".join(head[:48]) + "\n")
+    found = {k.name: k.what for k in room.kept(tow)}
+    assert found["drift+6"] == "begins anew, as it had written nothing"
+    assert found["drift+9"] == "goes on from what it wrote last, iteration 40"
+    _fates(tow, None)
+    assert f"Kept: {len(found) - 2} of {len(found)}; go on: 1; run anew: 1; to be run: 0\n" in capsys.readouterr().out
 
 
 def test_one_of_many_crashes_and_the_others_go_on(tmp_path: Path) -> None:
