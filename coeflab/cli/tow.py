@@ -250,7 +250,13 @@ def _carry_out(tow: Tow, before: Mapping[str, Any] | None, folder: Path, cores: 
         raise typer.Exit(INTERRUPTED) from None
     show.step("fitting and drawing the report", json)
     made = tank_room.collected(tow)
-    _answer(tow, made, folder, json)
+    if tow.solver.table is not None and not json and not tank_room.filled(tow):
+        show.sentence(f"{tow.tank.name}: {len(tow.tank.matrix)} conditions to be computed or measured outside coeflab.")
+        show.text(f"Run list: {folder / 'external' / 'run_list.csv'}")
+        show.text("Next:")
+        show.sentence(f"  {_next(tow, made, folder)}")
+        return
+    _answer(tow, made, folder, json, begun=tow.solver.table is not None and not tank_room.filled(tow))
 
 
 def _stopped(tow: Tow, folder: Path) -> None:
@@ -368,9 +374,16 @@ def _status(folder: Path, json: bool) -> None:
 
     plan = read_plan(folder)
     if not plan["jobs"]:
-        show.sentence(
-            f"{plan['name']}: {plan['solver']} needs no runs. Next: coeflab tow {shlex.quote(str(folder))} --collect"
-        )
+        from coeflab.workbench import tow as tank_room
+
+        tow = tank_room.opened(folder)
+        done, many = tank_room.filled(tow), len(tow.tank.matrix)
+        if json:
+            show.json_object({"name": plan["name"], "solver": plan["solver"], "filled": done, "conditions": many})
+            return
+        where = tow.tank.options.get("table") or folder / "external" / "forces.csv"
+        show.sentence(f"{plan['name']}: {plan['solver']} needs no runs; {done} of {many} rows of {where} are filled.")
+        show.sentence(f"Next: coeflab tow {shlex.quote(str(folder))} --collect")
         return
     rows = states_of(folder)
     from coeflab.core.machine import cores
@@ -410,7 +423,7 @@ def _collected_only(folder: Path, json: bool) -> None:
     _answer(tow, tank_room.collected(tow), folder, json)
 
 
-def _answer(tow: Tow, made: Collected, folder: Path, json: bool) -> None:
+def _answer(tow: Tow, made: Collected, folder: Path, json: bool, begun: bool = False) -> None:
     """The six derivatives first, then the conditions, the files and the next command; exit code 1 where one did not converge."""
     from coeflab.report.tables import tow as tables
     from coeflab.tank.folder import CAMPAIGN, REPORT
@@ -428,7 +441,7 @@ def _answer(tow: Tow, made: Collected, folder: Path, json: bool) -> None:
         for page in (p for p in made.files if p.suffix == ".html"):
             show.text(f"Report:   {folder / REPORT / page.name}")
         show.sentence(f"Next: {_next(tow, made, folder)}")
-    if not all(r.counts for r in made.runs):
+    if not begun and not all(r.counts for r in made.runs):
         raise typer.Exit(1)
 
 

@@ -434,6 +434,17 @@ def collected(tow: Tow, fitted: bool = True) -> Collected:
     return Collected(runs, study, files=(*written, *(tow.folder / REPORT / name for name in report)))
 
 
+def filled(tow: Tow) -> int:
+    """Conditions that the table of a method without runs has forces of.
+
+    Raises
+    ------
+    InputError
+        The table cannot be read.
+    """
+    return sum(r.state is not JobState.WAITING for r in _runs(tow)[0])
+
+
 def _runs(tow: Tow) -> tuple[tuple[TowedRun, ...], str]:
     """Every condition as it came out, and what is stated of forces that no run of ours gave."""
     solver, jobs = tow.solver, tow.of
