@@ -176,7 +176,7 @@ def _dry(
     meshes = sum(j.name.startswith("mesh/") for j in tow.jobs)
     runs = len(tow.tank.matrix)
     many = f"{runs} condition{'s' * (runs != 1)}" + (f" on {meshes} mesh{'es' * (meshes != 1)}" if meshes else "")
-    head = f"{tow.tank.name}: {many} by {tow.installed.version or tow.tank.solver}"
+    head = f"{tow.tank.name}: {many} by {tables.solver_name(tow.installed.version or tow.tank.solver)}"
     if tow.jobs:
         together = _at_once(tow, budget)
         head += f", about {tables.duration(seconds)} on {budget} core{'s' * (budget != 1)}, up to {tables.size(together, 'B')}."
@@ -198,10 +198,18 @@ def _dry(
         _fates(tow, before)
     if folder is None:
         show.sentence("Nothing was kept; add --out DIR to look at the cases.")
-        show.text(f"Next: {shlex.join(['coeflab', 'tow', *asked])} --out {RUNS}/{tow.tank.name}")
+        _say_next(f"{shlex.join(['coeflab', 'tow', *asked])} --out {RUNS}/{tow.tank.name}")
     else:
         show.text(f"Cases in {folder}")
-        show.text(f"Next: coeflab tow {shlex.quote(str(folder))}" + " --continue" * (before is not None))
+        _say_next(f"coeflab tow {shlex.quote(str(folder))}" + " --continue" * (before is not None))
+
+
+def _say_next(command: str) -> None:
+    """A command to copy; a long one goes on behind a backslash."""
+    lines = textwrap.wrap(
+        f"Next: {command}", 77, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False
+    )
+    show.lines(" \\\n".join(lines))
 
 
 def _at_once(tow: Tow, budget: int) -> float:
@@ -265,7 +273,7 @@ def _stopped(tow: Tow, folder: Path) -> None:
 
     show.text()
     show.sentence(f"Stopped: {tables.counted(states_of(tow.folder))}. Nothing is lost.")
-    show.text(f"Next: coeflab tow {shlex.quote(str(folder))} --continue")
+    _say_next(f"coeflab tow {shlex.quote(str(folder))} --continue")
 
 
 @contextmanager
@@ -360,7 +368,7 @@ def _ended(row: JobRow, shown: Mapping[str, Any], rows: Sequence[JobRow]) -> str
     said = f"{row.job.name}: {cells[1]}{at}{values} ({tables.counted(rows).partition(' finished')[0]})"
     return "\n".join(
         [
-            said,
+            *textwrap.wrap(said, 79, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False),
             *(textwrap.wrap(row.progress.why, 75, initial_indent="  ", subsequent_indent="  ", break_long_words=False)),
         ]
     )
@@ -393,7 +401,9 @@ def _status(folder: Path, json: bool) -> None:
         show.json_object({"name": plan["name"], "solver": plan["solver"], "seconds_left": _finite(seconds),
                           "jobs": [_row(r) for r in rows]})  # fmt: skip
         return
-    show.sentence(f"{plan['name']} by {plan['version'] or plan['solver']}: {tables.counted(rows)}; {_left(seconds)}.")
+    show.sentence(
+        f"{plan['name']} by {tables.solver_name(plan['version'] or plan['solver'])}: {tables.counted(rows)}; {_left(seconds)}."
+    )
     show.table(tables.states(rows, tables.shown_of(plan)))
 
 
@@ -432,6 +442,8 @@ def _answer(tow: Tow, made: Collected, folder: Path, json: bool, begun: bool = F
         show.json_object(_as_json(tow, made))
     else:
         show.table(tables.six(tow.tank, made.six, made.unfitted))
+        for said in (tables.covers(made.six), *tables.symmetry_checks(tow.tank, made.runs)):
+            show.sentence(said)
         show.sentence(tables.outcome(made.runs))
         for remark, names in tables.remarks(made.runs).items():
             show.sentence(f"  {remark} ({names})")

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.cli.tow import _fates
+from coeflab.cli.tow import _fates, _say_next
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
+from coeflab.report.tables import tow as tables
 from coeflab.tank.declaration import read_tank
 from coeflab.tank.folder import CAMPAIGN, PLAN, read_plan
 from coeflab.tank.jobs import JobState, only_one
@@ -85,6 +86,33 @@ def test_known_derivatives_come_back(whole: tuple[Tow, Collected]) -> None:
         assert rows[symbol].value == pytest.approx(known, abs=max(rows[symbol].u95, 1e-7))
     assert {p.parent.name for p in made.files} >= {"campaign", "report", "histories"}
     assert (tow.folder / "report" / "report.html").is_file()
+
+
+def test_what_u95_leaves_out_and_what_symmetry_should_make_zero_is_said(whole: tuple[Tow, Collected]) -> None:
+    tow, made = whole
+    assert "error of the grid is not in it: there is no grid study" in tables.covers(made.six)
+    studied = [replace(r, u_grid=0.0012) for r in made.six]
+    assert "By the grid study, 95 %: Yv' 0.0012" in tables.covers(studied)
+    assert "not in it" not in tables.covers(studied)
+    said = []
+    for share in (0.04, 0.06):
+        least = next(r for r in made.runs if r.condition.name == "drift+3").summary
+        assert least is not None
+        runs = [r if r.condition.kind != "straight" or r.summary is None else
+                replace(r, summary=replace(r.summary, means={**r.summary.means, "Y": share * least.means["Y"]}))
+                for r in made.runs]  # fmt: skip
+        said += [line for line in tables.symmetry_checks(tow.tank, runs) if "Y of straight" in line]
+    assert said[0] == "Check: Y of straight, zero by symmetry, is 4 % of that of drift+3."
+    assert said[1].startswith("Warning: Y of straight, zero by symmetry, is 6 % of that of drift+3, more than 5 %")
+
+
+def test_long_lines_are_folded(capsys: pytest.CaptureFixture[str]) -> None:
+    _say_next("coeflab tow " + "a_body_with_a_long_name " * 4 + "--continue")
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 2
+    assert max(map(len, lines)) <= 80
+    assert lines[0].endswith(" \\")
+    assert tables.solver_name("OpenFOAM 1912, (patch=200626)") == "OpenFOAM 1912 (patch=200626)"
 
 
 def test_two_rates_give_no_rotary_derivative_and_say_why(whole: tuple[Tow, Collected]) -> None:

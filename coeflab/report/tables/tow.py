@@ -16,17 +16,20 @@ from coeflab.core.wording import listed
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import ANGULAR, LINEAR, primed
 from coeflab.report.printable import shortened
+from coeflab.tables.campaign import PORT_STARBOARD, UP_DOWN
 from coeflab.tables.conditions import named
 from coeflab.tank.campaign import TowedRun
 from coeflab.tank.jobs import Job, JobState
 from coeflab.tank.states import JobRow
 from coeflab.tank.tank import Tank
-from coeflab.tank.test_matrix import TowCondition
+from coeflab.tank.test_matrix import Kind, TowCondition
 
 if TYPE_CHECKING:
     from coeflab.study.towed import TowedRow
 
 NAME, MOTION, LONGEST, LONGEST_WHY = 20, 17, 44, 42  # letters
+MUCH = 0.05  # of the smallest force of a sweep, that a straight run has where symmetry says zero
+_ZERO = ((PORT_STARBOARD, Kind.DRIFT, "YN"), (UP_DOWN, Kind.ATTACK, "ZM"))
 LEAST = 1e-4  # of a thousandth of a primed unit
 # What a person looks for first, where not all rows fit.
 FIRST = (
@@ -62,6 +65,11 @@ def shown_of(plan: Mapping[str, Any]) -> dict[str, Shown]:
         vertical = c["half"] == "y<0" or across[1] > across[0]
         out[c["name"]] = Shown(*(("Z", "M") if vertical else ("Y", "N")), (c["units"][0], c["units"][1]))
     return out
+
+
+def solver_name(version: str) -> str:
+    """As people read it: ``OpenFOAM 1912 (patch=200626)``; keys of jobs keep the text of the solver."""
+    return version.replace(", (", " (")
 
 
 def duration(seconds: float) -> str:
@@ -195,6 +203,48 @@ def six(tank: Tank, rows: Sequence[TowedRow], unfitted: str = "") -> Table:
     notes = [f"About ({about}) m from the {tank.datum.id}, primed by {tank.scaling}."]
     notes += [f"Not fitted: {unfitted}."] if unfitted else []
     return Table(shortened(tank.title, 79), ("", "value", "U95", ""), tuple(cells), tuple(notes), frozenset({0, 3}))
+
+
+def covers(rows: Sequence[TowedRow]) -> str:
+    """What U95 is of, and what it leaves out; empty where no derivative has one."""
+    if not any(r.u95 is not None for r in rows):
+        return ""
+    said = "U95: 95 %, of the fit and the scatter of the runs about it."
+    studied = [f"{primed(r.symbol)} {r.u_grid:.2g}" for r in rows if r.u_grid is not None]
+    if studied:
+        return f"{said} By the grid study, 95 %: {', '.join(studied)}. Domain and turbulence model: see the report."
+    return f"{said} The error of the grid is not in it: there is no grid study. Nor are those of domain and turbulence model."
+
+
+def symmetry_checks(tank: Tank, runs: Sequence[TowedRun]) -> tuple[str, ...]:
+    """What straight runs have of components that symmetry makes zero, over the smallest of the sweep, a sentence each.
+
+    Parameters
+    ----------
+    tank : Tank
+    runs : sequence of TowedRun
+    """
+    counted = [r for r in runs if r.summary is not None and not r.condition.variant and r.counts]
+    out = []
+    for straight in (r for r in counted if r.condition.kind is Kind.STRAIGHT and r.summary is not None):
+        for plane, kind, components in _ZERO:
+            if plane not in tank.symmetry or straight.summary is None:
+                continue
+            like = [r for r in counted if r.condition.kind is kind and r.condition.grid == straight.condition.grid
+                    and math.isclose(r.condition.speed, straight.condition.speed, rel_tol=1e-6)]  # fmt: skip
+            for c in components:
+                sizes = {r.condition.name: abs(r.summary.means.get(c, 0.0)) for r in like if r.summary is not None}
+                sizes = {name: size for name, size in sizes.items() if size > 0.0}
+                if c not in straight.summary.means or not sizes:
+                    continue
+                least = min(sizes, key=lambda name: sizes[name])
+                share = abs(straight.summary.means[c]) / sizes[least]
+                said = (
+                    f"{c} of {straight.condition.name}, zero by symmetry, is {100.0 * share:.2g} % of that of {least}"
+                )
+                much = ", more than 5 %: the mesh is not its own mirror image." if share > MUCH else "."
+                out.append(f"{'Warning' if share > MUCH else 'Check'}: {said}{much}")
+    return tuple(out)
 
 
 def outcome(runs: Sequence[TowedRun]) -> str:
