@@ -176,7 +176,7 @@ def _dry(
     meshes = sum(j.name.startswith("mesh/") for j in tow.jobs)
     runs = len(tow.tank.matrix)
     many = f"{runs} condition{'s' * (runs != 1)}" + (f" on {meshes} mesh{'es' * (meshes != 1)}" if meshes else "")
-    head = f"{tow.tank.name}: {many} by {tow.installed.version or tow.tank.solver}"
+    head = f"{tow.tank.name}: {many} by {tables.solver_name(tow.installed.version or tow.tank.solver)}"
     if tow.jobs:
         together = _at_once(tow, budget)
         head += f", about {tables.duration(seconds)} on {budget} core{'s' * (budget != 1)}, up to {tables.size(together, 'B')}."
@@ -198,10 +198,18 @@ def _dry(
         _fates(tow, before)
     if folder is None:
         show.sentence("Nothing was kept; add --out DIR to look at the cases.")
-        show.text(f"Next: {shlex.join(['coeflab', 'tow', *asked])} --out {RUNS}/{tow.tank.name}")
+        _say_next(f"{shlex.join(['coeflab', 'tow', *asked])} --out {RUNS}/{tow.tank.name}")
     else:
         show.text(f"Cases in {folder}")
-        show.text(f"Next: coeflab tow {shlex.quote(str(folder))}" + " --continue" * (before is not None))
+        _say_next(f"coeflab tow {shlex.quote(str(folder))}" + " --continue" * (before is not None))
+
+
+def _say_next(command: str) -> None:
+    """A command to copy; a long one goes on behind a backslash."""
+    lines = textwrap.wrap(
+        f"Next: {command}", 77, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False
+    )
+    show.lines(" \\\n".join(lines))
 
 
 def _at_once(tow: Tow, budget: int) -> float:
@@ -216,13 +224,15 @@ def _at_once(tow: Tow, budget: int) -> float:
 def _fates(tow: Tow, before: Mapping[str, Any] | None) -> None:
     """What is kept, and what is run anew and why."""
     from coeflab.tank.jobs import JobState
-    from coeflab.workbench.tow import kept
+    from coeflab.workbench.tow import ANEW, BEGINS, kept
 
     found = kept(tow, before)
     same = [k for k in found if k.state.is_kept]
     waiting = [k for k in found if k.state is JobState.WAITING]
     others = [k for k in found if k not in same and k not in waiting]
-    show.text(f"Kept: {len(same)} of {len(found)}; to be run: {len(waiting)}")
+    anew = [k for k in others if k.what in (ANEW, BEGINS)]
+    parts = (("go on", len(others) - len(anew)), ("run anew", len(anew)), ("to be run", len(waiting)))
+    show.text("; ".join([f"Kept: {len(same)} of {len(found)}", *(f"{what}: {n}" for what, n in parts)]))
     for k in others:
         line = f"{k.name}: {k.what}" + (f", {k.why}" if k.why else "")
         show.lines(textwrap.fill(line, 79, initial_indent="  ", subsequent_indent="    ", break_long_words=False))
@@ -248,7 +258,13 @@ def _carry_out(tow: Tow, before: Mapping[str, Any] | None, folder: Path, cores: 
         raise typer.Exit(INTERRUPTED) from None
     show.step("fitting and drawing the report", json)
     made = tank_room.collected(tow)
-    _answer(tow, made, folder, json)
+    if tow.solver.table is not None and not json and not tank_room.filled(tow):
+        show.sentence(f"{tow.tank.name}: {len(tow.tank.matrix)} conditions to be computed or measured outside coeflab.")
+        show.text(f"Run list: {folder / 'external' / 'run_list.csv'}")
+        show.text("Next:")
+        show.sentence(f"  {_next(tow, made, folder)}")
+        return
+    _answer(tow, made, folder, json, begun=tow.solver.table is not None and not tank_room.filled(tow))
 
 
 def _stopped(tow: Tow, folder: Path) -> None:
@@ -257,7 +273,7 @@ def _stopped(tow: Tow, folder: Path) -> None:
 
     show.text()
     show.sentence(f"Stopped: {tables.counted(states_of(tow.folder))}. Nothing is lost.")
-    show.text(f"Next: coeflab tow {shlex.quote(str(folder))} --continue")
+    _say_next(f"coeflab tow {shlex.quote(str(folder))} --continue")
 
 
 @contextmanager
@@ -352,7 +368,7 @@ def _ended(row: JobRow, shown: Mapping[str, Any], rows: Sequence[JobRow]) -> str
     said = f"{row.job.name}: {cells[1]}{at}{values} ({tables.counted(rows).partition(' finished')[0]})"
     return "\n".join(
         [
-            said,
+            *textwrap.wrap(said, 79, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False),
             *(textwrap.wrap(row.progress.why, 75, initial_indent="  ", subsequent_indent="  ", break_long_words=False)),
         ]
     )
@@ -366,9 +382,16 @@ def _status(folder: Path, json: bool) -> None:
 
     plan = read_plan(folder)
     if not plan["jobs"]:
-        show.sentence(
-            f"{plan['name']}: {plan['solver']} needs no runs. Next: coeflab tow {shlex.quote(str(folder))} --collect"
-        )
+        from coeflab.workbench import tow as tank_room
+
+        tow = tank_room.opened(folder)
+        done, many = tank_room.filled(tow), len(tow.tank.matrix)
+        if json:
+            show.json_object({"name": plan["name"], "solver": plan["solver"], "filled": done, "conditions": many})
+            return
+        where = tow.tank.options.get("table") or folder / "external" / "forces.csv"
+        show.sentence(f"{plan['name']}: {plan['solver']} needs no runs; {done} of {many} rows of {where} are filled.")
+        show.sentence(f"Next: coeflab tow {shlex.quote(str(folder))} --collect")
         return
     rows = states_of(folder)
     from coeflab.core.machine import cores
@@ -378,7 +401,9 @@ def _status(folder: Path, json: bool) -> None:
         show.json_object({"name": plan["name"], "solver": plan["solver"], "seconds_left": _finite(seconds),
                           "jobs": [_row(r) for r in rows]})  # fmt: skip
         return
-    show.sentence(f"{plan['name']} by {plan['version'] or plan['solver']}: {tables.counted(rows)}; {_left(seconds)}.")
+    show.sentence(
+        f"{plan['name']} by {tables.solver_name(plan['version'] or plan['solver'])}: {tables.counted(rows)}; {_left(seconds)}."
+    )
     show.table(tables.states(rows, tables.shown_of(plan)))
 
 
@@ -408,7 +433,7 @@ def _collected_only(folder: Path, json: bool) -> None:
     _answer(tow, tank_room.collected(tow), folder, json)
 
 
-def _answer(tow: Tow, made: Collected, folder: Path, json: bool) -> None:
+def _answer(tow: Tow, made: Collected, folder: Path, json: bool, begun: bool = False) -> None:
     """The six derivatives first, then the conditions, the files and the next command; exit code 1 where one did not converge."""
     from coeflab.report.tables import tow as tables
     from coeflab.tank.folder import CAMPAIGN, REPORT
@@ -417,6 +442,8 @@ def _answer(tow: Tow, made: Collected, folder: Path, json: bool) -> None:
         show.json_object(_as_json(tow, made))
     else:
         show.table(tables.six(tow.tank, made.six, made.unfitted))
+        for said in (tables.covers(made.six), *tables.symmetry_checks(tow.tank, made.runs)):
+            show.sentence(said)
         show.sentence(tables.outcome(made.runs))
         for remark, names in tables.remarks(made.runs).items():
             show.sentence(f"  {remark} ({names})")
@@ -426,7 +453,7 @@ def _answer(tow: Tow, made: Collected, folder: Path, json: bool) -> None:
         for page in (p for p in made.files if p.suffix == ".html"):
             show.text(f"Report:   {folder / REPORT / page.name}")
         show.sentence(f"Next: {_next(tow, made, folder)}")
-    if not all(r.counts for r in made.runs):
+    if not begun and not all(r.counts for r in made.runs):
         raise typer.Exit(1)
 
 

@@ -66,6 +66,8 @@ class InputError(CoeflabError):
     ----------
     others : tuple of InputError
         What else is wrong with the same file; the text lists all.
+    example : str
+        Lines to copy, printed as they are after the advice; empty for most errors.
     """
 
     def __init__(
@@ -83,13 +85,15 @@ class InputError(CoeflabError):
         self.file, self.line, self.column, self.advice = file, line, column if key is None else key, advice
         self.keyed = key is not None
         self.others: tuple[InputError, ...] = ()
+        self.example = ""
         super().__init__(str(self))
 
     @property
     def lines(self) -> tuple[str, ...]:
         """The complaints of a file, each with its place."""
         more = [f"{len(self.others) - MOST_LISTED} more"] if len(self.others) > MOST_LISTED else []
-        return (self._alone(), *(other._alone() for other in self.others[:MOST_LISTED]), *more)
+        copied = self.example.splitlines()
+        return (self._alone(), *(other._alone() for other in self.others[:MOST_LISTED]), *more, *copied)
 
     def __str__(self) -> str:
         return "\n".join(self.lines)

@@ -386,22 +386,37 @@ def read_tank(
 
 def default_tank(body_file: Path, body: TowedBody, *, solver: str = "", runner: str = "") -> Tank:
     """The tank of a body for which nobody wrote a tank.toml: that of `default_text`."""
-    text = default_text(body.body)
+    text = default_text(body)
     file = TomlFile(body_file.parent / "tank.toml", tomllib.loads(text), text)
     return _tank(file, body, body_file, solver, runner)
 
 
-def default_text(body: Body, at: Conditions = FRESH_WATER) -> str:
+def default_text(surface: TowedBody, at: Conditions = FRESH_WATER) -> str:
     """A commented tank.toml for a body: what applies unless somebody says otherwise.
+
+    What is commented out are the values that apply, and examples that hold for this body.
 
     Parameters
     ----------
-    body : Body
+    surface : TowedBody
+        Its mirrors, ends and controls say what is run.
     at : Conditions, optional
         Fresh water of 20 deg C and 2 m/s unless given.
     """
-    scaling = _scaling(body)
-    length = "" if scaling is None else f" (of {scaling})"
+    body = surface.body
+    scaling = _scaling(body) or Scaling(surface.length, "LOA")
+    sweeps = test_matrix.default_sweeps(surface, scaling.length)
+    conditions = test_matrix.conditions(sweeps, surface, at.speed, scaling.length)
+    angles = {
+        name: f"[{', '.join(quoted(f'{np.degrees(a):.4g} deg') for a in getattr(sweeps, name))}]"
+        for name in ("drift", "attack")
+    }
+    yaw = f"[{', '.join(f'{r:g}' for r in sweeps.yaw)}]"
+    drifts, arms = ([c.name for c in conditions if c.kind is kind and min(_sideways(c)) >= 0.0] for kind in _STUDIED)
+    controls = ", ".join(
+        f'{{ name = {quoted(name)}, angles = ["-10 deg", "-5 deg", "5 deg", "10 deg"] }}'
+        for name in dict.fromkeys(c.name for c in body.controls)
+    )
     return f"""\
 # The virtual tow tank of {body.name}: coeflab tow {body.name} --matrix tank.toml --out runs/{body.name}
 [tank]
@@ -416,22 +431,29 @@ speed = "{at.speed:g} m/s"
 density = "{at.density:g} kg/m^3"               # fresh water of 20 deg C, ITTC 7.5-02-01-03
 viscosity = "{at.viscosity:g} m^2/s"
 
-# [scaling]                          # of the primes; the body's{length} unless given
-# length = "4.26 m"
-# length_name = "LBP"
+# [scaling]                          # of the primes; the body's unless given
+# length = "{scaling.length:.10g} m"
+# length_name = {quoted(scaling.length_name)}
 
-[matrix]                             # what is left out is what the six derivatives need of this body
-# drift = ["2 deg", "4 deg", "6 deg", "8 deg", "10 deg", "12 deg"]   # v = U sin(drift); [] for none
-# attack = ["2 deg", "4 deg", "6 deg", "8 deg", "10 deg", "12 deg"]  # w = U sin(attack)
-# yaw = [0.06, 0.12, 0.18, 0.24, 0.3, 0.36]                          # r' = r L/U on a rotating arm
-# pitch = []                                                         # q' = q L/U
-# combined = [{{ drift = "4 deg", yaw = 0.2 }}]
-# control = [{{ name = "dr", angles = ["-10 deg", "-5 deg", "5 deg", "10 deg"] }}]
+[matrix]                             # what is left out is what the six derivatives need of this body, as it stands here
+# drift = {angles["drift"]}   # v = U sin(drift); [] for none
+# attack = {angles["attack"]}   # w = U sin(attack){"; from drift by fourfold symmetry" * (not sweeps.attack)}
+# yaw = {yaw}   # r' = r L/U on a rotating arm
+# pitch = []   # q' = q L/U
+# combined = [{{ drift = "4 deg", yaw = {sweeps.yaw[-1] / 2.0:g} }}]
+# control = [{controls}]{"   # the body has no [[control]] that turns" * (not controls)}
 
 # [[study]]                          # a grid uncertainty for some conditions: three grids with medium
-# of = ["drift+4", "yaw+0.12"]
+# of = ["{drifts[min(1, len(drifts) - 1)]}", "{arms[min(1, len(arms) - 1)]}"]
 # grid = ["coarse", "fine"]          # cells 1.3 and 1/1.3 times the size; [[grid]] with name and size for others
 """
+
+
+_STUDIED = (test_matrix.Kind.DRIFT, test_matrix.Kind.ARM)
+
+
+def _sideways(condition: test_matrix.TowCondition) -> tuple[float, float]:
+    return float(condition.velocity[1]), float(condition.rates[2])
 
 
 def _scaling(body: Body) -> Scaling | None:

@@ -14,7 +14,9 @@ carried out, 3 for one that was stopped and goes on.
 from __future__ import annotations
 
 import argparse
+import itertools
 import os
+import re
 import shutil
 import signal
 import socket
@@ -49,6 +51,9 @@ FIRST, SPACING, LEAST = (
 FULL = 16e6  # bytes that are left of a full disk
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # unless the environment says otherwise
 FAILED, REFUSED, STOPPED = 1, 2, 3  # exit codes
+MOST_WORDS = 400  # letters of an error that a log says
+_FATAL = re.compile(r"--> FOAM FATAL (IO )?ERROR:?")
+_SOURCE = re.compile(r"file: |From |in file |FOAM \w*\s*(exiting|aborting)")
 ASKING = ("SIGTERM", "SIGINT")
 CODES = {JobState.DIVERGED: FAILED, JobState.CRASHED: FAILED, JobState.STOPPED: STOPPED}
 
@@ -310,7 +315,8 @@ class _Attempt:
             state, why = JobState.DIVERGED, self.verdict.why
         elif code or (reason and not self.killed):
             state = JobState.DIVERGED if _signal_of(code) == "SIGFPE" else JobState.CRASHED
-            why = "; ".join(filter(None, (reason, self._last_words(code) if code else "")))
+            words = self._last_words(code) if code else ""
+            why = "; ".join(filter(None, (words, "" if words and reason.startswith("log.") else reason)))
         elif watched and not self.now.plateau:
             state, why = JobState.UNCONVERGED, self.now.why or "no history of forces"
         self._say(state=state, left=nan, why=why, remarks=tuple(remarks))
@@ -329,7 +335,7 @@ class _Attempt:
             self._judge(run, sorted({rows, *left}), ends=True)
 
     def _last_words(self, code: int) -> str:
-        """What shows a crash: a full disk, else the last line of the log."""
+        """What shows a crash: a full disk, else what the log says of a fatal error, else its last line."""
         log = self.job.folder / f"log.{self.now.step}"
         by = _signal_of(code)
         how = f"ended by {by}" if by else f"exit code {code}"
@@ -338,10 +344,28 @@ class _Attempt:
             if disk_is_full(self.job.folder):
                 return f"the disk is full ({self.now.step}: {how})"
             lines = log.read_text(errors="replace").splitlines()
-            number = max((i for i, line in enumerate(lines, 1) if line.strip()), default=0)
+            number, text = fatal_error(lines)
+            if not number:
+                number = max((i for i, line in enumerate(lines, 1) if line.strip()), default=0)
+                text = shown(lines[number - 1].strip()) if number else ""
             if number:
-                return f"{self.now.step}: {how}; {log.name}:{number}: {shown(lines[number - 1].strip())}"
+                return f"{self.now.step}: {how}; {log.name}:{number}: {text}"
         return f"{self.now.step}: {how}"
+
+
+def fatal_error(lines: Sequence[str]) -> tuple[int, str]:
+    """What OpenFOAM says behind ``--> FOAM FATAL ERROR`` or ``FATAL IO ERROR``, and its line from 1; 0 and nothing without.
+
+    What comes after it names its sources and ends with ``FOAM exiting``, which says nothing.
+    """
+    bare = [re.sub(r"^\[\d+\]\s*|\(openfoam[^)]*\)", "", line).strip() for line in lines]
+    at = next((i for i, line in enumerate(bare) if _FATAL.match(line)), -1)
+    if at < 0:
+        return 0, ""
+    bare[at] = _FATAL.sub("", bare[at]).strip()
+    start = next((i for i in range(at, len(bare)) if bare[i]), at)
+    words = itertools.takewhile(lambda line: line and not _SOURCE.match(line), bare[start:])
+    return start + 1, " ".join(" ".join(words).split())[:MOST_WORDS]
 
 
 def _signal_of(code: int) -> str:

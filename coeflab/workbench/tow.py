@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,9 +17,10 @@ from coeflab.core.files import write_all, write_atomically
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief
+from coeflab.law.symbols import ANGULAR, LINEAR
 from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import Plan, PlannedTow, Study
-from coeflab.study.towed import TowedRow
+from coeflab.study.towed import NOT_RUN, OPEN, TowedRow
 from coeflab.study.towed import towed as compared
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawTable, Run
@@ -53,10 +55,12 @@ from coeflab.tank.plateau import until
 from coeflab.tank.runners import RUNNERS
 from coeflab.tank.solvers import SOLVERS, Installation, TowSolver
 from coeflab.tank.tank import Tank
+from coeflab.tank.test_matrix import EXACT, TowCondition
 from coeflab.tank.towed_body import TowedBody, stl, towed
 from coeflab.workbench import rendered, run
 
 FEWEST = 3  # settings of a sweep: an intercept, a slope and an error
+GOES_ON, BEGINS, ANEW = "goes on from what it wrote last", "begins anew, as it had written nothing", "run anew"
 Look = Callable[[], None]
 
 
@@ -143,12 +147,31 @@ class Collected:
         if self.study is None:
             return tuple(TowedRow(s, None, None, "open", self.unfitted, ()) for s in SIX)
         tables = self.study.tables
-        return tuple(_with_count(row, tables) for row in compared(self.study)[0].rows)
+        return tuple(_with_count(_left_out(row, self.runs), tables) for row in compared(self.study)[0].rows)
 
     @property
     def failed(self) -> tuple[TowedRun, ...]:
         """Conditions that were run and do not count."""
         return tuple(r for r in self.runs if not r.counts and r.state is not JobState.WAITING)
+
+
+def _left_out(row: TowedRow, runs: Sequence[TowedRun]) -> TowedRow:
+    """A derivative whose runs left no table, because none of them has a mean, with the states of these runs."""
+    if row.missing != NOT_RUN:
+        return row
+    variable = row.why.rpartition(" ")[2]
+    ended = [r for r in runs if variable in _moves(r.condition) and not r.condition.variant]
+    states = Counter(r.status for r in ended if not r.counts)
+    if not ended or all(r.state is JobState.WAITING for r in ended):
+        return row
+    said = ", ".join(f"{n} {state}" for state, n in sorted(states.items()))
+    return replace(row, missing=OPEN, why=f"{states.total()} of {len(ended)} runs with {variable} left out: {said}")
+
+
+def _moves(condition: TowCondition) -> tuple[str, ...]:
+    """What a condition moves in, besides ahead."""
+    motion = (*condition.velocity[1:], *condition.rates)
+    return tuple(m for m, x in zip((*LINEAR[1:], *ANGULAR), motion, strict=True) if abs(x) > EXACT * condition.speed)
 
 
 def _with_count(row: TowedRow, tables: Sequence[ForceTable]) -> TowedRow:
@@ -218,12 +241,19 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
     installed = solver.installed()
     refuse_other(folder, tank)
     with only_one(folder, "tow"):
-        own = default_text(body.body).encode() if matrix is None else copied(matrix, folder)
+        own = default_text(body).encode() if matrix is None else copied(matrix, folder)
         write_all(folder, {TANK: own, BODY: stl(body)})
         jobs: tuple[Job, ...] = ()
         if solver.jobs is not None:
-            with SOLVERS.guarded(tank.solver):
-                jobs = tuple(solver.jobs(tank, body, folder))
+            try:
+                with SOLVERS.guarded(tank.solver):
+                    jobs = tuple(solver.jobs(tank, body, folder))
+            except InputError as why:
+                key = why.column or ""
+                if why.file is not None or not key or matrix is None:
+                    raise
+                key = key if "." in key else f"solver.{tank.solver}.{key}"
+                raise read_toml(matrix).fail(key, why.found, why.expected, why.advice) from None
         for job in jobs:
             write_job(job)
         forget(folder, {job.folder for job in jobs})
@@ -286,19 +316,18 @@ def _fate(tow: Tow, job: Job, before: Mapping[str, Any] | None) -> Kept:
     if now.state is JobState.WAITING:
         return Kept(job.name, now.state, "to be run")
     if now.state is JobState.CHANGED:
-        return Kept(job.name, now.state, "run anew", _changed(tow, job, before))
+        return Kept(job.name, now.state, ANEW, _changed(tow, job, before))
     if _may_go_on(job, now):
         what = f"goes on from iteration {now.iteration:.0f} to {job.iterations:.0f} at most"
         return Kept(job.name, JobState.STOPPED, what, "more iterations are allowed")
     if now.state.is_kept:
         return Kept(job.name, now.state, f"kept, {now.state}")
-    reached = f" (it had reached {now.iteration:.0f})" if now.iteration > 0 else ""
-    return Kept(
-        job.name,
-        now.state,
-        f"goes on from what it wrote last{reached}",
-        "" if now.state is JobState.STOPPED else now.why,
-    )
+    why = "" if now.state is JobState.STOPPED else now.why
+    if now.state is JobState.RUNNING or tow.solver.resumed is None:
+        return Kept(job.name, now.state, GOES_ON, why)
+    with SOLVERS.guarded(tow.tank.solver):
+        _, at = tow.solver.resumed(job)  # as the next attempt does first
+    return Kept(job.name, now.state, f"{GOES_ON}, iteration {at:.0f}" if at > 0.0 else BEGINS, why)
 
 
 def _may_go_on(job: Job, now: Progressed) -> bool:
@@ -403,6 +432,17 @@ def collected(tow: Tow, fitted: bool = True) -> Collected:
     report = rendered(study)
     write_all(tow.folder / REPORT, report)
     return Collected(runs, study, files=(*written, *(tow.folder / REPORT / name for name in report)))
+
+
+def filled(tow: Tow) -> int:
+    """Conditions that the table of a method without runs has forces of.
+
+    Raises
+    ------
+    InputError
+        The table cannot be read.
+    """
+    return sum(r.state is not JobState.WAITING for r in _runs(tow)[0])
 
 
 def _runs(tow: Tow) -> tuple[tuple[TowedRun, ...], str]:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -108,9 +110,9 @@ def test_without_a_surface_the_whole_body_is_towed_on_both_sides(tank_file: Path
 def test_a_body_without_a_file_has_the_tank_of_the_default_text(tank_file: Path) -> None:
     body = with_mirrors("yz4")
     default = default_tank(BODY_FILE, body, solver="external")
-    text = default_text(body.body)
+    text = default_text(body)
     assert set(tomllib.loads(text)) == {"tank", "conditions", "matrix"}
-    assert "4.26086 m" in text
+    assert '"4.26086' in text
     tank_file.write_text(text)
     again = read_tank(tank_file, body, body_file=BODY_FILE, solver="external")
     assert [c.name for c in again.matrix] == [c.name for c in default.matrix]
@@ -118,18 +120,33 @@ def test_a_body_without_a_file_has_the_tank_of_the_default_text(tank_file: Path)
     assert default.conditions.viscosity == 1.0034e-6
 
 
-def test_the_comments_of_the_default_text_can_be_switched_on(tank_file: Path) -> None:
-    """What stands behind # is no prose only: with the signs taken away it is a tank.toml."""
-    body = with_mirrors("")
+@pytest.mark.parametrize("mirrors", ["", "y", "yz4"])
+def test_the_comments_of_the_default_text_can_be_switched_on(tank_file: Path, mirrors: str) -> None:
+    """What stands behind # is no prose only: with the signs taken away it is a tank.toml of this body, with its defaults."""
+    body = with_mirrors(mirrors, nose=3.0, stern=-6.0)
+    default = default_tank(BODY_FILE, body, solver="external")
     text = "\n".join(
         line.removeprefix("# ") if line.startswith("# ") and (" = " in line or line.startswith("# [")) else line
-        for line in default_text(body.body).splitlines()
+        for line in default_text(body).splitlines()
+        if not line.startswith("# symmetry")
     )
     tank_file.write_text(text)
     tank = read_tank(tank_file, body, body_file=BODY_FILE, solver="external")
-    assert any(c.kind is Kind.COMBINED for c in tank.matrix)
-    assert sum(c.kind is Kind.CONTROL for c in tank.matrix) == 4
+    assert sum(c.kind is Kind.COMBINED for c in tank.matrix) == 1
     assert sum(c.grid == "fine" for c in tank.matrix) == 2
+    swept = {c.name: (*c.velocity, *c.rates) for c in tank.matrix if c.kind is not Kind.COMBINED and c.grid == "medium"}
+    assert swept == {c.name: pytest.approx((*c.velocity, *c.rates)) for c in default.matrix}
+    assert tank.scaling == default.scaling
+
+
+def test_the_default_text_turns_controls_that_the_body_has(tank_file: Path) -> None:
+    assert "# control = []" in default_text(with_mirrors("y"))
+    body = with_mirrors("y")
+    turned = replace(body, body=replace(body.body, controls=(SimpleNamespace(name="dr"),)))  # type: ignore[arg-type]
+    line = next(line for line in default_text(turned).splitlines() if line.startswith("# control"))
+    tank_file.write_text(f'[tank]\nsolver = "external"\n{WATER}[matrix]\n{line.removeprefix("# ")}\n')
+    tank = read_tank(tank_file, turned, body_file=BODY_FILE)
+    assert sum(c.kind is Kind.CONTROL for c in tank.matrix) == 4
 
 
 @pytest.mark.parametrize(

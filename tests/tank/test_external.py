@@ -143,6 +143,16 @@ def test_a_wrong_table_is_refused_by_line(tmp_path: Path, text: str, words: str,
     assert (why.value.file, why.value.line) == (tmp_path / "external" / "forces.csv", line)
 
 
+def test_everything_wrong_with_a_table_is_said_at_once(tmp_path: Path) -> None:
+    tank = read_with(tmp_path)
+    (tmp_path / "external").mkdir()
+    rows = "drift+3,9,0,1\ndrift+2,9,-1,1\ndrift+2,9,1,1\n"
+    (tmp_path / "external" / "forces.csv").write_text(f"condition,Y [N],se_Y [N],lift [N]\n{rows}")
+    with pytest.raises(InputError) as why:
+        external.table(tank, BODY, tmp_path)
+    assert [line.partition("line ")[2].partition(",")[0] for line in why.value.lines] == ["1", "2", "2", "3", "4"]
+
+
 def test_no_table_at_all(tank: Tank, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"\[solver.external\] with table"):
         external.table(tank, BODY)

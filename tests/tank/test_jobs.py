@@ -262,6 +262,25 @@ def test_a_crash_is_said_with_what_shows_it(tmp_path: Path, fails: str, state: J
         assert main([str(tmp_path / "run")]) == carried.FAILED
 
 
+@pytest.mark.parametrize(
+    ("log", "line", "text"),
+    [
+        ("Time = 1\n\n\n--> FOAM FATAL IO ERROR: \nUnknown symmetric matrix solver type GAMGG\n\nValid types :\n\n2\n(\n"
+         "GAMG\n)\n\nfile: fvSolution.solvers.p at line 20 to 25.\n\nFOAM exiting\n", 5,
+         "Unknown symmetric matrix solver type GAMGG"),
+        ("--> FOAM FATAL ERROR: Unknown patch hull\n    From function x\nFOAM exiting\n", 1, "Unknown patch hull"),
+        ("[0] --> FOAM FATAL ERROR: (openfoam-2312)\n[0] cannot find file\n[0]\nFOAM parallel run exiting\n", 2,
+         "cannot find file"),
+        ("Time = 1\nFOAM exiting\n", 0, ""),
+    ],
+)  # fmt: skip
+def test_a_fatal_error_of_openfoam_is_said_by_what_it_says(log: str, line: int, text: str) -> None:
+    found, said = carried.fatal_error(log.splitlines())
+    assert found == line
+    assert said.startswith(text)
+    assert "exiting" not in said
+
+
 def test_a_run_without_a_plateau_is_unconverged(tmp_path: Path) -> None:
     found = carry_out(prepared(tmp_path, iterations=70).folder)
     assert found.state is JobState.UNCONVERGED

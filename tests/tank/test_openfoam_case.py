@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.declarations import validated
 from coeflab.core.errors import InputError
 from coeflab.core.text.foam import FoamCase
 from coeflab.tables import openfoam_case
@@ -18,7 +19,7 @@ from coeflab.tank.jobs import Job
 from coeflab.tank.openfoam import case
 from coeflab.tank.solvers import openfoam
 from coeflab.tank.tank import Tank
-from coeflab.tank.test_matrix import Half
+from coeflab.tank.test_matrix import Half, Kind
 from tests.tank import spheroid as towed
 
 Jobs = Callable[[Tank], dict[str, Job]]
@@ -43,6 +44,21 @@ def test_the_frame_gives_the_body_its_velocity(rates: tuple[float, ...]) -> None
 
 def test_the_centre_of_an_arm_is_to_starboard_of_a_turn_to_starboard() -> None:
     np.testing.assert_allclose(case.frame(np.array([2.0, 0, 0]), np.array([0, 0, 0.1]))[1], [0, 20, 0])
+
+
+def test_an_arm_whose_axis_lies_inside_the_tank_is_refused(jobs: Jobs, tmp_path: Path) -> None:
+    arm = next(c for c in towed.MATRIX if c.name == "arm")
+    tank = towed.tank(arm)
+    short = replace(arm, name="yaw+3", kind=Kind.ARM, rates=np.array([0.0, 0.0, 3.0]) * arm.speed / tank.scaling.length)
+    with pytest.raises(InputError, match=r"the axis of this arm of .* lies inside the tank") as why:
+        jobs(towed.tank(arm, short))
+    assert why.value.column == "matrix.yaw"
+    assert not list(tmp_path.iterdir())
+    largest = float(why.value.expected.split()[2])
+    near = {share: replace(short, rates=short.rates * share * largest / 3.0) for share in (1.0, 1.003)}
+    assert jobs(towed.tank(near[1.0]))
+    with pytest.raises(InputError):
+        jobs(towed.tank(near[1.003]))
 
 
 @pytest.mark.parametrize("condition", towed.MATRIX, ids=lambda c: c.name)
@@ -219,3 +235,10 @@ def test_the_installation_that_is_missing_is_said_with_the_advice(monkeypatch: p
     assert found.version == ""
     assert "apt-get install openfoam" in found.missing
     assert "external" in found.missing
+
+
+@pytest.mark.parametrize("given", ["many", 0, 2.5, True])
+def test_a_count_that_is_none_is_asked_for_as_a_whole_number(tmp_path: Path, given: object) -> None:
+    with pytest.raises(InputError, match="expected a whole number, one or more") as why:
+        validated(openfoam.OpenFOAM, {"iterations": given}, tmp_path / "tank.toml", lambda _: 3, ("solver", "openfoam"))
+    assert why.value.line == 3

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.spatial import cKDTree
+from scipy.spatial import ConvexHull, cKDTree
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import mesh_integrals
@@ -282,3 +282,22 @@ def test_a_wrong_body_is_refused_at_its_line(tmp_path: Path, was: str, is_: str,
     assert why.value.file == tmp_path / "body.toml"
     assert why.value.line is not None
     assert abs(why.value.line - line) <= 4
+
+
+def test_a_mesh_by_itself_is_answered_with_the_body_toml_that_it_needs(tmp_path: Path) -> None:
+    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.1, 0.1) for z in (-0.1, 0.1)])
+    faces = ConvexHull(corners).simplices
+    outward = np.cross(corners[faces[:, 1]] - corners[faces[:, 0]], corners[faces[:, 2]] - corners[faces[:, 0]])
+    faces[(outward * corners[faces].mean(1)).sum(1) < 0.0] = faces[(outward * corners[faces].mean(1)).sum(1) < 0.0][
+        :, ::-1
+    ]
+    records = np.zeros(len(faces), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("more", "<u2")])
+    records["corners"] = corners[faces]
+    mesh = tmp_path / "box.stl"
+    mesh.write_bytes(b"\x80" * 80 + len(faces).to_bytes(4, "little") + records.tobytes())
+    with pytest.raises(InputError, match="found a mesh") as why:
+        read_body(mesh)
+    (tmp_path / "body.toml").write_text(str(why.value).partition("\n")[2])
+    found = towed(read_body(tmp_path / "body.toml"), np.zeros(3))
+    assert found.length == pytest.approx(1.0)
+    assert found.patches == ("hull",)

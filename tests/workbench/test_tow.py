@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from coeflab.cli.tow import _fates, _say_next
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
+from coeflab.report.tables import tow as tables
 from coeflab.tank.declaration import read_tank
 from coeflab.tank.folder import CAMPAIGN, PLAN, read_plan
 from coeflab.tank.jobs import JobState, only_one
@@ -85,6 +88,33 @@ def test_known_derivatives_come_back(whole: tuple[Tow, Collected]) -> None:
     assert (tow.folder / "report" / "report.html").is_file()
 
 
+def test_what_u95_leaves_out_and_what_symmetry_should_make_zero_is_said(whole: tuple[Tow, Collected]) -> None:
+    tow, made = whole
+    assert "error of the grid is not in it: there is no grid study" in tables.covers(made.six)
+    studied = [replace(r, u_grid=0.0012) for r in made.six]
+    assert "By the grid study, 95 %: Yv' 0.0012" in tables.covers(studied)
+    assert "not in it" not in tables.covers(studied)
+    said = []
+    for share in (0.04, 0.06):
+        least = next(r for r in made.runs if r.condition.name == "drift+3").summary
+        assert least is not None
+        runs = [r if r.condition.kind != "straight" or r.summary is None else
+                replace(r, summary=replace(r.summary, means={**r.summary.means, "Y": share * least.means["Y"]}))
+                for r in made.runs]  # fmt: skip
+        said += [line for line in tables.symmetry_checks(tow.tank, runs) if "Y of straight" in line]
+    assert said[0] == "Check: Y of straight, zero by symmetry, is 4 % of that of drift+3."
+    assert said[1].startswith("Warning: Y of straight, zero by symmetry, is 6 % of that of drift+3, more than 5 %")
+
+
+def test_long_lines_are_folded(capsys: pytest.CaptureFixture[str]) -> None:
+    _say_next("coeflab tow " + "a_body_with_a_long_name " * 4 + "--continue")
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 2
+    assert max(map(len, lines)) <= 80
+    assert lines[0].endswith(" \\")
+    assert tables.solver_name("OpenFOAM 1912, (patch=200626)") == "OpenFOAM 1912 (patch=200626)"
+
+
 def test_two_rates_give_no_rotary_derivative_and_say_why(whole: tuple[Tow, Collected]) -> None:
     rows = {r.symbol: r for r in whole[1].six}
     for symbol in ("Yr", "Nr"):
@@ -128,6 +158,18 @@ def test_what_changed_is_named_and_run_anew(tmp_path: Path, monkeypatch: pytest.
     assert why == {"the solver was planted 1, now planted 2"}
 
 
+def test_what_a_crashed_run_wrote_says_how_it_goes_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tow = laid_out(tmp_path, tank_file(tmp_path, '[solver.planted]\ncrashes = ["drift+6", "drift+9"]\n'))
+    room.carried_out(tow, 0, lambda: None)
+    head = (tow.folder / "drift+3" / "history.csv").read_text().splitlines()
+    (tow.folder / "drift+9" / "history.csv").write_text("\n".join(head[:48]) + "\n")
+    found = {k.name: k.what for k in room.kept(tow)}
+    assert found["drift+6"] == "begins anew, as it had written nothing"
+    assert found["drift+9"] == "goes on from what it wrote last, iteration 40"
+    _fates(tow, None)
+    assert f"Kept: {len(found) - 2} of {len(found)}; go on: 1; run anew: 1; to be run: 0\n" in capsys.readouterr().out
+
+
 def test_one_of_many_crashes_and_the_others_go_on(tmp_path: Path) -> None:
     matrix = tank_file(tmp_path, '[solver.planted]\ncrashes = ["drift+6"]\nrestless = ["yaw+0.2"]\n')
     tow = laid_out(tmp_path, matrix)
@@ -145,6 +187,18 @@ def test_one_of_many_crashes_and_the_others_go_on(tmp_path: Path) -> None:
     room.carried_out(again, 0, lambda: None)
     assert (tow.folder / "yaw+0.2" / "log.solver").read_text().startswith("from 160")
     assert {n for n, s in states(again).items() if s is not JobState.FINISHED} == {"yaw+0.2"}
+
+
+def test_a_motion_whose_every_run_crashed_is_open_and_says_so(whole: tuple[Tow, Collected], tmp_path: Path) -> None:
+    made = whole[1]
+    crashed = [replace(r, state=JobState.CRASHED, summary=None) if r.condition.turns else r for r in made.runs]
+    assert made.study is not None
+    none = [t for t in made.study.tables if "r" not in t.varies]
+    lost = replace(made, runs=tuple(crashed), study=replace(made.study, tables=tuple(none)))
+    rows = {r.symbol: (r.missing, r.why) for r in lost.six}
+    assert rows["Yr"] == rows["Nr"] == ("open", "2 of 2 runs with r left out: 2 crashed")
+    waiting = [replace(r, state=JobState.WAITING) if r.condition.turns else r for r in crashed]
+    assert {r.why for r in replace(lost, runs=tuple(waiting)).six if r.symbol == "Yr"} == {"no run with r"}
 
 
 def test_conditions_taken_out_of_the_matrix_are_left_on_disk(tmp_path: Path) -> None:

@@ -2,16 +2,59 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from coeflab.bodies.body import Body
+from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
-from coeflab.core.text.toml import read_toml
+from coeflab.core.text.toml import quoted, read_toml
+
+MESHES = (".stl", ".obj", ".ply", ".glb")
+
+
+def _mesh_body(path: Path) -> str:
+    """A body.toml for a mesh."""
+    name = re.sub(r"[^A-Za-z0-9_.+-]+", "_", path.stem)
+    return f"""\
+[body]
+name = {quoted(name)}
+reader = "mesh"
+datum = "midship"                    # the origin of the mesh's axes
+datum_note = "where that is on the body"
+reference_point = [0.0, 0.0, 0.0]    # m, x forward, y starboard, z down
+
+[mesh]
+path = {quoted(path.name)}
+unit = "m"                           # of the mesh's numbers: m, mm, in ...
+axes = "FRD"                         # x forward, y right, z down; FLU has z up
+
+[particulars]
+length = 1.0                         # m; the mesh is checked against it
+
+[source]
+citation = "none"
+kind = "synthetic"                   # experiment, cfd, literature, synthetic, computed
+how_obtained = "Where the mesh comes from."
+"""
 
 
 def read_body(path: Path) -> Body:
-    """A body, by the reader that its body.toml names."""
+    """A body, by the reader that its body.toml names.
+
+    Raises
+    ------
+    InputError
+        A mesh without its body.toml, with the lines of one to copy; what the reader raises.
+    """
+    if path.suffix.lower() in MESHES:
+        why = InputError(
+            f"a mesh, {path.name}", "a body.toml, which says the mesh's unit and axes", file=path,
+            advice="Write these lines into body.toml beside it, mend them, and name that file:",
+        )  # fmt: skip
+        why.example = _mesh_body(path)
+        raise why
     head = read_toml(path).content.get("body")
     named = head.get("reader") if isinstance(head, dict) else None
     reader = named if isinstance(named, str) else "particulars"

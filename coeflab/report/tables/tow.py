@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -15,17 +16,20 @@ from coeflab.core.wording import listed
 from coeflab.law.coefficient import Status
 from coeflab.law.symbols import ANGULAR, LINEAR, primed
 from coeflab.report.printable import shortened
+from coeflab.tables.campaign import PORT_STARBOARD, UP_DOWN
 from coeflab.tables.conditions import named
 from coeflab.tank.campaign import TowedRun
 from coeflab.tank.jobs import Job, JobState
 from coeflab.tank.states import JobRow
 from coeflab.tank.tank import Tank
-from coeflab.tank.test_matrix import TowCondition
+from coeflab.tank.test_matrix import Kind, TowCondition
 
 if TYPE_CHECKING:
     from coeflab.study.towed import TowedRow
 
-NAME, MOTION, LONGEST = 20, 17, 44  # letters
+NAME, MOTION, LONGEST, LONGEST_WHY = 20, 17, 44, 42  # letters
+MUCH = 0.05  # of the smallest force of a sweep, that a straight run has where symmetry says zero
+_ZERO = ((PORT_STARBOARD, Kind.DRIFT, "YN"), (UP_DOWN, Kind.ATTACK, "ZM"))
 LEAST = 1e-4  # of a thousandth of a primed unit
 # What a person looks for first, where not all rows fit.
 FIRST = (
@@ -61,6 +65,11 @@ def shown_of(plan: Mapping[str, Any]) -> dict[str, Shown]:
         vertical = c["half"] == "y<0" or across[1] > across[0]
         out[c["name"]] = Shown(*(("Z", "M") if vertical else ("Y", "N")), (c["units"][0], c["units"][1]))
     return out
+
+
+def solver_name(version: str) -> str:
+    """As people read it: ``OpenFOAM 1912 (patch=200626)``; keys of jobs keep the text of the solver."""
+    return version.replace(", (", " (")
 
 
 def duration(seconds: float) -> str:
@@ -162,11 +171,14 @@ def _with_error(value: float, error: float) -> str:
 
 
 def reasons(rows: Sequence[JobRow]) -> tuple[str, ...]:
-    """What shows the state of every job that ended badly, a line each."""
+    """What shows the state of every job that ended badly, whole, on as many lines as that takes."""
     bad = (JobState.CRASHED, JobState.DIVERGED, JobState.UNCONVERGED, JobState.STOPPED, JobState.CHANGED)
-    return tuple(
-        shortened(f"{r.job.name}: {r.progress.why}", 76) for r in rows if r.progress.state in bad and r.progress.why
-    )
+    said = (_whole(r.job.name, r.progress.why) for r in rows if r.progress.state in bad and r.progress.why)
+    return tuple(line for lines in said for line in lines)
+
+
+def _whole(name: str, why: str) -> list[str]:
+    return textwrap.wrap(f"{name}: {why}", 77, subsequent_indent="  ", break_on_hyphens=False)
 
 
 def counted(rows: Sequence[JobRow]) -> str:
@@ -193,6 +205,48 @@ def six(tank: Tank, rows: Sequence[TowedRow], unfitted: str = "") -> Table:
     return Table(shortened(tank.title, 79), ("", "value", "U95", ""), tuple(cells), tuple(notes), frozenset({0, 3}))
 
 
+def covers(rows: Sequence[TowedRow]) -> str:
+    """What U95 is of, and what it leaves out; empty where no derivative has one."""
+    if not any(r.u95 is not None for r in rows):
+        return ""
+    said = "U95: 95 %, of the fit and the scatter of the runs about it."
+    studied = [f"{primed(r.symbol)} {r.u_grid:.2g}" for r in rows if r.u_grid is not None]
+    if studied:
+        return f"{said} By the grid study, 95 %: {', '.join(studied)}. Domain and turbulence model: see the report."
+    return f"{said} The error of the grid is not in it: there is no grid study. Nor are those of domain and turbulence model."
+
+
+def symmetry_checks(tank: Tank, runs: Sequence[TowedRun]) -> tuple[str, ...]:
+    """What straight runs have of components that symmetry makes zero, over the smallest of the sweep, a sentence each.
+
+    Parameters
+    ----------
+    tank : Tank
+    runs : sequence of TowedRun
+    """
+    counted = [r for r in runs if r.summary is not None and not r.condition.variant and r.counts]
+    out = []
+    for straight in (r for r in counted if r.condition.kind is Kind.STRAIGHT and r.summary is not None):
+        for plane, kind, components in _ZERO:
+            if plane not in tank.symmetry or straight.summary is None:
+                continue
+            like = [r for r in counted if r.condition.kind is kind and r.condition.grid == straight.condition.grid
+                    and math.isclose(r.condition.speed, straight.condition.speed, rel_tol=1e-6)]  # fmt: skip
+            for c in components:
+                sizes = {r.condition.name: abs(r.summary.means.get(c, 0.0)) for r in like if r.summary is not None}
+                sizes = {name: size for name, size in sizes.items() if size > 0.0}
+                if c not in straight.summary.means or not sizes:
+                    continue
+                least = min(sizes, key=lambda name: sizes[name])
+                share = abs(straight.summary.means[c]) / sizes[least]
+                said = (
+                    f"{c} of {straight.condition.name}, zero by symmetry, is {100.0 * share:.2g} % of that of {least}"
+                )
+                much = ", more than 5 %: the mesh is not its own mirror image." if share > MUCH else "."
+                out.append(f"{'Warning' if share > MUCH else 'Check'}: {said}{much}")
+    return tuple(out)
+
+
 def outcome(runs: Sequence[TowedRun]) -> str:
     """How many conditions converged, and what became of the others."""
     bad = [r.status for r in runs if not r.counts]
@@ -211,9 +265,12 @@ def remarks(runs: Sequence[TowedRun]) -> dict[str, str]:
 
 def ended(runs: Sequence[TowedRun]) -> Table:
     """The conditions that do not count, each with its reason."""
-    rows = []
+    rows, notes = [], []
     for r in runs:
         if not r.counts:
             why = r.why or (r.summary.why if r.summary is not None else "")
-            rows.append((shortened(r.condition.name, NAME), r.status, shortened(why, 42)))
-    return Table("Without a converged result", ("condition", "state", "why"), tuple(rows), (), frozenset({0, 1, 2}))
+            fits = len(why) <= LONGEST_WHY
+            rows.append((shortened(r.condition.name, NAME), r.status, why if fits else "see below"))
+            notes += [] if fits else _whole(r.condition.name, why)
+    heads = ("condition", "state", "why")
+    return Table("Without a converged result", heads, tuple(rows), tuple(notes), frozenset({0, 1, 2}))

@@ -116,6 +116,24 @@ def frame(velocity: Array, rates: Array) -> tuple[Array, Array]:
     return -rates * float(rates @ velocity) / squared, np.cross(rates, velocity) / squared
 
 
+def axis_inside(velocity: Array, rates: Array, low: Array, high: Array) -> bool:
+    """Whether the axis of the arm goes through a box.
+
+    Parameters
+    ----------
+    velocity, rates : (3,) array
+        Of the reference point, m/s, and rad/s, not all zero; FRD.
+    low, high : (3,) array
+        Corners of the box, m, from the reference point.
+    """
+    centre, along = frame(velocity, rates)[1], rates / np.linalg.norm(rates)
+    runs = np.abs(along) > 1e-12
+    if np.any((centre[~runs] < low[~runs]) | (centre[~runs] > high[~runs])):
+        return False
+    ends = np.sort(np.array([low[runs] - centre[runs], high[runs] - centre[runs]]) / along[runs], axis=0)
+    return bool(ends[0].max() <= ends[1].min())
+
+
 def fastest(body: TowedBody, condition: TowCondition) -> float:
     """Speed of the point of the body that is the fastest, m/s."""
     return float(np.linalg.norm(condition.velocity + np.cross(condition.rates, body.vertices), axis=1).max())

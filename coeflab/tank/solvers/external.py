@@ -107,17 +107,22 @@ def table(tank: Tank, body: TowedBody, folder: Path | None = None) -> RawTable: 
         advice = f"Add [solver.external] with table, the path of the filled {FORCES}."
         raise InputError("no table of forces", "the path of one", column="solver.external.table", advice=advice)
     cells = read_cells(path)
-    names = _names(cells, {c.name for c in tank.matrix})
-    columns, complaints = [], []
+    columns: list[RawColumn] = []
+    complaints: list[InputError] = []
+    names: tuple[str, ...] = ()
+    try:
+        names = _names(cells, {c.name for c in tank.matrix})
+    except InputError as why:
+        complaints += [why, *why.others]
     for header in cells.headers:
         if header.name == CONDITION:
             continue
         try:
             columns.append(_column(cells, header))
         except InputError as why:
-            complaints.append(why)
+            complaints += [why, *why.others]
     if complaints:
-        raise together(complaints)
+        raise together(sorted(complaints, key=lambda c: c.line or 0))
     made = tank.options.get("made_by") or "an outside solver"
     return RawTable(
         path=path,
@@ -180,13 +185,14 @@ def _column(cells: Cells, header: Header) -> RawColumn:
 
 
 def _require_positive(cells: Cells, header: Header, values: Array) -> None:
-    wrong = np.flatnonzero(values <= 0.0)
-    if len(wrong):
-        row = int(wrong[0])
-        raise InputError(
-            shown(cells.texts(header.name)[row]), "a number above zero, or a blank cell", file=cells.file,
-            line=cells.line(row), column=header.text,
-        )  # fmt: skip
+    texts = cells.texts(header.name)
+    wrong = [
+        InputError(shown(texts[row]), "a number above zero, or a blank cell", file=cells.file, line=cells.line(row),
+                   column=header.text)
+        for row in np.flatnonzero(values <= 0.0).tolist()
+    ]  # fmt: skip
+    if wrong:
+        raise together(wrong)
 
 
 def _run_list(tank: Tank) -> bytes:

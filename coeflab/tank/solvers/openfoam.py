@@ -14,20 +14,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from coeflab.core.declarations import ABOVE_ZERO, Flag, Pure, Within, one_of
-from coeflab.core.errors import InputError
+from coeflab.core.declarations import ABOVE_ZERO, Flag, Pure, Takes, one_of
+from coeflab.core.errors import InputError, shown
 from coeflab.core.files import write_all
 from coeflab.core.text.foam import FoamCase
+from coeflab.core.types import Array
 from coeflab.law.symbols import COMPONENTS
 from coeflab.tables.importers import IMPORTERS
 from coeflab.tables.raw_table import Ended, RawColumn, RawTable, Run
 from coeflab.tank.jobs import Job, Step
 from coeflab.tank.openfoam import case, rendered, step
 from coeflab.tank.openfoam.mesh import expected_cells, mesh_ended, mesh_job
-from coeflab.tank.openfoam.mesh_sizes import MeshKeys
+from coeflab.tank.openfoam.mesh_sizes import MeshKeys, mesh_sizes
 from coeflab.tank.solvers import Installation
 from coeflab.tank.tank import Tank
-from coeflab.tank.test_matrix import Half, TowCondition
+from coeflab.tank.test_matrix import Half, Kind, TowCondition
 
 if TYPE_CHECKING:
     from coeflab.tank.towed_body import TowedBody
@@ -61,10 +62,16 @@ SECONDS_A_CELL = 2.2e-6  # an iteration on one core
 BYTES_A_CELL, BYTES_A_PROCESS = 1.05e3, 1.5e8
 PARALLEL = 0.9  # of the ideal speed-up is left with every doubling of the cores
 WITHOUT_SHARES = Step("cleanProcessors", ("sh", "-c", "rm -rf processor*"))
-WHOLE_NUMBER = Within(
-    lambda v: "" if v >= 1.0 and v == int(v) else "a whole number, one or more", schema={"minimum": 1}
-)
-Count = Annotated[Pure, WHOLE_NUMBER]
+COUNTED = "a whole number, one or more"
+
+
+def _counted(given: Any, _file: Path) -> int:
+    if isinstance(given, bool) or not isinstance(given, (int, float)) or given < 1 or given != int(min(given, 1e9)):
+        raise InputError(shown(given), COUNTED)
+    return int(given)
+
+
+Count = Annotated[int, Takes(COUNTED, _counted, {"type": "integer", "minimum": 1})]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,7 +130,7 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
     Raises
     ------
     InputError
-        No viscosity, or what `coeflab.tank.openfoam.mesh.mesh_job` and `coeflab.tank.towed_body.towed` raise.
+        No viscosity, an arm whose axis lies in the domain, or what `coeflab.tank.openfoam.mesh.mesh_job` and `coeflab.tank.towed_body.towed` raise.
     OutputError
         A folder cannot be written.
     """
@@ -133,6 +140,7 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
     version = installed().version
     meshes: dict[tuple[Any, ...], tuple[TowedBody, Job]] = {}
     runs = []
+    _refuse_axes_inside(tank, body, given)
     for condition in tank.matrix:
         domain = float(condition.variant.get("domain", 1.0))
         which = (condition.grid, condition.half, tuple(sorted(condition.controls.items())), domain)
@@ -155,6 +163,38 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
         turned, mesh = meshes[which]
         runs.append(_run(tank, turned, condition, given, mesh, folder / condition.name, version))
     return (*(mesh for _, mesh in meshes.values()), *runs)
+
+
+def _refuse_axes_inside(tank: Tank, body: TowedBody, given: OpenFOAM) -> None:
+    """Refuse an arm so short that its axis lies in the domain: the body would swim in circles within its own tank."""
+    boxes: dict[tuple[Any, ...], tuple[Array, Array]] = {}
+    for condition in filter(lambda c: c.turns, tank.matrix):
+        domain = float(condition.variant.get("domain", 1.0))
+        which = (condition.grid, condition.half, domain)
+        if which not in boxes:
+            sizes = mesh_sizes(body, tank.grid(condition.grid).size, condition.half, given, tank.conditions, domain)
+            boxes[which] = sizes.low, sizes.high
+        low, high = boxes[which]
+        if case.axis_inside(condition.velocity, condition.rates, low, high):
+            _refuse_axis(tank, condition, low, high, f"beside = {given.beside * domain:g}")
+
+
+def _refuse_axis(tank: Tank, condition: TowCondition, low: Array, high: Array, beside: str) -> None:
+    fits, inside = 0.0, 1.0  # shares of the rates
+    while inside - fits > 1e-4:
+        half = 0.5 * (fits + inside)
+        is_inside = case.axis_inside(condition.velocity, half * condition.rates, low, high)
+        fits, inside = (fits, half) if is_inside else (half, inside)
+    vertical = abs(condition.rates[1]) > abs(condition.rates[2])
+    name, sweep = ("q'", "pitch") if vertical else ("r'", "yaw")
+    rate = float(np.linalg.norm(condition.rates)) * tank.scaling.length / (condition.speed or 1.0)
+    arm = float(np.linalg.norm(case.frame(condition.velocity, condition.rates)[1]))
+    raise InputError(
+        f"{name} = {rate:.3g} ({condition.name}): the axis of this arm of {arm:.3g} m lies inside the tank",
+        f"{name} = {np.floor(1e3 * rate * fits) / 1e3:g} at most with {beside}",
+        column="matrix.combined" if condition.kind is Kind.COMBINED else f"matrix.{sweep}",
+        advice="Leave larger rates out. A smaller solver.openfoam.beside makes the tank narrower, at the cost of blockage.",
+    )
 
 
 def _with_zone(mesh: Job) -> Job:
