@@ -254,7 +254,9 @@ def summarised(run: Run, name: str) -> RunSummary:
         return replace(common, status=Convergence.EMPTY, why="no column of a force or moment")
     times = at.values if at is not None and at.means == "time" else None
     groups = {name: column.unit for name, column in columns.items()} if by_name else None
-    found = plateau({name: column.values for name, column in columns.items()}, times, groups, 0.0 if by_name else run.length)
+    found = plateau(
+        {name: column.values for name, column in columns.items()}, times, groups, 0.0 if by_name else run.length
+    )
     if not found.status.has_numbers:
         return replace(common, status=found.status, why=found.why)
     start = float(at.values[found.start]) if at is not None else float(found.start)
