@@ -131,6 +131,8 @@ def _tow(
         with show.progress(json) as say:
             say("writing the cases")
             tow = tank_room.laid_out(tank, surface, place, own)
+        if tow.restored:
+            show.error(f"warning: edited by hand, and again as tank.toml has it: {', '.join(tow.restored)}")
         if dry_run:
             asked = [*([said] if said else []), *(["--matrix", str(matrix)] if matrix else [])]
             asked += ["--solver", solver] if solver else []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -61,6 +62,7 @@ from coeflab.workbench import rendered, run
 
 FEWEST = 3  # settings of a sweep: an intercept, a slope and an error
 GOES_ON, BEGINS, ANEW = "goes on from what it wrote last", "begins anew, as it had written nothing", "run anew"
+SMALL = 100_000  # bytes of a dictionary
 Look = Callable[[], None]
 
 
@@ -79,6 +81,8 @@ class Tow:
         Of the solver.
     jobs : tuple of Job
         Meshes and runs in an order in which they can be carried out; none of a method without runs.
+    restored : tuple of str
+        Files of cases that somebody had edited by hand, and that are again as tank.toml has them.
     """
 
     folder: Path
@@ -86,6 +90,7 @@ class Tow:
     body: TowedBody
     installed: Installation
     jobs: tuple[Job, ...] = ()
+    restored: tuple[str, ...] = ()
 
     @property
     def solver(self) -> TowSolver:
@@ -244,6 +249,8 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
         own = default_text(body).encode() if matrix is None else copied(matrix, folder)
         write_all(folder, {TANK: own, BODY: stl(body)})
         jobs: tuple[Job, ...] = ()
+        keys = read_plan(folder)["jobs"] if (folder / PLAN).is_file() else {}
+        there = {name: _case_of(folder / name) for name in keys}
         if solver.jobs is not None:
             try:
                 with SOLVERS.guarded(tank.solver):
@@ -257,9 +264,24 @@ def laid_out(tank: Tank, body: TowedBody, folder: Path, matrix: Path | None = No
         for job in jobs:
             write_job(job)
         forget(folder, {job.folder for job in jobs})
-        tow = Tow(folder, tank, body, installed, jobs)
+        same = [job for job in jobs if keys.get(job.name) == job.key]  # so coeflab writes what it wrote before
+        restored = [
+            f"{j.name}/{f}" for j in same for f, old in _case_of(j.folder).items() if there[j.name].get(f, old) != old
+        ]
+        tow = Tow(folder, tank, body, installed, jobs, tuple(restored))
         write_atomically(folder / PLAN, plan_text(folder, tank, body.body.name, installed.version, jobs))
     return tow
+
+
+def _case_of(folder: Path) -> dict[str, str]:
+    """The small files of a case by their paths, without what coeflab itself changes while a key stays."""
+    own = re.compile(r"(?m)^(stopAt|endTime|writeInterval)\s.*$")
+    found = [f for d in ("0", "constant", "system") for f in sorted((folder / d).glob("*"))]
+    return {
+        str(f.relative_to(folder)): own.sub("", f.read_text(errors="replace"))
+        for f in found
+        if f.is_file() and f.name != "decomposeParDict" and f.stat().st_size < SMALL
+    }
 
 
 def reopened(

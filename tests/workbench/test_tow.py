@@ -11,11 +11,13 @@ import pytest
 
 from coeflab.cli.tow import _fates, _say_next
 from coeflab.core.errors import InputError
-from coeflab.core.files import shipped
+from coeflab.core.files import shipped, write_all
 from coeflab.report.tables import tow as tables
 from coeflab.tank.declaration import read_tank
 from coeflab.tank.folder import CAMPAIGN, PLAN, read_plan
-from coeflab.tank.jobs import JobState, only_one
+from coeflab.tank.jobs import Job, JobState, only_one
+from coeflab.tank.tank import Tank
+from coeflab.tank.towed_body import TowedBody
 from coeflab.workbench import tow as room
 from coeflab.workbench.tow import Collected, Tow
 from tests.planted_tank import planted_here
@@ -168,6 +170,25 @@ def test_what_a_crashed_run_wrote_says_how_it_goes_on(tmp_path: Path, capsys: py
     assert found["drift+9"] == "goes on from what it wrote last, iteration 40"
     _fates(tow, None)
     assert f"Kept: {len(found) - 2} of {len(found)}; go on: 1; run anew: 1; to be run: 0\n" in capsys.readouterr().out
+
+
+def test_a_case_edited_by_hand_is_named_when_it_is_written_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solver = room.SOLVERS.load("planted")
+    usual = solver.jobs
+
+    def with_dictionary(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
+        write_all(folder / "drift+3", {"system/fvSchemes": b"linear;\n", "system/controlDict": b"stopAt endTime;\n"})
+        made: tuple[Job, ...] = usual(tank, body, folder)
+        return made
+
+    monkeypatch.setattr(solver, "jobs", with_dictionary)
+    tow = laid_out(tmp_path, tank_file(tmp_path))
+    (tow.folder / "drift+3/system/controlDict").write_text("stopAt writeNow;\n")  # as coeflab stops a run
+    assert laid_out(tmp_path, tmp_path / "tank.toml").restored == ()
+    (tow.folder / "drift+3/system/fvSchemes").write_text("upwind;\n")
+    assert laid_out(tmp_path, tmp_path / "tank.toml").restored == ("drift+3/system/fvSchemes",)
 
 
 def test_one_of_many_crashes_and_the_others_go_on(tmp_path: Path) -> None:
