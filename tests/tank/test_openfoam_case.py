@@ -59,6 +59,9 @@ def test_an_arm_whose_axis_lies_inside_the_tank_is_refused(jobs: Jobs, tmp_path:
     assert jobs(towed.tank(near[1.0]))
     with pytest.raises(InputError):
         jobs(towed.tank(near[1.003]))
+    # Rolling, and turning on the spot, are no arms.
+    assert jobs(towed.tank(replace(short, velocity=np.array([1.0, 0.0, 0.0]), rates=np.array([0.5, 0.0, 0.0]))))
+    assert jobs(towed.tank(replace(short, velocity=np.zeros(3), rates=np.array([0.0, 0.0, 0.5]))))
 
 
 @pytest.mark.parametrize("condition", towed.MATRIX, ids=lambda c: c.name)

@@ -166,9 +166,12 @@ def jobs(tank: Tank, body: TowedBody, folder: Path) -> tuple[Job, ...]:
 
 
 def _refuse_axes_inside(tank: Tank, body: TowedBody, given: OpenFOAM) -> None:
-    """Refuse an arm so short that its axis lies in the domain: the body would swim in circles within its own tank."""
+    """Refuse an arm so short that its axis lies in the domain: the body would swim in circles within its own tank.
+
+    A body that turns about an axis through the reference point, in rolling or on the spot, is on no arm.
+    """
     boxes: dict[tuple[Any, ...], tuple[Array, Array]] = {}
-    for condition in filter(lambda c: c.turns, tank.matrix):
+    for condition in filter(lambda c: np.any(np.cross(c.velocity, c.rates)), tank.matrix):
         domain = float(condition.variant.get("domain", 1.0))
         which = (condition.grid, condition.half, domain)
         if which not in boxes:
