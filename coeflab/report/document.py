@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.table import Table
+from coeflab.core.table import Severity, Table
 from coeflab.core.types import brief, locked
 from coeflab.core.version import VERSION
 from coeflab.report.acceptance import Acceptance
@@ -187,6 +187,93 @@ class Figure:
 
 @brief
 @dataclass(frozen=True, slots=True)
+class AnswerRow:
+    """One wanted coefficient beside the published ones.
+
+    Attributes
+    ----------
+    symbol : str
+        Without prime.
+    value, u95 : float or None
+        Primed; None where there is none.
+    status : str
+        In the place of a value or of its U95, "no data", "not determined", "form rejected"; empty with both.
+    source : str
+        Campaign of the value, or of the literature that stands in for it.
+    published : tuple of float or None
+        In the order of `Answer.columns`, primed by our length.
+    difference : float or None
+        Ours minus the column that `Answer.compared` names.
+    agrees : bool or None
+        Whether it lies within U95, where a verdict is allowed; None without one.
+    anchor : str
+        Of the section that derives it; empty without one.
+    """
+
+    symbol: str
+    value: float | None
+    u95: float | None
+    status: str = ""
+    source: str = ""
+    published: tuple[float | None, ...] = ()
+    difference: float | None = None
+    agrees: bool | None = None
+    anchor: str = ""
+
+    @property
+    def share(self) -> float | None:
+        """Difference over U95, with its sign: the length of the bar."""
+        return self.difference / self.u95 if self.difference is not None and self.u95 else None
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Chip:
+    """One of stability, largest uncertainty, warnings, exports: a name, at most six words, how grave, where it leads."""
+
+    name: str
+    text: str
+    severity: Severity
+    anchor: str = ""
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a reader wants first: one sentence, the wanted coefficients beside published ones, two pictures, four chips.
+
+    Terminal, notebook, HTML, PDF and summary show this one object.
+
+    Attributes
+    ----------
+    sentence : str
+        The verdict, at most 160 letters.
+    columns : tuple of str
+        Of published values: experiment, steady CFD, PMM CFD where there are such.
+    compared : str
+        The one that differences are to; empty without one.
+    rows : tuple of AnswerRow
+        One a wanted coefficient, missing ones too.
+    chips : tuple of Chip
+    slope, forest, axes : Figure or None
+        Y'/v' against the size of v' with its band; every row over the published value; the axes and signs.
+    notes : tuple of str
+        What the columns are and what is not compared; at most four lines.
+    """
+
+    sentence: str
+    columns: tuple[str, ...] = ()
+    compared: str = ""
+    rows: tuple[AnswerRow, ...] = ()
+    chips: tuple[Chip, ...] = ()
+    slope: Figure | None = None
+    forest: Figure | None = None
+    axes: Figure | None = None
+    notes: tuple[str, ...] = ()
+
+
+@brief
+@dataclass(frozen=True, slots=True)
 class Section:
     """Paragraphs, then figures, then tables, then subsections.
 
@@ -200,6 +287,8 @@ class Section:
     subsections : tuple of Section
     code : tuple of str
         Commands to type, one per line.
+    appendix : bool
+        Only in the whole report.
     """
 
     anchor: str
@@ -209,6 +298,7 @@ class Section:
     figures: tuple[Figure, ...] = ()
     subsections: tuple[Section, ...] = ()
     code: tuple[str, ...] = ()
+    appendix: bool = False
 
 
 @brief
@@ -228,6 +318,8 @@ class Document:
         Key and text of every work that it rests on.
     verbatim : tuple of str
         Texts of users in it, which renderers set as they stand.
+    answer : Answer or None
+        The first page; None where a document has none.
     """
 
     title: str
@@ -237,6 +329,7 @@ class Document:
     digest: str = ""
     works: tuple[tuple[str, str], ...] = ()
     verbatim: tuple[str, ...] = ()
+    answer: Answer | None = None
 
 
 PLAN = "plan.toml"
