@@ -17,13 +17,15 @@ EXAMPLE = "coeflab compare a.parameters.json b.parameters.json"
 
 
 def command(
-    first: Path = typer.Argument(..., help="A parameter file; its length and reference point are kept."),
-    second: Path = typer.Argument(..., help="The parameter file that is held against it."),
+    first: Path = typer.Argument(
+        ..., metavar="PARAMS", help="A parameter file; its length and reference point are kept."
+    ),
+    second: Path = typer.Argument(..., metavar="OTHER", help="The parameter file that is compared with it."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Compare two parameter files: differences against the combined U95, lengths and reference points converted.
+    """Compare two parameter files by their combined U95.
 
-    Fitted tables of one response over the same variables are held together on a grid inside the data of both: "within"
+    Lengths and reference points are converted. Fitted tables of one response over the same variables are compared on a grid inside the data of both: "within"
     means that at 95 % of its points the difference is inside the combined 95 % half-width. Exit code 1 where two files of
     one body are apart.
     """

@@ -10,6 +10,8 @@ from enum import StrEnum
 from html import escape
 from importlib import import_module
 from math import isfinite, isnan
+from textwrap import wrap
+from typing import NamedTuple
 
 from coeflab.core.types import brief
 
@@ -27,6 +29,8 @@ class Table:
     notes : tuple of str
     left : frozenset of int
         Columns that are set flush left; the others are numbers.
+    spare : tuple of str
+        Headers of columns that a narrow line does without, the first to go first.
     """
 
     title: str
@@ -34,6 +38,7 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     notes: tuple[str, ...] = ()
     left: frozenset[int] = frozenset({0})
+    spare: tuple[str, ...] = ()
 
     def _repr_html_(self) -> str:
         """The table for notebooks; every text escaped."""
@@ -46,6 +51,109 @@ class Table:
         notes = "".join(f'<p style="font-size: 85%">{escape(note)}</p>' for note in self.notes)
         caption = f'<caption style="text-align: left; font-weight: bold">{escape(self.title)}</caption>'
         return f"<table>{caption}<thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table>{notes}"
+
+
+class Line(NamedTuple):
+    """A line of a table that is set: what it is (title, head, row or note) and its cells, padded."""
+
+    kind: str
+    cells: tuple[str, ...]
+
+    @property
+    def text(self) -> str:
+        """The line as it is printed."""
+        return (MARGIN * (self.kind in ("head", "row")) + GAP.join(self.cells)).rstrip()
+
+
+MARGIN = GAP = "  "
+COMFORT = 20  # letters below which a column of text is not folded while another can go
+REST = "more"
+
+
+def set_lines(table: Table, width: int) -> tuple[Line, ...]:
+    """A table as lines of at most ``width`` letters.
+
+    Text is folded first, then columns of `Table.spare` go, one by one and named below the table; then text is folded down to
+    its words, and what is still too wide goes on below, behind its first column. Numbers are never folded.
+
+    Parameters
+    ----------
+    table : Table
+    width : int
+        A word that is longer than a line has its line.
+    """
+    every = list(range(len(table.headers)))
+    chosen = list(every)
+    for name in table.spare:
+        if _room(table, chosen, COMFORT) <= width:
+            break
+        chosen = [i for i in chosen if table.headers[i] != name]
+    gone = [table.headers[i] or "" for i in every if i not in chosen]
+    groups = [chosen] if _room(table, chosen, 1) <= width else _groups(table, chosen, width)
+    out = [Line("title", (text,)) for text in wrap(table.title, width, break_on_hyphens=False)]
+    for k, group in enumerate(groups):
+        if k:
+            out.append(Line("title", (f"{MARGIN}{REST}:",)))
+        out += _block(table, group, width)
+    notes = [*table.notes, *([f"Not shown: {', '.join(gone)}; --wide shows all."] if gone else [])]
+    for note in notes:
+        folded = wrap(note, width, initial_indent=MARGIN, subsequent_indent=2 * MARGIN, break_long_words=False,
+                      break_on_hyphens=False)  # fmt: skip
+        out += [Line("note", (text,)) for text in folded]
+    return tuple(out)
+
+
+def _column(table: Table, i: int) -> list[str]:
+    return [table.headers[i], *(row[i] for row in table.rows)]
+
+
+def _least(table: Table, i: int, comfort: int) -> int:
+    """Letters that a column needs at least: its longest number, or the longest word of text."""
+    cells = _column(table, i)
+    natural = max(map(len, cells))
+    folded = cells if i in table.left else cells[:1]
+    whole = [] if i in table.left else cells[1:]
+    return max(min(natural, comfort) if i in table.left else 0, *(len(w) for c in folded for w in (c.split() or [""])),
+               *map(len, whole), 0)  # fmt: skip
+
+
+def _room(table: Table, chosen: list[int], comfort: int) -> int:
+    return sum(_least(table, i, comfort) + len(GAP) for i in chosen)
+
+
+def _groups(table: Table, chosen: list[int], width: int) -> list[list[int]]:
+    """Columns that fit beside each other, each group behind the first column."""
+    first, *others = chosen
+    out = [[first]]
+    for i in others:
+        if len(out[-1]) > 1 and _room(table, [*out[-1], i], 1) > width:
+            out.append([first])
+        out[-1].append(i)
+    return out
+
+
+def _block(table: Table, chosen: list[int], width: int) -> list[Line]:
+    """Header and rows of columns that fit, text folded as far as needed, the widest column first."""
+    widths = {i: max(map(len, _column(table, i))) for i in chosen}
+    least = {i: _least(table, i, 1) for i in chosen}
+    while sum(widths.values()) + len(GAP) * len(chosen) > width:
+        reducible = [i for i in chosen if widths[i] > least[i]]
+        if not reducible:
+            break
+        widths[max(reducible, key=lambda i: widths[i])] -= 1
+    out = []
+    for k, row in enumerate((table.headers, *table.rows)):
+        cells = [wrap(row[i], widths[i], break_long_words=False, break_on_hyphens=False) or [""] for i in chosen]
+        deepest = max(map(len, cells))
+        cells = [[*[""] * (deepest - len(c)), *c] if k == 0 else [*c, *[""] * (deepest - len(c))] for c in cells]
+        for n in range(deepest):
+            texts = [*(c[n] for c in cells)]
+            padded = [
+                t.ljust(widths[i]) if i in table.left else t.rjust(widths[i])
+                for i, t in zip(chosen, texts, strict=True)
+            ]
+            out.append(Line("row" if k else "head", tuple(padded)))
+    return out
 
 
 ABSENT = "-"
