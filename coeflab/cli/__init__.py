@@ -66,7 +66,8 @@ class Commands(TyperGroup):
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the list of commands without importing them."""
-        self.commands = {name: TyperCommand(name, help=_summary(name)) for name in ORDER}
+        said = {name: _summary(name) for name in ORDER}
+        self.commands = {n: TyperCommand(n, help=text, short_help=_sentence(text)) for n, text in said.items()}
         super().format_commands(ctx, formatter)
 
 
@@ -79,6 +80,11 @@ def _summary(name: str) -> str:
     text = Path(__file__).with_name(f"{_module(name)}.py").read_text(encoding="utf-8")
     found = _SUMMARY.search(text)
     return cleandoc(found[1] or found[2]) if found else ""
+
+
+def _sentence(text: str) -> str:
+    """The first sentence, whole: what click makes by itself ends in the middle."""
+    return " ".join(text.partition("\n\n")[0].split()).removesuffix(".")
 
 
 def _built(name: str) -> Any:

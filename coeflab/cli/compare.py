@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
+    from coeflab.core.table import Table
     from coeflab.vehicle.comparison import Comparison
 
 
@@ -83,12 +85,31 @@ def as_json(found: Comparison) -> dict[str, Any]:
     }
 
 
+def _comparable(table: Table) -> Table:
+    """The rows that can be compared; of the others their names, by reason."""
+    from coeflab.vehicle.comparison import Verdict
+
+    column = table.headers.index("verdict")
+    rows = [row for row in table.rows if row[column] != Verdict.NOT_COMPARABLE.value]
+    reasons: dict[str, list[str]] = {}
+    for row in table.rows:
+        if row not in rows:
+            reasons.setdefault(row[-1], []).append(row[0])
+    if not rows:
+        for line in (table.title, *(f"  {', '.join(names)}: {why}" for why, names in reasons.items()), *table.notes):
+            show.text(line)
+        show.text()
+        return replace(table, rows=())
+    notes = (*(f"Not comparable, {why}: {', '.join(names)}." for why, names in reasons.items()), *table.notes)
+    return replace(table, rows=tuple(rows), notes=notes)
+
+
 def _print(found: Comparison) -> None:
     from coeflab.report.tables import models as comparison_tables
     from coeflab.vehicle.comparison import Verdict
 
     for table in (comparison_tables.coefficients(found), comparison_tables.models(found)):
-        show.table(table)
+        show.table(table if show.whole() else _comparable(table))
     if not found.rows and not found.models:
         show.text("Neither file has coefficients or fitted tables.")
     for what, verdicts in (("", [r.verdict for r in found.rows]), ("Tables: ", [m.verdict for m in found.models])):

@@ -28,7 +28,7 @@ def command(
     ctx: typer.Context,
     table: list[str] = typer.Argument(
         [],
-        metavar="TABLE...",
+        metavar="TABLE",
         autocompletion=complete.campaigns,
         help="Campaign folders, CSVs of them, or names of shipped campaigns; several are fitted jointly.",
         show_default=False,

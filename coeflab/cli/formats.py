@@ -19,13 +19,13 @@ EXAMPLE = "coeflab formats surface"
 def command(
     name: str = typer.Argument(
         "",
-        metavar="[NAME]",
+        metavar="NAME",
         autocompletion=complete.formats,
         help="A kind of plugin such as fits, or one plugin: its options are explained.",
     ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """List importers, fits, exporters, checks ... and their options."""
+    """List importers, fits, exporters, checks, with their options."""
     from coeflab.core.table import Table
 
     found, broken = _chosen(name)

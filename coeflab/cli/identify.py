@@ -18,7 +18,7 @@ EXAMPLE = "coeflab identify zigzag.csv turning_circle.csv --params vehicle.param
 
 def command(
     series: list[Path] = typer.Argument(
-        ..., metavar="SERIES...", help="Time series, CSV with units in the headers: t, u v w p q r, dr ds db ..."
+        ..., metavar="SERIES", help="Time series, CSV with units in the headers: t, u v w p q r, dr ds db ..."
     ),
     params: Path = typer.Option(
         ..., "--params", metavar="PARAMS", help="Parameter file: mass, inertia, scaling, and what to compare with."

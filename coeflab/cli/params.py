@@ -28,6 +28,7 @@ def check(
 
     The exit code is 1 where a finding fails, and 2 where the file cannot be read, whatever its format.
     """
+    from coeflab.cli.run import findings
     from coeflab.core.errors import InputError
     from coeflab.formats.model_files import read_model_file
     from coeflab.report.tables import formats as model_file_tables
@@ -47,7 +48,7 @@ def check(
         })  # fmt: skip
     else:
         show.table(model_file_tables.contents(p, found.format))
-        show.table(model_file_tables.findings(found.findings))
+        findings(found.findings)
     if not found.passed:
         raise typer.Exit(1)
 

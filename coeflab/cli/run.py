@@ -180,9 +180,17 @@ def findings(found: Sequence[Check]) -> None:
         about = f"{name.replace('_', ' ')}"
         if len(same) == 1:
             (c,) = same
-            show.marked(str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {comment}".rstrip())
+            show.marked(
+                str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {_short(comment)}".rstrip()
+            )
             continue
-        show.marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {comment}".rstrip())
+        show.marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {_short(comment)}".rstrip())
         for c in same:
             show.text(f"        {c.subject}: {c.statistic}")
     show.text("Checks: " + ", ".join(f"{n} {name}" for name, n in counts.items()) + ".")
+
+
+def _short(comment: str) -> str:
+    """The first sentence of what a finding means; all of it with ``--wide``."""
+    first, stop, _ = comment.partition(". ")
+    return comment if show.whole() else first + stop.rstrip()

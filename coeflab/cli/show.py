@@ -54,18 +54,10 @@ def sentence(line: str) -> None:
 
 def marked(word: str, line: str) -> None:
     """A word such as ``warn``, coloured on a terminal, and behind it a sentence that hangs below itself."""
-    import textwrap
+    from coeflab.core.table import folded
 
-    most = ENDLESS if whole() else min(width(), PROSE) - 1
     behind = " " * max(6, len(word) + 2)
-    first, *others = textwrap.wrap(
-        visible(line),
-        most,
-        initial_indent=behind,
-        subsequent_indent=behind,
-        break_long_words=False,
-        break_on_hyphens=False,
-    ) or [""]
+    first, *others = folded(visible(line), _prose(width()), behind, behind)
     typer.echo(typer.style(word, **ANSI.get(word, {})) + first[len(word) :])
     for one in others:
         typer.echo(one)
@@ -86,7 +78,7 @@ def command_line(word: str, typed: str) -> None:
     import textwrap
 
     folded = textwrap.wrap(
-        visible(f"{word}: {typed}"), min(width(), PROSE) - 2, subsequent_indent="  ", break_long_words=False,
+        visible(f"{word}: {typed}"), _prose(width()) - 2, subsequent_indent="  ", break_long_words=False,
         break_on_hyphens=False,
     )  # fmt: skip
     typer.echo(" \\\n".join(folded))
@@ -140,15 +132,17 @@ def _terminal() -> int:
     return max(shutil.get_terminal_size().columns, NARROWEST)
 
 
+def _prose(most: int) -> int:
+    """Letters of a line of text: long lines are hard to read."""
+    return most if most == ENDLESS else min(most, PROSE) - 1
+
+
 def _folded(line: str, most: int) -> list[str]:
     """A line as lines of at most 80 letters or the terminal's, which hang below its indent."""
-    import textwrap
+    from coeflab.core.table import folded
 
     indent = line[: len(line) - len(line.lstrip())]
-    return textwrap.wrap(
-        line.strip(), min(most, PROSE) - 1 if most < ENDLESS else most, initial_indent=indent,
-        subsequent_indent=indent + "  " * bool(indent), break_long_words=False, break_on_hyphens=False,
-    ) or [""]  # fmt: skip
+    return folded(line.strip(), _prose(most), indent, indent + "  " * bool(indent))
 
 
 def _visible(content: Table) -> Table:

@@ -50,7 +50,7 @@ def command(
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the manoeuvre, and stop."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Simulate a manoeuvre: zigzag, turning circle, spiral ...
+    """Simulate a manoeuvre, such as a zigzag or a turning circle.
 
     Any further --option VALUE goes to the manoeuvre: --rudder 20, --speed "3 kn". An angle without a unit is in degrees.
     See --help-options. Exit code 1

@@ -32,7 +32,7 @@ RESERVED = 12  # lines of a terminal that are not for rows
 def command(
     body: str = typer.Argument(
         "",
-        metavar="[BODY]",
+        metavar="BODY",
         autocompletion=complete.bodies,
         help="A body.toml, its folder or a shipped body; or the folder of a tow.",
         show_default=False,
