@@ -25,7 +25,6 @@ from coeflab.report.tables.models import quality
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.derived import Derived, sense, stability
-from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 
 LONGEST, MOST_ROWS, MOST_COLUMNS = 160, 6, 3
@@ -255,17 +254,14 @@ def _chips(study: Study, rows: tuple[AnswerRow, ...]) -> tuple[Chip, ...]:
 
 def _stability(study: Study) -> Chip:
     """Of the first parameter file that has an index, that of the horizontal plane where it can be had."""
-    found: tuple[Derived, ...] = next((d for p in study.parameter_files.values() if (d := _indices(p))), ())
-    if not found:
+    every = [index for p in study.parameter_files.values() for index in stability(p)]
+    if not every:
         return Chip("Stability", "not determined", Severity.NOTE, "stability" if study.parameter_files else "")
-    d = min(found, key=lambda d: d.name != "G_h")
+    first = [index for index in every if index.subject == every[0].subject]
+    d: Derived = min(first, key=lambda index: index.name != "G_h")
     said = sense(d).partition(" at ")[0]
     grave = Severity.PASS if said == "stable" else Severity.WARN if said.startswith("unstable") else Severity.NOTE
     return Chip("Stability", f"{said}, {d.name} = {d.value:.2f}", grave, "stability")
-
-
-def _indices(parameters: ParameterFile) -> tuple[Derived, ...]:
-    return tuple(stability(parameters))
 
 
 def _largest(rows: Sequence[AnswerRow]) -> Chip:

@@ -67,8 +67,9 @@ def slope_figure(sweep: Sweep, row: AnswerRow, published: str = "", at: float | 
     reach = float(np.max(np.abs(x)))
     sides = [(side, _side(sweep, side)) for side in (1.0, -1.0) if np.any(np.sign(x) == side)]
     far = np.abs(x) > NEAR * reach
-    shown = [y[far], [value - u95, value + u95], *([] if at is None else [[at]]), *(line[1] for _, line in sides)]
-    frame = limits(np.concatenate(shown), 0.08) or (-1.0, 1.0)
+    shown = np.concatenate([y[far], [value - u95, value + u95], *(line[1] for _, line in sides)])
+    shown = shown if at is None else np.append(shown, at)
+    frame = limits(shown, 0.08) or (-1.0, 1.0)
     factor, power = power_of_ten(max(abs(f) for f in frame))
     left_out = int(np.sum((y < frame[0]) | (y > frame[1])))
     title = f"{name}, {sweep.campaign}: the slope at rest"
