@@ -56,12 +56,14 @@ class _Beside:
     among: CoefficientSet | None
 
 
-def answer(found: Study | Acceptance) -> Answer:
+def answer(found: Study | Acceptance, *, drawn: bool = True) -> Answer:
     """What a reader wants first.
 
     Parameters
     ----------
     found : Study or Acceptance
+    drawn : bool
+        With its figures; a terminal shows none.
 
     Returns
     -------
@@ -69,7 +71,8 @@ def answer(found: Study | Acceptance) -> Answer:
         Of a study its wanted coefficients beside the published columns of their body: from its re-analysed tables, else from
         an own tow of that body. A difference has a verdict only where the authors' own evaluation of the same data is known.
     """
-    return _of_study(found) if isinstance(found, Study) else _of_publication(found)
+    made = _of_study(found) if isinstance(found, Study) else _of_publication(found)
+    return _drawn(found, made) if drawn else made
 
 
 def _of_study(study: Study) -> Answer:
@@ -80,9 +83,8 @@ def _of_study(study: Study) -> Answer:
     if all(r.value is None for r in rows) and any(f.models for f in study.fits):
         return _of_models(study)
     return Answer(
-        _sentence(study, beside, rows), names, compared, rows, _chips(study, rows), _slope(study, rows, compared),
-        forest_figure(rows, names, compared) or forest_figure(rows, names, ""), axes_figure(), _notes(study, beside, rows),
-    )  # fmt: skip
+        _sentence(study, beside, rows), names, compared, rows, _chips(study, rows), notes=_notes(study, beside, rows)
+    )
 
 
 def _columns(study: Study) -> _Beside:
@@ -211,7 +213,7 @@ def _sentence(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> str
         if apart:
             first = f"{name} re-analysed: {listed(apart)} of {_counted(len(judged))} {kind}{of} {_verb(apart)} by more than U95"
         else:
-            every = "the" if len(judged) == 1 else f"all {_counted(len(judged))}"
+            every = {1: "the", 2: "both"}.get(len(judged), f"all {_counted(len(judged))}")
             first = f"{name} re-analysed: {every} {kind}{of} {'agrees' if len(judged) == 1 else 'agree'} within U95"
     elif not valued:
         first = f"{name}: no wanted coefficient could be determined"
@@ -293,12 +295,27 @@ def _exports(study: Study) -> Chip:
     return Chip("Exports", text, Severity.FAIL if refused else Severity.NOTE if loss else Severity.PASS, "exports")
 
 
-def _slope(study: Study, rows: tuple[AnswerRow, ...], compared: str) -> Figure | None:
+def _drawn(found: Study | Acceptance, made: Answer) -> Answer:
+    """With its figures; of models, and of a publication, two that show what came out."""
+    if isinstance(found, Acceptance):
+        left = next((renamed(d, "answer-figure") for _, d in found.figures if len(d.svg) < LARGEST), None)
+        right = shares_figure(found) if found.numbers else None
+    else:
+        left = _slope(found, made)
+        right = forest_figure(made.rows, made.columns, made.compared) or forest_figure(made.rows, made.columns, "")
+        models = [m for f in found.fits for m in f.models]
+        if models and (left is None or right is None):
+            first, second = (*model_figures(models[0], "answer-model"), None, None)[:2]
+            left, right = left or first, right or (second if left is None else first)
+    return replace(made, slope=left, forest=right, axes=axes_figure())
+
+
+def _slope(study: Study, made: Answer) -> Figure | None:
     """Of the first row that comes from a sweep."""
-    for r in rows:
+    for r in made.rows:
         at = next((f.sweep(r.symbol) for f in study.fits if f.campaign == r.source and _has_slope(f, r.symbol)), None)
         if at is not None and r.value is not None:
-            return slope_figure(at, r, compared, r.published[0] if r.published else None)
+            return slope_figure(at, r, made.compared, r.published[0] if r.published else None)
     return None
 
 
@@ -341,34 +358,26 @@ def _of_models(study: Study) -> Answer:
     """Of a study whose fits give no wanted coefficient but laws and tables of forces."""
     models = tuple(m for f in study.fits for m in f.models)
     name = _short(study.plan.title or study.plan.name)
-    figures = model_figures(models[0], "answer-model")
     n = _counted(len(models))
     sentence = f"{name}: {n} fitted {'model' if len(models) == 1 else 'models'}, no coefficient with a SNAME symbol."
-    left, right = (*figures[:2], None, None)[:2]
-    return Answer(
-        sentence, chips=_chips(study, ()), slope=left, forest=right, axes=axes_figure(), table=_narrow(quality(models), ("", "form", "n", "R2"))
-    )  # fmt: skip
+    return Answer(sentence, chips=_chips(study, ()), table=_narrow(quality(models), ("", "form", "n", "R2")))
 
 
 def _of_publication(found: Acceptance) -> Answer:
+    good, count, valid = _held(found)
+    some = f"{count - good} of {count} numbers outside what is allowed"
+    said = f"all {count} numbers within what is allowed" if good == count else some
+    none = "none of them validates: calibration and consistency only"
+    said += f"; {valid} of them validate: predicted, or printed and recomputed" if valid else f"; {none}"
+    table = _narrow(overview(found), ("what", "hold", "used", "verdict"))
+    return Answer(f"{_short(found.title)}: {said}.", chips=_published_chips(found), table=table)
+
+
+def _held(found: Acceptance) -> tuple[int, int, int]:
+    """How many numbers hold, how many there are, how many of them validate."""
     numbers = held(found)
     good, count = (sum(pair[k] for pair in numbers.values()) for k in (0, 1))
-    valid = sum(pair[1] for b, pair in numbers.items() if b.validates)
-    every = (
-        f"all {count} numbers within what is allowed"
-        if good == count
-        else f"{count - good} of {count} numbers outside what is allowed"
-    )
-    rest = (
-        f"{valid} of them validate: predicted, or printed and recomputed"
-        if valid
-        else "none of them validates: calibration and consistency only"
-    )
-    first = next((renamed(d, "answer-figure") for _, d in found.figures if len(d.svg) < LARGEST), None)
-    return Answer(
-        f"{_short(found.title)}: {every}; {rest}.", chips=_published_chips(found), slope=first,
-        forest=shares_figure(found) if count else None, axes=axes_figure(), table=_narrow(overview(found), ("what", "hold", "used", "verdict")),
-    )  # fmt: skip
+    return good, count, sum(pair[1] for b, pair in numbers.items() if b.validates)
 
 
 def _narrow(whole: Table, names: Sequence[str]) -> Table:
@@ -384,14 +393,12 @@ def _narrow(whole: Table, names: Sequence[str]) -> Table:
 
 
 def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
-    numbers = held(found)
-    good, count = (sum(pair[k] for pair in numbers.values()) for k in (0, 1))
-    valid = [sum(pair[k] for b, pair in numbers.items() if b.validates) for k in (0, 1)]
+    good, count, valid = _held(found)
     worst = Severity.PASS if good == count else Severity.FAIL
     errata = len(found.errata)
     return (
         Chip("Numbers", f"{good} of {count} hold", worst, "compared"),
-        Chip("Validation", f"rests on {valid[1]} numbers", Severity.PASS if valid[1] else Severity.NOTE, "verdict"),
+        Chip("Validation", f"rests on {valid} numbers", Severity.PASS if valid else Severity.NOTE, "verdict"),
         Chip("Errata", f"{errata} in the publication", Severity.NOTE if errata else Severity.PASS, "errata" if errata else ""),
         Chip("Parameter files", f"{len(found.parameter_files)} made", Severity.NOTE, "parameter-files" if found.file_notes else ""),
     )  # fmt: skip

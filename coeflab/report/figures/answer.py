@@ -107,6 +107,8 @@ def slope_figure(sweep: Sweep, row: AnswerRow, published: str = "", at: float | 
         panel = numbers(axes, series, across, quotient, factor)
         svg = svg_text(figure, "answer-slope", title, description)
     caption = f"{name} is the value at |{sweep.variable}'| = 0. Points slope away where the force is not linear."
+    wrong = ", ".join(sweep.labels[i] for i in sweep.wrong)
+    caption += f" Without point {wrong}, which does not fit the others (cross)." if wrong else ""
     caption += f" {left_out} near zero {'lies' if left_out == 1 else 'lie'} outside the frame." if left_out else ""
     return Figure("answer-slope", svg, title, caption, description, (panel,))
 
@@ -129,7 +131,7 @@ def _sides(
     moving = np.flatnonzero(np.abs(sweep.x) > 0.0)
     for side, (size, quotient) in sides:
         key, colour = ("plus", COLOURS["a"]) if side > 0.0 else ("minus", COLOURS["b"])
-        mine = np.sign(x) == side
+        mine = (np.sign(x) == side) & ~np.isin(moving, sweep.wrong)
         said = f"{sweep.variable}' {'>' if side > 0.0 else '<'} 0"
         look: dict[str, Any] = {
             "color": colour, "marker": "o" if side > 0.0 else "s", "markersize": 3.8, "markeredgewidth": 0.9,
@@ -142,6 +144,12 @@ def _sides(
         notes = [f"point {sweep.labels[i]}" for i, yes in zip(moving, mine, strict=True) if yes]
         series.append(points(key, said, np.abs(x[mine]), y[mine], notes))
         series.append(curve(key, f"{said}, fitted curve", size, quotient))
+    wrong = np.isin(moving, sweep.wrong)
+    if np.any(wrong):
+        look = {"marker": "x", "markersize": 5.0, "markeredgecolor": COLOURS["ink"], "markeredgewidth": 1.1}
+        tagged(axes.plot(np.abs(x[wrong]), y[wrong] * factor, linestyle="none", zorder=3, **look), "wrong")
+        notes = [f"point {sweep.labels[i]}" for i in moving[wrong]]
+        series.append(points("wrong", "left out", np.abs(x[wrong]), y[wrong], notes))
     return handles, series
 
 
