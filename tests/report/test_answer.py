@@ -77,7 +77,8 @@ def test_only_a_re_analysis_gives_a_verdict():
     made = answer(compared(QUOTED, OTHER), drawn=False)
     assert made.rows[0].difference is not None
     assert [r.agrees for r in made.rows] == [None, None, None]
-    assert "within" not in made.sentence and "differ" not in made.sentence
+    assert "within" not in made.sentence
+    assert "differ" not in made.sentence
 
 
 def test_no_verdict_on_a_value_that_was_moved_for_it():
@@ -121,7 +122,8 @@ def test_sentence(references: tuple[Reference, ...], sentence: str):
 def test_any_name_and_any_sweep(angles: list[float], named: str):
     made = answer(small_study(angles, named=named), drawn=False)
     assert len(made.sentence) <= 160
-    assert all(len(note) <= 244 for note in made.notes) and len(made.notes) <= 4
+    assert all(len(note) <= 244 for note in made.notes)
+    assert len(made.notes) <= 4
     assert [c.name for c in made.chips] == ["Stability", "Largest U95", "Warnings", "Exports"]
     assert all(len(c.text.split()) <= 6 for c in made.chips)
     folded = replace(answer_table(made), notes=())
@@ -226,7 +228,9 @@ def test_senses_in_the_sketch():
         assert text in svg
     place = {said: float(y) for y, said in re.findall(r'<text [^>]*?y="([\d.]+)"[^>]*>(?:<tspan[^>]*>)?(\w)', svg)}
     ahead = place["x"]
-    assert place["r"] > ahead and place["y"] > ahead and place["z"] > ahead
+    assert place["r"] > ahead
+    assert place["y"] > ahead
+    assert place["z"] > ahead
     assert place["q"] < ahead + 1.0
 
 
@@ -246,7 +250,8 @@ def test_a_publication_has_its_tables_in_the_place_of_rows():
         made.sentence
         == "Boat: 1 of 3 numbers outside what is allowed; 2 of them validate: predicted, or printed and recomputed."
     )
-    assert made.rows == () and answer_table(made).rows == (("Turns", "2 of 3", "500 %", "fail"),)
+    assert made.rows == ()
+    assert answer_table(made).rows == (("Turns", "2 of 3", "500 %", "fail"),)
     assert [c.severity.value for c in made.chips] == ["fail", "pass", "note", "note"]
     assert made.slope.anchor == "answer-figure"
     assert answer(found(2.05)).sentence.startswith("Boat: all 3 numbers within what is allowed;")
