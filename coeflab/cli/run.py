@@ -15,7 +15,7 @@ from coeflab.cli import show
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from coeflab.core.table import Check, Table
+    from coeflab.core.table import Check
     from coeflab.report.document import Answer
     from coeflab.study.study import Plan, Study
 
@@ -95,7 +95,7 @@ def summarise(study: Study) -> None:
     from coeflab.report.answer import answer
     from coeflab.report.tables import models as model_tables
 
-    answered(answer(study))
+    answered(answer(study, drawn=False))
     models = tuple(m for f in study.fits for m in f.models)
     if show.whole():
         _every_table(study)
@@ -106,29 +106,14 @@ def summarise(study: Study) -> None:
 
 
 def answered(found: Answer) -> None:
-    """What a reader wants first: the sentence, the wanted coefficients, and what is grave."""
+    """What a reader wants first: the sentence, the wanted coefficients, and how it stands."""
+    from coeflab.report.answer import answer_table
+
     show.sentence(found.sentence)
     show.text()
-    show.table(_rows(found))
+    show.table(answer_table(found))
     for chip in found.chips:
         show.marked(str(chip.severity), f"{chip.name}: {chip.text}")
-    for note in found.notes:
-        show.sentence(note)
-
-
-def _rows(found: Answer) -> Table:
-    from coeflab.core.table import ABSENT, Table, percent, with_u95
-    from coeflab.law.symbols import primed
-    from coeflab.report.tables.results import VERDICTS
-
-    rows = []
-    for r in found.rows:
-        value, u95 = (r.status or "no data", ABSENT) if r.value is None else with_u95(r.value, r.u95)
-        published = [with_u95(p, None)[0] for p in (*r.published, *[None] * (len(found.columns) - len(r.published)))]
-        share = ABSENT if r.share is None else f"{r.share:+.2f}"
-        rows.append((primed(r.symbol), value, u95, percent(r.u95, r.value), *published, share, VERDICTS[r.agrees]))
-    headers = ("", "coeflab", "U95", "U95", *found.columns, "difference / U95", "verdict")
-    return Table("Wanted coefficients, primed", headers, tuple(rows), (), frozenset({0, len(headers) - 1}))
 
 
 def _every_table(study: Study) -> None:

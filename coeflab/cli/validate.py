@@ -68,44 +68,25 @@ def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
 
 
 def _print(found: Acceptance) -> None:
-    """How many numbers hold by table, and those that do not; every number with ``--wide``."""
-    from coeflab.core.table import Table
+    """The answer, and the numbers that do not hold; every number with ``--wide``."""
+    from coeflab.cli.run import answered
     from coeflab.report import acceptance as acceptance_tables
-    from coeflab.report.sections import acceptance as acceptance_document
+    from coeflab.report.answer import answer
 
-    show.text(found.title)
-    for line in acceptance_document.headline(found):
-        show.text(line)
-    show.text()
+    answered(answer(found, drawn=False))
     if show.whole():
+        for line in acceptance_tables.headline(acceptance_tables.held(found)):
+            show.text(line)
+        show.text()
         for table in acceptance_tables.tables(found):
             show.table(table)
         show.table(acceptance_tables.errata(found))
         for line in (*found.statements, *(f"Parameter file: {note}" for note in found.file_notes)):
             show.text(line)
     else:
-        rows = [
-            (
-                t.title,
-                str(len(t.rows)),
-                str(sum(r.holds for r in t.rows)),
-                ", ".join(dict.fromkeys(str(r.basis) for r in t.rows)),
-            )
-            for t in found.tables
-        ]
-        show.table(
-            Table(
-                "Numbers of the publication", ("table", "numbers", "hold", "basis"), tuple(rows), (), frozenset({0, 3})
-            )
-        )
         for table in acceptance_tables.tables(found):
             show.table(replace(table, rows=tuple(row for row in table.rows if row[-1] == "fail")))
-        many = len(found.errata)
-        show.text(
-            f"{many} errata of the publication; --wide prints every number, erratum and statement."
-            if many
-            else "--wide prints every number and statement."
-        )
+        show.text("--wide prints every number, erratum and statement.")
     bare = [p.name for p in found.parameter_files if not p.measured]
     if bare:
         show.text(f"No measured points in {', '.join(bare)}: these laws are not compared with any.")
