@@ -13,8 +13,8 @@ from tests.cli.conftest import Run, flat
 
 def test_diagnostics_are_printed_on_demand(coeflab: Run) -> None:
     polynomial = ("fit", "suboff_roddy_2", "--fit", "polynomial", "--variable", "v", "--responses", "Y")
-    without = coeflab(*polynomial).stdout
-    done = coeflab(*polynomial, "--diagnostics")
+    without = coeflab(*polynomial, "--wide").stdout
+    done = coeflab(*polynomial, "--diagnostics", "--wide")
     assert done.returncode == 0, done.stderr
     for text in (
         "Diagnostics of the fitted models",
@@ -29,7 +29,7 @@ def test_diagnostics_are_printed_on_demand(coeflab: Run) -> None:
 
 
 def test_many_terms_show_only_the_close_pairs(coeflab: Run) -> None:
-    done = coeflab("fit", "huuv_synthetic", "--fit", "surface", "--responses", "C_D", "--diagnostics")
+    done = coeflab("fit", "huuv_synthetic", "--fit", "surface", "--responses", "C_D", "--diagnostics", "--wide")
     assert "pairs lie beyond 0.9" in flat(done.stdout)
     assert "alpha -25.0 .. 25.0 deg" in flat(done.stdout)
 
@@ -72,8 +72,8 @@ def test_an_area_with_its_unit_is_that_in_si(coeflab: Run) -> None:
 
 
 def test_options_are_explained(coeflab: Run) -> None:
-    by_fit = coeflab("fit", "--fit", "surface", "--help-options").stdout
-    by_name = coeflab("formats", "surface").stdout
+    by_fit = coeflab("fit", "--fit", "surface", "--help-options", "--wide").stdout
+    by_name = coeflab("formats", "surface", "--wide").stdout
     assert "Options of surface" in by_fit
     assert by_fit.strip() in by_name
     for text in ("degree", "whole number, 1 to 8", "refuse, clamp, taper", "[table.options.surface]"):

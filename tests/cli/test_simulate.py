@@ -35,6 +35,18 @@ def test_a_current_is_said(coeflab: Run, torpedo: Path) -> None:
     assert "current of 0.3 north, -0.2 east m/s" in flat(done.stdout)
 
 
+def test_a_bare_angle_is_in_degrees_and_refused_where_it_may_be_in_radians(coeflab: Run, torpedo: Path) -> None:
+    zigzag = ("simulate", torpedo, "--manoeuvre", "zigzag", *FREE, "--json")
+    bare = coeflab(*zigzag, "--rudder", "20", "--heading", "0")
+    assert bare.returncode in (0, 1), bare.stderr
+    assert bare.stdout == coeflab(*zigzag, "--rudder", "20 deg").stdout
+    refused = coeflab(*zigzag, "--rudder", "0.35")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert '"zigzag.rudder": found 0.35, an angle without a unit; expected degrees, at least 1.6' in refused.stderr
+    assert '"0.35 rad"' in refused.stderr
+    assert coeflab(*zigzag, "--rudder", "0.35 rad").returncode in (0, 1)
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [
