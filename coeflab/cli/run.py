@@ -166,9 +166,7 @@ def findings(found: Sequence[Check], *, notes: bool = False) -> None:
         meant = comment if notes or severity is Severity.FAIL else _short(comment)
         if len(same) == 1:
             (c,) = same
-            show.marked(
-                str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {meant}".rstrip()
-            )
+            show.marked(str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {meant}".rstrip())
             continue
         show.marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {meant}".rstrip())
         for c in same:

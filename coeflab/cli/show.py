@@ -85,11 +85,9 @@ def command_line(word: str, typed: str) -> None:
 
 
 def error(line: str) -> None:
-    """Lines on standard error, folded where a person reads them."""
-    for one in line.split("\n"):
-        folded = _folded(visible(one), _terminal()) if sys.stderr.isatty() else [visible(one)]
-        for part in folded:
-            typer.echo(part, err=True)
+    """A line on standard error, folded where a person reads it."""
+    for part in _folded(visible(line), _terminal()) if sys.stderr.isatty() else [visible(line)]:
+        typer.echo(part, err=True)
 
 
 def table(content: Table) -> None:
