@@ -10,6 +10,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib.resources import files
@@ -22,7 +23,7 @@ from numpy.typing import NDArray
 
 from coeflab.core.table import ABSENT, LARGEST_SHARE, coefficient, plus_minus, with_u95
 from coeflab.law.symbols import primed
-from coeflab.report.document import AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Section, Series
+from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Section, Series
 from coeflab.report.notation import cell_html, html, keeping, label, unit_html, unit_label
 from coeflab.report.printable import shortened, visible
 
@@ -115,7 +116,7 @@ def _packed(values: NDArray[Any]) -> str:
 
 summary = "one HTML file with tables and figures, for browser and printer"
 STYLES = ("style.css", "symbols.css", "contents.css", "answer.css")
-SCRIPTS = ("contents.js", "figures.js", "painting.js", "scenes.js", "copying.js")
+SCRIPTS = ("contents.js", "figures.js", "painting.js", "scenes.js", "copying.js", "pdf.js", "saving.js")
 citations: tuple[str, ...] = ()
 
 
@@ -140,7 +141,8 @@ def render(document: Document) -> Mapping[str, bytes]:
         "scene_json": scene_json,
         "row_of": row_of,
         "bar_of": bar_of,
-        "published": coefficient,
+        "published": published,
+        "rows_json": rows_json,
         "anchors": anchors,
     }
     environment.filters |= {
@@ -148,6 +150,7 @@ def render(document: Document) -> Mapping[str, bytes]:
         "spelled_cell": spelled_cell,
         "visible": visible,
         "shortened": shortened,
+        "filename": filename,
     }
     template = environment.from_string((folder / "report.html.j2").read_text(encoding="utf-8"))
     style = "\n".join((folder / name).read_text(encoding="utf-8") for name in STYLES)
@@ -182,6 +185,38 @@ def row_of(row: AnswerRow) -> Row:
     return Row(primed(row.symbol), own, share, row.status or "no data" * (row.value is None), sign + difference, against, verdict)
 
 
+def filename(text: str) -> str:
+    """A name for files that a page saves: letters, digits, hyphens and underscores of ASCII."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "_", text)[:60]
+
+
+def published(value: float) -> tuple[str, int]:
+    """A published number without zeros behind its fourth decimal, and how many places it is short of six."""
+    shown = coefficient(value)
+    if "e" in shown:
+        return shown, 0
+    bare = shown[:-2] + shown[-2:].rstrip("0")
+    return bare, len(shown) - len(bare)
+
+
+def rows_json(answer: Answer) -> str:
+    """The rows for a file of their numbers: ours with all digits, published ones with those that are printed."""
+    rows = [
+        {
+            "symbol": primed(r.symbol),
+            "value": r.value,
+            "U95": r.u95,
+            "status": visible(r.status),
+            **{visible(c): p and float(f"{p:.{PRINTED}g}") for c, p in zip(answer.columns, r.published, strict=False)},
+            "difference": r.difference,
+            "difference over U95": r.share,
+            "from": visible(r.source),
+        }
+        for r in answer.rows
+    ]
+    return _inside_a_page({"rows": rows})
+
+
 def _in_percent(u95: float | None, value: float | None) -> str:
     if u95 is None or not value:
         return ABSENT
@@ -198,7 +233,7 @@ class Ends:
     beyond: bool
 
 
-WALL = 2.0
+WALL, PRINTED = 2.0, 6
 
 
 def bar_of(row: AnswerRow) -> Ends | None:
