@@ -71,13 +71,20 @@ def report_of(found: Study | Acceptance, *, short: bool = False, full: bool = Fa
         With the appendix.
     """
     if isinstance(found, Study):
-        made = summary.study_summary(found) if short else content.document(found, full=full)
+        if short:
+            return Report(_one_page(summary.study_summary(found)), found.failed)
+        made = content.document(found, full=full)
         return Report(_commanded(made) if full else made, found.failed)
     whole = acceptance_document.document(found, _inputs(found.name))
     if short:
-        return Report(summary.acceptance_summary(found, whole), not found.holds)
+        return Report(_one_page(summary.acceptance_summary(found, whole)), not found.holds)
     parted = _parted(whole, found)
     return Report(_commanded(parted) if full else content.core(parted), not found.holds)
+
+
+def _one_page(made: Document) -> Document:
+    """The answer alone, where there is one: it is the page."""
+    return made if made.answer is None else replace(made, sections=())
 
 
 LONGEST = 8  # rows of a table of numbers that the core prints

@@ -120,6 +120,7 @@ def _answer(answer: Answer) -> dict[str, Any]:
         "rows": [_answer_row(r, len(answer.columns)) for r in answer.rows],
         "chips": [{"name": glyphs(c.name), "text": _text(c.text), "severity": c.severity.value} for c in answer.chips],
         "notes": [_text(n) for n in answer.notes],
+        "table": None if answer.table is None else _table(answer.table, 1),
         **{name: None if figure is None else _figure(figure) for name, figure in drawn.items()},
     }
 
