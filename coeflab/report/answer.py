@@ -21,6 +21,7 @@ from coeflab.report.acceptance import Acceptance, held, overview
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
+from coeflab.report.sections.campaign import anchor
 from coeflab.report.tables.models import quality
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
@@ -124,10 +125,22 @@ def _row(study: Study, beside: _Beside, symbol: str) -> AnswerRow:
     rejected = c.status is Status.FORM_REJECTED
     row = AnswerRow(
         symbol, c.value, None if rejected else c.u95, "form rejected" if rejected else "" if c.u95 else "no U95",
-        c.campaign or "", published, anchor="coefficients",
+        c.campaign or "", published, anchor=_place(study, c),
     )  # fmt: skip
     mine = judged.get((symbol, c.campaign))
     return _judged(row, mine if mine is not None and mine.coefficient.value == c.value else None)
+
+
+def _place(study: Study, c: Coefficient) -> str:
+    """Of the section that derives a coefficient, as a whole report names it."""
+    places: set[str] = set()
+    own = [anchor(f"campaign {f.campaign}", places) for f in study.fits]
+    swept = [
+        any(k is c for k in f.coefficients.coefficients) and any(s.symbol == c.symbol for s in f.sweeps)
+        for f in study.fits
+    ]
+    mine = (place for place, is_ours in zip(own, swept, strict=True) if is_ours)
+    return next((anchor(f"{place} {c.symbol}", places) for place in mine), "coefficients")
 
 
 def _set(study: Study, campaign: str | None) -> CoefficientSet | None:
