@@ -22,7 +22,7 @@ from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.law.coefficient import Coefficient, CoefficientSet
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
-from coeflab.report.notation import cell_html, html, keeping, users_texts
+from coeflab.report.notation import cell_html, html, keeping, unit_html, users_texts
 from coeflab.report.tables import nouns as tables
 
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ STYLE = """
 .coeflab .said { margin: 0; font-size: 15px; font-weight: 600; }
 .coeflab .about, .coeflab .note, .coeflab figcaption { margin: 0.15rem 0; font-size: 12px; color: var(--fig-muted); }
 .coeflab .parts { display: flex; flex-wrap: wrap; gap: 0.6rem 1.6rem; align-items: flex-start; margin-top: 0.5rem; }
+.coeflab .parts > * { min-width: 0; max-width: 100%; }
 .coeflab figure { margin: 0; flex: 1 1 17rem; max-width: 23rem; }
 .coeflab figure svg { display: block; width: 100%; height: auto; }
 .coeflab .wide { overflow-x: auto; max-width: 100%; }
@@ -122,7 +123,10 @@ def _grid(
 
 def _shown(table: Table) -> Part:
     """A table of texts, cut, with its notes."""
-    rows = [[_cell(cell) for cell in row] for row in table.rows[:MOST_ROWS]]
+    rows = [
+        [unit_html(cell) if head == "unit" else _cell(cell) for head, cell in zip(table.headers, row)]
+        for row in table.rows[:MOST_ROWS]
+    ]
     more = len(table.rows) - MOST_ROWS
     notes = (*((f"{more} more rows.",) if more > 0 else ()), *table.notes[:MOST_NOTES])
     return _grid(table.headers, rows, table.left, table.title) + _notes(notes)
@@ -130,6 +134,10 @@ def _shown(table: Table) -> Part:
 
 def _cell(text: str) -> Part:
     return f'<span class="long">{cell_html(text)}</span>' if len(text) > LONG else cell_html(text)
+
+
+def _many(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 def _notes(notes: Sequence[str]) -> Part:
@@ -192,7 +200,7 @@ def _name(c: Coefficient) -> str:
 
 
 def _coefficient_grid(several: Sequence[Coefficient], title: str = "") -> Part:
-    headers = ("", "value", "U95", "U95", "0 | value", "from")
+    headers = ("", "value", "U95", "of value", "0 | value", "from")
     shown = several[:MOST_ROWS]
     more = len(several) - len(shown)
     notes = (f"{more} more.",) if more else ()
@@ -207,7 +215,7 @@ def answer(found: Answer) -> tuple[Part, ...]:
 
 def _answer(found: Answer) -> Part:
     last = [f"difference / U95 to {found.compared}"] if found.compared else []
-    headers = ("", "value", "U95", "U95", *found.columns, *last)
+    headers = ("", "value", "U95", "of value", *found.columns, *last)
     rows = []
     for r in found.rows:
         value, u95 = with_u95(r.value, r.u95)
@@ -235,8 +243,9 @@ def study(found: Study) -> tuple[Part, ...]:
 
     first = answer_of(found)
     about = (
-        f"Study {found.plan.name}: {len(found.tables)} tables, {len(found.fits)} fits, {len(found.coefficients)} coefficients, "
-        f"{len(found.checks)} findings. Parameter files: {', '.join(found.parameter_files) or 'none'}."
+        f"Study {found.plan.name}: {_many(len(found.tables), 'table')}, {_many(len(found.fits), 'fit')}, "
+        f"{_many(len(found.coefficients), 'coefficient')}, {_many(len(found.checks), 'finding')}. "
+        f"Parameter files: {', '.join(found.parameter_files) or 'none'}."
     )
     return (_heading(first.sentence, about), _answer(first))
 
@@ -369,18 +378,31 @@ def parameters(found: ParameterFile) -> tuple[Part, ...]:
 
     at = f"{found.conditions.speed:.5g} m/s and {found.conditions.density:.5g} kg/m^3"
     valued = sum(c.value is not None for c in found.coefficients)
-    heading = f"{found.name}: {valued} of {len(found.coefficients)} coefficients have a value"
+    heading = f"{found.name}: " + ", ".join(
+        [f"{valued} of {len(found.coefficients)} coefficients have a value"] * bool(found.coefficients)
+        + [_many(len(found.models), "fitted table")] * bool(found.models)
+    )
     about = f"{found.body}; primed by {found.scaling.length_name} {found.scaling.length:.5g} m; SI at {at}"
     held = [
         n
         for n, v in (("mass", found.mass), ("added mass", found.added_mass), ("hydrostatics", found.hydrostatics))
         if v
     ]
-    held += [f"{len(v)} {n}" for n, v in (("models", found.models), ("thrusters", found.thrusters)) if v]
+    held += [_many(len(found.thrusters), "thruster")] if found.thrusters else []
     ordered = sorted(found.coefficients, key=lambda c: c.value is None)
     return (_heading(heading, about, f"With {listed(held)}." if held else ""),
-            _parts(_picture(law_figure(found, DRAFT)), f"<div>{_coefficient_grid(ordered)}</div>"),
+            _parts(_picture(law_figure(found, DRAFT)), f"<div>{_coefficient_grid(ordered) if ordered else ''}{_models(found)}</div>"),
             _notes(found.provenance.notes[:MOST_NOTES]))  # fmt: skip
+
+
+def _models(found: ParameterFile) -> Part:
+    """The fitted tables of a file, a row each."""
+    rows = [
+        (m.response, m.unit, ", ".join(m.names), m.form, f"{len(m.terms)}", f"{m.n_points}", m.campaign)
+        for m in found.models
+    ]
+    headers = ("response", "unit", "over", "form", "terms", "points", "from")
+    return _shown(Table("", headers, tuple(rows), (), frozenset({0, 1, 2, 3, 6}))) if rows else ""
 
 
 @_card

@@ -18,7 +18,7 @@ from coeflab.report.figures.laws import Plot, Trace, laws_figure
 from coeflab.report.figures.svg import power_of_ten
 from coeflab.report.notation import as_users_wrote
 from coeflab.tables.force_table import AT_REST, ForceTable
-from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.force_law import motion_law
 from coeflab.vehicle.law_at_points import MeasuredTable
 from coeflab.vehicle.parameter_file import ParameterFile
 
@@ -80,13 +80,13 @@ def law_figure(parameters: ParameterFile, anchor: str) -> Figure | None:
     Returns
     -------
     Figure or None
-        None where no range is covered, or the derivatives give no force there.
+        None where no range is covered, or the file gives no force there.
     """
     spans = _spans(parameters)
     if not spans:
         return None
     try:
-        law = force_law(parameters)
+        law, _ = motion_law(parameters, tables=False)
     except CoeflabError:
         return None
     at, length = parameters.conditions, parameters.scaling.length
@@ -99,7 +99,7 @@ def law_figure(parameters: ParameterFile, anchor: str) -> Figure | None:
             y = force[:, COMPONENTS.index(c)]
             x, points, notes = _measured(parameters.measured, variable, c, at.speed, length)
             factor, power = _scale(np.concatenate([y, points]))
-            traces = [Trace("law of the file", _shown(variable, prime), y * factor, 0)]
+            traces = [Trace("law of the file", _shown(variable, prime), y * factor, 1)]
             if len(x):
                 traces.append(Trace("points", _shown(variable, x), points * factor, -1, "filled", notes))
             plots.append(_plot(c, power, variable, traces, is_last=c == wanted[-1]))
