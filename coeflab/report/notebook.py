@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coeflab.core.errors import CoeflabError
-from coeflab.core.table import ABSENT, Severity, Table, coefficient, number, percent, with_u95
+from coeflab.core.table import ABSENT, Severity, Table, number, percent
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.law.coefficient import Coefficient, CoefficientSet
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
-from coeflab.report.notation import cell_html, html, keeping, unit_html, users_texts
+from coeflab.report.notation import MINUS, cell_html, html, keeping, unit_html, users_texts
 from coeflab.report.tables import nouns as tables
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from coeflab.law.added_mass import AddedMass
     from coeflab.motion.manoeuvre import Simulation
     from coeflab.motion.trajectory import Trajectory
+    from coeflab.report.acceptance import Acceptance
     from coeflab.report.document import Answer, AnswerRow, Figure
     from coeflab.study.study import Study
     from coeflab.tables.force_table import ForceTable
@@ -46,7 +47,7 @@ STYLE = """
 .coeflab .about, .coeflab .note, .coeflab figcaption { margin: 0.15rem 0; font-size: 12px; color: var(--fig-muted); }
 .coeflab .parts { display: flex; flex-wrap: wrap; gap: 0.6rem 1.6rem; align-items: flex-start; margin-top: 0.5rem; }
 .coeflab .parts > * { min-width: 0; max-width: 100%; }
-.coeflab figure { margin: 0; flex: 1 1 17rem; max-width: 23rem; }
+.coeflab figure { margin: 0; flex: 1 1 15rem; }
 .coeflab figure svg { display: block; width: 100%; height: auto; }
 .coeflab .wide { overflow-x: auto; max-width: 100%; }
 .coeflab table { border-collapse: collapse; border: 0; margin: 0; font-size: 12px; }
@@ -57,14 +58,16 @@ STYLE = """
 .coeflab .long { white-space: normal; min-width: 9rem; }
 .coeflab caption { caption-side: top; padding: 0 0 0.2rem; text-align: left; font-weight: 600; color: inherit; }
 .coeflab td svg { display: block; width: 100px; height: 14px; }
+.coeflab .beside { display: flex; gap: 0.4rem; justify-content: flex-end; align-items: center; }
 .coeflab .chips { display: flex; flex-wrap: wrap; gap: 0.35rem; margin: 0.5rem 0 0; padding: 0; list-style: none; }
 .coeflab .chips li { margin: 0; padding: 0.1rem 0.55rem; border: 1px solid var(--fig-rule); border-left: 3px solid var(--of, currentColor); border-radius: 3px; }
 """
 OF_SEVERITY = {Severity.PASS: "#1f9370", Severity.NOTE: "#8a97a5", Severity.WARN: "#c98a1b", Severity.FAIL: "#d6453a"}
 OURS, AGAINST = "#2f86c5", "#d2691e"
-NONE = "none"
+DRAWN = "noun"
 LONG, MOST_ROWS, MOST_NOTES = 34, 24, 4
 WIDE, TALL, REACH = 100.0, 14.0, 2.0
+ACROSS = 1.12  # pixels a point of a drawing at the most
 DRAFT = "coeflab-draft"  # stands for the digest of the card, which ids begin with
 
 Part = str
@@ -102,8 +105,14 @@ def _parts(*several: Part) -> Part:
 def _picture(figure: Figure | None) -> Part:
     if figure is None:
         return ""
+    from coeflab.report.figures.answer import renamed
+    from coeflab.report.figures.svg import size_of
+
     caption = f"<figcaption>{html(figure.caption)}</figcaption>" if figure.caption else ""
-    return f"<figure>{figure.svg}{caption}</figure>"
+    widest = ACROSS * size_of(figure.svg)[0]
+    return (
+        f'<figure style="max-width: {widest:.0f}px">{renamed(figure, f"{DRAFT}-{figure.anchor}").svg}{caption}</figure>'
+    )
 
 
 def _grid(
@@ -183,7 +192,9 @@ def _against(row: AnswerRow) -> Part:
         return ""
     low, high = sorted((0.0, row.share))
     said = f"difference {row.share:+.2f} U95"
-    return _bar(low, high, row.share, (-1.0, 0.0, 1.0), (-REACH, REACH), said)
+    bar = _bar(low, high, row.share, (-1.0, 0.0, 1.0), (-REACH, REACH), said)
+    number_ = f"{row.share:+.2f}".replace("-", MINUS)
+    return f'<span class="beside">{number_} {bar}</span>'
 
 
 def _coefficient_row(c: Coefficient) -> list[Part]:
@@ -214,26 +225,27 @@ def answer(found: Answer) -> tuple[Part, ...]:
 
 
 def _answer(found: Answer) -> Part:
-    last = [f"difference / U95 to {found.compared}"] if found.compared else []
-    headers = ("", "value", "U95", "of value", *found.columns, *last)
-    rows = []
-    for r in found.rows:
-        value, u95 = with_u95(r.value, r.u95)
-        told = (
-            [_absent(r.status or NONE), "", ""]
-            if r.value is None
-            else [cell_html(value), cell_html(u95), percent(r.u95, r.value)]
-        )
-        if r.value is not None and r.u95 is None:
-            told[1] = _absent(r.status or NONE)
-        beside = [cell_html(coefficient(p)) for p in r.published] or [ABSENT for _ in found.columns]
-        rows.append([cell_html(primed(r.symbol)), *told, *beside, *([_against(r)] if last else [])])
+    """Pictures, then the rows of `answer_table` with the bars drawn, chips and notes."""
+    from coeflab.report.answer import answer_table
+
+    table = answer_table(found)
+    if found.table is not None:
+        rows = _shown(table)
+    else:
+        judged = table.headers[-1:] == ("difference/U95",)
+        cells = [
+            [
+                *(_absent(c) if i == 1 and r.value is None else cell_html(c) for i, c in enumerate(row)),
+                *([_against(r)] if judged else []),
+            ]
+            for r, row in zip(found.rows, (row[:-1] if judged else row for row in table.rows), strict=True)
+        ]
+        rows = _grid(table.headers, cells, table.left) + _notes(table.notes[:MOST_NOTES])
     chips = "".join(
         f'<li style="--of: {OF_SEVERITY[c.severity]}"><b>{html(c.name)}</b> {html(c.text)}</li>' for c in found.chips
     )
-    pictures = [_picture(f) for f in (found.slope, found.forest)]
     below = f'<ul class="chips">{chips}</ul>' if chips else ""
-    return _parts(*pictures, f"<div>{_grid(headers, rows)}{below}{_notes(found.notes[:MOST_NOTES])}</div>")
+    return _parts(*map(_picture, (found.slope, found.forest)), f"<div>{rows}{below}</div>")
 
 
 @_card
@@ -248,6 +260,15 @@ def study(found: Study) -> tuple[Part, ...]:
         f"Parameter files: {', '.join(found.parameter_files) or 'none'}."
     )
     return (_heading(first.sentence, about), _answer(first))
+
+
+@_card
+def acceptance(found: Acceptance) -> tuple[Part, ...]:
+    """A publication reproduced: its answer."""
+    from coeflab.report.answer import answer as answer_of
+
+    first = answer_of(found)
+    return (_heading(first.sentence, f"Publication reproduced: {found.name}"), _answer(first))
 
 
 @_card
@@ -285,9 +306,9 @@ def fit(result: FitResult) -> tuple[Part, ...]:
     from coeflab.report.figures.sweep import sweep_figure
 
     drawn = next((s for s in result.sweeps if s.value is not None and s.parity == "odd" and len(s.x)), None)
-    figure = sweep_figure(drawn, DRAFT) if drawn is not None else None
+    figure = sweep_figure(drawn, DRAWN) if drawn is not None else None
     if figure is None and result.models:
-        figure = next(iter(model_figures(result.models[0], DRAFT)), None)
+        figure = next(iter(model_figures(result.models[0], DRAWN)), None)
     found = result.coefficients.coefficients
     grid = _coefficient_grid(found) if found else _shown(tables.terms(result.models[0])) if result.models else ""
     more = f"{len(result.models)} fitted models" if len(result.models) > 1 else ""
@@ -301,7 +322,7 @@ def model(found: FittedModel) -> tuple[Part, ...]:
     """Its first figure and its terms."""
     from coeflab.report.figures.model import model_figures
 
-    drawn = next(iter(model_figures(found, DRAFT)), None)
+    drawn = next(iter(model_figures(found, DRAWN)), None)
     return (_parts(_picture(drawn), f"<div>{_shown(tables.terms(found))}</div>"),)
 
 
@@ -322,7 +343,7 @@ def force_table(found: ForceTable) -> tuple[Part, ...]:
     at = ", ".join(f"{x:.4g}" for x in found.reference_point)
     about = f"{found.body}; {found.run_at}; {found.scaling.length_name} {length:.5g} m; moments about ({at}) m from: {found.datum}"
     return (_heading(f"{found.name}: {len(found)} rows", found.title, about, f"Source: {found.source.citation}"),
-            _parts(_picture(table_figure(found, DRAFT)), f"<div>{_shown(table)}</div>"))  # fmt: skip
+            _parts(_picture(table_figure(found, DRAWN)), f"<div>{_shown(table)}</div>"))  # fmt: skip
 
 
 def _span(values: Array) -> tuple[str, str]:
@@ -339,7 +360,7 @@ def body(found: Body) -> tuple[Part, ...]:
     figure = None
     if found.shape is not None:
         try:
-            figure = hull_figure(found, DRAFT)
+            figure = hull_figure(found, DRAWN)
         except CoeflabError:  # a shape without a closed surface has no outline
             figure = None
     lengths = ", ".join(f"{name.replace('_', ' ')} {value:.5g} m" for name, value in found.lengths.items())
@@ -391,7 +412,7 @@ def parameters(found: ParameterFile) -> tuple[Part, ...]:
     held += [_many(len(found.thrusters), "thruster")] if found.thrusters else []
     ordered = sorted(found.coefficients, key=lambda c: c.value is None)
     return (_heading(heading, about, f"With {listed(held)}." if held else ""),
-            _parts(_picture(law_figure(found, DRAFT)), f"<div>{_coefficient_grid(ordered) if ordered else ''}{_models(found)}</div>"),
+            _parts(_picture(law_figure(found, DRAWN)), f"<div>{_coefficient_grid(ordered) if ordered else ''}{_models(found)}</div>"),
             _notes(found.provenance.notes[:MOST_NOTES]))  # fmt: skip
 
 
@@ -413,7 +434,7 @@ def motion(found: Trajectory) -> tuple[Part, ...]:
     table = tables.motion(found)
     return (
         _heading(table.title),
-        _parts(_picture(track_figures(found, DRAFT, 0.0)[0]), f"<div>{_shown(replace(table, title=''))}</div>"),
+        _parts(_picture(track_figures(found, DRAWN, 0.0)[0]), f"<div>{_shown(replace(table, title=''))}</div>"),
     )
 
 
@@ -425,7 +446,7 @@ def simulation(found: Simulation) -> tuple[Part, ...]:
 
     table = figure_table(found.figures, "", found.vehicle.length)
     why = found.undetermined or found.trajectory.why
-    drawn = None if found.undetermined else track_figures(found.trajectory, DRAFT, found.vehicle.length)[0]
+    drawn = None if found.undetermined else track_figures(found.trajectory, DRAWN, found.vehicle.length)[0]
     return (
         _heading(f"{found.manoeuvre.name} of {found.vehicle.name}", why),
         _parts(_picture(drawn), f"<div>{_shown(table)}</div>"),
