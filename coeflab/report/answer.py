@@ -14,7 +14,7 @@ from coeflab.core.table import Severity, Table, number, with_u95
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
-from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import derivative, primed
 from coeflab.report.acceptance import Acceptance, held, overview
@@ -27,8 +27,9 @@ from coeflab.study.towed import Towed, towed
 from coeflab.vehicle.derived import Derived, sense, stability
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 
-LONGEST, MOST_ROWS, MOST_COLUMNS = 160, 6, 3
+LONGEST, MOST_LETTERS, MOST_ROWS, MOST_COLUMNS = 160, 240, 6, 3
 NO_DATA = "no data"
+WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
 BAR = 8  # letters of a difference that is as large as U95
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 LARGEST = 100_000  # letters of a drawing that a first page may hold
@@ -36,7 +37,7 @@ WIDE = 0.5  # a U95 of half the value asks for more runs
 
 
 @brief
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Beside:
     """The published columns of one body.
 
@@ -46,21 +47,23 @@ class _Beside:
         Whose coefficients are the answer.
     columns : tuple of Reference
         The experiment first.
-    scaling : Scaling
-        Of the primes.
+    among : CoefficientSet or None
+        The first of that body, whose length and reference point hold where a row has none.
     """
 
     body: str
     columns: tuple[Reference, ...]
-    scaling: Scaling | None
+    among: CoefficientSet | None
 
 
-def answer(found: Study | Acceptance) -> Answer:
+def answer(found: Study | Acceptance, *, drawn: bool = True) -> Answer:
     """What a reader wants first.
 
     Parameters
     ----------
     found : Study or Acceptance
+    drawn : bool
+        With its figures; a terminal shows none.
 
     Returns
     -------
@@ -68,7 +71,8 @@ def answer(found: Study | Acceptance) -> Answer:
         Of a study its wanted coefficients beside the published columns of their body: from its re-analysed tables, else from
         an own tow of that body. A difference has a verdict only where the authors' own evaluation of the same data is known.
     """
-    return _of_study(found) if isinstance(found, Study) else _of_publication(found)
+    made = _of_study(found) if isinstance(found, Study) else _of_publication(found)
+    return _drawn(found, made) if drawn else made
 
 
 def _of_study(study: Study) -> Answer:
@@ -79,9 +83,8 @@ def _of_study(study: Study) -> Answer:
     if all(r.value is None for r in rows) and any(f.models for f in study.fits):
         return _of_models(study)
     return Answer(
-        _sentence(study, beside, rows), names, compared, rows, _chips(study, rows), _slope(study, rows, compared),
-        forest_figure(rows, names, compared) or forest_figure(rows, names, ""), axes_figure(), _notes(beside, rows),
-    )  # fmt: skip
+        _sentence(study, beside, rows), names, compared, rows, _chips(study, rows), notes=_notes(study, beside, rows)
+    )
 
 
 def _columns(study: Study) -> _Beside:
@@ -96,8 +99,7 @@ def _columns(study: Study) -> _Beside:
     ]
     others = [r for r in study.references if r.relation is Relation.CROSS_BODY]
     fit = next((f for f in study.fits if f.body == body), None)
-    scaling = study.plan.scaling or (fit.coefficients.scaling if fit else None)
-    return _Beside(body, tuple([*first, *others][:MOST_COLUMNS]), scaling)
+    return _Beside(body, tuple([*first, *others][:MOST_COLUMNS]), fit.coefficients if fit else None)
 
 
 def _wanted(study: Study, body: str) -> tuple[str, ...]:
@@ -111,10 +113,11 @@ def _wanted(study: Study, body: str) -> tuple[str, ...]:
 
 
 def _row(study: Study, beside: _Beside, symbol: str) -> AnswerRow:
-    published = tuple(_published(study, r, beside, symbol) for r in beside.columns)
     found = [c for c in study.coefficients if c.symbol == symbol and c.body == beside.body]
     judged = {(x.coefficient.symbol, x.coefficient.campaign): x for x in study.comparisons if x.passed is not None}
     known = sorted((c for c in found if c.value is not None), key=lambda c: (c.symbol, c.campaign) not in judged)
+    among = _set(study, known[0].campaign if known else None) or beside.among
+    published = tuple(_published(study, r, beside.body, symbol, among) for r in beside.columns)
     if not known:
         return _towed_row(study, beside, symbol, published, found)
     c = known[0]
@@ -125,6 +128,10 @@ def _row(study: Study, beside: _Beside, symbol: str) -> AnswerRow:
     )  # fmt: skip
     mine = judged.get((symbol, c.campaign))
     return _judged(row, mine if mine is not None and mine.coefficient.value == c.value else None)
+
+
+def _set(study: Study, campaign: str | None) -> CoefficientSet | None:
+    return next((f.coefficients for f in study.fits if f.campaign == campaign), None)
 
 
 def _judged(row: AnswerRow, verdict: Comparison | None) -> AnswerRow:
@@ -141,12 +148,8 @@ def _towed_row(
     for tow in _tows(study, beside):
         own = next((r for r in tow.rows if r.symbol == symbol and r.value is not None), None)
         if own is not None:
-            return _judged(
-                AnswerRow(
-                    symbol, own.value, own.u95, "" if own.u95 else "no U95", f"own tow {tow.tow.campaign}", published
-                ),
-                None,
-            )
+            row = AnswerRow(symbol, own.value, own.u95, "" if own.u95 else "no U95", tow.tow.campaign, published)
+            return _judged(row, None)
     status = next((c.status for c in found if c.status is not Status.NO_TABLE), None)
     return AnswerRow(symbol, None, None, NO_DATA if status is None else status.replace("_", " "), published=published)
 
@@ -157,32 +160,33 @@ def _tows(study: Study, beside: _Beside) -> tuple[Towed, ...]:
     return tuple(t for t in towed(study) if t.body == beside.body or names & set(t.columns)) if study.plan.tows else ()
 
 
-def _published(study: Study, reference: Reference, beside: _Beside, symbol: str) -> float | None:
+def _published(
+    study: Study, reference: Reference, body: str, symbol: str, among: CoefficientSet | None
+) -> float | None:
     """A printed value by our length, as it is read first; of a quoted column in the digits of the report that it rounds."""
-    if beside.scaling is None or not _about_ours(study, reference, beside):
+    if among is None or not _about_ours(reference, among):
         return None
-    read = reference.readings(symbol, beside.scaling)
-    if not read:
+    read = reference.readings(symbol, among.scaling)
+    printed = reference.printed(symbol)
+    if not read or printed is None:
         return None
     value = read[0][1]
     if reference.relation is Relation.QUOTED:
-        whole = [
-            v for r in study.references if r.relation is Relation.RE_ANALYSIS and r.body == beside.body
-            for _, v in r.readings(symbol, beside.scaling) if _about_ours(study, r, beside)
-        ]  # fmt: skip
-        printed = reference.printed(symbol)
-        places = len(printed.printed.partition(".")[2]) if printed else 0
+        reports = [
+            r
+            for r in study.references
+            if r.relation is Relation.RE_ANALYSIS and r.body == body and _about_ours(r, among)
+        ]
+        whole = [v for r in reports for _, v in r.readings(symbol, among.scaling)]
+        places = len(printed.printed.partition(".")[2])
         return next((v for v in whole if round(v, places) == round(value, places)), value)
     return value
 
 
-def _about_ours(study: Study, reference: Reference, beside: _Beside) -> bool:
+def _about_ours(reference: Reference, among: CoefficientSet) -> bool:
     """Whether it is about our reference point, or about none that it names."""
-    point = next(
-        (f.coefficients.reference_point for f in study.fits if f.body == beside.body), study.plan.reference_point
-    )
     theirs = reference.reference_point
-    return theirs is None or (point is not None and bool(np.allclose(theirs, point, atol=1e-6)))
+    return theirs is None or bool(np.allclose(theirs, among.reference_point, atol=1e-6))
 
 
 def _short(title: str) -> str:
@@ -209,13 +213,18 @@ def _sentence(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> str
         if apart:
             first = f"{name} re-analysed: {listed(apart)} of {_counted(len(judged))} {kind}{of} {_verb(apart)} by more than U95"
         else:
-            every = "the" if len(judged) == 1 else f"all {_counted(len(judged))}"
+            every = {1: "the", 2: "both"}.get(len(judged), f"all {_counted(len(judged))}")
             first = f"{name} re-analysed: {every} {kind}{of} {'agrees' if len(judged) == 1 else 'agree'} within U95"
     elif not valued:
         first = f"{name}: no wanted coefficient could be determined"
     else:
         bounded = sum(r.u95 is not None for r in valued)
-        first = f"{name}: {_counted(len(valued))} of {_counted(len(rows))} wanted coefficients, {_all(bounded, len(valued))} with U95"
+        of = (
+            f"all {_counted(len(rows))}"
+            if len(valued) == len(rows)
+            else f"{_counted(len(valued))} of {_counted(len(rows))}"
+        )
+        first = f"{name}: {of} wanted coefficients found, {'each' if bounded == len(valued) else _counted(bounded)} with U95"
         absent = absent or "no published evaluation of these data"
     whole = f"{first}; {absent}." if absent else f"{first}."
     return whole if len(whole) <= LONGEST else f"{first[: LONGEST - 1]}."
@@ -223,10 +232,6 @@ def _sentence(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> str
 
 def _verb(apart: Sequence[str]) -> str:
     return "differs" if len(apart) == 1 else "differ"
-
-
-def _all(n: int, of: int) -> str:
-    return ("it" if of == 1 else "all") if n == of else _counted(n)
 
 
 def _is_static(symbol: str) -> bool:
@@ -290,12 +295,27 @@ def _exports(study: Study) -> Chip:
     return Chip("Exports", text, Severity.FAIL if refused else Severity.NOTE if loss else Severity.PASS, "exports")
 
 
-def _slope(study: Study, rows: tuple[AnswerRow, ...], compared: str) -> Figure | None:
+def _drawn(found: Study | Acceptance, made: Answer) -> Answer:
+    """With its figures; of models, and of a publication, two that show what came out."""
+    if isinstance(found, Acceptance):
+        left = next((renamed(d, "answer-figure") for _, d in found.figures if len(d.svg) < LARGEST), None)
+        right = shares_figure(found) if found.numbers else None
+    else:
+        left = _slope(found, made)
+        right = forest_figure(made.rows, made.columns, made.compared) or forest_figure(made.rows, made.columns, "")
+        models = [m for f in found.fits for m in f.models]
+        if models and (left is None or right is None):
+            first, second = (*model_figures(models[0], "answer-model"), None, None)[:2]
+            left, right = left or first, right or (second if left is None else first)
+    return replace(made, slope=left, forest=right, axes=axes_figure())
+
+
+def _slope(study: Study, made: Answer) -> Figure | None:
     """Of the first row that comes from a sweep."""
-    for r in rows:
+    for r in made.rows:
         at = next((f.sweep(r.symbol) for f in study.fits if f.campaign == r.source and _has_slope(f, r.symbol)), None)
         if at is not None and r.value is not None:
-            return slope_figure(at, r, compared, r.published[0] if r.published else None)
+            return slope_figure(at, r, made.compared, r.published[0] if r.published else None)
     return None
 
 
@@ -307,73 +327,78 @@ def _spread(sweep: Sweep) -> bool:
     return bool(np.any(sweep.x != 0.0)) and len(sweep.curve) == 3
 
 
-def _notes(beside: _Beside, rows: tuple[AnswerRow, ...]) -> tuple[str, ...]:
-    sources = list(dict.fromkeys(r.source for r in rows if r.source))
+def _notes(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> tuple[str, ...]:
+    towed_rows = {t.campaign for t in study.plan.tows if t.campaign}
+    sources = [s for s in dict.fromkeys(r.source for r in rows if r.source) if s not in towed_rows]
     out = []
     if sources:
-        by = f"; primes by {beside.scaling.length_name} {beside.scaling.length:.5g} m" if beside.scaling else ""
+        scaling = beside.among.scaling if beside.among else None
+        by = f"; primes by {scaling.length_name} {scaling.length:.5g} m" if scaling else ""
         out.append(f"Ours: {listed(sources)}{by}.")
+    own = [r for r in rows if r.source in towed_rows]
+    if own:
+        out.append(f"{listed([primed(r.symbol) for r in own])}: own tow {own[0].source}; no verdict.")
     if any(r.agrees is not None for r in rows):
-        out.append(
-            f"{beside.columns[0].name}: the authors' evaluation of the same data. Only here a difference has a verdict."
-        )
+        out.append(f"{beside.columns[0].name}: the same data, evaluated by their authors. Only here is a verdict.")
     others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
     if others:
-        out.append(f"{listed([r.name for r in others])}: {others[0].body}; no verdict.")
-    for r in beside.columns:
-        if r.other_scaling is not None and beside.scaling is not None:
-            first, other = r.scaling, r.other_scaling
-            shares = [100.0 * (first.length / other.length) ** -k for k in (2.0, 4.0)]
-            out.append(
-                f"{r.name} is read with {first.length_name}; with {other.length_name} its values are larger, Yv' by "
-                f"{shares[0] - 100.0:.1f} %, Nr' by {shares[1] - 100.0:.1f} %."
-            )
-    return tuple(out[:4])
+        twice = [(r.name, r.scaling, r.other_scaling) for r in others]
+        lengths = [f"; {name} read with {_readings(first, other)}" for name, first, other in twice if other is not None]
+        out.append(f"{listed([r.name for r in others])}: {others[0].body}, no verdict{''.join(lengths)}.")
+    return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
+
+
+def _readings(first: Scaling, other: Scaling) -> str:
+    """The length that a column is read with, and what the other would make of it."""
+    larger = [100.0 * (other.ratio(symbol, first) - 1.0) for symbol in ("Yv", "Nr")]
+    return f"{first.length_name} ({other.length_name}: Yv' {larger[0]:+.1f} %, Nr' {larger[1]:+.1f} %)"
 
 
 def _of_models(study: Study) -> Answer:
     """Of a study whose fits give no wanted coefficient but laws and tables of forces."""
     models = tuple(m for f in study.fits for m in f.models)
     name = _short(study.plan.title or study.plan.name)
-    figures = model_figures(models[0], "answer-model")
     n = _counted(len(models))
     sentence = f"{name}: {n} fitted {'model' if len(models) == 1 else 'models'}, no coefficient with a SNAME symbol."
-    left, right = (*figures[:2], None, None)[:2]
-    return Answer(
-        sentence, chips=_chips(study, ()), slope=left, forest=right, axes=axes_figure(), table=quality(models)
-    )  # fmt: skip
+    return Answer(sentence, chips=_chips(study, ()), table=_narrow(quality(models), ("", "form", "n", "R2")))
 
 
 def _of_publication(found: Acceptance) -> Answer:
+    good, count, valid = _held(found)
+    some = f"{count - good} of {count} numbers outside what is allowed"
+    said = f"all {count} numbers within what is allowed" if good == count else some
+    none = "none of them validates: calibration and consistency only"
+    said += f"; {valid} of them validate: predicted, or printed and recomputed" if valid else f"; {none}"
+    table = _narrow(overview(found), ("what", "hold", "used", "verdict"))
+    return Answer(f"{_short(found.title)}: {said}.", chips=_published_chips(found), table=table)
+
+
+def _held(found: Acceptance) -> tuple[int, int, int]:
+    """How many numbers hold, how many there are, how many of them validate."""
     numbers = held(found)
     good, count = (sum(pair[k] for pair in numbers.values()) for k in (0, 1))
-    valid = sum(pair[1] for b, pair in numbers.items() if b.validates)
-    every = (
-        f"all {count} numbers within what is allowed"
-        if good == count
-        else f"{count - good} of {count} numbers outside what is allowed"
-    )
-    rest = (
-        f"{valid} of them validate: predicted, or printed and recomputed"
-        if valid
-        else "none of them validates: calibration and consistency only"
-    )
-    first = next((renamed(d, "answer-figure") for _, d in found.figures if len(d.svg) < LARGEST), None)
-    return Answer(
-        f"{_short(found.title)}: {every}; {rest}.", chips=_published_chips(found), slope=first,
-        forest=shares_figure(found) if count else None, axes=axes_figure(), table=overview(found),
-    )  # fmt: skip
+    return good, count, sum(pair[1] for b, pair in numbers.items() if b.validates)
+
+
+def _narrow(whole: Table, names: Sequence[str]) -> Table:
+    """Some columns of a table, long texts cut, so that it fits 80 letters; no notes of its own."""
+    at = [whole.headers.index(n) for n in names]
+    cut = [
+        tuple(c if len(c) <= WIDTH else f"{c[:WIDTH].rsplit(' ', 1)[0]} ..." for c in (row[i] for i in at))
+        for row in whole.rows
+    ]
+    more = (f"{len(cut) - MOST_MODELS} more in the report.",) if len(cut) > MOST_MODELS else ()
+    left = frozenset(k for k, i in enumerate(at) if i in whole.left)
+    return Table(whole.title, tuple(names), tuple(cut[:MOST_MODELS]), more, left)
 
 
 def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
-    numbers = held(found)
-    good, count = (sum(pair[k] for pair in numbers.values()) for k in (0, 1))
-    valid = [sum(pair[k] for b, pair in numbers.items() if b.validates) for k in (0, 1)]
+    good, count, valid = _held(found)
     worst = Severity.PASS if good == count else Severity.FAIL
     errata = len(found.errata)
     return (
         Chip("Numbers", f"{good} of {count} hold", worst, "compared"),
-        Chip("Validation", f"rests on {valid[1]} numbers", Severity.PASS if valid[1] else Severity.NOTE, "verdict"),
+        Chip("Validation", f"rests on {valid} numbers", Severity.PASS if valid else Severity.NOTE, "verdict"),
         Chip("Errata", f"{errata} in the publication", Severity.NOTE if errata else Severity.PASS, "errata" if errata else ""),
         Chip("Parameter files", f"{len(found.parameter_files)} made", Severity.NOTE, "parameter-files" if found.file_notes else ""),
     )  # fmt: skip

@@ -38,12 +38,13 @@ from coeflab.report.figures.sweep import fine_curve
 from coeflab.report.notation import as_users_wrote
 
 WIDTH, HEIGHT = 244.0, 208.0  # points; a column of a journal, 86 mm
+LONGEST = 60
 ROW, LEGEND, BOTTOM = 12.2, 16.0, 34.0
 # As the published columns come: experiment, steady CFD, PMM CFD.
 MARKS = (("D", COLOURS["ink"]), ("s", COLOURS["b"]), ("^", COLOURS["c"]), ("v", COLOURS["d"]))
 DOTTED = (0, (1.0, 2.0))
 NEAR, NEXT = 0.25, 0.06  # of the largest setting: below, a quotient may leave the frame; it is the slope
-WIDEST = 1.0  # a forest shows no more than this beside 1
+WIDEST = 2.0  # a forest shows no more than this beside 1
 
 
 @as_users_wrote
@@ -71,8 +72,9 @@ def slope_figure(sweep: Sweep, row: AnswerRow, published: str = "", at: float | 
     shown = shown if at is None else np.append(shown, at)
     frame = limits(shown, 0.08) or (-1.0, 1.0)
     factor, power = power_of_ten(max(abs(f) for f in frame))
+    up = (frame[0] * factor, frame[1] * factor)
     left_out = int(np.sum((y < frame[0]) | (y > frame[1])))
-    title = f"{name}, {sweep.campaign}: the slope at rest"
+    title = f"{name}, {sweep.campaign[:LONGEST]}: the slope at rest"
     description = (
         f"{len(x)} points of {quotient} against |{sweep.variable}'|; {name} = {plus_minus(value, row.u95)} is where they end at rest"
         + (f"; {published} {coefficient(at)}." if at is not None else ".")
@@ -81,7 +83,7 @@ def slope_figure(sweep: Sweep, row: AnswerRow, published: str = "", at: float | 
     rows = -(-(len(sides) + bool(row.u95) + (at is not None)) // 2)
     with settings():
         figure, axes = _drawing(
-            44.0, 8.0, rows, across=(0.0, 1.04 * reach), up=(frame[0] * factor, frame[1] * factor), name_across=across,
+            _left_of(up), 8.0, rows, across=(0.0, 1.04 * reach), up=up, name_across=across,
             name_up=f"{quotient}{power}",
         )  # fmt: skip
         handles, series = _sides(axes, sides, x, y, sweep, factor)
@@ -105,6 +107,8 @@ def slope_figure(sweep: Sweep, row: AnswerRow, published: str = "", at: float | 
         panel = numbers(axes, series, across, quotient, factor)
         svg = svg_text(figure, "answer-slope", title, description)
     caption = f"{name} is the value at |{sweep.variable}'| = 0. Points slope away where the force is not linear."
+    wrong = ", ".join(sweep.labels[i] for i in sweep.wrong)
+    caption += f" Without point {wrong}, which does not fit the others (cross)." if wrong else ""
     caption += f" {left_out} near zero {'lies' if left_out == 1 else 'lie'} outside the frame." if left_out else ""
     return Figure("answer-slope", svg, title, caption, description, (panel,))
 
@@ -127,7 +131,7 @@ def _sides(
     moving = np.flatnonzero(np.abs(sweep.x) > 0.0)
     for side, (size, quotient) in sides:
         key, colour = ("plus", COLOURS["a"]) if side > 0.0 else ("minus", COLOURS["b"])
-        mine = np.sign(x) == side
+        mine = (np.sign(x) == side) & ~np.isin(moving, sweep.wrong)
         said = f"{sweep.variable}' {'>' if side > 0.0 else '<'} 0"
         look: dict[str, Any] = {
             "color": colour, "marker": "o" if side > 0.0 else "s", "markersize": 3.8, "markeredgewidth": 0.9,
@@ -140,6 +144,12 @@ def _sides(
         notes = [f"point {sweep.labels[i]}" for i, yes in zip(moving, mine, strict=True) if yes]
         series.append(points(key, said, np.abs(x[mine]), y[mine], notes))
         series.append(curve(key, f"{said}, fitted curve", size, quotient))
+    wrong = np.isin(moving, sweep.wrong)
+    if np.any(wrong):
+        look = {"marker": "x", "markersize": 5.0, "markeredgecolor": COLOURS["ink"], "markeredgewidth": 1.1}
+        tagged(axes.plot(np.abs(x[wrong]), y[wrong] * factor, linestyle="none", zorder=3, **look), "wrong")
+        notes = [f"point {sweep.labels[i]}" for i in moving[wrong]]
+        series.append(points("wrong", "left out", np.abs(x[wrong]), y[wrong], notes))
     return handles, series
 
 
@@ -192,7 +202,9 @@ def forest_figure(rows: Sequence[AnswerRow], columns: Sequence[str], compared: s
         framed_legend(figure, handles, 6.0, HEIGHT - 4.0 - legend_rows * ROW)
         panel = numbers(axes, series, f"{name}  [-]", "row", bars="across")
         svg = svg_text(figure, "answer-forest", title, said)
-    caption = f"Bars: U95 of ours. {f'The line is {compared}.' if compared else ''}".strip()
+    outside = [primed(r.symbol) for r, by in kept if r.value is not None and not across[0] <= r.value / by <= across[1]]
+    caption = "Bars: U95 of ours." + (f" The line is {compared}." if compared else "")
+    caption += f" Ours lies outside the frame: {', '.join(outside)}." if outside else ""
     return Figure("answer-forest", svg, title, caption, said, (panel,))
 
 
@@ -229,7 +241,7 @@ def _ours(
 
 
 def share_text(share: float) -> str:
-    """A part of a value: whole per cent, below ten two digits; above the value itself only that."""
+    """A part of a value: whole per cent, below ten with one decimal; above the value itself only that."""
     share = 100.0 * abs(share)
     return "> 100 %" if share > 100.0 else f"{share:.0f} %" if share >= 9.95 else f"{share:.1f} %"
 
@@ -240,6 +252,11 @@ def _beside(r: AnswerRow, by: float, columns: Sequence[str]) -> str:
         ours += f" +- {r.u95 / abs(by):.2f}"
     each = [f"{c} {p / by:.2f}" for c, p in zip(columns, r.published, strict=True) if p is not None]
     return listed([ours, *each])
+
+
+def _left_of(up: Range) -> float:
+    """Room for the texts of the upright axis and its name."""
+    return 24.0 + max(text_width(text, SIZE) for text in tick_texts(ticks(up, 5)))
 
 
 def _drawing(
@@ -357,7 +374,7 @@ def shares_figure(found: Acceptance) -> Figure:
     title = "Largest difference over what is allowed, by table"
     shares = [[abs(s) for r in t.rows if not np.isnan(s := share(r))] for t in found.tables]
     # Two decimals: further ones differ from one linear algebra to the next, and a page must not.
-    largest = np.array([round(min(max(s, default=0.0), 1.0 + WIDEST), 2) for s in shares])
+    largest = np.array([round(min(max(s, default=0.0), WIDEST), 2) for s in shares])
     n = len(found.tables)
     said = "; ".join(f"{t.title}: {s:.2f}" for t, s in zip(found.tables, largest, strict=True))
     across = (0.0, max(1.05, 1.05 * float(largest.max(initial=0.0))))
@@ -387,7 +404,7 @@ def _cut(text: str) -> str:
     """As many words as fit beside the bars."""
     words = text.split()
     kept = next(
-        n for n in range(len(words), -1, -1) if text_width(" ".join(words[:n]), LETTERING) <= TEXT - 16.0 or n <= 1
+        n for n in range(len(words), -1, -1) if text_width(" ".join(words[:n]), LETTERING) <= TEXT - 18.0 or n <= 1
     )
     return text if kept == len(words) else " ".join(words[:kept]).rstrip(",") + " …"
 
