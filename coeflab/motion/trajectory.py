@@ -187,7 +187,7 @@ def outside_in_words(vehicle: Vehicle, velocity: Array, controls: Mapping[str, f
             factor, unit = (180.0 / np.pi, " deg") if name in CONTROLS or name.startswith("asin") else (1.0, "")
             spans = " or ".join(f"{number(low * factor)} to {number(high * factor)}{unit}" for low, high in ranges)
             here = f"{number(float(values[name][1][0]) * factor)}{unit}"
-            out.append(f"{name} = {here} lies outside of what the data cover, {spans}.")
+            out.append(f"{name} = {here} is outside the data, {spans}.")
     return tuple(out)
 
 
