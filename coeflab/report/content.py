@@ -25,6 +25,7 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import primed
 from coeflab.report.acceptance import headline, held_of_study
+from coeflab.report.bench import bench_of
 from coeflab.report.document import Document, Section, digest_of, reproduction
 from coeflab.report.figures.svg import settings
 from coeflab.report.notation import keeping, users_texts
@@ -106,7 +107,7 @@ def document(study: Study) -> Document:
     """The whole report of a study."""
     verbatim = users_texts(study)
     with keeping(verbatim):
-        return replace(_document(study), verbatim=verbatim)
+        return replace(_document(study), verbatim=verbatim, bench=bench_of(study))
 
 
 def _document(study: Study) -> Document:
