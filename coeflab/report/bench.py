@@ -29,7 +29,7 @@ from coeflab.motion.manoeuvre import Manoeuvre, orders_of
 from coeflab.motion.manoeuvres import zigzag
 from coeflab.motion.marching import alone, chosen_step
 from coeflab.motion.simulation import moved
-from coeflab.motion.trajectory import covered_ranges, outside_in_words
+from coeflab.motion.trajectory import covered_ranges
 from coeflab.motion.vehicle import Vehicle
 from coeflab.study.study import Study
 from coeflab.vehicle.derived import INDICES
@@ -146,6 +146,10 @@ def _sweep(study: Study, s: Sweep, budget: Budget | None) -> dict[str, Any]:
         "odd": bool(s.symmetry), "oneSided": s.one_sided, "offset": s.offset, "value": s.value, "u95": found.u95,
         "status": found.status.value, "across": s.angle_name,
         "leftOut": [(p.x, _finite(p.y), p.label, p.reason) for p in s.left_out if isfinite(p.x)],
+        "base": {
+            "at": s.curve[0].tolist(), "curve": s.curve[1].tolist(), "half": s.curve[2].tolist(), "fit": s.u95, "random": s.random,
+            "misfit": (s.by_row * (s.y - s.fitted)).tolist(), "removed": s.wrong.tolist(), "reason": s.reason,
+        },
         "studies": studies, "published": list(dict.fromkeys(published))[:PUBLISHED],
     }  # fmt: skip
 
@@ -224,10 +228,9 @@ def _zigzag(
     angle = max(abs(v) for p in manoeuvre.phases for v in p.orders.values())
     turns = "dr" in manoeuvre.phases[0].orders
     name = f"{np.degrees(angle):g}/{np.degrees(execute):g}" if turns else f"thrusters, {np.degrees(execute):g} deg"
-    at_rest = outside_in_words(vehicle, manoeuvre.velocity, manoeuvre.phases[0].orders if turns else {})
     return _arrays(vehicle, manoeuvre) | {
-        "name": name, "execute": execute, "links": _links(study, vehicle, file, sources), "atOnce": list(at_rest),
-    }  # fmt: skip
+        "name": name, "execute": execute, "links": _links(study, vehicle, file, sources)
+    }
 
 
 def _links(

@@ -17,8 +17,17 @@ const benchOf = (data) => {
     return -b / (a * (a + b)) * y[i - 1] + (b - a) / (a * b) * y[i] + a / (b * (a + b)) * y[i + 1];
   });
 
-  const fitted = (index, edit) => {
+  const isUntouched = (edit) => !edit || (edit.limit === null && !edit.dropped.length && !edit.without.length);
+  const asFound = (index) => {
+    const s = data.sweeps[index], b = s.base;
+    return {
+      index, kept: s.x.map((_, i) => i), value: s.value, fit: b.fit, random: b.random, at: b.at, curve: b.curve, half: b.half,
+      misfit: new Map(s.labels.map((label, i) => [label, b.misfit[i]])), removed: b.removed, reason: b.reason, status: "",
+    };
+  };
+  const fitted = (index, edit, afresh = false) => {
     const s = data.sweeps[index], chosen = edit || untouched, key = `${index} ${JSON.stringify(chosen)}`;
+    if (isUntouched(edit) && !afresh) return asFound(index);
     if (known.has(key)) return known.get(key);
     const kept = s.x.map((_, i) => i).filter((i) => {
       const inside = chosen.limit === null || Math.abs(s.x[i]) <= chosen.limit * (1 + data.sameLevel);
@@ -169,5 +178,11 @@ const benchOf = (data) => {
     const { out, lost } = coefficientsOf(vehicle, campaigns);
     return lost ? { lost } : zigzagOf(vehicle, out);
   };
-  return { fitted, campaignOf, answer, indexOf, coefficientsOf, motion };
+  // What a page shows of one coefficient: its row now and as the study has it, and the indices of every file.
+  const view = (edits, index) => {
+    const campaigns = answer(edits), before = answer({}), name = data.sweeps[index].campaign, at = data.campaigns[name].sweeps.indexOf(index);
+    const found = { row: campaigns[name].rows[at], before: before[name].rows[at] };
+    return { campaigns, ...found, indices: data.files.map((f) => f.indices.map((i) => [indexOf(i, campaigns), indexOf(i, before)])) };
+  };
+  return { fitted, isUntouched, view, campaignOf, answer, indexOf, coefficientsOf, motion };
 };

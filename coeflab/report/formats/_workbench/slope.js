@@ -227,11 +227,13 @@ const slopeAtOrigin = (k) => {
         row[p - 1] = g.curved[1] ** -2;
         return row;
       });
+      const kernel = new Float64Array(n * n), flat = new Float64Array(n * p);
+      for (let r = 0; r < n; r++) for (let c = 0; c < n; c++) kernel[r * n + c] = spec.kernel(r, c);
       const prior = logPrior(spec.name === "none" ? null : spec.sizes, kinds.map((g) => g.curved), spec.odds / total);
       for (const row of prior) for (let i = 0; i < many; i++) row[i] += Math.log(kinds[i].first[1] / common);
       spec.sizes.forEach((size, j) => {
         const whole = new Float64Array(n * n);
-        for (let r = 0; r < n; r++) for (let c = 0; c < n; c++) whole[r * n + c] = (r === c ? ratios[r] : 0) + size * size * spec.kernel(r, c);
+        for (let r = 0; r < n; r++) for (let c = 0; c < n; c++) whole[r * n + c] = (r === c ? ratios[r] : 0) + size * size * kernel[r * n + c];
         const factor = cholesky(whole, n), root = lowerInverse(factor, n);
         let logDet = 0;
         for (let i = 0; i < n; i++) logDet += Math.log(factor[i * n + i]);
@@ -242,6 +244,7 @@ const slopeAtOrigin = (k) => {
           for (let c = 0; c <= i; c++) s += root[i * n + c] * terms[c][q];
           columns[q][i] = s;
         }
+        for (let q = 0; q < p; q++) for (let i = 0; i < n; i++) flat[i * p + q] = columns[q][i];
         const square = new Float64Array(p * p), across = new Float64Array(p * n), rowSize = new Float64Array(n);
         for (let a = 0; a < p; a++) for (let b = 0; b < p; b++) square[a * p + b] = dot(columns[a], columns[b], n);
         for (let r = 0; r < n; r++) {
@@ -261,17 +264,22 @@ const slopeAtOrigin = (k) => {
           let scale = 0;
           for (let q = 0; q < p; q++) scale -= (own[q] > 0 ? Math.log(own[q]) : 0) + 2 * Math.log(scales[q]);
           const leverage = new Float64Array(n), slopeByRow = new Float64Array(n), checkable = new Uint8Array(n);
-          const c = new Float64Array(p), gap = new Float64Array(p), left = new Float64Array(n);
+          const c = new Float64Array(p), gap = new Float64Array(p);
           for (let r = 0; r < n; r++) {
             for (let q = 0; q < p; q++) { c[q] = 0; for (let i = 0; i < p; i++) c[q] += inverse[q * p + i] * across[i * n + r]; }
-            for (let round = 0; round < 2; round++) {
-              for (let i = 0; i < n; i++) left[i] = i >= r ? root[i * n + r] : 0;
-              for (let q = 0; q < p; q++) { const f = c[q], col = columns[q]; for (let i = 0; i < n; i++) left[i] -= col[i] * f; }
-              if (round) break;
-              for (let q = 0; q < p; q++) gap[q] = dot(columns[q], left, n) - own[q] * c[q];
-              for (let q = 0; q < p; q++) for (let i = 0; i < p; i++) c[q] += inverse[q * p + i] * gap[i];
+            for (let q = 0; q < p; q++) gap[q] = -own[q] * c[q];
+            for (let i = 0; i < n; i++) {
+              let z = i >= r ? root[i * n + r] : 0;
+              for (let q = 0; q < p; q++) z -= flat[i * p + q] * c[q];
+              for (let q = 0; q < p; q++) gap[q] += flat[i * p + q] * z;
             }
-            let size = dot(left, left, n);
+            for (let q = 0; q < p; q++) for (let i = 0; i < p; i++) c[q] += inverse[q * p + i] * gap[i];
+            let size = 0;
+            for (let i = 0; i < n; i++) {
+              let z = i >= r ? root[i * n + r] : 0;
+              for (let q = 0; q < p; q++) z -= flat[i * p + q] * c[q];
+              size += z * z;
+            }
             for (let q = 0; q < p; q++) size += c[q] * c[q] * own[q];
             leverage[r] = size;
             slopeByRow[r] = c[1];
@@ -291,6 +299,7 @@ const slopeAtOrigin = (k) => {
     for (let i = 0; i < n; i++) { let s = 0; for (let c = 0; c <= i; c++) s += m.root[i * n + c] * rest[c]; whitened[i] = s; }
     for (let q = 0; q < p; q++) half[q] = dot(m.columns[q], whitened, n);
     const left = new Float64Array(n), move = new Float64Array(p), gap = new Float64Array(p), all = [];
+    const whole = logDensity(nu), fewer = logDensity(nu - 1);
     const away = () => {
       left.set(whitened);
       for (let q = 0; q < p; q++) { const f = move[q], col = m.columns[q]; for (let i = 0; i < n; i++) left[i] -= f * col[i]; }
@@ -306,7 +315,7 @@ const slopeAtOrigin = (k) => {
       let squares = dot(left, left, n) + floor;
       for (let q = 0; q < p; q++) { const z = start[q] + move[q]; squares += z * z * own[q]; }
       const mean = start[1] + move[1], unit = inv[p + 1], variance = Math.max(squares / nu, least);
-      main.weight.push(cell.logPrior + k.POWER * (logDensity(nu) - 0.5 * cell.logDet - 0.5 * nu * Math.log(squares)));
+      main.weight.push(cell.logPrior + k.POWER * (whole - 0.5 * cell.logDet - 0.5 * nu * Math.log(squares)));
       main.mean.push(mean);
       main.variance.push(variance * unit);
       main.noise.push(variance);
@@ -316,7 +325,7 @@ const slopeAtOrigin = (k) => {
           let error = 0;
           for (let i = r; i < n; i++) error += left[i] * m.root[i * n + r];
           const step = error / cell.leverage[r], after = Math.max(squares - error * step, floor);
-          const likelihood = logDensity(nu - 1) - 0.5 * (cell.logDet + Math.log(cell.leverage[r]));
+          const likelihood = fewer - 0.5 * (cell.logDet + Math.log(cell.leverage[r]));
           row.weight[r] = cell.checkable[r] ? cell.logPrior + k.POWER * (likelihood - 0.5 * (nu - 1) * Math.log(after)) : -Infinity;
           row.slope[r] = mean - cell.slopeByRow[r] * step;
           row.variance[r] = Math.max(after / (nu - 1), least) * (unit + cell.slopeByRow[r] ** 2 / cell.leverage[r]);
