@@ -135,7 +135,7 @@ def _sweep(study: Study, s: Sweep, budget: Budget | None) -> dict[str, Any]:
             studies.append(("grid", grid.convergence.relative, f"{grid.table} {grid.component} {grid.setting}"))
         studies += [(v.name, v.relative, f"{v.table} {v.component} {v.setting}") for v in budget.studies]
     published = [
-        (c.reference, c.published)
+        (f"{c.reference}, by {c.reading}", c.published)
         for c in study.comparisons
         if c.coefficient.symbol == s.symbol and c.coefficient.campaign == s.campaign
     ]
@@ -229,7 +229,9 @@ def _zigzag(
     turns = "dr" in manoeuvre.phases[0].orders
     name = f"{np.degrees(angle):g}/{np.degrees(execute):g}" if turns else f"thrusters, {np.degrees(execute):g} deg"
     return _arrays(vehicle, manoeuvre) | {
-        "name": name, "execute": execute, "links": _links(study, vehicle, file, sources)
+        "name": name,
+        "execute": execute,
+        "links": _links(study, vehicle, file, sources),
     }
 
 
@@ -259,7 +261,9 @@ def _arrays(vehicle: Vehicle, manoeuvre: Manoeuvre) -> dict[str, Any]:
     """A vehicle and a manoeuvre as `coeflab.motion.marching` marches them."""
     ensemble, orders = alone(vehicle), orders_of(vehicle, manoeuvre)
     dynamics, law = ensemble.dynamics(np.zeros(3)), vehicle.law
-    start = np.concatenate([np.zeros(3), manoeuvre.attitude / np.linalg.norm(manoeuvre.attitude), manoeuvre.velocity, [0.0]])
+    start = np.concatenate(
+        [np.zeros(3), manoeuvre.attitude / np.linalg.norm(manoeuvre.attitude), manoeuvre.velocity, [0.0]]
+    )
     speed = float(np.linalg.norm(manoeuvre.velocity[:3]))
     named = {name for p in manoeuvre.phases for name in p.orders} | set(manoeuvre.orders)
     return {

@@ -207,7 +207,8 @@ const mountBench = (root, data, source) => {
     const drawn = s.x.map((x, i) => ({ i, x, y: s.y[i], xy: at(x, s.y[i]) })).filter((p) => !ratio || Math.abs(p.x) > near);
     const others = s.leftOut.filter((p) => p[1] !== null && (!ratio || Math.abs(p[0]) > near)).map((p) => ({ p, xy: at(p[0], p[1]) }));
     const across = ratio ? [0, most * 1.04] : padded([-most, most].filter((v) => !s.oneSided || Math.min(...s.x) * v > 0 || Math.max(...s.x) * v > 0).concat(0), 0.04);
-    const levelsOf = drawn.map((p) => p.xy[1]);
+    const levelsOf = drawn.map((p) => p.xy[1]), side = (x) => x >= across[0] && x <= across[1];
+    if (!ratio && has) levelsOf.push(...row.curve.filter((_, i) => side(row.at[i])));
     if (ratio && has) levelsOf.push(row.value - row.u95, row.value + row.u95, before.value);
     const up = padded(levelsOf, 0.1), name = `${s.component}′`, f = frame(w, h, across, up, ratio ? [`|${s.variable}′|`, `(${name} − ${name} at rest) / ${s.variable}′`] : [s.across.replaceAll("'", "′"), name], m), inside = [];
     const polygon = (x, low, high) => `<path d="${f.path(x, low)}L${f.path(x.slice().reverse(), high.slice().reverse()).slice(1)}Z" fill="${colour.band}" fill-opacity="0.35"/>`;
@@ -294,10 +295,11 @@ const mountBench = (root, data, source) => {
     if (edit.without.length) lines.push(make("p", { class: "warn" }, "U95 holds only if the curve has none of the parts you took out."));
     else if (edit.dropped.length || edit.limit !== null) lines.push(make("p", { class: "quiet" }, "U95 does not hold your choice of points."));
     said.replaceChildren(...lines);
-    const rows = [["Study", value(before.value, before.u95), has ? signed(`${row.value < before.value ? "" : "+"}${short(row.value - before.value, 2).replace("−", "-")}`) : ""]];
-    for (const [name, x] of s.published) rows.push([name, short(x, 4), has ? signed(`${row.value < x ? "" : "+"}${short(row.value - x, 2).replace("−", "-")}`) : ""]);
-    const budget = has ? row.parts.map(([name, half]) => [name, half.toPrecision(2), `${Math.round(100 * (half / row.u95) ** 2)} %`]) : [];
-    rest.replaceChildren(table("Compared with", ["", "value", "difference"], rows), ...(budget.length ? [make("p"), table("U95 is made of", ["", "half-width", "of variance"], budget)] : []));
+    const apart = (x) => (has ? `${row.value > x ? "+" : ""}${short(row.value - x, 2)}` : "");
+    const rows = [["Study", value(before.value, before.u95), apart(before.value)], ...s.published.map(([name, x]) => [name, short(x, 4), apart(x)])];
+    const budget = has ? row.parts.map(([name, half]) => `${name} ${Math.round(100 * (half / row.u95) ** 2)} %`).join(", ") : "";
+    if (budget) said.append(make("p", { class: "quiet" }, `Variance: ${budget}`));
+    rest.replaceChildren(table("Compared with", ["", "value", "difference"], rows));
     const list = [];
     data.files.forEach((f, i) => f.indices.forEach((x, j) => {
       const [now, then] = shown.indices[i][j], uses = x.sources.includes(state.index);
