@@ -25,6 +25,7 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import primed
 from coeflab.report.acceptance import headline, held_of_study
+from coeflab.report.answer import answer
 from coeflab.report.bench import bench_of
 from coeflab.report.document import Document, Section, digest_of, reproduction
 from coeflab.report.figures.svg import settings
@@ -148,7 +149,7 @@ def _document(study: Study) -> Document:
     names = ", ".join(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
     return Document(
         study.plan.title or study.plan.name, f"Coefficients of {names}", sections, study.plan.name, digest_of(study.inputs),
-        tables.works(study),
+        tables.works(study), answer=answer(study),
     )  # fmt: skip
 
 

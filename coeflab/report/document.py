@@ -257,9 +257,12 @@ class Answer:
         One a wanted coefficient, missing ones too.
     chips : tuple of Chip
     slope, forest, axes : Figure or None
-        Y'/v' against the size of v' with its band; every row over the published value; the axes and signs.
+        Y'/v' against the size of v' with its band; every row over the published value; the axes and signs. Of a publication
+        its first figure, and how much of what is allowed its tables use; of models two figures of the first.
     notes : tuple of str
         What the columns are and what is not compared; at most four lines.
+    table : Table or None
+        What stands in the place of rows: the tables of a publication, fitted models.
     """
 
     sentence: str
@@ -271,6 +274,7 @@ class Answer:
     forest: Figure | None = None
     axes: Figure | None = None
     notes: tuple[str, ...] = ()
+    table: Table | None = None
 
 
 @brief

@@ -190,8 +190,8 @@ const mountBench = (root, data, source) => {
   const frame = (w, h, x, y, names, margin) => {
     const [ml, mt, mr, mb] = margin, px = (v) => ml + (v - x[0]) / (x[1] - x[0]) * (w - ml - mr), py = (v) => h - mb - (v - y[0]) / (y[1] - y[0]) * (h - mt - mb);
     const out = [`<rect x="${ml}" y="${mt}" width="${w - ml - mr}" height="${h - mt - mb}" fill="none" stroke="${colour.rule}"/>`];
-    for (const [v, text] of ticks(x[0], x[1], 7)) out.push(`<path d="M${px(v).toFixed(1)} ${mt}V${h - mb}" stroke="${colour.rule}"/><text x="${px(v).toFixed(1)}" y="${h - mb + 17}" text-anchor="middle" fill="${colour.muted}">${text}</text>`);
-    for (const [v, text] of ticks(y[0], y[1], 6)) out.push(`<path d="M${ml} ${py(v).toFixed(1)}H${w - mr}" stroke="${colour.rule}"/><text x="${ml - 7}" y="${(py(v) + 4).toFixed(1)}" text-anchor="end" fill="${colour.muted}">${text}</text>`);
+    for (const [v, text] of ticks(x[0], x[1], Math.max(w / 90, 3))) out.push(`<path d="M${px(v).toFixed(1)} ${mt}V${h - mb}" stroke="${colour.rule}"/><text x="${px(v).toFixed(1)}" y="${h - mb + 17}" text-anchor="middle" fill="${colour.muted}">${text}</text>`);
+    for (const [v, text] of ticks(y[0], y[1], Math.max(h / 55, 3))) out.push(`<path d="M${ml} ${py(v).toFixed(1)}H${w - mr}" stroke="${colour.rule}"/><text x="${ml - 7}" y="${(py(v) + 4).toFixed(1)}" text-anchor="end" fill="${colour.muted}">${text}</text>`);
     out.push(`<text x="${w - mr}" y="${h - 6}" text-anchor="end" fill="${colour.ink}">${escaped(names[0])}</text><text x="${ml}" y="${mt - 9}" fill="${colour.ink}">${escaped(names[1])}</text>`);
     return { out, px, py, path: (a, b) => a.map((v, i) => `${i ? "L" : "M"}${px(v).toFixed(2)} ${py(b[i]).toFixed(2)}`).join("") };
   };
@@ -199,8 +199,9 @@ const mountBench = (root, data, source) => {
   const clip = (w, h, m, inside, id) => `<clipPath id="${id}"><rect x="${m[0]}" y="${m[1]}" width="${w - m[0] - m[2]}" height="${h - m[1] - m[3]}"/></clipPath><g clip-path="url(#${id})">${inside.join("")}</g>`;
   const padded = (values, share) => { const a = Math.min(...values), b = Math.max(...values), d = (b - a || Math.abs(a) || 1) * share; return [a - d, b + d]; };
 
+  const widthOf = (box) => Math.round(Math.min(Math.max(box.clientWidth, 320), 1200));
   const sweepFigure = () => {
-    const s = current(), edit = edits[state.index] || { limit: null, dropped: [], without: [] }, { row, before } = shown, w = 720, h = 430, m = [66, 28, 14, 44];
+    const s = current(), edit = edits[state.index] || { limit: null, dropped: [], without: [] }, { row, before } = shown, w = widthOf(picture), h = Math.round(Math.max(0.56 * w, 250)), m = [66, 28, 14, 44];
     const ratio = state.view === "ratio", has = row.value !== null, middle = has ? row.curve[(data.nodes - 1) / 2] : before.curve[(data.nodes - 1) / 2];
     const most = Math.max(...s.x.map(Math.abs), ...s.leftOut.map((p) => Math.abs(p[0])));
     const near = 0.04 * most, at = (x, y) => (ratio ? [Math.abs(x), (y - middle) / x] : [x, y]);
@@ -238,7 +239,7 @@ const mountBench = (root, data, source) => {
     return whole(w, h, `${s.body.replaceAll("_", " ")}: ${name} over ${s.variable}′, ${s.campaign}`, said, [...f.out, clip(w, h, m, inside, "bench-sweep")]);
   };
   const trackFigure = () => {
-    const w = 720, h = 270, m = [56, 28, 14, 44], { motion, still } = shown, lines = [];
+    const w = widthOf(track), h = Math.round(Math.max(0.36 * w, 200)), m = [56, 28, 14, 44], { motion, still } = shown, lines = [];
     const cut = (run) => { const n = run.determined === Infinity ? run.time.length : Math.max(run.time.findIndex((t) => t > run.determined), 1); return [run.east.slice(0, n), run.north.slice(0, n)]; };
     if (still && !still.lost) lines.push([...cut(still), colour.muted, "7 4", still]);
     if (motion && !motion.lost) lines.push([...cut(motion), colour.a, "", motion]);
@@ -341,6 +342,8 @@ const mountBench = (root, data, source) => {
   };
 
   root.replaceChildren(left, centre, right);
+  let redraw = 0;
+  new ResizeObserver(() => { clearTimeout(redraw); redraw = setTimeout(() => { if (shown.row) show(); if (shown.motion) showMotion(); }, 120); }).observe(picture);
   root.dataset.ready = "true";
   root.bench = { data, edits, state, shown, local, changed: () => chosen() };
   chosen();
