@@ -191,7 +191,8 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
     from latex2mathml.converter import convert
 
     def formula(found: re.Match[str]) -> str:
-        _formulas.append(convert(found["shown"] or found["inline"], display="block" if found["shown"] else "inline"))
+        text = (found["shown"] or found["inline"]).replace("'", "\u2032")  # a letter: as a superscript it is raised twice
+        _formulas.append(convert(text, display="block" if found["shown"] else "inline"))
         return f"formula{len(_formulas) - 1}set"
 
     return MATH.sub(formula, OUTSIDE.sub(r"outside/\1", markdown))
