@@ -302,9 +302,8 @@ class Check:
 
 
 def html_by(renderer: str, noun: object) -> str:
-    """HTML of a noun for notebooks, by the function of that name in ``coeflab.report.tables.nouns``.
+    """HTML of a noun for notebooks, by the function of that name in ``coeflab.report.notebook``.
 
     The report is imported on first use and by name: nouns stand below it.
     """
-    tables = getattr(import_module("coeflab.report.tables.nouns"), renderer)(noun)
-    return "".join(t._repr_html_() for t in ((tables,) if isinstance(tables, Table) else tables))
+    return str(getattr(import_module("coeflab.report.notebook"), renderer)(noun))

@@ -144,5 +144,5 @@ def determined_until(trajectory: Trajectory, vehicle: Vehicle) -> tuple[float, s
             ]
             if beyond:
                 first = float(min(times[0] for times in beyond))
-                return first, f"drawn up to {first:.4g} s, from where on it is not determined: {lacking}"
+                return first, f"stopped at {first:.4g} s: {lacking}"
     return inf, ""
