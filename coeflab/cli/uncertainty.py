@@ -105,7 +105,7 @@ def _print(made: Carried, written: list[Path]) -> None:
     for line in (*uncertainty_tables.ranking(made), *made.statements):
         show.text(f"  {line}")
     for path in written:
-        show.text(f"  {path}")
+        show.path(path)
 
 
 def _write(made: Carried, folder: Path) -> list[Path]:
