@@ -92,3 +92,14 @@ def _read(line: int) -> bytes:
         return os.read(line, 65536)
     except OSError:
         return b""
+
+
+def test_a_bar_is_drawn_on_a_terminal_and_stays_letters_in_a_pipe(capsys, monkeypatch) -> None:
+    table = Table("T", ("", "share"), (("Yv'", "+0.60 #####"), ("Nv'", "+1.60 ########!")), (), frozenset({0, 1}))
+    show.table(table)
+    assert "+0.60 #####\n" in capsys.readouterr().out
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "80")
+    show.table(table)
+    assert "\u2588" * 8 + "!" in capsys.readouterr().out
