@@ -229,7 +229,7 @@ class Listing:
         """Coefficients that a query names, each with the file that holds it; parameter files first.
 
         A word that begins a symbol is one, in any case and with or without prime: ``yv`` finds Yv', then Yv|v|' and
-        Yvdot'. The other words have to stand in the file's entry.
+        Yvdot'. The other words have to stand in the file's entry, or in the campaign.
         """
         entries: list[Entry] = [*self.parameters, *self.reports]
         every = [(c, e) for e in entries for c in e.coefficients]
@@ -241,7 +241,7 @@ class Listing:
         others = [w for w in words if _bare(w) not in symbols]
         found = [
             (c, e) for c, e in every
-            if any(_bare(c.symbol).startswith(s) for s in symbols) and all(w in e.words for w in others)
+            if any(_bare(c.symbol).startswith(s) for s in symbols) and all(w in f"{e.words} {c.source.casefold()}" for w in others)
         ]  # fmt: skip
         return tuple(sorted(found, key=lambda pair: (_bare(pair[0].symbol) not in symbols, pair[0].symbol)))
 

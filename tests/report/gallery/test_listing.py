@@ -89,6 +89,7 @@ def test_a_search_finds_coefficients_in_files_and_reports(folder):
         ("Yv'", "a.parameters.json"), ("Yv'", "alias.parameters.json"), ("Yv'", "b.parameters.json"), ("Yv'", "boat/report.html"),
     ]  # fmt: skip
     assert [(c.said, e.called) for c, e in found.coefficients("YV' second")] == [("-0.0400 +- 0.0020", "second")]
+    assert [e.path for _, e in found.coefficients("tank yv'")] == ["boat/report.html"]
     assert {c.symbol for c, _ in found.coefficients("Y")} == set()
     assert found.coefficients("boat") == ()
 
