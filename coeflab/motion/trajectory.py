@@ -152,7 +152,7 @@ def outside(vehicle: Vehicle, velocity: Array, controls: Mapping[str, Array]) ->
     values = _values(vehicle, velocity, controls)
     out: dict[str, Flags] = {}
     spoken = set()
-    for name, ranges in _ranges(vehicle).items():
+    for name, ranges in covered_ranges(vehicle).items():
         if name in values:
             motion, x = values[name]
             spoken.add(motion)
@@ -182,7 +182,7 @@ def outside_in_words(vehicle: Vehicle, velocity: Array, controls: Mapping[str, f
     rows, angles = velocity[None, :], {c: np.array([x]) for c, x in controls.items()}
     values, flags = _values(vehicle, rows, angles), outside(vehicle, rows, angles)
     out = []
-    for name, ranges in _ranges(vehicle).items():
+    for name, ranges in covered_ranges(vehicle).items():
         if name in values and flags[name][0]:
             factor, unit = (180.0 / np.pi, " deg") if name in CONTROLS or name.startswith("asin") else (1.0, "")
             spans = " or ".join(f"{number(low * factor)} to {number(high * factor)}{unit}" for low, high in ranges)
@@ -201,7 +201,7 @@ def _values(vehicle: Vehicle, velocity: Array, controls: Mapping[str, Array]) ->
     return values | {c: (c, controls[c]) for c in CONTROLS if c in controls}
 
 
-def _ranges(vehicle: Vehicle) -> dict[str, list[tuple[float, float]]]:
+def covered_ranges(vehicle: Vehicle) -> dict[str, list[tuple[float, float]]]:
     """Ranges of every variable, from low to high, those that touch joined."""
     out: dict[str, list[tuple[float, float]]] = {}
     for c in sorted(vehicle.covered, key=lambda c: c.low):

@@ -18,6 +18,7 @@ from coeflab.core.table import Severity, Table, html_by
 from coeflab.core.types import brief, in_angles, locked
 from coeflab.core.version import VERSION
 from coeflab.report.acceptance import Acceptance
+from coeflab.report.bench import BenchData
 from coeflab.study.study import Plan, Study
 
 Range = tuple[float, float]
@@ -334,6 +335,8 @@ class Document:
         Texts of users in it, which renderers set as they stand.
     answer : Answer or None
         The first page; None where a document has none.
+    bench : BenchData or None
+        What a workbench page computes with.
     """
 
     title: str
@@ -344,6 +347,7 @@ class Document:
     works: tuple[tuple[str, str], ...] = ()
     verbatim: tuple[str, ...] = ()
     answer: Answer | None = None
+    bench: BenchData | None = None
 
 
 PLAN = "plan.toml"

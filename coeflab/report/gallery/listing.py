@@ -231,7 +231,8 @@ class Listing:
         A word that begins a symbol is one, in any case and with or without prime: ``yv`` finds Yv', then Yv|v|' and
         Yvdot'. The other words have to stand in the file's entry.
         """
-        every = [(c, e) for e in (*self.parameters, *self.reports) for c in e.coefficients]
+        entries: list[Entry] = [*self.parameters, *self.reports]
+        every = [(c, e) for e in entries for c in e.coefficients]
         known = {_bare(c.symbol) for c, _ in every}
         words = [w for w in query.casefold().split() if w]
         symbols = [_bare(w) for w in words if any(s.startswith(_bare(w)) for s in known if len(_bare(w)) > 1)]
