@@ -180,6 +180,14 @@ def main(names: Sequence[str]) -> None:
 _formulas: list[str] = []
 
 
+def on_config(config: Any) -> Any:
+    """A page that the navigation of mkdocs.yml does not name stands at the end of its reference."""
+    listed = set(re.findall(r"[\w-]+\.md", repr(config.nav)))
+    reference = next(part["Reference"] for part in config.nav if "Reference" in part)
+    reference.extend(page.name for page in sorted(HERE.glob("*.md")) if page.name not in listed)
+    return config
+
+
 def on_files(files: Any, config: Any) -> Any:
     """Take in the files outside of docs that a page shows or links to."""
     from mkdocs.structure.files import File
