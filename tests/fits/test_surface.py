@@ -194,7 +194,7 @@ def test_the_printed_sum_of_two_slices_counts_the_value_at_rest_twice():
     said = [s for s in additive.statements if "twice" in s]
     assert said == [
         f"The printed form C_D(alpha) + C_D(beta) counts C_D_0 = {at_rest:.4g} +- {half:.2g} twice and is wrong by that "
-        "much everywhere; this fit holds it once."
+        "much everywhere; this fit counts it once."
     ]
     assert not any("twice" in s for s in full.statements)
 

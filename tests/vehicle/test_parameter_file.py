@@ -101,7 +101,7 @@ def test_version_1_3_means_what_it_meant() -> None:
 
 
 THRUSTER: list[tuple[str, Callable[[dict[str, Any]], object]]] = [
-    ("left stands more than once", lambda d: d["thrusters"][1].update(name="left")),
+    ("left occurs more than once", lambda d: d["thrusters"][1].update(name="left")),
     ("direction is 2 long, not 1", lambda d: d["thrusters"][0].update(direction=[2.0, 0.0, 0.0])),
     (
         "thrust falls at a command of",
