@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from math import copysign, inf, nan
 from typing import TYPE_CHECKING, Any, Protocol
 
-from coeflab.core.table import ABSENT, Table
-from coeflab.core.types import brief
+from coeflab.core.table import ABSENT, Table, html_by
+from coeflab.core.types import brief, in_angles
 from coeflab.study.study import Study
 from coeflab.study.validation import printed_indices, validations
 
@@ -149,7 +150,6 @@ class Drawing(Protocol):
         """The numbers behind it."""
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Acceptance:
     """A publication reproduced.
@@ -179,6 +179,14 @@ class Acceptance:
     figures: tuple[tuple[str, Drawing], ...] = ()
     conventions: tuple[str, ...] = ()
     parameter_files: tuple[ParameterFile, ...] = ()
+
+    def __repr__(self) -> str:
+        good = sum(r.holds for r in self.numbers)
+        return in_angles(self, f"{self.name}: {good} of {len(self.numbers)} published numbers within what is allowed")
+
+    def _repr_html_(self) -> str:
+        """Its answer with pictures, for notebooks."""
+        return html_by("acceptance", self)
 
     @property
     def holds(self) -> bool:
@@ -272,6 +280,42 @@ def _row(r: Compared) -> tuple[str, ...]:
         f"{factor * r.tolerance:.2g}{sign}",
         "pass" if r.holds else "fail",
     )
+
+
+def share(r: Compared) -> float:
+    """Difference over what is allowed, of a limit the share that is used; NaN where nothing was found."""
+    if r.found is None or r.difference is None:
+        return nan
+    if r.at_most:
+        limit = r.against + r.tolerance * (abs(r.against) if r.relative else 1.0)
+        return max(r.found, 0.0) / limit if limit > 0.0 else (0.0 if r.holds else inf)
+    if r.tolerance == 0.0:
+        return 0.0 if r.holds else copysign(inf, r.difference)
+    return r.difference / r.tolerance
+
+
+def overview(found: Acceptance) -> Table:
+    """One row a table of the publication."""
+    rows = tuple(
+        (
+            t.title,
+            t.source,
+            f"{sum(r.holds for r in t.rows)} of {len(t.rows)}",
+            _closest(t),
+            "pass" if t.holds else "fail",
+        )
+        for t in found.tables
+    )
+    notes = (
+        "used: the largest difference as a share of what is allowed, where that is not zero; of a limit the share that is reached",
+    )
+    headers = ("what", "of the publication", "hold", "used", "verdict")
+    return Table("Tables of the publication", headers, rows, notes, frozenset({0, 1, 4}))
+
+
+def _closest(t: ComparedTable) -> str:
+    shares = [abs(share(r)) for r in t.rows if r.found is not None and (r.tolerance > 0.0 or r.at_most)]
+    return f"{100.0 * max(shares):.0f} %" if shares else "-"
 
 
 def errata(acceptance: Acceptance) -> Table:

@@ -1,40 +1,475 @@
-"""The first page of a study: what came out, in one sentence, six rows and four chips."""
+"""The first page of a study or a publication: what came out, in one sentence, six rows, two pictures and four chips.
+
+Everything that shows it takes it from here: terminal, notebook, HTML, PDF, summary.
+"""
 
 from __future__ import annotations
 
-from coeflab.core.table import Severity
-from coeflab.law.coefficient import Status
-from coeflab.report.document import Answer, AnswerRow, Chip
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coeflab.core.table import Severity, Table, number, with_u95
+from coeflab.core.types import brief
+from coeflab.core.wording import listed
+from coeflab.fits.results.fit_result import FitResult, Sweep
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import derivative, primed
+from coeflab.report.acceptance import Acceptance, held, overview
+from coeflab.report.document import Answer, AnswerRow, Chip, Figure
+from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, shares_figure, slope_figure
+from coeflab.report.figures.model import model_figures
+from coeflab.report.sections.campaign import anchor
+from coeflab.report.tables.models import quality
 from coeflab.study.study import Study
-from coeflab.vehicle.reference import Relation
+from coeflab.study.towed import Towed, towed
+from coeflab.vehicle.derived import Derived, sense, stability
+from coeflab.vehicle.reference import Comparison, Reference, Relation
+
+LONGEST, MOST_LETTERS, MOST_ROWS, MOST_COLUMNS = 160, 240, 6, 3
+NO_DATA = "no data"
+WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
+BAR = 8  # letters of a difference that is as large as U95
+COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+LARGEST = 100_000  # letters of a drawing that a first page may hold
+WIDE = 0.5  # a U95 of half the value asks for more runs
 
 
-def answer(study: Study) -> Answer:
-    """What a reader of a study wants first."""
-    rows = tuple(_row(study, symbol) for symbol in study.plan.wanted)
-    return Answer(_sentence(study), rows=rows, chips=_chips(study))
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class _Beside:
+    """The published columns of one body.
+
+    Attributes
+    ----------
+    body : str
+        Whose coefficients are the answer.
+    columns : tuple of Reference
+        The experiment first.
+    among : CoefficientSet or None
+        The first of that body, whose length and reference point hold where a row has none.
+    """
+
+    body: str
+    columns: tuple[Reference, ...]
+    among: CoefficientSet | None
 
 
-def _row(study: Study, symbol: str) -> AnswerRow:
-    found = [c for c in study.coefficients if c.symbol == symbol]
-    c = next((c for c in found if c.value is not None), None)
-    if c is None:
-        return AnswerRow(symbol, None, None, "no data")
-    judged = next((x for x in study.comparisons if x.relation is Relation.RE_ANALYSIS and x.coefficient == c), None)
+def answer(found: Study | Acceptance, *, drawn: bool = True) -> Answer:
+    """What a reader wants first.
+
+    Parameters
+    ----------
+    found : Study or Acceptance
+    drawn : bool
+        With its figures; a terminal shows none.
+
+    Returns
+    -------
+    Answer
+        Of a study its wanted coefficients beside the published columns of their body: from its re-analysed tables, else from
+        an own tow of that body. A difference has a verdict only where the authors' own evaluation of the same data is known.
+    """
+    made = _of_study(found) if isinstance(found, Study) else _of_publication(found)
+    return _drawn(found, made) if drawn else made
+
+
+def _of_study(study: Study) -> Answer:
+    beside = _columns(study)
+    rows = tuple(_row(study, beside, symbol) for symbol in _wanted(study, beside.body))
+    compared = beside.columns[0].name if beside.columns else ""
+    names = tuple(r.name for r in beside.columns)
+    if all(r.value is None for r in rows) and any(f.models for f in study.fits):
+        return _of_models(study)
+    return Answer(
+        _sentence(study, beside, rows), names, compared, rows, _chips(study, rows), notes=_notes(study, beside, rows)
+    )
+
+
+def _columns(study: Study) -> _Beside:
+    """The body that the answer is about, and what is published of it: quoted, re-analysed, then other bodies."""
+    quoted = [r for r in study.references if r.relation is Relation.QUOTED]
+    campaigns = {f.campaign: f.body for f in study.fits}
+    ours = [r for r in study.references if r.relation is Relation.RE_ANALYSIS and set(r.campaigns) & set(campaigns)]
+    bodies = [c.body for c in study.coefficients if c.symbol in study.plan.wanted and c.value is not None]
+    body = next((b for b in (*(r.body for r in quoted), *bodies) if b), next(iter(campaigns.values()), ""))
+    first = [r for r in quoted if r.body == body] or [
+        r for r in ours if any(campaigns.get(c) == body for c in r.campaigns)
+    ]
+    others = [r for r in study.references if r.relation is Relation.CROSS_BODY]
+    fit = next((f for f in study.fits if f.body == body), None)
+    return _Beside(body, tuple([*first, *others][:MOST_COLUMNS]), fit.coefficients if fit else None)
+
+
+def _wanted(study: Study, body: str) -> tuple[str, ...]:
+    """What the plan wants; of a plan that does not say, the slopes that it gives, six at most."""
+    if study.plan.wanted:
+        return study.plan.wanted
+    slopes = [
+        s.symbol for f in study.fits for s in f.sweeps if s.target == "x" and s.value is not None and f.body == body
+    ]
+    return tuple(dict.fromkeys(slopes))[:MOST_ROWS]
+
+
+def _row(study: Study, beside: _Beside, symbol: str) -> AnswerRow:
+    found = [c for c in study.coefficients if c.symbol == symbol and c.body == beside.body]
+    judged = {(x.coefficient.symbol, x.coefficient.campaign): x for x in study.comparisons if x.passed is not None}
+    known = sorted((c for c in found if c.value is not None), key=lambda c: (c.symbol, c.campaign) not in judged)
+    among = _set(study, known[0].campaign if known else None) or beside.among
+    published = tuple(_published(study, r, beside.body, symbol, among) for r in beside.columns)
+    if not known:
+        return _towed_row(study, beside, symbol, published, found)
+    c = known[0]
     rejected = c.status is Status.FORM_REJECTED
-    return AnswerRow(
-        symbol, c.value, None if rejected else c.u95, "form rejected" if rejected else "", c.campaign or "",
-        difference=judged.difference if judged else None, agrees=judged.passed if judged else None,
+    row = AnswerRow(
+        symbol, c.value, None if rejected else c.u95, "form rejected" if rejected else "" if c.u95 else "no U95",
+        c.campaign or "", published, anchor=_place(study, c),
+    )  # fmt: skip
+    mine = judged.get((symbol, c.campaign))
+    return _judged(row, mine if mine is not None and mine.coefficient.value == c.value else None)
+
+
+def _place(study: Study, c: Coefficient) -> str:
+    """Of the section that derives a coefficient, as a whole report names it."""
+    places: set[str] = set()
+    own = [anchor(f"campaign {f.campaign}", places) for f in study.fits]
+    swept = [
+        any(k is c for k in f.coefficients.coefficients) and any(s.symbol == c.symbol for s in f.sweeps)
+        for f in study.fits
+    ]
+    mine = (place for place, is_ours in zip(own, swept, strict=True) if is_ours)
+    return next((anchor(f"{place} {c.symbol}", places) for place in mine), "coefficients")
+
+
+def _set(study: Study, campaign: str | None) -> CoefficientSet | None:
+    return next((f.coefficients for f in study.fits if f.campaign == campaign), None)
+
+
+def _judged(row: AnswerRow, verdict: Comparison | None) -> AnswerRow:
+    """With its difference to the first column and what a re-analysis concludes from it."""
+    first = row.published[0] if row.published else None
+    difference = row.value - first if row.value is not None and first is not None else None
+    return replace(row, difference=difference, agrees=verdict.passed if verdict and difference is not None else None)
+
+
+def _towed_row(
+    study: Study, beside: _Beside, symbol: str, published: tuple[float | None, ...], found: Sequence[Coefficient]
+) -> AnswerRow:
+    """From an own tow that the plan sets beside these columns; else why there is no value."""
+    for tow in _tows(study, beside):
+        own = next((r for r in tow.rows if r.symbol == symbol and r.value is not None), None)
+        if own is not None:
+            row = AnswerRow(symbol, own.value, own.u95, "" if own.u95 else "no U95", tow.tow.campaign, published)
+            return _judged(row, None)
+    status = next((c.status for c in found if c.status is not Status.NO_TABLE), None)
+    return AnswerRow(symbol, None, None, NO_DATA if status is None else status.replace("_", " "), published=published)
+
+
+def _tows(study: Study, beside: _Beside) -> tuple[Towed, ...]:
+    """Own tows of the body, or those that the plan sets beside the first column."""
+    names = {r.name for r in beside.columns[:1]}
+    return tuple(t for t in towed(study) if t.body == beside.body or names & set(t.columns)) if study.plan.tows else ()
+
+
+def _published(
+    study: Study, reference: Reference, body: str, symbol: str, among: CoefficientSet | None
+) -> float | None:
+    """A printed value by our length, as it is read first; of a quoted column in the digits of the report that it rounds."""
+    if among is None or not _about_ours(reference, among):
+        return None
+    read = reference.readings(symbol, among.scaling)
+    printed = reference.printed(symbol)
+    if not read or printed is None:
+        return None
+    value = read[0][1]
+    if reference.relation is Relation.QUOTED:
+        reports = [
+            r
+            for r in study.references
+            if r.relation is Relation.RE_ANALYSIS and r.body == body and _about_ours(r, among)
+        ]
+        whole = [v for r in reports for _, v in r.readings(symbol, among.scaling)]
+        places = len(printed.printed.partition(".")[2])
+        return next((v for v in whole if round(v, places) == round(value, places)), value)
+    return value
+
+
+def _about_ours(reference: Reference, among: CoefficientSet) -> bool:
+    """Whether it is about our reference point, or about none that it names."""
+    theirs = reference.reference_point
+    return theirs is None or bool(np.allclose(theirs, among.reference_point, atol=1e-6))
+
+
+def _short(title: str) -> str:
+    """The beginning of a title, up to its colon."""
+    head = title.partition(":")[0].strip()
+    return head if len(head) <= LONGEST // 3 else head[: LONGEST // 3].rsplit(" ", 1)[0].rstrip(",") + " ..."
+
+
+def _counted(n: int) -> str:
+    return COUNTS[n] if n < len(COUNTS) else str(n)
+
+
+def _sentence(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> str:
+    name = _short(study.plan.title or study.plan.name)
+    judged = [r for r in rows if r.agrees is not None]
+    valued = [r for r in rows if r.value is not None]
+    kind = "static derivatives" if all(_is_static(r.symbol) for r in judged) else "derivatives"
+    kind = kind if len(judged) != 1 else kind[:-1]
+    absent = _absent(rows)
+    if judged:
+        apart = [primed(r.symbol) for r in judged if not r.agrees]
+        place = next((r.place.partition(",")[0] for r in beside.columns[:1] if r.place), "")
+        of = f" of {place}" if place else ""
+        if apart:
+            first = f"{name} re-analysed: {listed(apart)} of {_counted(len(judged))} {kind}{of} {_verb(apart)} by more than U95"
+        else:
+            every = {1: "the", 2: "both"}.get(len(judged), f"all {_counted(len(judged))}")
+            first = f"{name} re-analysed: {every} {kind}{of} {'agrees' if len(judged) == 1 else 'agree'} within U95"
+    elif not valued:
+        first = f"{name}: no wanted coefficient could be determined"
+    else:
+        bounded = sum(r.u95 is not None for r in valued)
+        of = (
+            f"all {_counted(len(rows))}"
+            if len(valued) == len(rows)
+            else f"{_counted(len(valued))} of {_counted(len(rows))}"
+        )
+        first = f"{name}: {of} wanted coefficients found, {'each' if bounded == len(valued) else _counted(bounded)} with U95"
+        absent = absent or "no published evaluation of these data"
+    whole = f"{first}; {absent}." if absent else f"{first}."
+    return whole if len(whole) <= LONGEST else f"{first[: LONGEST - 1]}."
+
+
+def _verb(apart: Sequence[str]) -> str:
+    return "differs" if len(apart) == 1 else "differ"
+
+
+def _is_static(symbol: str) -> bool:
+    return set(derivative(symbol).factors) <= {"v", "w"}
+
+
+def _absent(rows: tuple[AnswerRow, ...]) -> str:
+    """Which rows have no value, and why where one reason serves all."""
+    without = [r for r in rows if r.value is None]
+    if not without:
+        return ""
+    if all(r.status == NO_DATA for r in without) and all(
+        set(derivative(r.symbol).factors) & {"p", "q", "r"} for r in without
+    ):
+        return "no rotating-arm data"
+    return "; ".join(
+        f"{listed([primed(r.symbol) for r in without if r.status == status])}: {status}"
+        for status in dict.fromkeys(r.status for r in without)
+    )
+
+
+def _chips(study: Study, rows: tuple[AnswerRow, ...]) -> tuple[Chip, ...]:
+    return tuple(c for c in (_stability(study), _largest(rows), _warnings(study), _exports(study)) if c is not None)
+
+
+def _stability(study: Study) -> Chip:
+    """Of the first parameter file that has an index, that of the horizontal plane where it can be had."""
+    every = [index for p in study.parameter_files.values() for index in stability(p)]
+    if not every:
+        return Chip("Stability", "not determined", Severity.NOTE, "stability" if study.parameter_files else "")
+    first = [index for index in every if index.subject == every[0].subject]
+    d: Derived = min(first, key=lambda index: index.name != "G_h")
+    said = sense(d).partition(" at ")[0]
+    grave = Severity.PASS if said == "stable" else Severity.WARN if said.startswith("unstable") else Severity.NOTE
+    return Chip("Stability", f"{said}, {d.name} = {d.value:.2f}", grave, "stability")
+
+
+def _largest(rows: Sequence[AnswerRow]) -> Chip:
+    shares = {r.symbol: abs(r.u95 / r.value) for r in rows if r.u95 and r.value}
+    if not shares:
+        return Chip("Largest U95", "no U95", Severity.NOTE, "coefficients")
+    symbol = max(shares, key=lambda s: shares[s])
+    grave = Severity.WARN if shares[symbol] > WIDE else Severity.NOTE
+    return Chip("Largest U95", f"{primed(symbol)}, {share_text(shares[symbol])}", grave, "coefficients")
+
+
+def _warnings(study: Study) -> Chip:
+    failed, warned = (sum(c.severity is s for c in study.checks) for s in (Severity.FAIL, Severity.WARN))
+    text = f"{warned} of {len(study.checks)} checks" if study.checks else "no checks"
+    if failed:
+        return Chip("Warnings", f"{failed} failed, {warned} warned", Severity.FAIL, "checks")
+    return Chip("Warnings", text, Severity.WARN if warned else Severity.PASS, "checks")
+
+
+def _exports(study: Study) -> Chip:
+    made, refused = len(study.exports), len(study.refused)
+    if not made and not refused:
+        return Chip("Exports", "none planned", Severity.NOTE)
+    loss = sum(not e.lossless for e in study.exports)
+    text = f"{made} made, {loss} with loss" + (f", {refused} refused" if refused else "")
+    return Chip("Exports", text, Severity.FAIL if refused else Severity.NOTE if loss else Severity.PASS, "exports")
+
+
+def _drawn(found: Study | Acceptance, made: Answer) -> Answer:
+    """With its figures; of models, and of a publication, two that show what came out."""
+    if isinstance(found, Acceptance):
+        left = next((renamed(d, "answer-figure") for _, d in found.figures if len(d.svg) < LARGEST), None)
+        right = shares_figure(found) if found.numbers else None
+    else:
+        left = _slope(found, made)
+        right = forest_figure(made.rows, made.columns, made.compared) or forest_figure(made.rows, made.columns, "")
+        models = [m for f in found.fits for m in f.models]
+        if models and (left is None or right is None):
+            first, second = (*model_figures(models[0], "answer-model"), None, None)[:2]
+            left, right = left or first, right or (second if left is None else first)
+    return replace(made, slope=left, forest=right, axes=axes_figure())
+
+
+def _slope(study: Study, made: Answer) -> Figure | None:
+    """Of the first row that comes from a sweep."""
+    for r in made.rows:
+        at = next((f.sweep(r.symbol) for f in study.fits if f.campaign == r.source and _has_slope(f, r.symbol)), None)
+        if at is not None and r.value is not None:
+            return slope_figure(at, r, made.compared, r.published[0] if r.published else None)
+    return None
+
+
+def _has_slope(fit: FitResult, symbol: str) -> bool:
+    return any(s.symbol == symbol and s.target == "x" and s.value is not None and _spread(s) for s in fit.sweeps)
+
+
+def _spread(sweep: Sweep) -> bool:
+    return bool(np.any(sweep.x != 0.0)) and len(sweep.curve) == 3
+
+
+def _notes(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> tuple[str, ...]:
+    towed_rows = {t.campaign for t in study.plan.tows if t.campaign}
+    sources = [s for s in dict.fromkeys(r.source for r in rows if r.source) if s not in towed_rows]
+    out = []
+    if sources:
+        scaling = beside.among.scaling if beside.among else None
+        by = f"; primes by {scaling.length_name} {scaling.length:.5g} m" if scaling else ""
+        out.append(f"Ours: {listed(sources)}{by}.")
+    own = [r for r in rows if r.source in towed_rows]
+    if own:
+        out.append(f"{listed([primed(r.symbol) for r in own])}: own tow {own[0].source}; no verdict.")
+    if any(r.agrees is not None for r in rows):
+        out.append(f"{beside.columns[0].name}: the same data, evaluated by their authors. Only here is a verdict.")
+    others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
+    if others:
+        twice = [(r.name, r.scaling, r.other_scaling) for r in others]
+        lengths = [f"; {name} read with {_readings(first, other)}" for name, first, other in twice if other is not None]
+        out.append(f"{listed([r.name for r in others])}: {others[0].body}, no verdict{''.join(lengths)}.")
+    return tuple(n if len(n) <= MOST_LETTERS else f"{n[:MOST_LETTERS]} ..." for n in out)
+
+
+def _readings(first: Scaling, other: Scaling) -> str:
+    """The length that a column is read with, and what the other would make of it."""
+    larger = [100.0 * (other.ratio(symbol, first) - 1.0) for symbol in ("Yv", "Nr")]
+    return f"{first.length_name} ({other.length_name}: Yv' {larger[0]:+.1f} %, Nr' {larger[1]:+.1f} %)"
+
+
+def _of_models(study: Study) -> Answer:
+    """Of a study whose fits give no wanted coefficient but laws and tables of forces."""
+    models = tuple(m for f in study.fits for m in f.models)
+    name = _short(study.plan.title or study.plan.name)
+    n = _counted(len(models))
+    sentence = f"{name}: {n} fitted {'model' if len(models) == 1 else 'models'}, no coefficient with a SNAME symbol."
+    return Answer(sentence, chips=_chips(study, ()), table=_narrow(quality(models), ("", "form", "n", "R2")))
+
+
+def _of_publication(found: Acceptance) -> Answer:
+    good, count, valid = _held(found)
+    some = f"{count - good} of {count} numbers outside what is allowed"
+    said = f"all {count} numbers within what is allowed" if good == count else some
+    none = "none of them validates: calibration and consistency only"
+    said += f"; {valid} of them validate: predicted, or printed and recomputed" if valid else f"; {none}"
+    table = _narrow(overview(found), ("what", "hold", "used", "verdict"))
+    return Answer(f"{_short(found.title)}: {said}.", chips=_published_chips(found), table=table)
+
+
+def _held(found: Acceptance) -> tuple[int, int, int]:
+    """How many numbers hold, how many there are, how many of them validate."""
+    numbers = held(found)
+    good, count = (sum(pair[k] for pair in numbers.values()) for k in (0, 1))
+    return good, count, sum(pair[1] for b, pair in numbers.items() if b.validates)
+
+
+def _narrow(whole: Table, names: Sequence[str]) -> Table:
+    """Some columns and the first rows of a table; no notes of its own."""
+    at = [whole.headers.index(n) for n in names]
+    rows = tuple(tuple(row[i] for i in at) for row in whole.rows)
+    more = (f"{len(rows) - MOST_MODELS} more in the report.",) if len(rows) > MOST_MODELS else ()
+    left = frozenset(k for k, i in enumerate(at) if i in whole.left)
+    return Table(whole.title, tuple(names), rows[:MOST_MODELS], more, left)
+
+
+def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
+    good, count, valid = _held(found)
+    worst = Severity.PASS if good == count else Severity.FAIL
+    errata = len(found.errata)
+    return (
+        Chip("Numbers", f"{good} of {count} hold", worst, "compared"),
+        Chip("Validation", f"rests on {valid} numbers", Severity.PASS if valid else Severity.NOTE, "verdict"),
+        Chip("Errata", f"{errata} in the publication", Severity.NOTE if errata else Severity.PASS, "errata" if errata else ""),
+        Chip("Parameter files", f"{len(found.parameter_files)} made", Severity.NOTE, "parameter-files" if found.file_notes else ""),
     )  # fmt: skip
 
 
-def _sentence(study: Study) -> str:
-    judged = [c.passed for c in study.comparisons if c.passed is not None]
-    if not judged:
-        return f"{study.plan.title or study.plan.name}: no published evaluation of these data to compare with."
-    return f"{study.plan.title or study.plan.name}: {sum(judged)} of {len(judged)} published values lie within U95."
+def answer_table(found: Answer) -> Table:
+    """The rows as texts, 80 columns wide with three short published names.
+
+    Parameters
+    ----------
+    found : Answer
+
+    Returns
+    -------
+    Table
+        Symbol; ours with U95, also in per cent; each published column in digits that go with them; the difference to the
+        compared column over U95 as a number and a bar of `BAR` letters for one U95, ``!`` beyond. Of a publication, and of
+        models, the table that stands in the place of rows.
+    """
+    if found.table is not None:
+        cut = tuple(tuple(map(_cut, row)) for row in found.table.rows)
+        return replace(found.table, rows=cut, notes=(*found.table.notes, *found.notes))
+    short = [n.rsplit(" ", 1)[0] if n.rpartition(" ")[2].isdigit() else n for n in found.columns]
+    names = short if len(set(short)) == len(short) else list(found.columns)
+    is_judged = any(r.share is not None for r in found.rows)
+    rows = tuple((primed(r.symbol), *_cells(r), *((_bar(r),) if is_judged else ())) for r in found.rows)
+    headers = ("", "ours +- U95", *names, *(("difference/U95",) if is_judged else ()))
+    left = {0, *((len(headers) - 1,) if is_judged else ())}
+    return Table("Answer", headers, rows, found.notes, frozenset(left))
 
 
-def _chips(study: Study) -> tuple[Chip, ...]:
-    warned = sum(c.severity is Severity.WARN for c in study.checks)
-    return (Chip("Warnings", f"{warned}", Severity.WARN if warned else Severity.PASS, "checks"),)
+def _cut(text: str) -> str:
+    return text if len(text) <= WIDTH else f"{text[:WIDTH].rsplit(' ', 1)[0]} ..."
+
+
+def _cells(r: AnswerRow) -> tuple[str, ...]:
+    """Ours, and the published values with no more decimals than ours and than they have."""
+    value, u95 = with_u95(r.value, r.u95)
+    ours = (
+        f"{value} +- {u95} ({share_text(abs(r.u95 / r.value)) if r.value else 'zero'})"
+        if r.u95
+        else f"{value} {r.status}".strip()
+    )
+    printed = [p for p in r.published if p is not None]
+    places = max((_places(p) for p in printed), default=0)
+    if r.u95 and "e" not in value:
+        places = min(places, len(value.partition(".")[2]))
+    shown = (f"{p:.{places}f}" if p is not None and round(p, places) else number(p, 3) for p in r.published)
+    return (r.status if r.value is None else ours, *shown)
+
+
+def _places(value: float) -> int:
+    """Decimals that a value has, two digits at least."""
+    if not value:
+        return 0
+    least = 1 - int(np.floor(np.log10(abs(value))))
+    return next((d for d in range(max(least, 0), 12) if abs(round(value, d) - value) <= 1e-6 * abs(value)), 12)
+
+
+def _bar(r: AnswerRow) -> str:
+    if r.share is None:
+        return "-"
+    whole = min(round(BAR * abs(r.share)), BAR)
+    return f"{r.share:+.2f} {'#' * whole}{'!' if abs(r.share) > 1.0 else ''}".strip()

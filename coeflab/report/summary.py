@@ -9,6 +9,7 @@ from coeflab.fits.results.fit_result import Sweep
 from coeflab.law.coefficient import COVERS
 from coeflab.report import content
 from coeflab.report.acceptance import Acceptance
+from coeflab.report.answer import answer
 from coeflab.report.document import Document, Figure, Section, digest_of
 from coeflab.report.figures.estimator import estimator_figure
 from coeflab.report.figures.model import model_figures
@@ -40,7 +41,7 @@ def _study_summary(study: Study) -> Document:
     )
     return Document(
         study.plan.title or study.plan.name, "Summary on one page; the whole report holds budgets, checks and sources",
-        sections, study.plan.name, digest_of(study.inputs),
+        sections, study.plan.name, digest_of(study.inputs), answer=answer(study),
     )  # fmt: skip
 
 

@@ -53,7 +53,7 @@ def sweep_figure(sweep: Sweep, anchor: str) -> Figure:
             figure, BOTTOM + RESIDUALS + GAP, TOP - BOTTOM - RESIDUALS - GAP, across=across,
             up=limits(ys * factor, 0.08) or (-1.0, 1.0), name_up=f"{sweep.component}'{power}",
         )  # fmt: skip
-        fine = _fine(sweep) if sweep.value is not None else None
+        fine = fine_curve(sweep) if sweep.value is not None else None
         legend(figure, _points(main, sweep, left_out, factor) + _curves(main, sweep, fine, factor))
         lower, left, below = _residuals(figure, sweep, across)
         panels = (
@@ -85,8 +85,8 @@ def _series(sweep: Sweep, left_out: list[LeftOut], fine: Fine | None) -> list[Se
     return out
 
 
-def _fine(sweep: Sweep) -> Fine:
-    """Settings, the recommended curve there and the half-width of its band."""
+def fine_curve(sweep: Sweep) -> Fine:
+    """Settings, the recommended curve there and the half-width of its band, each of shape (m,)."""
     at, mean, half = sweep.curve
     x = np.linspace(float(np.min(sweep.x, initial=0.0)), float(np.max(sweep.x, initial=0.0)), FINE)
     bent = PchipInterpolator(at, np.stack([mean, half]), axis=1)(x)

@@ -17,7 +17,8 @@ from coeflab.core.provenance import InputFile, work
 from coeflab.core.table import Table
 from coeflab.core.types import Array
 from coeflab.report import acceptance as acceptance_tables
-from coeflab.report.acceptance import BASES, Acceptance, Basis, Compared, ComparedTable
+from coeflab.report.acceptance import BASES, Acceptance, Basis, Compared, ComparedTable, overview, share
+from coeflab.report.answer import answer
 from coeflab.report.document import Document, Figure, Panel, Section, digest_of, published_reproduction
 from coeflab.report.figures.panel import BOTTOM, COLUMNS, LEGEND_ROW, RIGHT, WIDTH, drawing, height_of, legend, ticks
 from coeflab.report.figures.series import numbers, points, tagged
@@ -73,18 +74,6 @@ def allowance_figure(found: Acceptance, anchor: str) -> Figure:
         legend(figure, handles, BOTTOM + body)
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, CAPTION, description, tuple(panels))
-
-
-def share(r: Compared) -> float:
-    """Difference over what is allowed, of a limit the share that is used; NaN where nothing was found."""
-    if r.found is None or r.difference is None:
-        return float("nan")
-    if r.at_most:
-        limit = r.against + r.tolerance * (abs(r.against) if r.relative else 1.0)
-        return max(r.found, 0.0) / limit if limit > 0.0 else (0.0 if r.holds else float("inf"))
-    if r.tolerance == 0.0:
-        return 0.0 if r.holds else float(np.copysign(np.inf, r.difference))
-    return r.difference / r.tolerance
 
 
 def _height(count: int) -> float:
@@ -194,7 +183,7 @@ def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
         published_reproduction(found, inputs),
     )
     works = tuple((k, work(k)) for k in found.citations)
-    return Document(found.title, SUBTITLE, sections, found.name, digest_of(inputs), works)
+    return Document(found.title, SUBTITLE, sections, found.name, digest_of(inputs), works, answer=answer(found))
 
 
 SUBTITLE = "A publication reproduced: every number and what it is held against"
@@ -227,30 +216,6 @@ def headline(found: Acceptance) -> tuple[str, ...]:
     if again:
         first += f" {sum(r.holds for r in again)} of {len(again)} comparisons meet numbers among them another way, and do not count."
     return first, second
-
-
-def overview(found: Acceptance) -> Table:
-    """One row a table of the publication."""
-    rows = tuple(
-        (
-            t.title,
-            t.source,
-            f"{sum(r.holds for r in t.rows)} of {len(t.rows)}",
-            _closest(t),
-            "pass" if t.holds else "fail",
-        )
-        for t in found.tables
-    )
-    notes = (
-        "used: the largest difference as a share of what is allowed, where that is not zero; of a limit the share that is reached",
-    )
-    headers = ("what", "of the publication", "hold", "used", "verdict")
-    return Table("Tables of the publication", headers, rows, notes, frozenset({0, 1, 4}))
-
-
-def _closest(t: ComparedTable) -> str:
-    shares = [abs(share(r)) for r in t.rows if r.found is not None and (r.tolerance > 0.0 or r.at_most)]
-    return f"{100.0 * max(shares):.0f} %" if shares else "-"
 
 
 def figures(found: Acceptance) -> tuple[Figure, ...]:

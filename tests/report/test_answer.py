@@ -1,0 +1,309 @@
+"""The first page: what its rows, verdicts, sentence, pictures and table say."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coeflab.cli.show import plain_lines
+from coeflab.law.coefficient import Coefficient, Status
+from coeflab.report import answer as first_page
+from coeflab.report.answer import answer, answer_table
+from coeflab.report.content import document
+from coeflab.report.document import Answer, AnswerRow, Section
+from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, slope_figure
+from coeflab.report.sections import acceptance as acceptance_document
+from coeflab.report.summary import acceptance_summary, study_summary
+from coeflab.study.study import PlannedTow, Study
+from coeflab.study.towed import Towed, TowedRow
+from coeflab.vehicle.reference import PublishedValue, Reference, Relation, compare_set
+from tests.report.studies import ENDLESS, FEW, FULL, HALF, HOSTILE, LENGTH, small_study
+from tests.report.test_acceptance_document import DRAWN, found
+
+
+def reference(relation: Relation, values: dict[str, str], name: str, **changes) -> Reference:
+    made = {
+        "name": name, "citation": "synthetic", "place": "Table 4, column 2", "body": "body of tow", "relation": relation,
+        "campaigns": ("tow",) if relation is Relation.RE_ANALYSIS else (), "scaling": LENGTH, "other_scaling": None, "note": "",
+        "values": tuple(PublishedValue(s, v, float(v)) for s, v in values.items()), "literature": (), "uncertainties": {},
+        "reference_point": None,
+    }  # fmt: skip
+    return Reference(**(made | changes))
+
+
+def compared(*references: Reference) -> Study:
+    """The small study beside published columns."""
+    study = small_study(FULL)
+    made = compare_set(study.fits[0].coefficients, references)
+    return replace(study, references=references, comparisons=made)
+
+
+def every(sections: Sequence[Section]) -> list[Section]:
+    return [s for one in sections for s in (one, *every(one.subsections))]
+
+
+REPORT = reference(Relation.RE_ANALYSIS, {"Yv": "-0.029834", "Nv": "-0.0128"}, "report")
+QUOTED = reference(Relation.QUOTED, {"Yv": "-0.0298", "Nv": "-0.0128", "Nr": "-0.0044"}, "experiment 1990")
+OTHER = reference(Relation.CROSS_BODY, {"Yv": "-0.0303", "Nr": "-0.0040"}, "steady CFD", body="another hull")
+
+
+@pytest.fixture(scope="module")
+def beside() -> Answer:
+    return answer(compared(OTHER, REPORT, QUOTED))
+
+
+def test_the_experiment_is_the_first_column_and_the_one_compared(beside: Answer):
+    assert (beside.columns, beside.compared) == (("experiment 1990", "steady CFD"), "experiment 1990")
+    assert [r.symbol for r in beside.rows] == ["Yv", "Nv", "Nr"]
+    assert beside.rows[2].published == (-0.0044, -0.0040)
+    assert beside.rows[1].published == (-0.0128, None)
+
+
+def test_a_quoted_column_has_the_digits_of_the_report_that_it_rounds(beside: Answer):
+    assert beside.rows[0].published[0] == -0.029834
+    rounded_otherwise = reference(Relation.RE_ANALYSIS, {"Yv": "-0.0271"}, "report")
+    assert answer(compared(rounded_otherwise, QUOTED), drawn=False).rows[0].published[0] == -0.0298
+
+
+def test_difference_share_and_verdict_belong_together(beside: Answer):
+    yv, nv, nr = beside.rows
+    for row in (yv, nv):
+        assert row.difference == row.value - row.published[0]
+        assert row.agrees is (abs(row.share) <= 1.0)
+    assert (yv.agrees, nv.agrees) == (True, False)
+    assert (nr.value, nr.status, nr.difference, nr.share, nr.agrees) == (None, "no data", None, None, None)
+
+
+def test_only_a_re_analysis_gives_a_verdict():
+    made = answer(compared(QUOTED, OTHER), drawn=False)
+    assert made.rows[0].difference is not None
+    assert [r.agrees for r in made.rows] == [None, None, None]
+    assert "within" not in made.sentence
+    assert "differ" not in made.sentence
+
+
+def test_no_verdict_on_a_value_that_was_moved_for_it():
+    """A comparison about the point of its source is not one of the value that the row shows."""
+    away = replace(REPORT, reference_point=np.array([-0.5, 0.0, 0.0]))
+    made = answer(compared(away), drawn=False)
+    assert all(r.published == (None,) and r.difference is None and r.agrees is None for r in made.rows)
+
+
+def test_published_values_are_primed_by_our_length():
+    longer = replace(QUOTED, scaling=replace(LENGTH, length=4.0, length_name="LBP"))
+    made = answer(compared(longer, OTHER), drawn=False)
+    assert made.rows[0].published[0] == pytest.approx(-0.0298 * 4.0)  # (4 m / 2 m)^2
+    assert made.rows[2].published[0] == pytest.approx(-0.0044 * 16.0)
+
+
+def test_one_reading_in_the_column_the_other_in_a_note():
+    twice = replace(OTHER, other_scaling=replace(LENGTH, length=2.2, length_name="LWL"))
+    made = answer(compared(QUOTED, twice), drawn=False)
+    assert made.rows[0].published[1] == -0.0303
+    assert any("read with LOA (LWL: Yv' +21.0 %, Nr' +46.4 %)" in note for note in made.notes)
+
+
+@pytest.mark.parametrize(
+    ("references", "sentence"),
+    [
+        ((REPORT, QUOTED), "Study tow re-analysed: Nv' of two static derivatives of Table 4 differs by more than U95; no rotating-arm data."),
+        ((reference(Relation.RE_ANALYSIS, {"Yv": "-0.0298"}, "report"),),
+         "Study tow re-analysed: the static derivative of Table 4 agrees within U95; no rotating-arm data."),
+        ((reference(Relation.RE_ANALYSIS, {"Yv": "-0.0298", "Nv": "-0.0138"}, "report"),),
+         "Study tow re-analysed: both static derivatives of Table 4 agree within U95; no rotating-arm data."),
+        ((), "Study tow: two of three wanted coefficients found, each with U95; no rotating-arm data."),
+    ],
+)  # fmt: skip
+def test_sentence(references: tuple[Reference, ...], sentence: str):
+    assert answer(compared(*references), drawn=False).sentence == sentence
+
+
+@pytest.mark.parametrize("angles", [FULL, HALF, FEW])
+@pytest.mark.parametrize("named", ["tow", HOSTILE, ENDLESS])
+def test_any_name_and_any_sweep(angles: list[float], named: str):
+    made = answer(small_study(angles, named=named), drawn=False)
+    assert len(made.sentence) <= 160
+    assert all(len(note) <= 244 for note in made.notes)
+    assert len(made.notes) <= 4
+    assert [c.name for c in made.chips] == ["Stability", "Largest U95", "Warnings", "Exports"]
+    assert all(len(c.text.split()) <= 6 for c in made.chips)
+    folded = replace(answer_table(made), notes=())
+    assert max(map(len, plain_lines(folded))) <= 80
+
+
+def test_why_there_is_no_value():
+    made = answer(small_study(FEW), drawn=False)
+    assert [r.status for r in made.rows] == ["too few points", "too few points", "no data"]
+    assert "too few points" in made.sentence
+
+
+def test_a_rejected_form_has_a_value_and_no_interval():
+    study = small_study(FULL)
+    fit = study.fits[0]
+    rejected = tuple(
+        replace(c, status=Status.FORM_REJECTED) if c.symbol == "Yv" else c for c in fit.coefficients.coefficients
+    )
+    study = replace(study, fits=(replace(fit, coefficients=replace(fit.coefficients, coefficients=rejected)),))
+    row = answer(study, drawn=False).rows[0]
+    assert (row.u95, row.status) == (None, "form rejected")
+    assert "form rejected" in answer_table(answer(study, drawn=False)).rows[0][1]
+
+
+def test_an_own_tow_stands_in_for_what_no_test_gives(monkeypatch: pytest.MonkeyPatch, beside: Answer):
+    study = compared(OTHER, REPORT, QUOTED)
+    tow = PlannedTow("AFF-8", "AFF-8", campaign="own_tow", columns=("experiment 1990",))
+    value = Coefficient("Nr", -0.0041, 0.0003, Status.OK, "AFF-8", campaign="own_tow")
+    rows = tuple(
+        TowedRow(s, value if s == "Nr" else None, None, "", "", (None,), verdict=True) for s in study.plan.wanted
+    )
+    monkeypatch.setattr(first_page, "towed", lambda _: (Towed(tow, "AFF-8", ("experiment 1990",), rows),))
+    made = answer(replace(study, plan=replace(study.plan, tows=(tow,))), drawn=False)
+    row = made.rows[2]
+    assert (row.value, row.u95, row.source, row.agrees) == (-0.0041, 0.0003, "own_tow", None)
+    assert row.difference == pytest.approx(0.0003)
+    assert made.rows[:2] == beside.rows[:2]
+    assert "Nr': own tow own_tow; no verdict." in made.notes
+    assert "no rotating-arm data" not in made.sentence
+
+
+def test_the_slope_figure_shows_quotients_and_where_they_end(beside: Answer):
+    study = small_study(FULL)
+    sweep = study.fits[0].sweep("Yv")
+    (panel,) = beside.slope.panels
+    shown = {(s.key, s.is_curve): s for s in panel.series}
+    mine = sweep.x > 0.0
+    np.testing.assert_allclose(shown["plus", False].x, sweep.x[mine], rtol=1e-5)
+    np.testing.assert_allclose(shown["plus", False].y, (sweep.y[mine] - sweep.at_rest[0]) / sweep.x[mine], rtol=1e-5)
+    np.testing.assert_allclose(shown["minus", False].x, -sweep.x[sweep.x < 0.0], rtol=1e-5)
+    assert shown["plus", True].y[0] == pytest.approx(sweep.value, rel=1e-5)
+    np.testing.assert_allclose(shown["value", True].y, beside.rows[0].value, rtol=1e-5)
+    assert set(shown["published", True].y) == {-0.029834}
+    assert panel.up[0] < min(s for series in panel.series for s in series.y)
+
+
+def test_the_band_of_the_slope_is_that_of_the_row(beside: Answer):
+    """Its U95 may hold more than scatter and form: the grid of a computation."""
+    study = compared(REPORT)
+    wide = answer(study).slope.svg
+    doubled = replace(beside.rows[0], u95=3.0 * beside.rows[0].u95)
+    assert slope_figure(study.fits[0].sweep("Yv"), doubled).svg != wide
+
+
+def test_a_point_that_does_not_carry_the_slope_is_a_cross():
+    study = small_study(FULL)
+    sweep = replace(study.fits[0].sweep("Yv"), wrong=np.array([2]))
+    made = slope_figure(sweep, AnswerRow("Yv", sweep.value, sweep.u95))
+    shown = {(s.key, s.is_curve): s for s in made.panels[0].series}
+    assert shown["wrong", False].notes == (f"point {sweep.labels[2]}",)
+    assert len(shown["minus", False].x) == int(np.sum(sweep.x < 0.0)) - 1
+    assert f"Without point {sweep.labels[2]}" in made.caption
+
+
+def test_the_forest_is_over_the_compared_column(beside: Answer):
+    (panel,) = beside.forest.panels
+    shown = {s.key: s for s in panel.series}
+    yv, nv, _ = beside.rows
+    assert shown["ours"].x == pytest.approx((yv.value / yv.published[0], nv.value / nv.published[0]), rel=1e-5)
+    assert shown["column0"].x == (1.0, 1.0, 1.0)
+    assert shown["column1"].x == pytest.approx((0.0303 / 0.029834, 0.0040 / 0.0044), rel=1e-5)
+    assert shown["column1"].y == (3.0, 1.0)
+    assert panel.across[0] < (yv.value + yv.u95) / yv.published[0]
+    assert "no data" in beside.forest.svg
+
+
+def test_a_forest_says_what_lies_outside():
+    far = AnswerRow("Yv", -0.9, 0.01, published=(-0.02,))
+    assert "Ours lies outside the frame: Yv'." in forest_figure((far,), ("experiment",), "experiment").caption
+    assert forest_figure((replace(far, published=(None,)),), ("experiment",), "experiment") is None
+
+
+def test_without_published_values_the_forest_is_over_ours():
+    (panel,) = answer(small_study(FULL)).forest.panels
+    assert panel.series[0].x == (1.0, 1.0)
+
+
+def test_senses_in_the_sketch():
+    """Bow to the right in both views: r turns it down, q up; y and z point down."""
+    svg = axes_figure().svg
+    for text in ("from above", "from starboard"):
+        assert text in svg
+    place = {said: float(y) for y, said in re.findall(r'<text [^>]*?y="([\d.]+)"[^>]*>(?:<tspan[^>]*>)?(\w)', svg)}
+    ahead = place["x"]
+    assert place["r"] > ahead
+    assert place["y"] > ahead
+    assert place["z"] > ahead
+    assert place["q"] < ahead + 1.0
+
+
+def test_every_document_has_its_answer():
+    study = compared(OTHER, REPORT, QUOTED)
+    whole = document(study)
+    assert whole.answer == study_summary(study).answer
+    assert whole.answer.sentence == answer(study).sentence
+    linked = {*(r.anchor for r in whole.answer.rows), *(c.anchor for c in whole.answer.chips)} - {""}
+    assert linked <= {s.anchor for s in every(whole.sections)}
+    assert "campaign-tow-yv" in linked
+    made = found(2.05)
+    published = acceptance_document.document(made)
+    assert acceptance_summary(made, published).answer == published.answer == answer(made)
+
+
+def test_a_publication_has_its_tables_in_the_place_of_rows():
+    made = answer(found(2.5))
+    assert (
+        made.sentence
+        == "Boat: 1 of 3 numbers outside what is allowed; 2 of them validate: predicted, or printed and recomputed."
+    )
+    assert made.rows == ()
+    assert answer_table(made).rows == (("Turns", "2 of 3", "500 %", "fail"),)
+    assert [c.severity.value for c in made.chips] == ["fail", "pass", "note", "note"]
+    assert made.slope.anchor == "answer-figure"
+    assert answer(found(2.05)).sentence.startswith("Boat: all 3 numbers within what is allowed;")
+
+
+def test_long_names_are_cut_on_a_terminal_only():
+    long = found(2.05)
+    long = replace(long, tables=(replace(long.tables[0], title="Steady turns " * 12),))
+    made = answer(long, drawn=False)
+    assert made.table.rows[0][0] == "Steady turns " * 12
+    assert max(map(len, plain_lines(answer_table(made)))) <= 80
+
+
+def test_a_drawing_under_another_anchor_refers_to_itself():
+    svg = '<svg aria-labelledby="a-b-title a-b-desc"><path id="a-b-0"/><use href="#a-b-0"/><g clip-path="url(#a-b-1)"/></svg>'
+    made = renamed(replace(DRAWN, svg=svg), "answer-figure").svg
+    assert "a-b" not in made.replace("answer-figure", "")
+    assert made.count("answer-figure-0") == 2
+
+
+@pytest.mark.slow
+def test_suboff(suboff: Study):
+    made = answer(suboff)
+    assert (
+        made.sentence
+        == "DARPA SUBOFF re-analysed: all four static derivatives of Table 4 agree within U95; no rotating-arm data."
+    )
+    assert made.columns == ("experiment 1990", "steady CFD", "PMM CFD 2012")
+    assert [r.source for r in made.rows] == ["suboff_roddy_2"] * 2 + ["suboff_roddy_1"] * 2 + ["", ""]
+    assert [r.agrees for r in made.rows] == [True] * 4 + [None] * 2
+    assert [r.published[0] for r in made.rows] == [-0.027834, -0.013648, -0.01391, 0.010324, 0.0052, -0.0044]
+    lines = plain_lines(replace(answer_table(made), notes=()))
+    assert max(map(len, lines)) <= 80
+    assert lines[2].split() == [
+        "Yv'",
+        "-0.0262",
+        "+-",
+        "0.0027",
+        "(10",
+        "%)",
+        "-0.0278",
+        "-0.0281",
+        "-0.0303",
+        "+0.60",
+        "#####",
+    ]
+    assert lines[6].split() == ["Yr'", "no", "data", "0.0052", "0.0044", "0.0046", "-"]
