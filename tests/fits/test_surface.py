@@ -231,7 +231,7 @@ def test_two_variables_that_the_symmetry_turns_around_count_by_their_product():
 def test_a_variable_that_never_varies_is_named():
     table = campaign()
     flat = replace(table, motion={**table.motion, "w": np.zeros(len(table))})
-    with pytest.raises(InputError, match=r"found alpha never varies in the rows of C_D .*polynomial takes beta alone"):
+    with pytest.raises(InputError, match=r"found alpha never varies in the rows of C_D .*polynomial for beta alone"):
         fit(flat, degree=3, responses="C_D")
 
 

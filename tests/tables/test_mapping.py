@@ -360,7 +360,7 @@ def test_cells_without_a_number_are_excluded_and_rows_without_a_setting_left_out
     assert {e.reason for e in table.exclusions} == {"no number in the source"}
     assert table.usable["Y"].tolist() == [True, False, False, False, True]
     assert table.lines == (2, 3, 4, 5, 7)
-    assert "left out for want of Drift: line 6" in table.notes
+    assert "left out, no Drift: line 6" in table.notes
 
 
 def test_cells_and_labels_and_standard_errors(tmp_path: Path) -> None:

@@ -132,7 +132,7 @@ def test_a_plan_with_flipped_literature_fails(tmp_path: Path) -> None:
     assert {(c.subject, c.severity.value) for c in doubts(study)} == {("p Yr'", "warn"), ("p Nr'", "fail")}
     (index,) = (c for c in study.checks if c.name == "stability" and c.subject == "p G_h")
     assert "stable" not in index.statistic
-    assert "Nr' - xG'm' is not below zero: it drives what it should damp" in index.comment
+    assert "Nr' - xG'm' is not negative: it drives the motion instead of damping it" in index.comment
 
 
 def arm(folder: Path, inertia: bool, declared: str, hull: str = "") -> Study:
