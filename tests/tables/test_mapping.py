@@ -337,7 +337,7 @@ def test_all_complaints_about_columns_come_at_once(tmp_path: Path) -> None:
         'column "Fz": found no unit; expected a unit of force',
         'column "Mz [N]": found [N], a unit of another dimension',
         'column "Cx [-]": found "My" and "Cx" as M; expected one of them',
-        'column "K": found the column "K", of which nothing is known',
+        'column "K": found the unidentified column "K"',
         'found no column "Fx"; expected one of "Drift", "Fy"',
     ):
         assert any(part in line for line in lines), part

@@ -210,7 +210,7 @@ def test_values_agree_with_each_other(suboff: Study, name: str) -> None:
 
 Edit = Callable[[dict[str, Any]], object]
 BAD: list[tuple[Edit, list[str]]] = [
-    (lambda d: d["coefficients"].append(d["coefficients"][0]), ["stands more than once"]),
+    (lambda d: d["coefficients"].append(d["coefficients"][0]), ["occurs more than once"]),
     (lambda d: d["coefficients"][0].update(symbol="Yv"), ["without prime", "Yv'"]),
     (lambda d: d["coefficients"][0].update(symbol="Qv'"), ["coefficients.0", "SNAME derivative"]),
     (lambda d: d["coefficients"][0].update(value="big"), ["coefficients.0.value", 'found "big"', "a valid number"]),
