@@ -57,7 +57,7 @@ def test_json_holds_the_campaigns_and_the_test(coeflab: Run) -> None:
 
 def test_one_campaign_has_no_campaign_to_leave_out(coeflab: Run) -> None:
     done = coeflab("fit", "suboff_cfd_barehull", "--fit", "manoeuvring_model", "--terms", "Yv Yv|v|")
-    assert "Each campaign left out in turn: not available, as there is one campaign." in done.stdout
+    assert "Each campaign left out in turn: needs two campaigns." in done.stdout
     assert "Campaigns of the joint fit" not in done.stdout
 
 
