@@ -369,7 +369,14 @@ def _models(study: Study) -> tuple[Section, ...]:
         "number; outside the domain the stated rule holds.",
     )
     each = tuple(noun_tables.terms(m) for m in models)
-    return (Section("models", "Fitted models", text, filled(model_tables.quality(models), model_tables.campaigns(study.fits), *each)),)
+    return (
+        Section(
+            "models",
+            "Fitted models",
+            text,
+            filled(model_tables.quality(models), model_tables.campaigns(study.fits), *each),
+        ),
+    )
 
 
 def _laws(study: Study) -> tuple[Section, ...]:
