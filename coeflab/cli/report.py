@@ -16,11 +16,12 @@ def command(
     to: str = typer.Option("html,pdf", help="Formats, separated by commas; `coeflab formats reporting` lists them."),
     out: Path | None = typer.Option(None, help="Folder for the files; default reports/STUDY."),
     section: list[str] = typer.Option([], help="Only this section, by its anchor or title; may be repeated."),
+    full: bool = typer.Option(False, "--full", help="With the appendix: every budget, point, curve, check and loss."),
     summary: bool = typer.Option(False, "--summary", help="One page: verdict, coefficients, main figure, stability."),
     open_: bool = typer.Option(False, "--open", help="Show the first file in the browser."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Compute a study and write its report: the same content in every format, whole, in parts or on one page.
+    """Compute a study and write its report: the core, the same in every format; --full adds the appendix.
 
     Nothing is written unless everything could be rendered. Equal inputs give equal files, byte for byte.
     """
@@ -35,13 +36,15 @@ def command(
         raise InputError("no format", f"one or more of {', '.join(REPORTERS.names())}", column="--to")
     if summary and section:
         raise InputError("--summary with --section", "one of them: a summary has one page")
+    if summary and full:
+        raise InputError("--summary with --full", "one of them: a summary has one page")
     for name in formats:
         REPORTERS.load(name)
     with show.progress(json) as say:
         found = studied(study, say)
     # Outside of the progress display, whose thread would keep the drawing on one core.
     show.step("drawing the figures", json)
-    made = report_of(found, short=summary)
+    made = report_of(found, short=summary, full=full or bool(section))
     document = only(made.document, section)
     files: dict[str, bytes] = {}
     with show.progress(json) as say:

@@ -21,6 +21,7 @@ from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
 
 Progress = Callable[[str], None]
+COMPARED, REPRODUCE = "compared", "reproduce"
 
 
 @brief
@@ -58,19 +59,61 @@ def studied(study: str, progress: Progress = lambda _: None) -> Study | Acceptan
 
 
 @one_thread()
-def report_of(found: Study | Acceptance, *, short: bool = False) -> Report:
+def report_of(found: Study | Acceptance, *, short: bool = False, full: bool = False) -> Report:
     """The report of what was computed; figures are drawn on several cores while this process has a single thread.
 
     Parameters
     ----------
     found : Study or Acceptance
     short : bool
-        One page instead of everything.
+        One page.
+    full : bool
+        With the appendix.
     """
     if isinstance(found, Study):
-        return Report(summary.study_summary(found) if short else content.document(found), found.failed)
+        if short:
+            return Report(_one_page(summary.study_summary(found)), found.failed)
+        made = content.document(found, full=full)
+        return Report(_commanded(made) if full else made, found.failed)
     whole = acceptance_document.document(found, _inputs(found.name))
-    return Report(summary.acceptance_summary(found, whole) if short else whole, not found.holds)
+    if short:
+        return Report(_one_page(summary.acceptance_summary(found, whole)), not found.holds)
+    parted = _parted(whole, found)
+    return Report(_commanded(parted) if full else content.core(parted), not found.holds)
+
+
+def _one_page(made: Document) -> Document:
+    """The answer alone, where there is one: it is the page."""
+    return made if made.answer is None else replace(made, sections=())
+
+
+LONGEST = 8  # rows of a table of numbers that the core prints
+
+
+def _parted(whole: Document, found: Acceptance) -> Document:
+    """Long tables whose every number holds belong to the appendix; the overview counts them."""
+    shown = {t.title for t in found.tables if not t.holds}
+
+    def marked(section: Section) -> Section:
+        if section.anchor != COMPARED:
+            return section
+        long = f"Tables of more than {LONGEST} rows whose every number holds: coeflab report {found.name} --full."
+        parts = tuple(
+            replace(s, appendix=s.title not in shown and any(len(t.rows) > LONGEST for t in s.tables))
+            for s in section.subsections
+        )
+        return replace(section, paragraphs=(*section.paragraphs, long), subsections=parts)
+
+    return replace(whole, sections=tuple(map(marked, whole.sections)))
+
+
+def _commanded(whole: Document) -> Document:
+    """The command that makes it again, with its appendix."""
+    sections = tuple(
+        replace(s, code=tuple(f"{line} --full" for line in s.code)) if s.anchor == REPRODUCE else s
+        for s in whole.sections
+    )
+    return replace(whole, sections=sections)
 
 
 def only(document: Document, names: Sequence[str]) -> Document:

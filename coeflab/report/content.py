@@ -6,6 +6,8 @@ Independent parts of a report, drawn on other cores while this one goes on.
 from __future__ import annotations
 
 import gc
+import re
+import shlex
 import sys
 import threading
 import warnings
@@ -19,19 +21,19 @@ from multiprocessing import current_process, get_all_start_methods, get_context
 from typing import TypeVar
 
 from coeflab.core.machine import cores, end_with_parent
-from coeflab.core.table import Severity
-from coeflab.core.wording import listed
+from coeflab.core.table import Severity, Table
+from coeflab.core.wording import Verbatim, listed
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.law.coefficient import COVERS, Status
 from coeflab.law.symbols import primed
 from coeflab.report.acceptance import headline, held_of_study
 from coeflab.report.answer import answer
 from coeflab.report.bench import bench_of
-from coeflab.report.document import Document, Section, digest_of, reproduction
+from coeflab.report.document import Document, Section, digest_of, reproduction, shipped_name
 from coeflab.report.figures.svg import settings
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.body import added_mass_sections, body_sections
 from coeflab.report.sections.campaign import anchor, budget_sections, campaign_section, filled, tow_sections
+from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.data_quality import quality_sections
 from coeflab.report.sections.parameter_file import export_sections, in_words, manoeuvre_sections, stability_sections
@@ -104,53 +106,155 @@ def _safe() -> bool:
 FEW = 8
 
 
-def document(study: Study) -> Document:
-    """The whole report of a study."""
+def document(study: Study, *, full: bool = True) -> Document:
+    """The report of a study: the core, and after it the appendix.
+
+    Parameters
+    ----------
+    study : Study
+    full : bool
+        With the appendix, whose figures take most of the time.
+    """
     verbatim = users_texts(study)
     with keeping(verbatim):
-        return replace(_document(study), verbatim=verbatim, bench=bench_of(study))
+        made = _document(study, full)
+        return replace(made if full else core(made), verbatim=verbatim, bench=bench_of(study))
 
 
-def _document(study: Study) -> Document:
+def core(document: Document) -> Document:
+    """A report without what belongs to the appendix; no paragraph, note or caption is longer than three lines."""
+    sections = _kept(document.sections)
+    known = {s.anchor for s in _every(sections)}
+    answer = document.answer
+    if answer is not None:
+        rows = tuple(replace(r, anchor=_found(r.anchor, known)) for r in answer.rows)
+        answer = replace(
+            answer, rows=rows, chips=tuple(replace(c, anchor=_found(c.anchor, known)) for c in answer.chips)
+        )
+    return replace(document, sections=sections, answer=answer)
+
+
+LINES = 240  # letters of three lines
+
+
+def three_lines(texts: Sequence[str]) -> tuple[str, ...]:
+    """Texts of at most three lines: a longer one ends at a sentence, else at a part of one; what a user wrote stays whole."""
+    out: list[str] = []
+    for text in texts:
+        if isinstance(text, Verbatim) or len(text) <= LINES:
+            out.append(text)
+            continue
+        piece = ""
+        for part in (p for s in re.split(r"(?<=[.;:]) (?=\S)", text) for p in _parted(s)):
+            if piece and len(piece) + 1 + len(part) > LINES:
+                out.append(piece)
+                piece = part
+            else:
+                piece = f"{piece} {part}".strip()
+        out.append(piece)
+    return tuple(out)
+
+
+def _parted(sentence: str) -> list[str]:
+    """The sentence, or its parts between commas where it is longer than three lines."""
+    return re.split(r"(?<=,) (?=\S)", sentence) if len(sentence) > LINES else [sentence]
+
+
+def first_lines(text: str) -> str:
+    """The first sentences of a caption, three lines at most; the whole report has the rest."""
+    return text if len(text) <= LINES else three_lines((text,))[0]
+
+
+def _found(anchor: str, known: set[str]) -> str:
+    return anchor if anchor in known or not anchor else "coefficients" if "coefficients" in known else ""
+
+
+def _every(sections: Sequence[Section]) -> Iterator[Section]:
+    for s in sections:
+        yield s
+        yield from _every(s.subsections)
+
+
+def _kept(sections: Sequence[Section]) -> tuple[Section, ...]:
+    return tuple(
+        replace(
+            s,
+            paragraphs=three_lines(s.paragraphs),
+            tables=tuple(replace(t, notes=three_lines(t.notes)) for t in s.tables),
+            figures=tuple(replace(f, caption=first_lines(f.caption)) for f in s.figures),
+            subsections=_kept(s.subsections),
+        )
+        for s in sections
+        if not s.appendix
+    )
+
+
+def _document(study: Study, full: bool) -> Document:
     places: set[str] = set()
-    own = [anchor(f"campaign {fit.campaign}", places) for fit in study.fits]
-    alone = [partial(_alone, study, fit, place, places) for fit, place in zip(study.fits, own, strict=True)]
+    own = [anchor(f"campaign {fit.campaign}", places) for fit in study.fits] if full else []
+    alone = [partial(_alone, study, fit, place, places) for fit, place in zip(study.fits, own, strict=False)]
     sizes = [len(f.sweeps) for f in study.fits]
     with settings(), begun(alone if sum(sizes) > FEW else (), sizes) as drawn:
-        about = [
-            *budget_sections(study),
-            *body_sections(study),
-            *added_mass_sections(study),
-            *stability_sections(study),
-            *manoeuvre_sections(study),
-        ]
+        answered = answer(study)
+        moving = [*stability_sections(study), *manoeuvre_sections(study)]
+        conventions = conventions_section(study, drawn=answered.axes is None)
+        appendix = _appendix(study) if full else ()
         campaigns = tuple(drawn() or [job() for job in alone])
     sections = (
         verdict(study),
         *_comparison(study),
         *tow_sections(study),
-        _coefficients(study),
+        coefficients_section(study),
         *_models(study),
         *_laws(study),
-        *about,
+        *moving,
         *export_sections(study),
-        Section(
-            "campaigns",
-            "Campaigns",
-            ("Every coefficient and every fitted model with its points, its curves and what was tried.",),
-            subsections=campaigns,
-        ),
-        *quality_sections(study),
         _checks(study),
-        conventions_section(study),
+        conventions,
         _provenance(study),
         reproduction(study),
+        *appendix,
+        *_campaigns(campaigns),
     )
+    if not full:
+        sections = (replace(sections[0], paragraphs=(*sections[0].paragraphs, also(study))), *sections[1:])
     names = ", ".join(dict.fromkeys(f.body.replace("_", " ") for f in study.fits))
     return Document(
         study.plan.title or study.plan.name, f"Coefficients of {names}", sections, study.plan.name, digest_of(study.inputs),
-        tables.works(study), answer=answer(study),
+        tables.works(study), answer=answered,
     )  # fmt: skip
+
+
+def _appendix(study: Study) -> tuple[Section, ...]:
+    found = (
+        *budget_sections(study),
+        *body_sections(study),
+        *added_mass_sections(study),
+        *quality_sections(study),
+    )
+    return tuple(replace(s, appendix=True) for s in found)
+
+
+def _campaigns(found: tuple[Section, ...]) -> tuple[Section, ...]:
+    if not found:
+        return ()
+    text = ("Every coefficient and every fitted model with its points, its curves and what was tried.",)
+    return (Section("campaigns", "Campaigns", text, subsections=found, appendix=True),)
+
+
+def also(study: Study) -> str:
+    """What the whole report holds beside the core, in one line."""
+    name = shipped_name(study.plan) or (study.plan.file.name if study.plan.file else "PLAN")
+    held = [
+        (len(study.budgets), "uncertainty budget"),
+        (len(study.hulls), "added-mass matrix", "added-mass matrices"),
+        (len(study.fits), "fit with every point and curve", "fits with every point and curve"),
+        (len(study.checks), "check"),
+        (sum(made.loss is not None for made in study.exports), "loss of an export", "losses of exports"),
+    ]
+    each = [f"{n} {names[0] if n == 1 else (*names, f'{names[0]}s')[1]}" for n, *names in held if n]
+    listing = f"{', '.join(each)}, the quality of the data" if each else "the quality of the data"
+    return f"coeflab report {shlex.quote(name)} --full adds the appendix: {listing}."
 
 
 def _alone(study: Study, fit: FitResult, place: str, places: set[str]) -> Section:
@@ -169,48 +273,41 @@ def _re_analysis(study: Study) -> list[str]:
     ours = [c for c in study.comparisons if c.relation is Relation.RE_ANALYSIS]
     judged = [c for c in ours if c.passed is not None]
     if not judged:
-        return ["No published evaluation of these data is held against the results, so there is no verdict on them."]
+        return ["No published evaluation of these data is compared with the results: no verdict on them."]
     failed = [c for c in judged if c.passed is False]
     count = _counted(len(judged), "comparison")
     if failed:
         out = [
-            f"{len(failed)} of {count} with the authors' own evaluation of the same data failed: "
-            f"{listed([_named(c) for c in failed])} lies further from the published value than U95."
+            f"{len(failed)} of {count} with the authors' own evaluation of the same data failed, beyond U95: "
+            f"{listed([_named(c) for c in failed])}."
         ]
     else:
         verb = "passed" if len(judged) == 1 else "all passed"
-        out = [
-            f"{count} with the authors' own evaluation of the same data {verb}: each difference lies within our U95."
-        ]
+        out = [f"{count} with the authors' own evaluation of the same data {verb}: every difference within U95."]
     if len(ours) > len(judged):
-        rest = listed([_named(c) for c in ours if c.passed is None])
-        out.append(f"No verdict could be given for {rest}, which has no U95.")
-    out.append(" ".join(headline(held_of_study(study))))
+        out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
+    out.extend(headline(held_of_study(study)))
     out.append(
-        "This is a re-analysis: both sides use the same measurements. A pass says that the evaluation reproduces the "
-        "published one within its stated uncertainty; it says nothing on whether the measurements are right."
+        "This is a re-analysis: both sides use the same measurements. A pass says that our evaluation reproduces theirs within "
+        "U95, not that the measurements are right."
     )
     return out
 
 
 def verdict(study: Study) -> Section:
-    """What comes out, in sentences: the slopes with U95 and what it covers, then the verdict itself."""
-    first = tables.headline(study)
-    text = [*([first] if first else []), *_re_analysis(study), _harvest(study)]
+    """What comes out, in short paragraphs: the verdict, what was found, stability, what is missing, the checks."""
+    text = [*_re_analysis(study), _harvest(study)]
     others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
     if others:
         names = listed(list(dict.fromkeys(c.reference for c in others)))
         text.append(
-            f"Cross-body comparison with {names}: those values belong to another body or come from another method, so "
-            "they stand beside ours without a verdict. A difference there may be the appendages as well as an error."
+            f"No verdict on {names}: another body or another method. A difference there may be the appendages as well as an error."
         )
     text += [*in_words(study), *_without_value(study)]
     failed = [c for c in study.checks if c.severity is Severity.FAIL]
     warned = sum(c.severity is Severity.WARN for c in study.checks)
     if study.checks:
-        text.append(
-            f"Of {_counted(len(study.checks), 'check')}, {len(failed)} failed and {warned} warned; see Checks below."
-        )
+        text.append(f"Of {_counted(len(study.checks), 'check')}, {len(failed)} failed and {warned} warned.")
     if study.failed:
         text.append("The study as a whole fails.")
     elif study.checks or study.comparisons:
@@ -250,32 +347,13 @@ def _without_value(study: Study) -> list[str]:
     return out
 
 
-def _coefficients(study: Study) -> Section:
-    text: tuple[str, ...] = (
-        f"A slope at the origin comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder of unknown "
-        f"size and onset, in proportion to how well each explains the points. U95 covers {COVERS}; no form or window is "
-        "chosen, and no published value enters. How it was calibrated, and what remains: docs/slope_at_origin.md.",
-        "Its random part is what the scatter of single readings does, its form part the rest, joined as a root sum of squares. "
-        "What single forms would have said stands under each coefficient, for comparison only.",
-        "A part that was not assessed is shown by a dash and is not in U95; the budget of every coefficient names what is "
-        "missing. The turbulence model of a computation is in it only where the campaign has a study of it.",
-    )
-    single = any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients)
-    if single:
-        text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
-    if any(c.status is Status.FORM_REJECTED for c in study.coefficients):
-        text += (f"Form rejected: {Status.FORM_REJECTED.advice}",)
-    return Section("coefficients", "Coefficients", text, filled(tables.coefficients(study)))
-
-
 def _models(study: Study) -> tuple[Section, ...]:
     models = tuple(m for f in study.fits for m in f.models)
     if not models:
         return ()
     text = (
         "Force laws and tables over one or more variables. What the data leave open is said below each table and has no "
-        "number; a reader outside the domain follows the stated rule. Pictures, influential points and correlations stand "
-        "under Campaigns.",
+        "number; outside the domain the stated rule holds.",
     )
     each = tuple(noun_tables.terms(m) for m in models)
     return (Section("models", "Fitted models", text, filled(model_tables.quality(models), *each)),)
@@ -288,10 +366,8 @@ def _laws(study: Study) -> tuple[Section, ...]:
     if not each:
         return ()
     text = (
-        "The force law of every parameter file, evaluated as a simulation evaluates it, at the measured points that it was fitted "
-        "to. It may miss a point by three times the scatter of repeated runs plus 5 % of the largest force of that component in "
-        "that table; a point missed by more, where the law is said to hold, is a failure. Exports and motions are given the range "
-        "in which it holds.",
+        "The force law of every parameter file at the measured points that it was fitted to. It may miss a point by three times the "
+        "scatter of repeated runs plus 5 % of the largest force; more, where the law is said to hold, is a failure.",
     )
     return (Section("law-at-points", "The law at the measured points", text, each),)
 
@@ -303,18 +379,34 @@ def _comparison(study: Study) -> tuple[Section, ...]:
     for r in study.references:
         if r.other_scaling is not None:
             text.append(
-                f'"{r.name}" is shown in two readings, as the length that its coefficients are divided by is not '
-                f"certain: {r.scaling}, which is taken as printed, and {r.other_scaling}, which rescales every value."
+                f'"{r.name}" has two readings, as the length of its primes is not certain: {r.scaling}, as printed, and '
+                f"{r.other_scaling}, which rescales every value."
             )
-    shown = filled(tables.side_by_side(study), tables.differences(study), tables.verdicts(study))
-    return (Section("comparison", "Comparison with published values", tuple(text), shown),)
+    shown = filled(without(tables.side_by_side(study), "random", "form"), without(tables.verdicts(study), "combined"))
+    apart = filled(tables.differences(study))
+    more = (Section("distances", "Distances", tables=apart, appendix=True),) if apart else ()
+    return (Section("comparison", "Comparison with published values", tuple(text), shown, subsections=more),)
+
+
+def without(table: Table, *names: str) -> Table:
+    """The table without some columns, and without the notes on them."""
+    kept = [i for i, header in enumerate(table.headers) if header not in names]
+    rows = tuple(tuple(row[i] for i in kept) for row in table.rows)
+    notes = tuple(n for n in table.notes if not n.startswith(tuple(f"{name}:" for name in names)))
+    left = frozenset(kept.index(i) for i in table.left if i in kept)
+    return Table(table.title, tuple(table.headers[i] for i in kept), rows, notes, left)
 
 
 def _checks(study: Study) -> Section:
+    """Failures and warnings, a row each; the others counted, and in the appendix."""
     if not study.checks:
         return Section("checks", "Checks", ("No checks were made.",))
-    text = ("A note or a warning asks for attention; only a failure makes the study fail.",)
-    return Section("checks", "Checks", text, filled(tables.checks(study.checks)))
+    grave = [c for c in study.checks if c.severity in (Severity.FAIL, Severity.WARN)]
+    counts = ", ".join(f"{sum(c.severity is s for c in study.checks)} {s}" for s in reversed(Severity))
+    text = (f"{counts}. Only a failure makes the study fail.",)
+    whole = Section("all-checks", "All checks", tables=filled(tables.checks(study.checks)), appendix=True)
+    shown = filled(replace(without(tables.checks(grave), "rule"), title="Failures and warnings"))
+    return Section("checks", "Checks", text, shown, subsections=(whole,))
 
 
 def _provenance(study: Study) -> Section:

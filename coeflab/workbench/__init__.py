@@ -297,9 +297,9 @@ def _inputs(plan: Plan, tables: list[ForceTable], bodies: list[Body]) -> tuple[I
 
 @one_thread()
 def rendered(study: Study, formats: Sequence[str] = ("html",)) -> dict[str, bytes]:
-    """Every file of a study: parameter files, exports and the report, by name. Nothing is written."""
+    """Every file of a study: parameter files, exports and the core of the report, by name. Nothing is written."""
     files: dict[str, bytes] = {}
-    report = document(study)
+    report = document(study, full=False)
     for name in formats:
         with REPORTERS.guarded(name):
             files.update(REPORTERS.load(name).render(report))

@@ -70,6 +70,22 @@ def test_only_the_named_sections(coeflab, study, tmp_path):
     assert [Path(p).name for p in said["files"]] == ["report.html", "report.pdf"]
 
 
+def test_the_appendix_comes_on_request_and_is_found_by_section(coeflab, study, tmp_path):
+    """The core as `run` writes it too; the whole one says how to make it again."""
+    assert coeflab("run", study / "plan.toml", "--out", "run").returncode in (0, 1)
+    sections = {}
+    for name, more in (("core", ()), ("whole", ("--full",)), ("part", ("--section", "data-quality"))):
+        done = coeflab("report", study, "--to", "html", "--json", "--out", name, *more)
+        assert done.returncode == 0, done.stderr
+        sections[name] = [s["anchor"] for s in json.loads(done.stdout)["sections"]]
+    assert "data-quality" not in sections["core"]
+    assert sections["whole"][: len(sections["core"])] == sections["core"]
+    assert {"campaigns", "data-quality", "budget"} <= set(sections["whole"])
+    assert sections["part"] == ["data-quality"]
+    assert (tmp_path / "core" / "report.html").read_bytes() == (tmp_path / "run" / "report.html").read_bytes()
+    assert commands_in(tmp_path / "whole" / "report.html")[-1].endswith(" --full")
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -77,6 +93,7 @@ def test_only_the_named_sections(coeflab, study, tmp_path):
         (("boat", "--to", "html,docx"), ("docx", "html, pdf")),
         (("boat", "--to", ","), ("no format",)),
         (("boat", "--summary", "--section", "verdict"), ("--summary",)),
+        (("boat", "--summary", "--full"), ("--summary",)),
         (("subof",), ("subof", "Did you mean suboff?")),
         (("boat/campaign",), ("a folder without plan.toml",)),
         (("nowhere.toml",), ("nowhere.toml",)),

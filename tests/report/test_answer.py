@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import answer as first_page
 from coeflab.report.answer import answer, answer_table
 from coeflab.report.content import document
-from coeflab.report.document import Answer, AnswerRow
+from coeflab.report.document import Answer, AnswerRow, Section
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, slope_figure
 from coeflab.report.sections import acceptance as acceptance_document
 from coeflab.report.summary import acceptance_summary, study_summary
@@ -39,6 +40,10 @@ def compared(*references: Reference) -> Study:
     study = small_study(FULL)
     made = compare_set(study.fits[0].coefficients, references)
     return replace(study, references=references, comparisons=made)
+
+
+def every(sections: Sequence[Section]) -> list[Section]:
+    return [s for one in sections for s in (one, *every(one.subsections))]
 
 
 REPORT = reference(Relation.RE_ANALYSIS, {"Yv": "-0.029834", "Nv": "-0.0128"}, "report")
@@ -239,6 +244,9 @@ def test_every_document_has_its_answer():
     whole = document(study)
     assert whole.answer == study_summary(study).answer
     assert whole.answer.sentence == answer(study).sentence
+    linked = {*(r.anchor for r in whole.answer.rows), *(c.anchor for c in whole.answer.chips)} - {""}
+    assert linked <= {s.anchor for s in every(whole.sections)}
+    assert "campaign-tow-yv" in linked
     made = found(2.05)
     published = acceptance_document.document(made)
     assert acceptance_summary(made, published).answer == published.answer == answer(made)
@@ -255,6 +263,14 @@ def test_a_publication_has_its_tables_in_the_place_of_rows():
     assert [c.severity.value for c in made.chips] == ["fail", "pass", "note", "note"]
     assert made.slope.anchor == "answer-figure"
     assert answer(found(2.05)).sentence.startswith("Boat: all 3 numbers within what is allowed;")
+
+
+def test_long_names_are_cut_on_a_terminal_only():
+    long = found(2.05)
+    long = replace(long, tables=(replace(long.tables[0], title="Steady turns " * 12),))
+    made = answer(long, drawn=False)
+    assert made.table.rows[0][0] == "Steady turns " * 12
+    assert max(map(len, plain_lines(answer_table(made)))) <= 80
 
 
 def test_a_drawing_under_another_anchor_refers_to_itself():

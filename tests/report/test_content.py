@@ -6,9 +6,11 @@ from dataclasses import replace
 import pytest
 
 from coeflab.core.table import Check, Severity
+from coeflab.core.wording import Verbatim
 from coeflab.formats.export import Export
 from coeflab.motion.simulation import simulate
-from coeflab.report.content import document
+from coeflab.report.content import core, document, three_lines
+from coeflab.report.sections.coefficients import is_zero
 from coeflab.report.tables.results import works
 from tests.motion.vehicles import made as vehicle_file
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
@@ -25,20 +27,91 @@ def words(study, anchor):
     return " ".join(found.paragraphs)
 
 
-def test_sections_come_in_the_order_of_reading():
-    anchors = [s.anchor for s in document(small_study(FULL, published=True)).sections]
-    assert anchors == [
-        "verdict",
-        "comparison",
-        "coefficients",
-        "budget",
-        "campaigns",
-        "data-quality",
-        "checks",
-        "conventions",
-        "provenance",
-        "reproduce",
-    ]
+CORE = ["verdict", "comparison", "coefficients", "checks", "conventions", "provenance", "reproduce"]
+
+
+def test_the_core_comes_first_and_then_the_appendix():
+    sections = document(small_study(FULL, published=True)).sections
+    assert [s.anchor for s in sections if not s.appendix] == CORE
+    assert [s.anchor for s in sections] == [*CORE, "budget", "data-quality", "campaigns"]
+
+
+def test_the_core_has_no_appendix_and_says_what_that_holds():
+    study = small_study(FULL, published=True)
+    made = document(study, full=False)
+    assert [s.anchor for s in made.sections] == CORE
+    assert not any(s.appendix for s in flat(made.sections))
+    last = made.sections[0].paragraphs[-1]
+    assert "--full adds the appendix" in last
+    assert "1 fit with every point and curve" in last
+    assert last not in document(study).sections[0].paragraphs
+
+
+@pytest.mark.parametrize("angles", [FULL, HALF, FEW])
+def test_nothing_in_the_core_is_longer_than_three_lines(angles):
+    checks = (Check("signs", "tow Yv'", Severity.FAIL, "Yv' > 0", "below zero", "axes"),)
+    study = replace(small_study(angles, published=True), parameter_files={"boat": vehicle_file()}).with_checks(checks)
+    for section in flat(document(study, full=False).sections):
+        notes = [n for t in section.tables for n in t.notes]
+        for text in (*section.paragraphs, *notes, *(f.caption for f in section.figures)):
+            assert len(text) <= 240, text
+
+
+def test_three_lines_lose_no_word_and_leave_what_users_wrote():
+    long = "One sentence of a few words. " * 12 + ", ".join(["a list that goes on"] * 20) + "."
+    pieces = three_lines((long, "short"))
+    assert max(map(len, pieces)) <= 240
+    assert " ".join(pieces) == f"{long} short"
+    assert three_lines((Verbatim(long),)) == (long,)
+
+
+def test_an_answer_leads_to_sections_that_are_there():
+    study = small_study(FULL)
+    made = document(study, full=False)
+    known = {s.anchor for s in flat(made.sections)}
+    lost = replace(made.answer.rows[0], anchor="campaign-tow-yv")
+    again = core(replace(made, answer=replace(made.answer, rows=(lost, *made.answer.rows[1:]))))
+    assert again.answer.rows[0].anchor == "coefficients"
+    assert {a for a in (r.anchor for r in made.answer.rows) if a} <= known
+
+
+@pytest.mark.parametrize(
+    ("symbol", "symmetry", "zero"),
+    [("Kv", "up-down", True), ("Kv|v|'", "up-down", True), ("Kr", "up-down", True), ("Yv", "up-down", False),
+     ("Zvv", "up-down", True), ("Yw", "port-starboard", True), ("Xvv", "port-starboard", False),
+     ("Xv|v|", "port-starboard", True), ("Nrdot", "up-down", False), ("Kdr", "up-down", True), ("Z0", "fourfold", True)],
+)  # fmt: skip
+def test_what_symmetry_makes_zero(symbol, symmetry, zero):
+    assert is_zero(symbol, frozenset({symmetry})) is zero
+
+
+def symmetric(value, u95):
+    """The study of a body that declares itself its image upside down, with one such moment of roll."""
+    study = small_study(FULL)
+    fit = study.fits[0]
+    roll = replace(fit.coefficients["Yv"], symbol="Kv", value=value, u95=u95)
+    of = replace(fit.coefficients, coefficients=(*fit.coefficients.coefficients, roll))
+    sweeps = (*fit.sweeps, replace(fit.sweeps[0], symbol="Kv", component="K"))
+    table = replace(study.tables[0], symmetry=("up-down",))
+    return replace(study, tables=(table,), fits=(replace(fit, coefficients=of, sweeps=sweeps),))
+
+
+def test_what_is_zero_by_symmetry_has_one_line_and_no_section():
+    study = symmetric(1e-6, 2e-6)
+    made = document(study)
+    table = next(s for s in made.sections if s.anchor == "coefficients").tables[0]
+    assert "Kv'" not in [row[0] for row in table.rows]
+    assert table.notes[0] == "Zero by symmetry, and zero within U95: Kv'; none is beyond 3.0e-06."
+    campaign = next(s for s in flat(made.sections) if s.anchor == "campaign-tow")
+    assert table.notes[0] in campaign.paragraphs
+    assert [s.anchor for s in campaign.subsections] == ["campaign-tow-yv", "campaign-tow-nv"]
+
+
+def test_a_measured_asymmetry_keeps_its_row_and_its_section():
+    made = document(symmetric(3e-6, 2e-6))
+    table = next(s for s in made.sections if s.anchor == "coefficients").tables[0]
+    assert "Kv'" in [row[0] for row in table.rows]
+    assert any(s.anchor == "campaign-tow-kv" for s in flat(made.sections))
 
 
 def test_without_published_values_there_is_no_verdict_and_no_comparison():
@@ -109,6 +182,6 @@ def test_works_of_manoeuvres_and_their_simulator_are_listed():
 
 
 def test_a_plan_without_a_file_gets_no_command():
-    last = document(small_study(FULL)).sections[-1]
+    last = next(s for s in document(small_study(FULL)).sections if s.anchor == "reproduce")
     assert last.code == ()
     assert "made by a program" in " ".join(last.paragraphs)

@@ -65,7 +65,10 @@ def test_the_report_shows_every_export_with_its_loss(study: Study) -> None:
     shown = section.subsections[1].tables[0]
     assert shown.rows[0][0] == "X"
     assert any(note.startswith("changed: ") for note in shown.notes)
-    assert b'id="export-1"' in rendered(study)["report.html"]
+    assert all(s.appendix for s in section.subsections)
+    page = rendered(study)["report.html"]
+    assert b'id="exports"' in page
+    assert b'id="export-1"' not in page
 
 
 @pytest.mark.parametrize(

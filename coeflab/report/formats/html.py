@@ -10,7 +10,9 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any
 
@@ -19,7 +21,9 @@ from jinja2 import BaseLoader, Environment, StrictUndefined
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from coeflab.report.document import Axis, Document, Figure, Layer, Panel, Scene, Series
+from coeflab.core.table import ABSENT, LARGEST_SHARE, coefficient, plus_minus, with_u95
+from coeflab.law.symbols import primed
+from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Section, Series
 from coeflab.report.notation import cell_html, html, keeping, label, unit_html, unit_label
 from coeflab.report.printable import shortened, visible
 
@@ -111,8 +115,8 @@ def _packed(values: NDArray[Any]) -> str:
 
 
 summary = "one HTML file with tables and figures, for browser and printer"
-STYLES = ("style.css", "symbols.css", "contents.css")
-SCRIPTS = ("contents.js", "figures.js", "painting.js", "scenes.js", "copying.js")
+STYLES = ("style.css", "symbols.css", "contents.css", "answer.css")
+SCRIPTS = ("contents.js", "figures.js", "painting.js", "scenes.js", "copying.js", "pdf.js", "saving.js")
 citations: tuple[str, ...] = ()
 
 
@@ -132,12 +136,21 @@ def render(document: Document) -> Mapping[str, bytes]:
     environment = Environment(
         loader=BaseLoader(), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
     )
-    environment.globals |= {"panels_json": panels_json, "scene_json": scene_json}
+    environment.globals |= {
+        "panels_json": panels_json,
+        "scene_json": scene_json,
+        "row_of": row_of,
+        "bar_of": bar_of,
+        "published": published,
+        "rows_json": rows_json,
+        "anchors": anchors,
+    }
     environment.filters |= {
         "spelled": spelled,
         "spelled_cell": spelled_cell,
         "visible": visible,
         "shortened": shortened,
+        "filename": filename,
     }
     template = environment.from_string((folder / "report.html.j2").read_text(encoding="utf-8"))
     style = "\n".join((folder / name).read_text(encoding="utf-8") for name in STYLES)
@@ -146,6 +159,101 @@ def render(document: Document) -> Mapping[str, bytes]:
     with keeping(document.verbatim):
         page = template.render(document=document, style=style, script=script, digest=digest)
     return {"report.html": page.encode()}
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A row of the answer in words: ``verdict`` is ``agrees``, ``differs``, ``open`` or ``missing``."""
+
+    symbol: str
+    own: str
+    share: str
+    status: str
+    difference: str
+    against: str
+    verdict: str
+
+
+def row_of(row: AnswerRow) -> Row:
+    """The words of a row; the difference has the digits of its U95."""
+    own = plus_minus(row.value, row.u95) if row.u95 is not None else coefficient(row.value)
+    difference = with_u95(row.difference, row.u95)[0]
+    sign = "+" * (row.difference is not None and row.difference > 0.0)
+    against = ABSENT if row.share is None else f"{row.share:+.2f}" if abs(row.share) < 10.0 else f"{row.share:+.0f}"
+    verdict = "missing" if row.value is None else {True: "agrees", False: "differs", None: "open"}[row.agrees]
+    share = _in_percent(row.u95, row.value)
+    return Row(primed(row.symbol), own, share, row.status or "no data" * (row.value is None), sign + difference, against, verdict)
+
+
+def filename(text: str) -> str:
+    """A name for files that a page saves: letters, digits, hyphens and underscores of ASCII."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "_", text)[:60]
+
+
+def published(value: float) -> tuple[str, int]:
+    """A published number without zeros behind its fourth decimal, and how many places it is short of six."""
+    shown = coefficient(value)
+    if "e" in shown:
+        return shown, 0
+    bare = shown[:-2] + shown[-2:].rstrip("0")
+    return bare, len(shown) - len(bare)
+
+
+def rows_json(answer: Answer) -> str:
+    """The rows for a file of their numbers: ours with all digits, published ones with those that are printed."""
+    rows = [
+        {
+            "symbol": primed(r.symbol),
+            "value": r.value,
+            "U95": r.u95,
+            "status": visible(r.status),
+            **{visible(c): p and float(f"{p:.{PRINTED}g}") for c, p in zip(answer.columns, r.published, strict=False)},
+            "difference": r.difference,
+            "difference over U95": r.share,
+            "from": visible(r.source),
+        }
+        for r in answer.rows
+    ]
+    return _inside_a_page({"rows": rows})
+
+
+def _in_percent(u95: float | None, value: float | None) -> str:
+    if u95 is None or not value:
+        return ABSENT
+    share = 100.0 * abs(u95 / value)
+    return f"{share:.0f}" if share <= LARGEST_SHARE else f"> {LARGEST_SHARE:.0f}"
+
+
+@dataclass(frozen=True, slots=True)
+class Ends:
+    """A bar between two walls at twice U95, per cent of the way; ``beyond``: it goes on behind a wall."""
+
+    left: float
+    wide: float
+    beyond: bool
+
+
+WALL, PRINTED = 2.0, 6
+
+
+def bar_of(row: AnswerRow) -> Ends | None:
+    """The bar of the difference over U95, from the middle."""
+    if row.share is None:
+        return None
+    end = min(max(row.share, -WALL), WALL) / (2.0 * WALL) * 100.0
+    return Ends(round(50.0 + min(end, 0.0), 1), round(abs(end), 1), abs(row.share) > WALL)
+
+
+def anchors(document: Document) -> frozenset[str]:
+    """What links inside the page can lead to."""
+
+    def of(sections: tuple[Section, ...]) -> Iterator[str]:
+        for section in sections:
+            yield section.anchor
+            yield from (f.anchor for f in section.figures)
+            yield from of(section.subsections)
+
+    return frozenset(of(document.sections))
 
 
 def spelled(text: str) -> Markup:

@@ -10,9 +10,10 @@ from importlib.resources import files
 from typing import Any, Literal
 
 from coeflab.core.errors import OutputError
-from coeflab.core.table import Table
+from coeflab.core.table import Table, coefficient, percent, plus_minus
 from coeflab.core.version import VERSION
-from coeflab.report.document import Document, Figure, Section
+from coeflab.law.symbols import primed
+from coeflab.report.document import Answer, AnswerRow, Document, Figure, Section
 from coeflab.report.figures.svg import plain, size_of
 from coeflab.report.notation import Raised, Run, cell_runs, keeping, kept, runs, unit_runs
 from coeflab.report.printable import breakable, glyphs, shortened
@@ -20,11 +21,12 @@ from coeflab.report.printable import breakable, glyphs, shortened
 summary = "one PDF to print and to keep: typeset tables, mathematics and vector figures"
 citations: tuple[str, ...] = ()
 
-TEMPLATE = ("data", "symbols", "page", "figures", "tables", "report")
+TEMPLATE = ("data", "symbols", "page", "figures", "tables", "answer", "report")
 CLOCK = datetime(2000, 1, 1, tzinfo=UTC)
 LONGEST_TITLE, LONGEST_HEAD, LONGEST_COLUMN, LONGEST_CAPTION = 300, 64, 160, 800
 WHOLE, WORDY = 20, re.compile(r"[a-df-z,]")
 LONG, DEEP = 18, 3
+NO_DATA = "no data"
 FEW, ON_A_PAGE, CHAPTER = 14, 3000, 4
 
 
@@ -95,15 +97,67 @@ def _content(document: Document) -> dict[str, Any]:
         "head": glyphs(shortened(document.name or document.title, LONGEST_HEAD)),
         "digest": document.digest,
         "author": f"coeflab {VERSION}",
-        "parts": [part for s in document.sections for part in _parts(s, 1)],
+        "answer": None if document.answer is None else _answer(document.answer),
+        "whole": document.answer is None or any(s.appendix for s in document.sections),
+        "parts": _numbered([part for s in document.sections for part in _parts(s, 1)]),
         "works": [breakable(glyphs(text)) for _, text in document.works],
     }
+
+
+def _numbered(parts: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The parts, the first of the appendix marked."""
+    first = next((p for p in parts if p["level"] == 1 and p["appendix"]), None)
+    return [{**p, "opens": p is first} for p in parts]
+
+
+def _answer(answer: Answer) -> dict[str, Any]:
+    """The first page: a sentence, a row a coefficient, figures, chips, notes."""
+    drawn = {name: getattr(answer, name) for name in ("slope", "forest", "axes")}
+    return {
+        "sentence": _text(answer.sentence),
+        "compared": _text(answer.compared),
+        "columns": [_text(shortened(c, LONGEST_COLUMN)) for c in answer.columns],
+        "rows": [_answer_row(r, len(answer.columns)) for r in answer.rows],
+        "chips": [{"name": glyphs(c.name), "text": _text(c.text), "severity": c.severity.value} for c in answer.chips],
+        "notes": [_text(n) for n in answer.notes],
+        "table": None if answer.table is None else _table(answer.table, 1),
+        **{name: None if figure is None else _figure(figure) for name, figure in drawn.items()},
+    }
+
+
+def _answer_row(row: AnswerRow, columns: int) -> dict[str, Any]:
+    """Its cells as texts; the share of U95 that the difference is, which the bar shows, or None."""
+    ours = row.status if row.value is None else plus_minus(row.value, row.u95)
+    within = percent(row.u95, row.value) if row.value is not None and row.u95 is not None else ""
+    return {
+        "symbol": _text(primed(row.symbol)),
+        "ours": _text(ours or NO_DATA),
+        "open": row.value is None,
+        "within": _text(within or (row.status if row.value is not None else "")),
+        "source": _text(row.source),
+        "published": [
+            None if value is None else _text(coefficient(value))
+            for value in (*row.published, *[None] * columns)[:columns]
+        ],
+        "difference": None
+        if row.difference is None
+        else _text(f"{row.difference:+.1e}" if row.u95 is None else _signed(row)),
+        "share": row.share,
+        "agrees": row.agrees,
+    }
+
+
+def _signed(row: AnswerRow) -> str:
+    """The difference with the last place of U95."""
+    first = plus_minus(row.difference, row.u95).partition(" ")[0]
+    return first if first.startswith("-") else f"+{first}"
 
 
 def _parts(section: Section, level: int, later: bool = True) -> Iterator[dict[str, Any]]:
     """A section and its subsections, in the order of reading; ``later``: others of its level stand before it."""
     yield {
         "level": level,
+        "appendix": section.appendix,
         "anchor": section.anchor,
         "fresh": level > 1 and later and len(section.subsections) >= CHAPTER,
         "title": _text(shortened(section.title, LONGEST_TITLE)),

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure as Drawing
 
 from coeflab.core.provenance import work
 from coeflab.core.table import Table, coefficient, percent, plus_minus, with_u95
+from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
 from coeflab.fits.uncertainty.budget import Budget
@@ -29,13 +30,14 @@ from coeflab.report.figures.series import numbers, points
 from coeflab.report.figures.svg import COLOURS, POINTS, power_of_ten, settings, svg_text
 from coeflab.report.figures.sweep import sweep_figure
 from coeflab.report.figures.variables import moving, response_name
+from coeflab.report.sections.coefficients import in_one_line, zeros
 from coeflab.report.sections.oscillations import oscillation_sections
 from coeflab.report.tables import models as joint_tables
 from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import results as tables
 from coeflab.report.tables import uncertainty as budget_tables
 from coeflab.study.study import Study
-from coeflab.study.towed import towed
+from coeflab.study.towed import Towed, towed
 from coeflab.study.validation import validations
 from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.vehicle.derived import centre_of_pressure, stability
@@ -76,6 +78,8 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
     if sum(f.campaign == fit.campaign for f in study.fits) > 1:
         title = f"{title} ({fit.fit})"
     text = [line for t in mine for line in _about(t)]
+    zero = zeros(study, fit.campaign, fit.coefficients.coefficients)
+    text += [line for line in (in_one_line(zero),) if line]
     if "swept about" in fit.settings:
         text.append(
             f"Figures and estimators are about {fit.settings['swept about']}: the coefficients in the tables are about "
@@ -93,7 +97,11 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
             if rate in t.varies and not _shown_before(study, fit)
         ),
         subsections=(
-            *(_sweep_section(study, fit, s, anchor(f"{place} {s.symbol}", taken)) for s in fit.sweeps),
+            *(
+                _sweep_section(study, fit, s, anchor(f"{place} {s.symbol}", taken))
+                for s in fit.sweeps
+                if s.symbol not in {c.symbol for c in zero}
+            ),
             *(_model_section(m, anchor(f"{place} {m.response}", taken)) for m in distinct(fit.models)),
             *oscillation_sections(study, fit, lambda name: anchor(f"{place} {name}", taken)),
         ),
@@ -266,9 +274,10 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         *(budget_tables.shared(m) for m in models),
     )
     text = (
-        "U95 joins every assessed part as a root sum of squares: the scatter of the points, the model form, the grid where "
-        "a campaign has a grid study, what studies of domain, turbulence model and iterations show, and the inputs that a campaign declares under [uncertainty] (angle, speed, "
-        "calibration, reference point, length). A part that was not assessed is named, never zero.",
+        "U95 joins every assessed part as a root sum of squares: scatter of the points, model form, grid, and what studies of domain, "
+        "turbulence model and iterations show.",
+        "So do the inputs that a campaign declares under [uncertainty]: angle, speed, calibration, reference point, length. A part that "
+        "was not assessed is named, never zero.",
     )
     wanted = [b for b in found if b.symbol.removesuffix("'") in study.plan.wanted]
     parts = tuple(
@@ -288,14 +297,24 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     found = towed(study)
     if not found:
         return ()
-    text = (
+    text: tuple[str, ...] = (
         "Every wanted coefficient of each body that our own computations tow, a missing one with its reason; grid: its share of "
         "the value by the grid study, which U95 holds.",
-        "E = S - D against U_V, ASME V&V 20. A verdict needs tests of the very body at steady angles: against another body, or "
-        "against derivatives of an oscillation (PMM), E and U_V are given and no verdict.",
+        "E = S - D against U_V, ASME V&V 20. A verdict needs tests of the very body at steady angles; else E and U_V have none.",
     )
-    each = (t for one in found for t in (tables.own_tow(one), tables.tow_against(one)))
-    return (Section("own-tows", "Own tows", text, _filled(tuple(each))),)
+    with_values = [one for one in found if any(r.value is not None for r in one.rows)]
+    text += tuple(_nothing(one) for one in found if one not in with_values)
+    each = (t for one in with_values for t in (tables.own_tow(one), tables.tow_against(one)))
+    rest = _filled(tuple(tables.own_tow(one) for one in found if one not in with_values))
+    more = (Section("no-tow", "Not towed", tables=rest, appendix=True),) if rest else ()
+    return (Section("own-tows", "Own tows", text, _filled(tuple(each)), subsections=more),)
+
+
+def _nothing(found: Towed) -> str:
+    """A body without any value, in one line."""
+    reasons = "; ".join(dict.fromkeys(r.why for r in found.rows if r.why))
+    missing = listed(list(dict.fromkeys(r.missing for r in found.rows if r.missing)))
+    return f"{found.tow.name}: {missing or 'no value'}{f', {reasons}' if reasons else ''}."
 
 
 def _filled(tables: tuple[Table, ...]) -> tuple[Table, ...]:

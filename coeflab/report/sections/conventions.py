@@ -230,28 +230,46 @@ ANGLES = (
     "positive when it moves down."
 )
 CONTROLS = (
-    "Control angles keep the sign of their table. In the towing tank of SUBOFF a positive rudder angle gives Y to starboard and "
-    "turns the bow to port (Ydr' = 0.005929, Ndr' = -0.002217), a positive stern plane angle gives Z up and turns the bow down "
-    "(Zds' = -0.005603, Mds' = -0.002409): Roddy (1990), Table 4. The sketch has the sign of these."
+    "A control angle keeps the sign of its table. In the tank of SUBOFF a positive rudder gives Y to starboard (Ydr' = 0.005929), "
+    "a positive stern plane Z up (Zds' = -0.005603): Roddy (1990), Table 4, as in the sketch."
+)
+POTENTIAL = (
+    "Forces are those of steady motion: velocity derivatives contain their potential parts, the Munk moment among them. A "
+    "simulator that adds C_A(nu) nu must not count these twice."
+)
+REST = (
+    "Forces at zero angle need not vanish on a real model: every curve has a value at rest, and with points on both sides of zero "
+    "a term of the other parity."
 )
 
 
-def conventions_section(study: Study) -> Section:
-    """Axes, signs, reference point, length, and what the forces contain."""
-    text = [
+def conventions_section(study: Study, *, drawn: bool = True) -> Section:
+    """Axes, signs, reference point, length, and what the forces contain.
+
+    Parameters
+    ----------
+    study : Study
+    drawn : bool
+        With the drawings of axes and signs in the section itself; else in its appendix, where the first page has a sketch.
+    """
+    text = (
         f"{AXES_ROWS} Tables in other axes are turned into these as they are read.",
-        f"{ANGLES} A table has to declare its own sign; figures show the sign used here. The fits "
-        "use v' and w' themselves, the figures label them in degrees.",
+        f"{ANGLES} A table declares its own sign; figures show this one, in degrees.",
         CONTROLS,
         _reference_points(study),
         _lengths(study),
-        "Contents of the forces: hydrodynamic force in steady motion. Velocity derivatives therefore contain their "
-        "potential parts, the Munk moment among them; a simulator that adds the Coriolis terms of the added mass must "
-        "not count them again. Inertia of the model, where a table carries it, is taken out as the table is read.",
-        "Forces at zero angle need not vanish on a real model. Every curve has a value at rest of its own, and where "
-        "the points lie on both sides of zero it has a term of the other parity as well.",
-    ]
-    return Section("conventions", TITLE, tuple(t for t in text if t), figures=axes_figures("axes"))
+        POTENTIAL,
+        REST,
+    )
+    figures = axes_figures("axes")
+    more = (Section("axes-drawn", "Axes and signs, drawn", figures=figures, appendix=True),)
+    return Section(
+        "conventions",
+        TITLE,
+        tuple(t for t in text if t),
+        figures=figures if drawn else (),
+        subsections=() if drawn else more,
+    )
 
 
 def published_conventions(own: tuple[str, ...]) -> Section:

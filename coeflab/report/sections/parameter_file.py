@@ -73,7 +73,7 @@ def root_locus_figure(locus: RootLocus, name: str, anchor: str) -> Figure:
             panels.append(numbers(lower, _series(locus, locus.roots.imag), ACROSS, "imaginary part  [1/s]"))
         legend(figure, handles, bottom + UPPER)
         svg = svg_text(figure, anchor, title, description)
-    caption = f"{title}, speed held. Above zero the motion grows. {locus.statement}"
+    caption = f"Speed held. Above zero the motion grows. {locus.statement}"
     return Figure(anchor, svg, title, caption, description, tuple(panels))
 
 
@@ -98,11 +98,11 @@ def _said(part: str, values: Array) -> str:
 
 
 TEXT = (
-    "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')]: positive is "
-    "directionally stable with controls fixed, negative is unstable; where U95 holds zero it is not determined which. U95 holds the derivatives; mass and centre of gravity are not in it. G_v is the limit of high speed, without the restoring moment of weight and "
-    "buoyancy.",
-    "The roots are the eigenvalues of small motions about a straight course with the speed held, by the force law and the added "
-    "mass of the parameter file; its derivatives are taken to hold at every speed shown.",
+    "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')]: with controls fixed "
+    "positive is stable, negative unstable; where U95 holds zero, not determined.",
+    "U95 holds the derivatives, not mass and centre of gravity. G_v is the limit of high speed, without the restoring moment of "
+    "weight and buoyancy.",
+    "Roots: eigenvalues of small motions about a straight course, speed held, by the force law and added mass of the file.",
 )
 
 
@@ -151,8 +151,8 @@ def stability_sections(study: Study) -> tuple[Section, ...]:
     if roots:
         heads = ("parameter file", "plane", "roots 1/s", "time to double or halve s", "critical speed m/s")
         tables.append(Table("Roots at the speed of the file", heads, tuple(roots), (), frozenset({0, 1, 2, 4})))
-    tables += mass_table(study)
-    return (Section("stability", "Stability", (*TEXT, *refused), tuple(tables), tuple(figures)),)
+    mass = Section("mass-used", "Mass and inertia used", tables=tuple(mass_table(study)), appendix=True)
+    return (Section("stability", "Stability", (*TEXT, *refused), tuple(tables), tuple(figures), (mass,)),)
 
 
 def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
@@ -227,9 +227,10 @@ def _pairs(values: NDArray[np.complex128]) -> str:
 
 
 SIMULATED = (
-    "Each manoeuvre is computed from a parameter file of this study alone. A figure that leans on motions which no data cover says "
-    "so, and one that no coefficient of the file decides has no value.",
+    "Each manoeuvre is computed from a parameter file of this study alone. A figure that needs motions beyond the data says so; one "
+    "that no coefficient of the file decides has no value.",
 )
+SHOWN = ("track", "profile", "angle")  # of the drawings of a motion, in the core
 
 
 def manoeuvre_sections(study: Study) -> tuple[Section, ...]:
@@ -241,29 +242,32 @@ def manoeuvre_sections(study: Study) -> tuple[Section, ...]:
 
 
 def _manoeuvre(made: Simulation, anchor: str) -> Section:
+    """Its figures and two drawings; what was assumed and the other drawings in the appendix."""
     name = made.manoeuvre.name.replace("_", " ")
     title = f"{name[:1].upper()}{name[1:]} of {made.vehicle.name}"
-    text = [f"Assumed and found: {'; '.join(made.statements)}."]
+    text = []
     if made.undetermined:
         text.append(f"Nothing is drawn, as the file determines nothing of this motion. {made.undetermined}")
     if made.trajectory.why:
         text.append(f"The motion could not be computed to its end: {made.trajectory.why}")
     length = made.vehicle.length
-    return Section(
-        anchor,
-        title,
-        tuple(text),
-        (figure_table(made.figures, title, length),),
-        motion_figures(made.trajectory.until(made.determined), anchor, length, title),
+    drawn = motion_figures(made.trajectory.until(made.determined), anchor, length, title)
+    shown = tuple(f for f in drawn if f.anchor.removeprefix(f"{anchor}-") in SHOWN) or drawn[:2]
+    more = Section(
+        f"{anchor}-more",
+        "Assumed and found",
+        tuple(f"{s[:1].upper()}{s[1:]}." for s in made.statements),
+        figures=tuple(f for f in drawn if f not in shown),
+        appendix=True,
     )
+    return Section(anchor, title, tuple(text), (figure_table(made.figures, title, length),), shown, (more,))
 
 
 EXPORTED = (
-    "The files were read again and evaluated by the target's own force law, written from its source, beside the force law of the "
-    "parameter file; so are the accelerations that this force and the added mass in those files give. A difference is what a "
-    "simulation with that target has wrong, if the parameter file is right.",
-    "Where a target adds -C_A(nu) nu itself, first-order derivatives are given to it less their potential part, so that nothing "
-    "counts twice.",
+    "The files were read again and evaluated by the target's own force law, beside that of the parameter file, accelerations too. A "
+    "difference is what a simulation with that target has wrong.",
+    "Where a target adds -C_A(nu) nu itself, first-order derivatives are given to it less their potential part: nothing counts "
+    "twice.",
 )
 
 
@@ -272,7 +276,9 @@ def export_sections(study: Study) -> tuple[Section, ...]:
     if not study.exports and not study.refused:
         return ()
     each = tuple(
-        Section(f"export-{i}", f"{made.parameters} for {made.target}", tables=_tables(made.target, made.loss))
+        Section(
+            f"export-{i}", f"{made.parameters} for {made.target}", tables=_tables(made.target, made.loss), appendix=True
+        )
         for i, made in enumerate(study.exports)
         if made.loss is not None
     )

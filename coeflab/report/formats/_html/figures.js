@@ -82,6 +82,7 @@ class Plot {
     row.setAttribute("aria-label", "Shown in the drawing");
     this.plot.before(row);
     const foot = drawn.getBBox(), box = this.svg.viewBox.baseVal;
+    this.figure.whole = {box: this.svg.getAttribute("viewBox"), legend: drawn.cloneNode(true)};
     const labels = [...drawn.querySelectorAll("[data-label]")];
     const samples = [...drawn.querySelectorAll("[data-swatch]")];
     samples.forEach((sample, i) => {

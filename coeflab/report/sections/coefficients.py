@@ -1,0 +1,121 @@
+"""The coefficients of a study with their budget, a table a campaign; what symmetry makes zero in one line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coeflab.core.table import ABSENT, Table, percent
+from coeflab.core.wording import listed
+from coeflab.law.coefficient import COVERS, Coefficient, Status
+from coeflab.law.symbols import primed, read_factors
+from coeflab.report.document import Section
+from coeflab.report.tables import nouns as noun_tables
+from coeflab.report.tables import results as tables
+from coeflab.study.study import Study
+from coeflab.tables.campaign import FOURFOLD, PORT_STARBOARD, UP_DOWN
+
+# What changes sign in each symmetry: in a mirror the motions across and the turns along it, in half a turn about x both across.
+FLIPS = {
+    PORT_STARBOARD: frozenset(("Y", "K", "N", "v", "p", "r", "dr")),
+    UP_DOWN: frozenset(("Z", "K", "M", "w", "p", "q", "ds", "db")),
+    FOURFOLD: frozenset(("Y", "Z", "M", "N", "v", "w", "q", "r", "dr", "ds", "db")),
+}
+OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
+TEXT = (
+    "Each slope comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder, each by how well it explains "
+    "the points. No form or window is chosen and no published value enters: docs/slope_at_origin.md.",
+    f"U95 covers {COVERS}. random: scatter of the points; form: the rest; input: declared inputs and grid. All in % of the "
+    "value; a dash: not assessed, not in U95.",
+)
+
+
+def symmetries(study: Study, campaign: str, body: str) -> frozenset[str]:
+    """Symmetries that tables of a campaign declare, or the shape of its body has.
+
+    Parameters
+    ----------
+    study : Study
+    campaign, body : str
+    """
+    declared = {name for t in study.tables if t.campaign == campaign for name in t.symmetry}
+    shapes = {p for h in study.hulls.values() if h.body.name == body for p in h.mirror_planes}
+    return frozenset(declared | {OF_SHAPES[p] for p in shapes if p in OF_SHAPES})
+
+
+def is_zero(symbol: str, under: frozenset[str]) -> bool:
+    """Whether a body of these symmetries has zero for a derivative; factors between bars do not change sign.
+
+    Parameters
+    ----------
+    symbol : str
+        Such as ``Kv|v|``, with or without prime.
+    under : frozenset of str
+        Of `coeflab.tables.campaign.SYMMETRIES`.
+    """
+    plain = symbol.removesuffix("'")
+    signed = [name.removesuffix("dot") for name, absolute in read_factors(plain[1:]) or () if not absolute]
+    return any(sum(name in FLIPS[s] for name in (plain[0], *signed)) % 2 == 1 for s in under)
+
+
+def zeros(study: Study, campaign: str, among: Sequence[Coefficient]) -> tuple[Coefficient, ...]:
+    """Those that symmetry makes zero and whose interval holds zero; an asymmetry that was measured is none of them."""
+    under = {body: symmetries(study, campaign, body) for body in {c.body or "" for c in among}}
+    return tuple(
+        c for c in among
+        if c.value is not None and c.u95 is not None and abs(c.value) <= c.u95 and is_zero(c.symbol, under[c.body or ""])
+    )  # fmt: skip
+
+
+def in_one_line(found: Sequence[Coefficient]) -> str:
+    """Their names and how far from zero they may be; empty without any."""
+    if not found:
+        return ""
+    most = max(abs(c.value or 0.0) + (c.u95 or 0.0) for c in found)
+    return f"Zero by symmetry, and zero within U95: {listed([primed(c.symbol) for c in found])}; none is beyond {most:.1e}."
+
+
+def coefficients_section(study: Study) -> Section:
+    """What was found, by campaign; every column of it in the appendix."""
+    text: tuple[str, ...] = TEXT
+    if any(c.status is Status.SINGLE_ESTIMATOR for c in study.coefficients):
+        text += ("Where an interval could not be had, the value is printed without U95 and should not be relied on.",)
+    if any(c.status is Status.FORM_REJECTED for c in study.coefficients):
+        text += (f"Form rejected: {Status.FORM_REJECTED.advice}",)
+    absent = _without_value(study)
+    found = tuple(
+        t for fit in dict.fromkeys((f.campaign, f.body) for f in study.fits) if (t := _table(study, *fit)).rows
+    )
+    whole = tables.coefficients(study)
+    appendix = Section("all-coefficients", "All columns", tables=(whole,), appendix=True) if whole.rows else None
+    return Section(
+        "coefficients", "Coefficients", (*text, *absent), found, subsections=(appendix,) if appendix is not None else ()
+    )
+
+
+def _table(study: Study, campaign: str, body: str) -> Table:
+    mine = [c for c in study.coefficients if c.campaign == campaign and c.status is not Status.NO_TABLE]
+    zero = zeros(study, campaign, mine)
+    order = {symbol: i for i, symbol in enumerate(study.plan.wanted)}
+    shown = sorted((c for c in mine if c not in zero), key=lambda c: order.get(c.symbol, len(order)))
+    rows = tuple(
+        (
+            primed(c.symbol), *noun_tables.with_status(c), percent(c.u95, c.value), percent(c.parts.random, c.value),
+            percent(c.parts.model_form, c.value), percent(c.parts.input, c.value), str(c.n_points) if c.n_points else ABSENT,
+        )
+        for c in shown
+    )  # fmt: skip
+    open_parts = dict.fromkeys(name for b in study.budgets if b.campaign == campaign for name in b.unassessed)
+    notes = [in_one_line(zero), f"Not in U95: {', '.join(open_parts)}." if open_parts else ""]
+    headers = ("", "value", "U95", "U95", "random", "form", "input", "n")
+    title = f"{campaign}: {body.replace('_', ' ')}, primed"
+    return Table(title, headers, rows, tuple(n for n in notes if n), frozenset({0}))
+
+
+def _without_value(study: Study) -> tuple[str, ...]:
+    """What is wanted and has no table, in one line a campaign."""
+    missing: dict[str, list[str]] = {}
+    for c in study.coefficients:
+        if c.status is Status.NO_TABLE:
+            missing.setdefault(c.campaign or c.body or "", []).append(primed(c.symbol))
+    each = "; ".join(f"{listed(symbols)} of {place}" for place, symbols in missing.items())
+    return (f"No table: {each}.",) if each else ()
