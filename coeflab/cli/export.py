@@ -64,4 +64,4 @@ def command(
         show.json_object({"files": [str(p) for p in paths], **export_json(made)})
         return
     for path in paths:
-        show.text(f"  {path}")
+        show.path(path)

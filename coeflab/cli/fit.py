@@ -133,7 +133,7 @@ def command(
         if diagnostics:
             _diagnose(study)
         if figure is not None:
-            show.text(f"Written: {figure}")
+            show.path(figure)
     if study.failed or (strict and study.warned):
         raise typer.Exit(1)
 

@@ -54,7 +54,7 @@ def command(
             if basis:
                 show.table(glide_tables.basis(f.run.glider))
         for name, new in changed.items():
-            show.text(f"  {Path(out or '') / name}: {'written' if new else 'unchanged'}")
+            show.path(f"{Path(out or '') / name}:", "written" if new else "unchanged")
     if any(f.run.trajectory.ended is not Ended.COMPLETE for f in flown):
         raise typer.Exit(1)
 

@@ -71,7 +71,7 @@ def command(
         show.table(identified_tables.terms(found))
         show.table(identified_tables.balances(found))
         for path in written:
-            show.text(f"  {path}")
+            show.path(path)
     if not found.found:
         raise typer.Exit(1)
 

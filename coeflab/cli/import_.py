@@ -419,4 +419,4 @@ def _written(out: Path, table: ForceTable, settings: Mapping[str, Setting]) -> N
     excluded = f", {many} cell{'s' * (many != 1)} excluded" if many else ""
     show.text(f"Written: {out / 'table.csv'} ({len(table)} rows{excluded}), campaign.toml, mapping.toml")
     show.sentence(f"  varies: {', '.join(table.varies) or 'nothing'}; in SI and FRD: {', '.join(table.forces)}")
-    show.text(f"Next: coeflab fit {shlex.quote(str(out))}")
+    show.command_line("Next", f"coeflab fit {shlex.quote(str(out))}")

@@ -127,7 +127,7 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     for line in point_lines(points):
         show.text(line)
     show.text()
-    show.text(f"Next: {following}")
+    show.command_line("Next", following)
 
 
 def _is_run(path: Path, importer: str) -> bool:

@@ -29,5 +29,5 @@ def command(folder: Path = typer.Argument(..., metavar="FOLDER", help="A folder 
     contents |= {f"schemas/{kind}.schema.json": schema(kind) for kind in ("plan", "campaign", "body")}
     write_all(folder, contents)
     for name in contents:
-        show.text(f"  {folder / name}")
-    show.text(f"Run it: coeflab run {shlex.quote(str(folder / 'plan.toml'))}")
+        show.path(folder / name)
+    show.command_line("Run it", f"coeflab run {shlex.quote(str(folder / 'plan.toml'))}")

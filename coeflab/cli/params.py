@@ -48,7 +48,7 @@ def check(
         })  # fmt: skip
     else:
         show.table(model_file_tables.contents(p, found.format))
-        findings(found.findings)
+        findings(found.findings, notes=True)
     if not found.passed:
         raise typer.Exit(1)
 

@@ -151,25 +151,24 @@ def _every_table(study: Study) -> None:
         show.text(line)
 
 
-def findings(found: Sequence[Check]) -> None:
-    """Every failure and warning, those of one rule together; the rest is counted."""
+def findings(found: Sequence[Check], *, notes: bool = False) -> None:
+    """Every failure and warning, those of one rule together, and notes where they are asked for; the rest is counted."""
     from coeflab.core.table import Severity
 
     counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
     groups: dict[tuple[Severity, str, str, str], list[Check]] = {}
-    for severity in (Severity.FAIL, Severity.WARN):
+    for severity in (Severity.FAIL, Severity.WARN, *((Severity.NOTE,) if notes else ())):
         for c in found:
             if c.severity is severity:
                 groups.setdefault((severity, c.name, c.rule, c.comment), []).append(c)
     for (severity, name, rule, comment), same in groups.items():
-        about = f"{name.replace('_', ' ')}"
+        about = name.replace("_", " ")
+        meant = comment if notes or severity is Severity.FAIL else _short(comment)
         if len(same) == 1:
             (c,) = same
-            show.marked(
-                str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {_short(comment)}".rstrip()
-            )
+            show.marked(str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {meant}".rstrip())
             continue
-        show.marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {_short(comment)}".rstrip())
+        show.marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {meant}".rstrip())
         for c in same:
             show.text(f"        {c.subject}: {c.statistic}")
     show.text("Checks: " + ", ".join(f"{n} {name}" for name, n in counts.items()) + ".")

@@ -85,11 +85,9 @@ def command_line(word: str, typed: str) -> None:
 
 
 def error(line: str) -> None:
-    """Lines on standard error, folded where a person reads them."""
-    for one in line.split("\n"):
-        folded = _folded(visible(one), _terminal()) if sys.stderr.isatty() else [visible(one)]
-        for part in folded:
-            typer.echo(part, err=True)
+    """A line on standard error, folded where a person reads it."""
+    for part in _folded(visible(line), _terminal()) if sys.stderr.isatty() else [visible(line)]:
+        typer.echo(part, err=True)
 
 
 def table(content: Table) -> None:
@@ -167,10 +165,23 @@ def _coloured(found: Sequence[Line]) -> None:
             out = Text(line.text, STYLES[line.kind])
         else:
             # A text that is no Text is read for rich's own markup, which names may happen to hold.
-            cells = [Text(cell, COLOURS.get(cell.strip(), "")) for cell in line.cells]
+            cells = [_bar(cell) or Text(cell, COLOURS.get(cell.strip(), "")) for cell in line.cells]
             out = Text(MARGIN) + Text(GAP).join(cells)
             out.rstrip()
         console.print(out, soft_wrap=True)
+
+
+def _bar(cell: str) -> Any:
+    """A number with its bar, drawn and coloured: green within U95, red beyond; None where there is no bar."""
+    import re
+
+    from rich.text import Text
+
+    found = re.fullmatch(r"([+-]\d+\.\d+ )(#+)(!?)(\s*)", cell)
+    if found is None:
+        return None
+    drawn = "\u2588" * len(found[2]) if (sys.stdout.encoding or "").lower().startswith("utf") else found[2]
+    return Text.assemble(found[1], (drawn + found[3], "bold red" if found[3] else "green"), found[4])
 
 
 def plain_lines(content: Table) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import typer
@@ -82,9 +83,10 @@ def command(
     show.table(found.part_table())
     show.table(found.total_table())
     for file, new in changed.items():
-        show.text(f"  {folder / file}: {'written' if new else 'unchanged'}")
+        show.path(f"{folder / file}:", "written" if new else "unchanged")
     if found.shape.rough:
         show.text(
             f"Rough stand-ins: {'; '.join(found.shape.rough)}. added-mass computes the mesh, {MESH}, beside them."
         )
-    show.text(f"Look at overlay.svg, correct body.toml, then: coeflab added-mass {folder}")
+    show.text("Look at overlay.svg and correct body.toml.")
+    show.command_line("Next", f"coeflab added-mass {shlex.quote(str(folder))}")

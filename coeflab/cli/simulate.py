@@ -135,7 +135,7 @@ def _print(made: Simulation, written: list[Path]) -> None:
     if made.trajectory.why:
         show.text(f"  {made.trajectory.ended.value}: {made.trajectory.why}")
     for path in written:
-        show.text(f"  {path}")
+        show.path(path)
 
 
 def _write(made: Simulation, folder: Path, to: str) -> list[Path]:

@@ -216,18 +216,10 @@ def _dry(
         _fates(tow, before)
     if folder is None:
         show.sentence("Nothing was kept; add --out DIR to look at the cases.")
-        _say_next(f"{shlex.join(['coeflab', 'tow', *asked])} --out {RUNS}/{tow.tank.name}")
+        show.command_line("Next", f"{shlex.join(['coeflab', 'tow', *asked])} --out {RUNS}/{tow.tank.name}")
     else:
         show.text(f"Cases in {folder}")
-        _say_next(f"coeflab tow {shlex.quote(str(folder))}" + " --continue" * (before is not None))
-
-
-def _say_next(command: str) -> None:
-    """A command to copy; a long one goes on behind a backslash."""
-    lines = textwrap.wrap(
-        f"Next: {command}", 77, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False
-    )
-    show.lines(" \\\n".join(lines))
+        show.command_line("Next", f"coeflab tow {shlex.quote(str(folder))}" + " --continue" * (before is not None))
 
 
 def _at_once(tow: Tow, budget: int) -> float:
@@ -291,7 +283,7 @@ def _stopped(tow: Tow, folder: Path) -> None:
 
     show.text()
     show.sentence(f"Stopped: {tables.counted(states_of(tow.folder))}. Nothing is lost.")
-    _say_next(f"coeflab tow {shlex.quote(str(folder))} --continue")
+    show.command_line("Next", f"coeflab tow {shlex.quote(str(folder))} --continue")
 
 
 @contextmanager

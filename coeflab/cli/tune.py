@@ -49,7 +49,7 @@ def command(
         show.table(tuning_tables.correlations(tuned.tuning))
         show.table(tuning_tables.together(tuned.tuning))
         for path in paths:
-            show.text(f"  {path}")
+            show.path(path)
     if not tuned.tuning.converged:
         raise typer.Exit(1)
 

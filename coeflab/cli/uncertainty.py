@@ -59,7 +59,8 @@ def command(
     """Give intervals for the figures of a manoeuvre.
 
     Draws the coefficients of a parameter file and runs the manoeuvre for each draw. Says which coefficient is worth another
-    test or CFD run. Any further --option VALUE goes to the manoeuvre: --rudder 20, in degrees without a unit. Numbers do not depend on workers, scheduler, or on having been stopped and started again. Exit code 1 where the file
+    test or CFD run. Any further --option VALUE goes to the manoeuvre: --rudder 20, in degrees without a unit. Numbers do not
+    depend on cores, scheduler, or on having been stopped and started again. Exit code 1 where the file
     determines no figure of the manoeuvre.
     """
     from coeflab.cli.simulate import current_of, listed, of_manoeuvre
@@ -104,7 +105,7 @@ def _print(made: Carried, written: list[Path]) -> None:
     for line in (*uncertainty_tables.ranking(made), *made.statements):
         show.text(f"  {line}")
     for path in written:
-        show.text(f"  {path}")
+        show.path(path)
 
 
 def _write(made: Carried, folder: Path) -> list[Path]:

@@ -224,7 +224,7 @@ def in_degrees(kind: type, given: Mapping[str, Any], where: str) -> dict[str, An
     for name in _bare_angles(kind, given):
         if 0.0 < abs(given[name]) < RAD_AT_MOST:
             raise InputError(
-                f"{shown(given[name])}, an angle without a unit", f'degrees, at least {RAD_AT_MOST:g}, or a unit: "{given[name]} deg"',
+                f"{given[name]}, an angle without a unit", f'degrees, at least {RAD_AT_MOST:g}, or a unit: "{given[name]} deg"',
                 column=f"{where}.{name}", advice=f'Radians are written "{given[name]} rad".',
             )  # fmt: skip
         out[name] = f"{given[name]!r} deg"

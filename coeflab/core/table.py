@@ -173,7 +173,7 @@ def _block(table: Table, chosen: list[int], width: int) -> list[Line]:
     widths = {i: max(1, *map(len, _column(table, i))) for i in chosen}
     least = {i: _least(table, i, 1) for i in chosen}
     while sum(widths.values()) + len(GAP) * len(chosen) > width:
-        reducible = [i for i in chosen if widths[i] > least[i]]
+        reducible = [i for i in chosen[1:] if widths[i] > least[i]] or [i for i in chosen[:1] if widths[i] > least[i]]
         if not reducible:
             break
         widths[max(reducible, key=lambda i: widths[i])] -= 1

@@ -32,9 +32,7 @@ HALF_WIDTH = takes.Within(
     "Leave the key out where it was not assessed.",
     {"exclusiveMinimum": 0},
 )
-NO_DEGREES = takes.Within(
-    lambda v: "a half-width up to 5 deg" if v > LARGEST_ANGLE else "", 'A bare number is in rad; write "0.1 deg".'
-)
+NO_DEGREES = takes.Within(lambda v: "a half-width up to 5 deg" if v > LARGEST_ANGLE else "")
 NO_PER_CENT = takes.Within(
     lambda v: "a relative half-width up to 0.5" if v > LARGEST_RELATIVE else "", "One per cent is 0.01."
 )

@@ -140,7 +140,7 @@ def test_shipped_bodies() -> None:
         ("length = 2.0", "length = 2.0\nspan = 1", ["part[0].span", "an unknown key"]),
         ("centre = [1.0, 0.0, 0.0]", "centre = [1.0]", ['"part[0].centre"', "a point"]),
         ("centre =", 'rotation = ["1 m", 0, 0]\ncentre =', ['"part[0].rotation"', "a unit of angle"]),
-        ("centre =", "rotation = [0, 90, 0]\ncentre =", ['"part[0].rotation"', "a whole turn", 'as "90 deg"']),
+        ("centre =", "rotation = [0, 90, 0]\ncentre =", ['"part[0].rotation"', "an angle without a unit", '"90 deg"']),
         ("centre =", 'rotation = ["-361 deg", 0, 0]\ncentre =', ['"part[0].rotation"', "at most 360 deg"]),
         (HULL, HULL + HULL, ['"part"', 'two parts called "hull"']),
         (HULL, "", ['"part"', "no [[part]]"]),

@@ -10,8 +10,13 @@ import pytest
 
 from tests.cli.forked import COEFLAB, Forks
 
-__all__ = ["COEFLAB", "Run"]
+__all__ = ["COEFLAB", "Run", "flat"]
 Run = Callable[..., subprocess.CompletedProcess[str]]
+
+
+def flat(printed: str) -> str:
+    """What is printed, wherever its lines are folded."""
+    return " ".join(printed.split())
 
 
 @pytest.fixture(scope="session")

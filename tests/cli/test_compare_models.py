@@ -12,7 +12,7 @@ import pytest
 
 from coeflab.vehicle.comparison import MOST, ComparedModel, Verdict, compare, compare_models
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
-from tests.cli.conftest import Run
+from tests.cli.conftest import Run, flat
 
 PARAMS = Path(__file__).parents[1] / "data" / "parameters_1_1.json"
 Change = Callable[[dict[str, Any]], object]
@@ -203,9 +203,9 @@ def test_the_command_shows_the_tables(coeflab: Run, tmp_path: Path) -> None:
     (tmp_path / "b.json").write_bytes(changed(add_to_drag(0.01)).to_json())
     done = coeflab("compare", PARAMS, "b.json")
     assert (done.returncode, done.stderr) == (1, "")
-    assert "Fitted tables" in done.stdout
-    assert "C_D over alpha, beta" in done.stdout
-    assert "Tables: 2 within, 1 apart, 0 not comparable." in done.stdout
+    assert "Fitted tables" in flat(done.stdout)
+    assert "C_D over alpha, beta" in flat(done.stdout)
+    assert "Tables: 2 within, 1 apart, 0 not comparable." in flat(done.stdout)
     content = json.loads(coeflab("compare", PARAMS, "b.json", "--json").stdout)
     drag = content["models"][0]
     assert (drag["response"], drag["verdict"], drag["share_within"]) == ("C_D", "apart", 0.0)

@@ -12,6 +12,7 @@ from subprocess import CompletedProcess
 import pytest
 
 from coeflab.core.files import shipped
+from tests.cli.conftest import flat
 
 Run = Callable[..., CompletedProcess[str]]
 SLOCUM = shipped("cfd_data") / "slocum" / "slocum.toml"
@@ -31,7 +32,7 @@ def test_tables_files_and_a_second_run(coeflab: Run, tmp_path: Path) -> None:
         "derived: hull 40 kg",
         "motion.svg: written",
     ):
-        assert words in done.stdout
+        assert words in flat(done.stdout)
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == sorted(FILES)
     again = coeflab("glide", "slocum", "--cycles", "2", "--out", "out")
     assert again.stdout.count(": unchanged") == len(FILES)
@@ -91,4 +92,4 @@ def test_a_motion_that_ends_early_says_so(coeflab: Run, tmp_path: Path) -> None:
     (tmp_path / "mine.toml").write_text(SLOCUM.read_text().replace("K_M = -100.0", "K_M = 1e17"))
     done = coeflab("glide", "mine.toml")
     assert done.returncode == 1
-    assert "The motion ended early: in dive, after" in done.stdout
+    assert "The motion ended early: in dive, after" in flat(done.stdout)

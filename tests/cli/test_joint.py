@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Run
+from tests.cli.conftest import Run, flat
 
 BARE = ("suboff_roddy_3", "suboff_cfd_barehull", "--fit", "manoeuvring_model")
 PLANES = (
@@ -28,7 +28,7 @@ def test_two_campaigns_print_their_shares_and_that_they_disagree(coeflab: Run, t
         "Campaigns of the joint fit", "rejected, F(3, ", "Every third point left out", "The campaigns disagree",
         "Different Reynolds numbers", "warn, poolability, suboff_roddy_3, suboff_cfd_barehull Y'",
     ):  # fmt: skip
-        assert text in done.stdout
+        assert text in flat(done.stdout)
     assert not list(tmp_path.iterdir())
 
 
@@ -57,8 +57,8 @@ def test_json_holds_the_campaigns_and_the_test(coeflab: Run) -> None:
 
 def test_one_campaign_has_no_campaign_to_leave_out(coeflab: Run) -> None:
     done = coeflab("fit", "suboff_cfd_barehull", "--fit", "manoeuvring_model", "--terms", "Yv Yv|v|")
-    assert "Each campaign left out in turn: needs two campaigns." in done.stdout
-    assert "Campaigns of the joint fit" not in done.stdout
+    assert "Each campaign left out in turn: needs two campaigns." in flat(done.stdout)
+    assert "Campaigns of the joint fit" not in flat(done.stdout)
 
 
 def test_a_plan_with_a_joint_fit_writes_its_report_and_parameter_file(coeflab: Run, tmp_path: Path) -> None:
@@ -70,8 +70,8 @@ def test_a_plan_with_a_joint_fit_writes_its_report_and_parameter_file(coeflab: R
     )
     done = coeflab("run", "plan.toml")
     assert done.returncode == 1, done.stderr  # v|v| alone misses points: the check says so, everything is written
-    assert "law at points" in done.stdout
-    assert "Campaigns of the joint fit" in done.stdout
+    assert "law at points" in flat(done.stdout)
+    assert "Campaigns of the joint fit" in flat(done.stdout)
     report = (tmp_path / "reports" / "hull" / "report.html").read_text(encoding="utf-8")
     assert "Campaigns of the joint fit" in report
     assert "suboff_roddy_3, suboff_cfd_barehull" in report

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION
-from tests.cli.conftest import Run
+from tests.cli.conftest import Run, flat
 
 DATA = Path(__file__).parents[1] / "formats" / "data"
 OWN = Path(__file__).parents[1] / "data" / "parameters_1_0.json"
@@ -31,12 +31,12 @@ def test_formats_are_told_by_content(coeflab: Run, tmp_path: Path, name: str, ki
     assert {f["severity"] for f in told["findings"]} <= {"pass", "note", "warn"}
 
 
-def test_findings_are_a_table(coeflab: Run) -> None:
+def test_findings_are_listed(coeflab: Run) -> None:
     done = coeflab("params", "check", DATA / "rexrov.urdf")
     assert done.returncode == 0
-    assert "M_A Zr and Nw" in done.stdout
-    assert "10.774 and 10.775" in done.stdout
-    assert "-74.82" in done.stdout
+    assert "M_A Zr and Nw" in flat(done.stdout)
+    assert "10.774 and 10.775" in flat(done.stdout)
+    assert "-74.82" in flat(done.stdout)
 
 
 def test_a_failing_finding_is_exit_code_1(coeflab: Run, tmp_path: Path) -> None:
@@ -46,8 +46,8 @@ def test_a_failing_finding_is_exit_code_1(coeflab: Run, tmp_path: Path) -> None:
     done = coeflab("params", "check", "m.xacro")
     assert done.returncode == 1
     assert done.stderr == ""
-    assert "M_A Yv" in done.stdout
-    assert "It drives the motion that it should damp" in done.stdout
+    assert "M_A Yv" in flat(done.stdout)
+    assert "It drives the motion that it should damp" in flat(done.stdout)
     told = json.loads(coeflab("params", "check", "m.xacro", "--json").stdout)
     assert told["passed"] is False
     assert [f["what"] for f in told["findings"] if f["severity"] == "fail"] == ["M_A Yv", "Yv'"]
@@ -56,8 +56,8 @@ def test_a_failing_finding_is_exit_code_1(coeflab: Run, tmp_path: Path) -> None:
 def test_a_parameter_file_is_checked_too(coeflab: Run) -> None:
     done = coeflab("params", "check", OWN)
     assert done.returncode == 0, done.stderr
-    assert "schema 1.0" in done.stdout
-    assert "Findings" in done.stdout
+    assert "schema 1.0" in flat(done.stdout)
+    assert "1 warn, 0 fail." in flat(done.stdout)
 
 
 def test_a_later_minor_version_is_read_with_a_word(coeflab: Run, tmp_path: Path) -> None:
@@ -65,7 +65,7 @@ def test_a_later_minor_version_is_read_with_a_word(coeflab: Run, tmp_path: Path)
     (tmp_path / "p.json").write_text(json.dumps(content))
     done = coeflab("params", "check", "p.json")
     assert done.returncode == 0, done.stderr
-    assert f"schema 1.9 is later than {SCHEMA_VERSION}, which this release writes" in done.stdout
+    assert f"schema 1.9 is later than {SCHEMA_VERSION}, which this release writes" in flat(done.stdout)
     (tmp_path / "p.json").write_text(json.dumps({**content, "tethers": [1]}))
     done = coeflab("params", "check", "p.json")
     assert done.returncode == 2
@@ -78,10 +78,10 @@ def test_a_density_that_the_file_lacks(coeflab: Run, tmp_path: Path) -> None:
     (tmp_path / "m.sdf").write_text(text, encoding="utf-8")
     stood_in = coeflab("params", "check", "m.sdf")
     assert stood_in.returncode == 0, stood_in.stderr
-    assert "1000 kg/m^3 is assumed" in stood_in.stdout
+    assert "1000 kg/m^3 is assumed" in flat(stood_in.stdout)
     given = coeflab("params", "check", "m.sdf", "--density", "1020")
-    assert "stands in" not in given.stdout
-    assert "1020" in given.stdout
+    assert "is assumed" not in flat(given.stdout)
+    assert "1020" in flat(given.stdout)
     assert coeflab("params", "check", "m.sdf", "--density", "-1").returncode == 2
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pymupdf
 import pytest
 
-from tests.cli.conftest import COEFLAB
+from tests.cli.conftest import COEFLAB, flat
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def test_both_formats_are_written(reported):
     folder, done = reported
     assert done.returncode == 0, done.stderr
     assert files_in(folder / "made") == {"report.html", "report.pdf"}
-    assert "made/report.pdf" in done.stdout
+    assert "made/report.pdf" in flat(done.stdout)
     assert done.stderr == ""
     made = pymupdf.open(folder / "made" / "report.pdf")
     assert made.metadata["title"] in (folder / "made" / "report.html").read_text()

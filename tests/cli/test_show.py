@@ -11,7 +11,7 @@ import pytest
 
 from coeflab.cli import show
 from coeflab.core.table import Table
-from tests.cli.conftest import COEFLAB
+from tests.cli.conftest import COEFLAB, flat
 from tests.cli.test_compare import VALUES, made
 
 ACTING = "a\x1b[31mred\x1b[0m\u202eleft\u2066\x07\x9b2J\x7f\r\n\u2028end"
@@ -28,7 +28,7 @@ def test_lines_and_errors_show_what_would_act(capsys) -> None:
     show.error(ACTING)
     show.text(HEBREW)
     seen = capsys.readouterr()
-    assert (seen.out, seen.err) == (f"{SHOWN}\n{HEBREW}\n", f"{SHOWN}\n")
+    assert (flat(seen.out), seen.err) == (flat(f"{SHOWN} {HEBREW}"), f"{SHOWN}\n")
 
 
 def test_many_lines_stay_lines(capsys) -> None:
@@ -45,7 +45,7 @@ def test_tables_show_what_would_act(capsys, monkeypatch, terminal: bool) -> None
     show.table(Table(name, (ACTING, "n"), ((ACTING, "1"),), (name,)))
     out = capsys.readouterr().out
     assert acting(out) <= ({"\x1b"} if terminal else set())
-    assert out.count(SHOWN) == 4
+    assert flat(out).count(flat(SHOWN)) == 4
     assert out.count("[bold]x[/nothing]") == 2
     assert "\x1b[31m" not in out
 
@@ -92,3 +92,14 @@ def _read(line: int) -> bytes:
         return os.read(line, 65536)
     except OSError:
         return b""
+
+
+def test_a_bar_is_drawn_on_a_terminal_and_stays_letters_in_a_pipe(capsys, monkeypatch) -> None:
+    table = Table("T", ("", "share"), (("Yv'", "+0.60 #####"), ("Nv'", "+1.60 ########!")), (), frozenset({0, 1}))
+    show.table(table)
+    assert "+0.60 #####\n" in capsys.readouterr().out
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "80")
+    show.table(table)
+    assert "\u2588" * 8 + "!" in capsys.readouterr().out

@@ -19,6 +19,7 @@ from coeflab.bodies.mesh.solids import box, surface
 from coeflab.bodies.shape import Cylinder, Plate
 from coeflab.core.files import shipped
 from coeflab.workbench import read_body
+from tests.cli.conftest import flat
 
 Run = Callable[..., CompletedProcess[str]]
 BRACKET = Manifold.cube((100.0, 30.0, 10.0)) + Manifold.cube((10.0, 30.0, 80.0))
@@ -34,7 +35,7 @@ def test_the_shipped_vehicle_from_mesh_to_added_mass(coeflab: Run, tmp_path: Pat
     folder = tmp_path / "huuv_mesh_simplified"
     assert sorted(p.name for p in folder.iterdir()) == sorted(FILES)
     for words in ("hull", "cylinder_top", "plate_port", "plate_starboard", "unassigned", "body.toml: written"):
-        assert words in done.stdout
+        assert words in flat(done.stdout)
     matrix = json.loads(coeflab("added-mass", folder, "--method", "primitives", "--json").stdout)["primitives"]
     assert np.linalg.eigvalsh(np.array(matrix))[0] > 0.0
     first = {f: (folder / f).read_bytes() for f in FILES}
@@ -62,7 +63,9 @@ def test_a_ducted_quadrotor_is_never_exact(coeflab: Run, tmp_path: Path) -> None
     """It was: the ellipsoid of misfit .45 that stands in gave 68 kg in sway, "exact, spread 0.0 %"; the mesh moves 26 kg."""
     ducted_quadrotor().export(tmp_path / "quad.stl")
     done = coeflab("simplify", "quad.stl", "--unit", "m", "--axes", "FLU", "--out", "q")
-    assert "Rough stand-ins: hull: class other (misfit 0.45, shares 34% of the volume), A x -86.1 %" in done.stdout
+    assert "Rough stand-ins: hull: class other (misfit 0.45, shares 34% of the volume), A x -86.1 %" in flat(
+        done.stdout
+    )
     fit = read_body(tmp_path / "q" / "body.toml").require_shape().parts[0].fit
     assert (fit.kind, fit.misfit, fit.shared) == (
         "other",

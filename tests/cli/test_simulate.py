@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.cli.conftest import Run
+from tests.cli.conftest import Run, flat
 from tests.motion.uncertain import with_uncertainty
 from tests.motion.vehicles import STABLE, made, rudder_covered
 
@@ -25,14 +25,26 @@ def torpedo(tmp_path: Path) -> Path:
 def test_options_of_a_manoeuvre_are_explained(coeflab: Run, torpedo: Path, command: str) -> None:
     done = coeflab(command, torpedo, "--manoeuvre", "zigzag", "--help-options")
     assert (done.returncode, done.stderr) == (0, "")
-    assert "Options of zigzag" in done.stdout
-    assert "executes" in done.stdout
+    assert "Options of zigzag" in flat(done.stdout)
+    assert "executes" in flat(done.stdout)
 
 
 def test_a_current_is_said(coeflab: Run, torpedo: Path) -> None:
     done = coeflab("simulate", torpedo, *FREE, "--current", "0.3,-0.2,0", "--rudder", "10 deg")
     assert (done.returncode, done.stderr) == (0, "")
-    assert "current of 0.3 north, -0.2 east m/s" in done.stdout
+    assert "current of 0.3 north, -0.2 east m/s" in flat(done.stdout)
+
+
+def test_a_bare_angle_is_in_degrees_and_refused_where_it_may_be_in_radians(coeflab: Run, torpedo: Path) -> None:
+    zigzag = ("simulate", torpedo, "--manoeuvre", "zigzag", *FREE, "--json")
+    bare = coeflab(*zigzag, "--rudder", "20", "--heading", "0")
+    assert bare.returncode in (0, 1), bare.stderr
+    assert bare.stdout == coeflab(*zigzag, "--rudder", "20 deg").stdout
+    refused = coeflab(*zigzag, "--rudder", "0.35")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert '"zigzag.rudder": found 0.35, an angle without a unit; expected degrees, at least 1.6' in refused.stderr
+    assert '"0.35 rad"' in refused.stderr
+    assert coeflab(*zigzag, "--rudder", "0.35 rad").returncode in (0, 1)
 
 
 @pytest.mark.parametrize(
@@ -61,9 +73,9 @@ def test_what_a_file_determines_nothing_of_is_said_once(coeflab: Run, tmp_path: 
     assert (done.returncode, done.stderr) == (1, "")
     assert (
         "dr = -20.00 deg is outside the data, -15.00 to 15.00 deg. Unstable, and no nonlinear term such as Yr|r|"
-        in done.stdout
+        in flat(done.stdout)
     )
-    assert "not determined" not in done.stdout
+    assert "not determined" not in flat(done.stdout)
     assert not (tmp_path / "zigzag").exists()
     within = coeflab("simulate", path, "--manoeuvre", "zigzag", "--rudder", "10 deg", *FREE, "--out", "zigzag")
     assert (within.returncode, within.stderr) == (0, "")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import COEFLAB, Run
+from tests.cli.conftest import COEFLAB, Run, flat
 from tests.planted_tank import planted
 
 HEAD = """
@@ -96,7 +96,7 @@ def test_a_dry_run_says_what_it_will_take_and_leaves_nothing(tmp_path: Path, env
     assert max(map(len, done.stdout.splitlines())) <= 80
     assert "  mesh/medium_upper                             50k  100 MB   5 s\n" in done.stdout
     assert "  yaw+0.1            r' 0.1     z<0   medium    50k  200 MB  60 s\n" in done.stdout
-    assert "Zw' = Yv', Mw' = -Nv'" in done.stdout
+    assert "Zw' = Yv', Mw' = -Nv'" in flat(done.stdout)
     assert done.stdout.endswith("Next: coeflab tow tow_spheroid --matrix tank.toml --out runs/spheroid\n")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["tank.toml"]
 
@@ -106,7 +106,7 @@ def test_a_missing_solver_says_what_to_install(tmp_path: Path, environment: dict
     without = {**environment, "PLANTED_VERSION": ""}
     dry = run(tmp_path, without, "tow_spheroid", "--matrix", "tank.toml", "--dry-run")
     assert dry.returncode == 0
-    assert "apt install planted" in dry.stdout
+    assert "apt install planted" in flat(dry.stdout)
     done = run(tmp_path, without, "tow_spheroid", "--matrix", "tank.toml", "--out", "x")
     assert done.returncode == 2
     assert "apt install planted. Or take --solver external. The cases are in" in done.stderr
@@ -122,7 +122,7 @@ def test_killed_in_the_middle_it_goes_on_and_loses_nothing(tmp_path: Path, envir
         until(lambda: list(states(out).values()).count("finished") >= 3 and "running" in states(out).values())
         until(lambda: len(rows(out)) > 0)
         looked = run(tmp_path, environment, "--status", "--out", "runs/x")
-        assert " running" in looked.stdout
+        assert " running" in flat(looked.stdout)
         assert max(map(len, looked.stdout.splitlines())) <= 80
         process.send_signal(signal.SIGKILL)
         process.wait()
@@ -137,7 +137,7 @@ def test_killed_in_the_middle_it_goes_on_and_loses_nothing(tmp_path: Path, envir
     tank_file(tmp_path, pace=0.0)  # how fast it goes changes nothing in its key
     done = run(tmp_path, environment, *two, "--continue")
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "goes on from what it wrote last" in done.stdout
+    assert "goes on from what it wrote last" in flat(done.stdout)
     after = rows(out)
     assert {name: after[name] for name in before} == before  # byte for byte
     for name in stopped:
@@ -150,7 +150,7 @@ def test_killed_in_the_middle_it_goes_on_and_loses_nothing(tmp_path: Path, envir
     assert answer[0].split()[1:] == ["-0.006000", "0.000019"] or float(answer[0].split()[1]) == pytest.approx(
         -6e-3, rel=1e-2
     )
-    assert "2 runs with r count, 3 are needed" in done.stdout
+    assert "2 runs with r count, 3 are needed" in flat(done.stdout)
     assert max(map(len, done.stdout.splitlines())) <= 80
 
 
@@ -178,7 +178,7 @@ def test_an_outside_solver_needs_nothing_installed(coeflab: Run, tmp_path: Path)
     done = coeflab("tow", "tow_spheroid", "--matrix", "tank.toml", "--out", "x")
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("spheroid: 6 conditions to be computed or measured outside coeflab.\n")
-    assert "open" not in done.stdout
+    assert "open" not in flat(done.stdout)
     assert "fill in x/external/forces.csv, then coeflab tow x --collect" in " ".join(done.stdout.split())
     assert (tmp_path / "x" / "external" / "run_list.csv").is_file()
     again = coeflab("tow", "x", "--status")

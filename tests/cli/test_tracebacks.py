@@ -16,7 +16,7 @@ from coeflab.core.files import shipped
 from coeflab.study.plan import read_plan
 from coeflab.vehicle.derived import index_gradient, stability_index
 from coeflab.workbench import rendered, run
-from tests.cli.conftest import COEFLAB, Run
+from tests.cli.conftest import COEFLAB, Run, flat
 
 HUUV = shipped("cfd_data") / "huuv" / "huuv.parameters.json"
 SAMPLE = Path(__file__).parents[1] / "data" / "parameters_1_3.json"
@@ -123,7 +123,7 @@ def test_closed_standard_error_and_input(study: Path) -> None:
     command = f"{COEFLAB} inspect {study / 'campaign'} <&- 2>&-"
     done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=False, timeout=60)
     assert done.returncode == 0
-    assert "drift.csv" in done.stdout
+    assert "drift.csv" in flat(done.stdout)
 
 
 @pytest.mark.parametrize("address", ["garbage://", "tcp://256.256.256.256:99999", "x y", "tcp://"])

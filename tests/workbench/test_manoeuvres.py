@@ -51,6 +51,13 @@ def test_an_unknown_key_is_refused(tmp_path: Path) -> None:
         read_plan(path)
 
 
+def test_an_angle_of_a_plan_needs_its_unit() -> None:
+    for bare in (0.35, 20):
+        with pytest.raises(InputError, match="an angle without a unit") as refused:
+            manoeuvres_of([PlannedManoeuvre("v", "zigzag", {"rudder": bare})], {"v": made()}, quiet)
+        assert f'"{bare} rad"' in refused.value.advice
+
+
 def test_options_reach_the_manoeuvre() -> None:
     found = [
         manoeuvres_of([PlannedManoeuvre("v", "straight_run", {"duration": d})], {"v": made()}, quiet)[0]

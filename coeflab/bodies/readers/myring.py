@@ -91,7 +91,6 @@ class Myring(Declaration):
             found,
             f"an angle from 0 to {np.degrees(steepest):.4g} deg, where tan(angle) is 3 diameters over 2 tails",
             column="tail_angle",
-            advice="A bare number is in rad.",
         )
 
     @property

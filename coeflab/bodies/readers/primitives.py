@@ -34,7 +34,6 @@ TURN = takes.Within(
     lambda turn: (
         "[roll, pitch, yaw] of at most 360 deg each, a whole turn" if max(map(abs, turn)) > 2.0 * np.pi else ""
     ),
-    'A bare number is in rad: write degrees as "90 deg".',
 )
 Size = Annotated[takes.Length, takes.ABOVE_ZERO]
 
@@ -187,7 +186,7 @@ class File(ShapedBodyFile):
 def read(path: Path) -> Body:
     """Read a body.toml of parts.
 
-    Lengths are in metres unless a unit is written. ``rotation`` is [roll, pitch, yaw]; a bare number is in rad. Along
+    Lengths are in metres unless a unit is written. ``rotation`` is [roll, pitch, yaw]; an angle has its unit. Along
     its own axes a cylinder and a spheroid lie along x, a plate has its chord along x, its span along y and its normal
     along z.
 

@@ -60,7 +60,7 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
         rows,
         notes,
         frozenset({0, 1, 11, 12}),
-        ("condition", "runs", "AICc", "outside", "domain", "terms"),
+        ("condition", "runs", "AICc", "outside", "terms"),
     )
 
 
@@ -196,7 +196,7 @@ def coefficients(found: Comparison) -> Table:
         )
         for r in found.rows
     )  # fmt: skip
-    headers = ("", "first", "U95", "second", "U95", "difference", "combined", "ratio", "verdict", "")
+    headers = ("", "first", "U95", "second", "U95", "difference", "combined", "ratio", "verdict", "why")
     title = f"{found.b} against {found.a}"
     return Table(
         title, headers, rows, () if found.models else found.statements, frozenset({0, 8, 9}), ("ratio", "combined")
@@ -212,7 +212,7 @@ def models(found: Comparison, *, with_statements: bool = True) -> Table:
         )
         for m in found.models
     )  # fmt: skip
-    headers = ("", "points", "rms diff.", "largest", "at", "combined", "% within", "verdict", "")
+    headers = ("", "points", "rms diff.", "largest", "at", "combined", "% within", "verdict", "why")
     left = frozenset({0, 4, 7, 8})
     return Table(
         "Fitted tables", headers, rows, found.statements if with_statements else (), left, ("at", "points", "largest")

@@ -1,0 +1,45 @@
+"""Values that a shell offers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from coeflab.cli import complete
+from tests.cli.conftest import Run
+
+
+@pytest.mark.parametrize(
+    ("offer", "begun", "offered"),
+    [
+        (complete.exporters, "xd", ["xdyn"]),
+        (complete.manoeuvres, "zig", ["zigzag"]),
+        (complete.validations, "sub", ["suboff"]),
+        (complete.bodies, "remus", ["remus100"]),
+        (complete.campaigns, "suboff_roddy_", ["suboff_roddy_1", "suboff_roddy_2", "suboff_roddy_3"]),
+        (complete.fits, "slope", ["slope_at_origin"]),
+        (complete.solvers, "open", ["openfoam"]),
+        (complete.runners, "slu", ["slurm"]),
+        (complete.reports, "html,pd", ["html,pdf"]),
+        (complete.methods, "pan", ["panel"]),
+        (complete.schemas, "camp", ["campaign"]),
+    ],
+)
+def test_names_that_begin_so(offer, begun: str, offered: list[str]) -> None:
+    assert offer(begun) == offered
+
+
+def test_paths_come_behind_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "suboff_mine").mkdir()
+    (tmp_path / "suboff.csv").touch()
+    assert complete.studies("suboff") == ["suboff", "suboff.csv", "suboff_mine/"]
+    assert complete.inspected(f"{tmp_path}/suboff_") == [f"{tmp_path}/suboff_mine/"]
+
+
+def test_a_shell_is_answered(coeflab: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("_COEFLAB_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", "coeflab export a.json --to xd")
+    monkeypatch.setenv("COMP_CWORD", "4")
+    assert coeflab().stdout.split() == ["xdyn"]
