@@ -394,15 +394,12 @@ def _held(found: Acceptance) -> tuple[int, int, int]:
 
 
 def _narrow(whole: Table, names: Sequence[str]) -> Table:
-    """Some columns of a table, long texts cut, so that it fits 80 letters; no notes of its own."""
+    """Some columns and the first rows of a table; no notes of its own."""
     at = [whole.headers.index(n) for n in names]
-    cut = [
-        tuple(c if len(c) <= WIDTH else f"{c[:WIDTH].rsplit(' ', 1)[0]} ..." for c in (row[i] for i in at))
-        for row in whole.rows
-    ]
-    more = (f"{len(cut) - MOST_MODELS} more in the report.",) if len(cut) > MOST_MODELS else ()
+    rows = tuple(tuple(row[i] for i in at) for row in whole.rows)
+    more = (f"{len(rows) - MOST_MODELS} more in the report.",) if len(rows) > MOST_MODELS else ()
     left = frozenset(k for k, i in enumerate(at) if i in whole.left)
-    return Table(whole.title, tuple(names), tuple(cut[:MOST_MODELS]), more, left)
+    return Table(whole.title, tuple(names), rows[:MOST_MODELS], more, left)
 
 
 def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
@@ -432,7 +429,8 @@ def answer_table(found: Answer) -> Table:
         models, the table that stands in the place of rows.
     """
     if found.table is not None:
-        return replace(found.table, notes=(*found.table.notes, *found.notes))
+        cut = tuple(tuple(map(_cut, row)) for row in found.table.rows)
+        return replace(found.table, rows=cut, notes=(*found.table.notes, *found.notes))
     short = [n.rsplit(" ", 1)[0] if n.rpartition(" ")[2].isdigit() else n for n in found.columns]
     names = short if len(set(short)) == len(short) else list(found.columns)
     is_judged = any(r.share is not None for r in found.rows)
@@ -440,6 +438,10 @@ def answer_table(found: Answer) -> Table:
     headers = ("", "ours +- U95", *names, *(("difference/U95",) if is_judged else ()))
     left = {0, *((len(headers) - 1,) if is_judged else ())}
     return Table("Answer", headers, rows, found.notes, frozenset(left))
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= WIDTH else f"{text[:WIDTH].rsplit(' ', 1)[0]} ..."
 
 
 def _cells(r: AnswerRow) -> tuple[str, ...]:

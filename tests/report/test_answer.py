@@ -265,6 +265,14 @@ def test_a_publication_has_its_tables_in_the_place_of_rows():
     assert answer(found(2.05)).sentence.startswith("Boat: all 3 numbers within what is allowed;")
 
 
+def test_long_names_are_cut_on_a_terminal_only():
+    long = found(2.05)
+    long = replace(long, tables=(replace(long.tables[0], title="Steady turns " * 12),))
+    made = answer(long, drawn=False)
+    assert made.table.rows[0][0] == "Steady turns " * 12
+    assert max(map(len, plain_lines(answer_table(made)))) <= 80
+
+
 def test_a_drawing_under_another_anchor_refers_to_itself():
     svg = '<svg aria-labelledby="a-b-title a-b-desc"><path id="a-b-0"/><use href="#a-b-0"/><g clip-path="url(#a-b-1)"/></svg>'
     made = renamed(replace(DRAWN, svg=svg), "answer-figure").svg
