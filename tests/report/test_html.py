@@ -4,14 +4,16 @@ import base64
 import hashlib
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 
 from coeflab.report.content import document
-from coeflab.report.document import Document, Section
+from coeflab.report.document import AnswerRow, Document, Section
 from coeflab.report.formats import REPORTERS, Renderer
+from coeflab.report.formats.html import Ends, bar_of, published, row_of
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
@@ -138,7 +140,7 @@ def test_links_inside_the_page_lead_somewhere():
 def test_every_figure_is_described():
     text = text_of(small_study(FULL))
     figures = re.findall(r"<figure.*?</figure>", text, flags=re.DOTALL)
-    assert len(figures) == 10
+    assert len(figures) == 10 + 3  # slope, coefficients over the published ones, axes
     for figure in figures:
         assert 'role="img"' in figure
         for element in ("title", "desc"):
@@ -164,7 +166,44 @@ def test_the_contents_are_open_and_their_list_takes_the_keyboard():
 def test_every_table_has_a_caption_and_column_headers():
     page = Page(text_of(small_study(FULL, published=True)))
     assert len(page.named("caption")) == len(page.named("table")) > 3
-    assert all(a.get("scope") == "col" for a in page.named("th"))
+    assert all(a.get("scope") in ("col", "row") for a in page.named("th"))
+
+
+def test_drawings_share_their_styles_and_keep_them():
+    made = document(small_study(FULL, published=True))
+    page = REPORTERS.load("html").render(made)["report.html"].decode()
+    style = re.search(r"<style>(.*?)</style>", page, flags=re.DOTALL)[1]
+    shared = dict(re.findall(r"^figure svg \.(s\d+) { (.*) }$", style, flags=re.MULTILINE))
+    assert len(shared) > 10
+    drawings = re.findall(r"<svg .*?</svg>", page, flags=re.DOTALL)
+    left = [s for d in drawings for s in re.findall(r' style="([^"]*)"', d)]
+    assert len(left) == len(set(left))
+    again = [re.sub(r' class="(s\d+)"', lambda m: f' style="{shared[m[1]]}"', d) for d in drawings]
+    for svg, own in zip((made.answer.slope.svg, made.answer.forest.svg), again, strict=False):
+        for kind in (' d="', ' style="'):
+            parts = [[re.sub(r"\s+", "", part) for part in re.findall(f'{kind}([^"]*)"', s)] for s in (svg, own)]
+            assert parts[0] == parts[1]
+    assert len(page.encode()) < 450_000
+
+
+def test_the_first_mention_of_a_term_leads_to_its_definition():
+    text = text_of(small_study(FULL, published=True))
+    linked = re.findall(r'<a class="term" href="#(term-[^"]+)"', text)
+    assert len(linked) == len(set(linked)) > 3
+    assert all(f'<dt id="{anchor}">' in text for anchor in linked)
+
+
+def test_a_row_of_the_answer_has_the_digits_of_its_u95():
+    row = AnswerRow("Yv", -0.026224, 0.002682, published=(-0.0139, 0.02), difference=0.00161, agrees=True)
+    made = row_of(row)
+    assert (made.own, made.share, made.difference, made.against) == ("-0.0262 +- 0.0027", "10", "+0.0016", "+0.60")
+    assert (made.verdict, bar_of(row)) == ("agrees", Ends(50.0, 15.0, False))
+    assert [published(v) for v in row.published] == [("-0.0139", 2), ("0.0200", 2)]
+    far = replace(row, difference=-0.02, agrees=False)
+    assert (row_of(far).verdict, bar_of(far)) == ("differs", Ends(0.0, 50.0, True))
+    empty = AnswerRow("Yr", None, None)
+    assert (row_of(empty).status, row_of(empty).verdict, bar_of(empty)) == ("no data", "missing", None)
+    assert row_of(replace(row, value=1e-9)).share == "> 1000"
 
 
 def test_no_path_of_this_machine_is_in_it():

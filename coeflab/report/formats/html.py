@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from coeflab.core.table import ABSENT, LARGEST_SHARE, coefficient, plus_minus, with_u95
 from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Section, Series
+from coeflab.report.glossary import definitions_html, linked_html
 from coeflab.report.notation import cell_html, html, keeping, label, unit_html, unit_label
 from coeflab.report.printable import shortened, visible
 
@@ -147,7 +148,10 @@ def render(document: Document) -> Mapping[str, bytes]:
         "rows_json": rows_json,
         "anchors": anchors,
     }
+    seen: set[str] = set()
+    environment.globals["definitions"] = lambda: Markup(definitions_html(seen))
     environment.filters |= {
+        "linked": lambda text: Markup(linked_html(text, seen)),
         "spelled": spelled,
         "spelled_cell": spelled_cell,
         "visible": visible,
@@ -184,7 +188,15 @@ def row_of(row: AnswerRow) -> Row:
     against = ABSENT if row.share is None else f"{row.share:+.2f}" if abs(row.share) < 10.0 else f"{row.share:+.0f}"
     verdict = "missing" if row.value is None else {True: "agrees", False: "differs", None: "open"}[row.agrees]
     share = _in_percent(row.u95, row.value)
-    return Row(primed(row.symbol), own, share, row.status or "no data" * (row.value is None), sign + difference, against, verdict)
+    return Row(
+        primed(row.symbol),
+        own,
+        share,
+        row.status or "no data" * (row.value is None),
+        sign + difference,
+        against,
+        verdict,
+    )
 
 
 def filename(text: str) -> str:
@@ -264,7 +276,7 @@ _STEPS = re.compile(r' d="([^"]*)"')
 
 
 def _tight(steps: re.Match[str]) -> str:
-    return ' d="' + re.sub(r"\s*([A-Za-z])\s*", r"\1", steps[1]) + '"'
+    return ' d="' + re.sub(r"\s*([A-Za-z])\s*", r"\1", steps[1]).strip() + '"'
 
 
 def lighter(page: str) -> str:
