@@ -17,7 +17,7 @@ from coeflab.report.content import document
 from coeflab.report.document import Answer, AnswerRow, Section
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, slope_figure
 from coeflab.report.sections import acceptance as acceptance_document
-from coeflab.report.summary import acceptance_summary, study_summary
+from coeflab.report.summary import study_summary
 from coeflab.study.study import PlannedTow, Study
 from coeflab.study.towed import Towed, TowedRow
 from coeflab.vehicle.reference import PublishedValue, Reference, Relation, compare_set
@@ -242,14 +242,14 @@ def test_senses_in_the_sketch():
 def test_every_document_has_its_answer():
     study = compared(OTHER, REPORT, QUOTED)
     whole = document(study)
-    assert whole.answer == study_summary(study).answer
+    assert study_summary(study).answer.rows == tuple(replace(r, anchor="") for r in whole.answer.rows)
     assert whole.answer.sentence == answer(study).sentence
     linked = {*(r.anchor for r in whole.answer.rows), *(c.anchor for c in whole.answer.chips)} - {""}
     assert linked <= {s.anchor for s in every(whole.sections)}
     assert "campaign-tow-yv" in linked
     made = found(2.05)
     published = acceptance_document.document(made)
-    assert acceptance_summary(made, published).answer == published.answer == answer(made)
+    assert published.answer == answer(made)
 
 
 def test_a_publication_has_its_tables_in_the_place_of_rows():
