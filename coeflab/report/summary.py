@@ -31,5 +31,5 @@ def acceptance_summary(found: Acceptance, whole: Document) -> Document:
 
 def _unlinked(made: Answer) -> Answer:
     """Without links to sections, of which a summary has none."""
-    rows, chips = (tuple(replace(part, anchor="") for part in parts) for parts in (made.rows, made.chips))
-    return replace(made, rows=rows, chips=chips)
+    rows = tuple(replace(r, anchor="") for r in made.rows)
+    return replace(made, rows=rows, chips=tuple(replace(c, anchor="") for c in made.chips))
