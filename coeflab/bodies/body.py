@@ -21,8 +21,9 @@ from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum, DatumKeys
 from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import InputFile, Source, sha256_of
+from coeflab.core.table import html_by
 from coeflab.core.text.toml import read_toml
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, in_angles, locked
 from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import derivative
@@ -105,7 +106,6 @@ class Measured:
         return float(self.printed.replace("?", "0")), float(self.printed.replace("?", "9"))
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
     """A body with one or more configurations.
@@ -153,6 +153,15 @@ class Body:
     def __post_init__(self) -> None:
         object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
+
+    def __repr__(self) -> str:
+        shape = type(self.shape).__name__ if self.shape is not None else "no shape"
+        length = f", {self.scaling.length_name} {self.scaling.length:.5g} m" if self.scaling else ""
+        return in_angles(self, f"{self.name}: {shape}{length}, {len(self.configurations)} configurations")
+
+    def _repr_html_(self) -> str:
+        """Outlines and particulars, for notebooks."""
+        return html_by("body", self)
 
     def configuration(self, name: str) -> Configuration | None:
         """The configuration of that name, if the body has it."""

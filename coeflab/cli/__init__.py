@@ -40,6 +40,13 @@ ORDER = [
     "glide",
     "params",
 ]
+WITHOUT_TABLES = {
+    "new",
+    "report",
+    "schema",
+    "serve",
+    "table",
+}  # what is printed is text for machines, or nothing to fold
 _SUMMARY = re.compile(
     r'^def command\(.*?-> None:\s*"""(.*?)"""|^app = typer\.Typer\(help="(.*?)"', re.MULTILINE | re.DOTALL
 )
@@ -59,7 +66,8 @@ class Commands(TyperGroup):
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write the list of commands without importing them."""
-        self.commands = {name: TyperCommand(name, help=_summary(name)) for name in ORDER}
+        said = {name: _summary(name) for name in ORDER}
+        self.commands = {n: TyperCommand(n, help=text, short_help=_sentence(text)) for n, text in said.items()}
         super().format_commands(ctx, formatter)
 
 
@@ -74,6 +82,11 @@ def _summary(name: str) -> str:
     return cleandoc(found[1] or found[2]) if found else ""
 
 
+def _sentence(text: str) -> str:
+    """The first sentence, whole: what click makes by itself ends in the middle."""
+    return " ".join(text.partition("\n\n")[0].split()).removesuffix(".")
+
+
 def _built(name: str) -> Any:
     module = import_module(f"{__name__}.{_module(name)}")
     one = getattr(module, "app", None)
@@ -83,7 +96,31 @@ def _built(name: str) -> Any:
         one.command(name=name, epilog=f"Example: {module.EXAMPLE}", context_settings=settings)(module.command)
     out = typer.main.get_command(one)
     out.name = name
+    if name not in WITHOUT_TABLES:
+        for command in getattr(out, "commands", {"": out}).values():
+            command.params.append(_wide())
     return out
+
+
+def _wide() -> Any:
+    """``--wide``, which every command has that prints tables."""
+    from coeflab.cli import show
+
+    one = typer.Typer(add_completion=False)
+
+    @one.command()
+    def _take(
+        wide: bool = typer.Option(
+            False,
+            "--wide",
+            callback=show.widen,
+            expose_value=False,
+            help="Print every table and column, however long the lines.",
+        ),
+    ) -> None:
+        pass  # fmt: skip
+
+    return typer.main.get_command(one).params[0]
 
 
 app = typer.Typer(
@@ -95,7 +132,7 @@ app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 80},
 )
 
 
@@ -159,9 +196,11 @@ def main() -> None:
         _discard_output()
         sys.exit(0)
     except CoeflabError as why:
-        from coeflab.report.printable import visible
+        from coeflab.cli import show
 
-        typer.echo("error: " + "\n".join(map(visible, why.lines)), err=True)
+        first, *others = why.lines
+        for line in (f"error: {first}", *others):
+            show.error(line)
         sys.exit(2)
     except BrokenPipeError:
         _discard_output()

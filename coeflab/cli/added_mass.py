@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 EXAMPLE = "coeflab added-mass suboff_bare_hull"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
@@ -13,20 +13,29 @@ CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 def command(
     ctx: typer.Context,
     body: str = typer.Argument(
-        ..., help="A body.toml, its folder, a shipped body, or a mesh file with --unit and --axes."
+        ...,
+        metavar="BODY",
+        autocompletion=complete.bodies,
+        help="A body.toml, its folder, a shipped body, or a mesh file with --unit and --axes.",
     ),
     method: str = typer.Option(
-        "all", "--method", help="all, or one: ellipsoid, primitives, strip, strip:lamb, panel ..."
+        "all",
+        "--method",
+        metavar="METHOD",
+        autocompletion=complete.methods,
+        help="all, or one: ellipsoid, primitives, strip, strip:lamb, panel ...",
     ),
-    unit: str = typer.Option("", help="Unit of a mesh file: m, mm, in ..."),
-    axes: str = typer.Option("", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."),
+    unit: str = typer.Option("", metavar="UNIT", help="Unit of a mesh file: m, mm, in ..."),
+    axes: str = typer.Option(
+        "", metavar="AXES", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."
+    ),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
-    density: float = typer.Option(1000.0, "--density", help="Of the water, kg/m^3."),
+    density: float = typer.Option(1000.0, "--density", metavar="DENSITY", help="Of the water, kg/m^3."),
     json: bool = typer.Option(False, "--json", help="Print {method: 6 x 6 in SI}; remarks go to standard error."),
 ) -> None:
-    """Show a body's added mass by several methods, about its reference point in FRD.
+    """Show a body's added mass by several methods.
 
-    With one method any further --option VALUE goes to it: --method panel --panels 9000 (see coeflab formats panel).
+    About its reference point in FRD. With one method any further --option VALUE goes to it: --method panel --panels 9000 (see coeflab formats panel).
     """
     from coeflab.bodies.simplify.source import mesh_body
     from coeflab.cli.fit import further

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import typer
 from coeflab.cli import show
 
 if TYPE_CHECKING:
+    from coeflab.core.table import Table
     from coeflab.vehicle.comparison import Comparison
 
 
@@ -17,13 +19,15 @@ EXAMPLE = "coeflab compare a.parameters.json b.parameters.json"
 
 
 def command(
-    first: Path = typer.Argument(..., help="A parameter file; its length and reference point are kept."),
-    second: Path = typer.Argument(..., help="The parameter file that is held against it."),
+    first: Path = typer.Argument(
+        ..., metavar="PARAMS", help="A parameter file; its length and reference point are kept."
+    ),
+    second: Path = typer.Argument(..., metavar="OTHER", help="The parameter file that is compared with it."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Compare two parameter files: differences against the combined U95, lengths and reference points converted.
+    """Compare two parameter files by their combined U95.
 
-    Fitted tables of one response over the same variables are held together on a grid inside the data of both: "within"
+    Lengths and reference points are converted. Fitted tables of one response over the same variables are compared on a grid inside the data of both: "within"
     means that at 95 % of its points the difference is inside the combined 95 % half-width. Exit code 1 where two files of
     one body are apart.
     """
@@ -81,12 +85,31 @@ def as_json(found: Comparison) -> dict[str, Any]:
     }
 
 
+def _comparable(table: Table) -> Table:
+    """The rows that can be compared; of the others their names, by reason."""
+    from coeflab.vehicle.comparison import Verdict
+
+    column = table.headers.index("verdict")
+    rows = [row for row in table.rows if row[column] != Verdict.NOT_COMPARABLE.value]
+    reasons: dict[str, list[str]] = {}
+    for row in table.rows:
+        if row not in rows:
+            reasons.setdefault(row[-1], []).append(row[0])
+    if not rows:
+        for line in (table.title, *(f"  {', '.join(names)}: {why}" for why, names in reasons.items()), *table.notes):
+            show.text(line)
+        show.text()
+        return replace(table, rows=())
+    notes = (*(f"Not comparable, {why}: {', '.join(names)}." for why, names in reasons.items()), *table.notes)
+    return replace(table, rows=tuple(rows), notes=notes)
+
+
 def _print(found: Comparison) -> None:
     from coeflab.report.tables import models as comparison_tables
     from coeflab.vehicle.comparison import Verdict
 
     for table in (comparison_tables.coefficients(found), comparison_tables.models(found)):
-        show.table(table)
+        show.table(table if show.whole() else _comparable(table))
     if not found.rows and not found.models:
         show.text("Neither file has coefficients or fitted tables.")
     for what, verdicts in (("", [r.verdict for r in found.rows]), ("Tables: ", [m.verdict for m in found.models])):

@@ -6,21 +6,28 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 EXAMPLE = "coeflab export reports/suboff/suboff_bare_hull.parameters.json --to xdyn --accept-loss"
 
 
 def command(
-    file: Path = typer.Argument(..., help="A parameter file."),
-    to: str = typer.Option(..., "--to", help="Target (see coeflab formats)."),
-    out: Path | None = typer.Option(None, help="Folder for the files; default NAME.TARGET beside the parameter file."),
+    file: Path = typer.Argument(..., metavar="PARAMS", help="A parameter file."),
+    to: str = typer.Option(
+        ..., "--to", metavar="TARGET", autocompletion=complete.exporters, help="Target (see coeflab formats exporters)."
+    ),
+    out: Path | None = typer.Option(
+        None, metavar="FOLDER", help="Folder for the files; default NAME.TARGET beside the parameter file."
+    ),
     accept_loss: bool = typer.Option(False, "--accept-loss", help="Write although the target cannot hold everything."),
     strict: bool = typer.Option(False, "--strict", help="Refuse any loss, whatever else is said."),
     accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Write what a simulator loads, prove it by the simulator's own force law, and say what is lost."""
+    """Write what a simulator loads, and say what is lost.
+
+    The loss is measured by the simulator's own force law.
+    """
     from coeflab.core.errors import InputError, shown
     from coeflab.core.files import write_all
     from coeflab.core.wording import file_stem

@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
+    from coeflab.core.table import Table
+    from coeflab.fits.results.fit_result import Sweep
     from coeflab.report.document import Figure
     from coeflab.study.study import Study
 
 
+SUITS = 0.05  # probability of a lack of fit as large by chance, below which a form does not suit its window
 DEFAULT = "slope_at_origin"
 EXAMPLE = "coeflab fit suboff_roddy_2 --symbol Yv"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
@@ -25,34 +28,49 @@ def command(
     ctx: typer.Context,
     table: list[str] = typer.Argument(
         [],
+        metavar="TABLE",
+        autocompletion=complete.campaigns,
         help="Campaign folders, CSVs of them, or names of shipped campaigns; several are fitted jointly.",
         show_default=False,
     ),
     fit: str = typer.Option(
         "",
-        help="Name of the fit (see coeflab formats); slope_at_origin unless the tables need another.",
+        metavar="NAME",
+        autocompletion=complete.fits,
+        help="Name of the fit (see coeflab formats fits); slope_at_origin unless the tables need another.",
         show_default=False,
     ),
     constraint: list[str] = typer.Option(
         [], metavar="EQUATION", help='Equation between coefficients, "Mw = -Nv"; repeatable.'
     ),
     symbol: list[str] = typer.Option(
-        [], help="Show this coefficient by largest setting and by other forms; repeatable."
+        [], metavar="SYMBOL", help="Only this coefficient, by largest setting and by other forms; repeatable."
     ),
-    length: str = typer.Option("", help='Length of the primes, such as "4.356 m"; default the campaign\'s own.'),
-    length_name: str = typer.Option("", help="Name of that length, such as LOA."),
+    length: str = typer.Option(
+        "", metavar="LENGTH", help='Length of the primes, such as "4.356 m"; default the campaign\'s own.'
+    ),
+    length_name: str = typer.Option("", metavar="NAME", help="Name of that length, such as LOA."),
     next_runs: int = typer.Option(
-        0, "--next", metavar="COUNT", min=0, max=20, help="Name the runs that would narrow each slope most."
+        0,
+        "--next",
+        metavar="COUNT",
+        min=0,
+        max=20,
+        show_default=False,
+        help="Name the runs that would narrow each slope most.",
     ),
-    diagnostics: bool = typer.Option(False, help="Show influential points, PRESS, conditioning and correlations."),
+    diagnostics: bool = typer.Option(
+        False, "--diagnostics", help="Show influential points, PRESS, conditioning and correlations."
+    ),
     figure: Path = typer.Option(None, metavar="FILE.svg", help="Draw the fits into this file."),
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the fit, and stop."),
-    include_uncertain: bool = typer.Option(False, help="Use cells that the source marks as doubtful."),
+    include_uncertain: bool = typer.Option(
+        False, "--include-uncertain", help="Use cells that the source marks as doubtful."
+    ),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
-    wide: bool = typer.Option(False, "--wide", help="Print every column of the coefficients, however long the lines."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Fit the coefficients of a table, or of several jointly, and show how they were made.
+    """Fit the coefficients of one table, or of several jointly.
 
     Any further --option VALUE goes to the fit: --seed 2, --degree 4, --terms "Yv Yv|v|". See --fit NAME --help-options.
     Exit code 1 when a check fails; with --strict when one warns, too.
@@ -111,7 +129,7 @@ def command(
             out["next"] = [as_json.next_runs(f, s, next_runs) for f in study.fits for s in f.sweeps if s.next_runs(1)]
         show.json_object(out)
     else:
-        _print(study, wanted, next_runs, wide)
+        _print(study, wanted, next_runs)
         if diagnostics:
             _diagnose(study)
         if figure is not None:
@@ -204,9 +222,8 @@ def _diagnose(study: Study) -> None:
         show.table(model_tables.correlations(model))
 
 
-def _print(study: Study, symbols: list[str], count: int, wide: bool) -> None:
+def _print(study: Study, symbols: list[str], count: int) -> None:
     from coeflab.cli.run import findings
-    from coeflab.report.tables import models as joint_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import oscillations as oscillation_tables
@@ -214,25 +231,56 @@ def _print(study: Study, symbols: list[str], count: int, wide: bool) -> None:
     from coeflab.report.tables import uncertainty as budget_tables
 
     show.sentence(tables.headline(study, symbols) or " ".join(oscillation_tables.headline(f) for f in study.fits))
-    if left_out := tables.unused(study.tables):
-        show.sentence(left_out)
-    show.text()
-    table = show.table if wide else show.folded
-    table(tables.coefficients(study) if wide else tables.coefficients_in(study, show.width()))
-    models = tuple(m for f in study.fits for m in f.models)
-    for model in models:
-        table(noun_tables.terms(model))
-        table(budget_tables.shared(model))
-    for f in study.fits:
-        table(oscillation_tables.explained(f, study.fits))
-        table(oscillation_tables.over_frequency(f))
-    table(model_tables.quality(models))
-    table(joint_tables.campaigns(study.fits))
-    known = {s.symbol: s for f in study.fits for s in f.sweeps}
-    for symbol in symbols:
-        sweep = known[symbol]
-        for content in (tables.sensitivity(sweep), tables.left_out(sweep), tables.estimators(sweep)):
-            table(content)
+    if symbols:
+        _of_symbols(study, symbols)
+    else:
+        show.sentence(tables.unused(study.tables))
+        show.text()
+        show.table(tables.coefficients(study) if show.whole() else tables.coefficients_in(study, show.width()))
+        models = tuple(m for f in study.fits for m in f.models)
+        for model in models:
+            show.table(noun_tables.terms(model))
+            show.table(budget_tables.shared(model))
+        for f in study.fits:
+            show.table(oscillation_tables.explained(f, study.fits))
+            show.table(oscillation_tables.over_frequency(f))
+        show.table(model_tables.quality(models))
+        show.table(model_tables.campaigns(study.fits))
     for f in study.fits if count else ():
-        table(tables.next_points(f, count))
-    findings(study.checks, folded=not wide)
+        show.table(tables.next_points(f, count))
+    findings(study.checks)
+
+
+def _of_symbols(study: Study, symbols: list[str]) -> None:
+    """One coefficient after the other: what its interval is made of, by largest setting, by other forms."""
+    from coeflab.core.table import percent
+    from coeflab.report.tables import nouns as noun_tables
+    from coeflab.report.tables import results as tables
+
+    known = {s.symbol: (f, s) for f in study.fits for s in f.sweeps}
+    for symbol in symbols:
+        fit, sweep = known[symbol]
+        c = fit.coefficients[symbol]
+        if c.value is not None:
+            parts = {"random": c.parts.random, "form": c.parts.model_form, "input": c.parts.input}
+            made = ", ".join(f"{name} {percent(part, c.value)}" for name, part in parts.items() if part)
+            points = f"{c.n_points} points of {c.campaign}, {noun_tables.window_text(c)}"
+            show.sentence(f"{points}; U95 {percent(c.u95, c.value)} = {made}." if made else f"{points}.")
+        show.text()
+        for content in (tables.sensitivity(sweep), tables.left_out(sweep), _forms(sweep)):
+            show.table(content)
+
+
+def _forms(sweep: Sweep) -> Table:
+    """Other forms, each in the widest window where its points do not contradict it; every window with ``--wide``."""
+    from coeflab.report.tables import results as tables
+
+    every = tables.estimators(sweep)
+    if show.whole():
+        return every
+    best = {e.family.name: i for i, e in enumerate(sweep.forms) if e.lack_of_fit >= SUITS}
+    without = list(dict.fromkeys(e.family.name for e in sweep.forms if e.family.name not in best))
+    notes = [f"Widest window with lack of fit p >= {SUITS:g}, of {len(every.rows)}; none is recommended."]
+    notes += [f"In no window: {', '.join(without)}."] if without else []
+    rows = tuple(every.rows[i] for i in sorted(best.values()))
+    return replace(every, rows=rows, notes=tuple(notes), spare=("AICc", "dof", "95 % HC3"))

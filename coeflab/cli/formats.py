@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from coeflab.core.registry import Registry
@@ -17,10 +17,15 @@ EXAMPLE = "coeflab formats surface"
 
 
 def command(
-    name: str = typer.Argument("", help="A kind of plugin such as fits, or one plugin: its options are explained."),
+    name: str = typer.Argument(
+        "",
+        metavar="NAME",
+        autocompletion=complete.formats,
+        help="A kind of plugin such as fits, or one plugin: its options are explained.",
+    ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """List everything that can be plugged in: importers, fits, exporters, checks, reports, validations."""
+    """List importers, fits, exporters, checks, with their options."""
     from coeflab.core.table import Table
 
     found, broken = _chosen(name)

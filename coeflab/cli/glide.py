@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from coeflab.workbench.glide import Flown
@@ -17,14 +17,23 @@ EXAMPLE = "coeflab glide thauv"
 
 
 def command(
-    glider: str = typer.Argument(..., help="A glider file, a folder of them, or a shipped one: thauv, slocum."),
-    cycles: int = typer.Option(1, "--cycles", min=1, max=1000, help="How often the phases of the file are flown."),
-    step: float = typer.Option(1.0, "--step", help="Time between rows, s."),
-    out: Path | None = typer.Option(None, "--out", help="Folder for CSV and SVG; without it nothing is written."),
+    glider: str = typer.Argument(
+        ...,
+        metavar="GLIDER",
+        autocompletion=complete.gliders,
+        help="A glider file, a folder of them, or a shipped one: thauv, slocum.",
+    ),
+    cycles: int = typer.Option(
+        1, "--cycles", metavar="COUNT", min=1, max=1000, help="How often the phases of the file are flown."
+    ),
+    record: float = typer.Option(1.0, "--record", metavar="SECONDS", help="Time between rows, s."),
+    out: Path | None = typer.Option(
+        None, "--out", metavar="FOLDER", help="Folder for CSV and SVG; without it nothing is written."
+    ),
     basis: bool = typer.Option(False, "--basis", help="Say where every number of the glider comes from."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Show the steady glides of a glider and fly its dive-and-surface cycles in time.
+    """Show the steady glides of a glider and fly its cycles.
 
     Write CSV and figures with --out. Exit code 1 when a motion ended early.
     """
@@ -33,7 +42,7 @@ def command(
     from coeflab.report.tables import motion as glide_tables
     from coeflab.workbench.glide import files, fly
 
-    flown = fly(glider, cycles, {"step": step})
+    flown = fly(glider, cycles, {"step": record})
     made = {} if out is None else files(flown)
     changed = write_all(Path(out or ""), made)
     if json:

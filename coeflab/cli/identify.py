@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from coeflab.motion.identify.identification import Identified
@@ -18,10 +18,10 @@ EXAMPLE = "coeflab identify zigzag.csv turning_circle.csv --params vehicle.param
 
 def command(
     series: list[Path] = typer.Argument(
-        ..., help="Time series, CSV with units in the headers: t, u v w p q r, dr ds db ..."
+        ..., metavar="SERIES", help="Time series, CSV with units in the headers: t, u v w p q r, dr ds db ..."
     ),
     params: Path = typer.Option(
-        ..., "--params", help="Parameter file: mass, inertia, scaling, and what to compare with."
+        ..., "--params", metavar="PARAMS", help="Parameter file: mass, inertia, scaling, and what to compare with."
     ),
     terms: str = typer.Option(
         "", metavar="Yv,Yr,...", help="Candidates; file: those of the file; default first and second order."
@@ -35,15 +35,19 @@ def command(
     asymmetric: bool = typer.Option(False, "--asymmetric", help="Also terms that symmetry port to starboard forbids."),
     fit_added_mass: bool = typer.Option(False, "--fit-added-mass", help="Acceleration derivatives are candidates too."),
     accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
-    optimizer: str = typer.Option("stlsq", help="stlsq or sr3 of pysindy."),
-    resamples: int = typer.Option(200, help="How often stretches of the series are drawn."),
-    seed: int = typer.Option(1, help="Of the draws."),
-    out: Path | None = typer.Option(None, "--out", help="Folder for CSV, JSON and SVG; without it nothing is written."),
+    optimizer: str = typer.Option(
+        "stlsq", metavar="NAME", autocompletion=complete.optimizers, help="stlsq or sr3 of pysindy."
+    ),
+    resamples: int = typer.Option(200, metavar="COUNT", help="How often stretches of the series are drawn."),
+    seed: int = typer.Option(1, metavar="NUMBER", help="Of the draws."),
+    out: Path | None = typer.Option(
+        None, "--out", metavar="FOLDER", help="Folder for CSV, JSON and SVG; without it nothing is written."
+    ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Identify hydrodynamic coefficients from motions and compare them with a parameter file.
+    """Identify coefficients from time series of motions.
 
-    The rigid body is taken from the file; the terms of the force are chosen by sparse regression in the weak form. Says
+    They are compared with those of a parameter file. The rigid body is taken from the file; the terms of the force are chosen by sparse regression in the weak form. Says
     which terms the series cannot tell. Exit code 1 when nothing was identified.
     """
     from coeflab.motion.identify.identify import identify_from

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 from coeflab.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -76,9 +76,11 @@ class Said:
 
 def command(
     path: str = typer.Argument(
-        ..., help="A table, or a folder of cases: text, Excel, OpenFOAM ... (coeflab formats importers)."
+        ...,
+        metavar="PATH",
+        help="A table, or a folder of cases: text, Excel, OpenFOAM ... (coeflab formats importers).",
     ),
-    out: Path = typer.Option(..., "--out", help="Folder of the new campaign, such as cfd_data/mine."),
+    out: Path = typer.Option(..., "--out", metavar="FOLDER", help="Folder of the new campaign, such as cfd_data/mine."),
     map_: list[str] = typer.Option(
         [], "--map", metavar="COLUMN=WHAT", help="What a column is: 'Fy=Y [N]', 'Run=label', 'Note=ignore'; repeatable."
     ),
@@ -90,7 +92,11 @@ def command(
         [], "--option", metavar="NAME=VALUE", help="An option of the importer: sheet=Drift; repeatable."
     ),
     as_: str = typer.Option(
-        "", "--as", metavar="IMPORTER", help="Read it with this importer (coeflab formats importers)."
+        "",
+        "--as",
+        metavar="IMPORTER",
+        autocompletion=complete.importers,
+        help="Read it with this importer (coeflab formats importers).",
     ),
     name: str = typer.Option(
         "", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."
@@ -102,9 +108,9 @@ def command(
     yes: bool = typer.Option(False, "--yes", help="Take proposals that the file or clear evidence supports."),
     force: bool = typer.Option(False, "--force", help="Replace a campaign that is there."),
 ) -> None:
-    """Make a campaign of a table or a folder of runs: table.csv and a commented campaign.toml.
+    """Make a campaign of a table or a folder of runs.
 
-    It proposes what each column is and shows what the numbers say of signs. On a terminal it asks; elsewhere it lists all
+    Writes table.csv and a commented campaign.toml. It proposes what each column is and shows what the numbers say of signs. On a terminal it asks; elsewhere it lists all
     open points at once with the arguments that settle them. Axes, angle signs, reference point and inertia are never guessed.
     """
     from coeflab.core.errors import OutputError

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 from coeflab.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,12 +20,19 @@ EXAMPLE = "coeflab inspect suboff_cfd_barehull"
 
 def command(
     table: str = typer.Argument(
-        ..., help="A campaign, one table of it, any file or folder that an importer knows, a body.toml, or a mesh file."
+        ...,
+        metavar="PATH",
+        autocompletion=complete.inspected,
+        help="A campaign, one table of it, any file or folder that an importer knows, a body.toml, or a mesh file.",
     ),
-    unit: str = typer.Option("", help="Unit of a mesh file: m, mm, in ..."),
-    axes: str = typer.Option("", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."),
+    unit: str = typer.Option("", metavar="UNIT", help="Unit of a mesh file: m, mm, in ..."),
+    axes: str = typer.Option(
+        "", metavar="AXES", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."
+    ),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
-    density: float = typer.Option(1000.0, "--density", help="Of the water that a body displaces, kg/m^3."),
+    density: float = typer.Option(
+        1000.0, "--density", metavar="DENSITY", help="Of the water that a body displaces, kg/m^3."
+    ),
     name: str = typer.Option(
         "", "--name", metavar="PATTERN", help="Conditions in names of runs: 'b{beta:deg}_r{r:rad/s}'."
     ),
@@ -34,11 +41,15 @@ def command(
     option: list[str] = typer.Option(
         [], "--option", metavar="NAME=VALUE", help="Of the importer: sheet=Drift; repeatable."
     ),
-    rows: int = typer.Option(60, "--rows", min=0, help="Most rows of a table that are shown; 0 shows all."),
+    rows: int = typer.Option(
+        60, "--rows", metavar="COUNT", min=0, help="Most rows of a table that are shown; 0 shows all."
+    ),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Show a force table in SI and FRD with its declarations, excluded cells and readings that do not belong.
+    """Show a table in SI and FRD, a mesh, or a body.
+
+    Of a table: its declarations, excluded cells and readings that do not belong.
 
     Of any other file or folder: what it is, its columns with what they may be, what it states, and what is missing to read
     it as a campaign. Of a body or a mesh file: volume, centre, areas and inertia, once the checks of its mesh have passed.

@@ -12,8 +12,8 @@ from coeflab.cli import show
 EXAMPLE = "coeflab new my_study"
 
 
-def command(folder: Path = typer.Argument(..., help="A folder that does not exist yet.")) -> None:
-    """Write a commented plan, campaign and table (synthetic numbers) to start from."""
+def command(folder: Path = typer.Argument(..., metavar="FOLDER", help="A folder that does not exist yet.")) -> None:
+    """Write a commented study with synthetic numbers to start from."""
     from importlib.resources import files
 
     from coeflab.cli.schema import schema

@@ -8,7 +8,7 @@ import typer
 
 from coeflab.cli import show
 
-app = typer.Typer(help="Parameter files.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
+app = typer.Typer(help="Check a parameter file; print what its fields mean.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
 
 
 @app.callback()
@@ -18,14 +18,17 @@ def _root() -> None:
 
 @app.command(epilog="Example: coeflab params check reports/suboff/suboff_fully_appended.parameters.json")
 def check(
-    file: Path = typer.Argument(..., help="A parameter file, or a model: SDF, URDF or xacro, xdyn YAML, MSS .m."),
-    density: float | None = typer.Option(None, help="kg/m^3, for a model that states none."),
+    file: Path = typer.Argument(
+        ..., metavar="PARAMS", help="A parameter file, or a model: SDF, URDF or xacro, xdyn YAML, MSS .m."
+    ),
+    density: float | None = typer.Option(None, metavar="DENSITY", help="kg/m^3, for a model that states none."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Read a parameter file or a simulator's model, say what it holds, and what of it cannot be.
+    """Check a parameter file or a simulator's model.
 
     The exit code is 1 where a finding fails, and 2 where the file cannot be read, whatever its format.
     """
+    from coeflab.cli.run import findings
     from coeflab.core.errors import InputError
     from coeflab.formats.model_files import read_model_file
     from coeflab.report.tables import formats as model_file_tables
@@ -45,14 +48,14 @@ def check(
         })  # fmt: skip
     else:
         show.table(model_file_tables.contents(p, found.format))
-        show.table(model_file_tables.findings(found.findings))
+        findings(found.findings)
     if not found.passed:
         raise typer.Exit(1)
 
 
 @app.command(epilog="Example: coeflab params schema > parameter_file.md")
 def schema(json: bool = typer.Option(False, "--json", help="Print the JSON Schema.")) -> None:
-    """Print what every field of a parameter file means, its unit, and since which version it exists."""
+    """Print what every field of a parameter file means."""
     from coeflab.report.tables.formats import schema_page
     from coeflab.vehicle import parameter_file
 

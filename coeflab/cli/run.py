@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from coeflab.core.table import Check
+    from coeflab.report.document import Answer
     from coeflab.study.study import Plan, Study
 
 
@@ -23,12 +24,15 @@ EXAMPLE = "coeflab run my_study/plan.toml"
 
 
 def command(
-    plan: Path = typer.Argument(..., help="The plan.toml."),
-    out: Path | None = typer.Option(None, help="Folder for the files; default reports/STUDY."),
+    plan: Path = typer.Argument(..., metavar="PLAN", help="The plan.toml, or its folder."),
+    out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/STUDY."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Carry out a plan: fit its tables, check them, write report, parameter files and tables."""
+    """Carry out a plan: fits, checks, report, parameter files.
+
+    Prints the answer first; --wide prints every table.
+    """
     from coeflab.core.errors import InputError
     from coeflab.core.files import typed
     from coeflab.study.plan import read_plan
@@ -68,20 +72,54 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False)
         show.json_object(study_json(study, paths))
     else:
         summarise(study)
-        show.text(f"Written to {folder} ({changed} of {len(files)} files changed):")
-        for path in paths:
-            show.text(f"  {path}")
+        written(folder, sorted(files), changed)
     for refused in study.refused:
         show.error(f"error: {refused.why}")
     if study.failed or (strict and study.warned):
         raise typer.Exit(1)
 
 
+def written(folder: Path, names: Sequence[str], changed: int) -> None:
+    """Where the files are: pages and parameter files by name, of the others how many; all with ``--wide``."""
+    show.text(f"Written ({changed} of {len(names)} files changed):")
+    ranks = ((".html", ".pdf"), (".parameters.json",))
+    first = [n for ends in ranks for n in names if n.endswith(ends)] or list(names[:1])
+    for name in names if show.whole() else first:
+        show.path(folder / name)
+    if not show.whole() and len(names) > len(first):
+        show.path(folder, f"{len(names) - len(first)} more; --wide names them")
+
+
 def summarise(study: Study) -> None:
-    """Comparison, coefficients, fitted models and grave findings."""
+    """The answer, the findings that matter, and with ``--wide`` every table."""
+    from coeflab.report.answer import answer
+    from coeflab.report.tables import models as model_tables
+
+    answered(answer(study, drawn=False))
+    models = tuple(m for f in study.fits for m in f.models)
+    if show.whole():
+        _every_table(study)
+    else:
+        show.table(model_tables.quality(models))
+        show.table(model_tables.campaigns(study.fits))
+    findings(study.checks)
+
+
+def answered(found: Answer) -> None:
+    """What a reader wants first: the sentence, the wanted coefficients, and how it stands."""
+    from coeflab.report.answer import answer_table
+
+    show.sentence(found.sentence)
+    show.text()
+    show.table(answer_table(found))
+    for chip in found.chips:
+        show.marked(str(chip.severity), f"{chip.name}: {chip.text}")
+
+
+def _every_table(study: Study) -> None:
+    """Comparison, coefficients, fitted models and force laws."""
     from coeflab.report.acceptance import headline, held_of_study
     from coeflab.report.tables import formats as format_tables
-    from coeflab.report.tables import models as joint_tables
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import results as tables
@@ -89,49 +127,55 @@ def summarise(study: Study) -> None:
     from coeflab.vehicle.derived import stability
     from coeflab.vehicle.force_law import points_of
 
-    show.text(study.plan.title)
     show.sentence(tables.headline(study))
     show.text()
     show.table(tables.side_by_side(study))
     for tow in towed(study):
-        show.folded(tables.own_tow(tow))
-        show.folded(tables.tow_against(tow))
-    verdicts = tables.verdicts(study)
-    show.table(verdicts)
-    if verdicts.rows:
-        show.table(tables.by_campaign(study))
-    else:
-        show.table(tables.coefficients(study))
+        show.table(tables.own_tow(tow))
+        show.table(tables.tow_against(tow))
+    show.table(tables.verdicts(study))
+    show.table(tables.by_campaign(study))
+    show.table(tables.coefficients(study))
     models = tuple(m for f in study.fits for m in f.models)
     for model in models:
         show.table(noun_tables.terms(model))
     show.table(model_tables.quality(models))
-    show.table(joint_tables.campaigns(study.fits))
+    show.table(model_tables.campaigns(study.fits))
     for name, parameters in study.parameter_files.items():
         show.table(format_tables.at_points(points_of(parameters), f"Force law of {name}"))
-    findings(study.checks)
     decided = {f"{p.name} {d.name}" for p in study.parameter_files.values() for d in stability(p) if d.decided}
     for c in study.checks:
         if c.name == "stability" and c.subject in decided:
             show.text(f"{c.subject.split()[0]}: {c.statistic}. {c.comment}")
-    judged = [c.passed for c in study.comparisons if c.passed is not None]
-    if judged:
-        show.text(f"Verdict: {sum(judged)} of {len(judged)} re-analysed coefficients agree within U95.")
-        for line in headline(held_of_study(study)):
-            show.text(line)
+    for line in headline(held_of_study(study)) if any(c.passed is not None for c in study.comparisons) else ():
+        show.text(line)
 
 
-def findings(found: Sequence[Check], folded: bool = False) -> None:
-    """Warnings and failures, as a table or as sentences folded to 80 columns; the rest is counted."""
+def findings(found: Sequence[Check]) -> None:
+    """Every failure and warning, those of one rule together; the rest is counted."""
     from coeflab.core.table import Severity
-    from coeflab.report.tables import results as tables
 
-    grave = {Severity.FAIL, Severity.WARN}
-    shown = tables.checks([c for c in found if c.severity in grave])
-    if folded:
-        for severity, name, subject, statistic, rule, comment in shown.rows:
-            show.sentence(f"{severity}, {name}, {subject}: {statistic}; expected {rule}. {comment}".rstrip())
-    else:
-        show.table(shown)
     counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
+    groups: dict[tuple[Severity, str, str, str], list[Check]] = {}
+    for severity in (Severity.FAIL, Severity.WARN):
+        for c in found:
+            if c.severity is severity:
+                groups.setdefault((severity, c.name, c.rule, c.comment), []).append(c)
+    for (severity, name, rule, comment), same in groups.items():
+        about = f"{name.replace('_', ' ')}"
+        if len(same) == 1:
+            (c,) = same
+            show.marked(
+                str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {_short(comment)}".rstrip()
+            )
+            continue
+        show.marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {_short(comment)}".rstrip())
+        for c in same:
+            show.text(f"        {c.subject}: {c.statistic}")
     show.text("Checks: " + ", ".join(f"{n} {name}" for name, n in counts.items()) + ".")
+
+
+def _short(comment: str) -> str:
+    """The first sentence of what a finding means; all of it with ``--wide``."""
+    first, stop, _ = comment.partition(". ")
+    return comment if show.whole() else first + stop.rstrip()

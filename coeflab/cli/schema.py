@@ -10,7 +10,7 @@ from typing import Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 EXAMPLE = "coeflab schema plan > plan.schema.json"
 KINDS = {
@@ -25,9 +25,14 @@ KINDS = {
 
 
 def command(
-    kind: str = typer.Argument(..., help=f"{', '.join(list(KINDS)[:-1])} or {list(KINDS)[-1]}."),
+    kind: str = typer.Argument(
+        ...,
+        metavar="KIND",
+        autocompletion=complete.schemas,
+        help=f"{', '.join(list(KINDS)[:-1])} or {list(KINDS)[-1]}.",
+    ),
 ) -> None:
-    """Print the JSON Schema of a kind of file, by which editors complete and check it."""
+    """Print the JSON Schema of a kind of file, for editors."""
     show.lines(schema(kind).decode().removesuffix("\n"))
 
 

@@ -1,4 +1,4 @@
-"""Printing: rich tables on a terminal, plain text in a pipe, one JSON object for machines.
+"""Printing: lines that fit the terminal, coloured there and plain in a pipe, one JSON object for machines.
 
 What users named can hold control characters, which a terminal obeys; they are shown as ``U+XXXX``.
 """
@@ -16,9 +16,9 @@ import typer
 from coeflab.report.printable import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
-    from coeflab.core.table import Table
+    from coeflab.core.table import Line, Table
 
 
 SLOW = 2.0
@@ -26,58 +26,123 @@ ACCELERATIONS = (
     "Acceleration derivatives of the file before its computed added mass, where M + M_A stays positive definite; or computed "
     "throughout."
 )
-COLOURS = {"pass": "green", "fail": "bold red", "warn": "yellow", "no verdict": "dim", "no table": "dim"}
+COLOURS = {
+    "pass": "green", "holds": "green", "within": "green", "written": "green", "fail": "bold red", "apart": "bold red",
+    "warn": "yellow", "beyond": "yellow", "no verdict": "dim", "no table": "dim", "no data": "dim",
+}  # fmt: skip
+ANSI: dict[str, dict[str, Any]] = {"fail": {"fg": "red", "bold": True}, "warn": {"fg": "yellow"}}
+STYLES = {"title": "bold", "head": "underline", "note": "dim"}
 
 
 def text(line: str = "") -> None:
-    """A line on standard output."""
-    typer.echo(visible(line))
+    """A line on standard output, folded between words to the terminal's width; a long word such as a path stays whole."""
+    for folded in _folded(visible(line), width()):
+        typer.echo(folded)
 
 
 def lines(many: str) -> None:
-    """Lines on standard output."""
+    """Lines on standard output, as they are: text for machines, or folded already."""
     for line in many.split("\n"):
-        text(line)
+        typer.echo(visible(line))
 
 
 def sentence(line: str) -> None:
-    """A long line on standard output, folded to 80 columns; nothing where it is empty."""
+    """A sentence on standard output; nothing where it is empty."""
+    if line:
+        text(line)
+
+
+def marked(word: str, line: str) -> None:
+    """A word such as ``warn``, coloured on a terminal, and behind it a sentence that hangs below itself."""
+    from coeflab.core.table import folded
+
+    behind = " " * max(6, len(word) + 2)
+    first, *others = folded(visible(line), _prose(width()), behind, behind)
+    typer.echo(typer.style(word, **ANSI.get(word, {})) + first[len(word) :])
+    for one in others:
+        typer.echo(one)
+
+
+def path(place: object, more: str = "") -> None:
+    """A path alone on its line, unbroken; what is said of it goes on below where the line is too long."""
+    line = f"  {visible(str(place))}"
+    if more and len(line) + 2 + len(more) > width():
+        typer.echo(line)
+        text(f"    {more}")
+    else:
+        typer.echo(f"{line}  {more}".rstrip())
+
+
+def command_line(word: str, typed: str) -> None:
+    """A command to copy; a long one goes on behind a backslash, as a shell reads it."""
     import textwrap
 
-    if line:
-        lines(textwrap.fill(line, 79, break_long_words=False, break_on_hyphens=False))
+    folded = textwrap.wrap(
+        visible(f"{word}: {typed}"), _prose(width()) - 2, subsequent_indent="  ", break_long_words=False,
+        break_on_hyphens=False,
+    )  # fmt: skip
+    typer.echo(" \\\n".join(folded))
 
 
 def error(line: str) -> None:
-    """A line on standard error."""
-    typer.echo(visible(line), err=True)
+    """Lines on standard error, folded where a person reads them."""
+    for one in line.split("\n"):
+        folded = _folded(visible(one), _terminal()) if sys.stderr.isatty() else [visible(one)]
+        for part in folded:
+            typer.echo(part, err=True)
 
 
 def table(content: Table) -> None:
-    """A table for a person on a terminal, or aligned plain text in a pipe."""
+    """A table: coloured on a terminal, the same letters in a pipe."""
+    from coeflab.core.table import set_lines
+
     if not content.rows:
         return
-    content = _visible(content)
-    if sys.stdout.isatty() and _fits(content):
-        _rich(content)
+    found = set_lines(_visible(content), width() - 1)
+    if sys.stdout.isatty():
+        _coloured(found)
     else:
-        _plain(content)
+        for line in found:
+            typer.echo(line.text)
+    typer.echo()
+
+
+def whole() -> bool:
+    """Whether ``--wide`` asks for every column and table."""
+    return _asked["wide"]
+
+
+def widen(value: bool) -> None:
+    """Take ``--wide`` from the command line."""
+    _asked["wide"] = value
 
 
 def width() -> int:
-    """Letters of a line: of the terminal, at least 80, and 80 in a pipe."""
+    """Letters of a line: of the terminal, 80 in a pipe, no end with ``--wide``."""
+    return ENDLESS if whole() else _terminal() if sys.stdout.isatty() else PROSE
+
+
+_asked = {"wide": False}
+PROSE, NARROWEST, ENDLESS = 80, 40, 1_000_000
+
+
+def _terminal() -> int:
     import shutil
 
-    return max(shutil.get_terminal_size().columns, 80) if sys.stdout.isatty() else 80
+    return max(shutil.get_terminal_size().columns, NARROWEST)
 
 
-def folded(content: Table) -> None:
-    """A table whose notes are folded to 80 columns."""
-    import textwrap
-    from dataclasses import replace
+def _prose(most: int) -> int:
+    """Letters of a line of text: long lines are hard to read."""
+    return most if most == ENDLESS else min(most, PROSE) - 1
 
-    notes = (line for note in content.notes for line in textwrap.wrap(note, 77, subsequent_indent="  "))
-    table(replace(content, notes=tuple(notes)))
+
+def _folded(line: str, most: int) -> list[str]:
+    """A line as lines of at most 80 letters or the terminal's, which hang below its indent."""
+    from coeflab.core.table import folded
+
+    indent = line[: len(line) - len(line.lstrip())]
+    return folded(line.strip(), _prose(most), indent, indent + "  " * bool(indent))
 
 
 def _visible(content: Table) -> Table:
@@ -85,61 +150,34 @@ def _visible(content: Table) -> Table:
 
     headers, notes = (tuple(map(visible, texts)) for texts in (content.headers, content.notes))
     rows = tuple(tuple(map(visible, row)) for row in content.rows)
-    return replace(content, title=visible(content.title), headers=headers, rows=rows, notes=notes)
+    spare = tuple(map(visible, content.spare))
+    return replace(content, title=visible(content.title), headers=headers, rows=rows, notes=notes, spare=spare)
 
 
-def _fits(content: Table) -> bool:
-    """Whether the terminal is wide enough to keep every number on one line; text columns may fold to 12 characters."""
-    import shutil
-
-    rows = [content.headers, *content.rows]
-    longest = [max(len(word) for row in rows for word in (row[i].split() or [""])) for i in range(len(content.headers))]
-    whole = [max(len(row[i]) for row in content.rows) for i in range(len(content.headers))]
-    widths = [max(longest[i], 12) if i in content.left else max(whole[i], longest[i]) for i in range(len(whole))]
-    return sum(min(w, 40) for w in widths) + 3 * len(widths) <= shutil.get_terminal_size().columns
-
-
-def _rich(content: Table) -> None:
-    from rich import box
+def _coloured(found: Sequence[Line]) -> None:
+    """Lines of a table on a terminal; the letters are those of a pipe."""
     from rich.console import Console
-    from rich.table import Table as RichTable
     from rich.text import Text
 
-    # A title that is no Text is read for rich's own markup, which names may happen to hold.
-    out = RichTable(title=Text(content.title, "bold"), title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    for i, header in enumerate(content.headers):
-        out.add_column(
-            Text(header),
-            justify="left" if i in content.left else "right",
-            overflow="fold",
-            no_wrap=i not in content.left and " " not in header,
-        )
-    for row in content.rows:
-        out.add_row(*(Text(cell, style=COLOURS.get(cell, "")) for cell in row))
-    console = Console()
-    console.print(out)
-    for note in content.notes:
-        console.print(Text(note, style="dim"))
-    console.print()
+    from coeflab.core.table import GAP, MARGIN
 
-
-def _plain(content: Table) -> None:
-    for line in plain_lines(content):
-        typer.echo(line)
-    typer.echo()
+    console = Console(highlight=False)
+    for line in found:
+        if line.kind in STYLES:
+            out = Text(line.text, STYLES[line.kind])
+        else:
+            # A text that is no Text is read for rich's own markup, which names may happen to hold.
+            cells = [Text(cell, COLOURS.get(cell.strip(), "")) for cell in line.cells]
+            out = Text(MARGIN) + Text(GAP).join(cells)
+            out.rstrip()
+        console.print(out, soft_wrap=True)
 
 
 def plain_lines(content: Table) -> list[str]:
     """The table as aligned plain text."""
-    rows = [content.headers, *content.rows]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(content.headers))]
-    out = [content.title]
-    for row in rows:
-        cells = [
-            c.ljust(w) if i in content.left else c.rjust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True))
-        ]
-        out.append("  " + "  ".join(cells).rstrip())
-    return [*out, *(f"  {note}" for note in content.notes)]
+    from coeflab.core.table import set_lines
+
+    return [line.text for line in set_lines(content, width() - 1)]
 
 
 def json_object(content: dict[str, Any]) -> None:

@@ -6,31 +6,47 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 EXAMPLE = "coeflab simplify huuv_mesh"
 
 
 def command(
-    mesh: str = typer.Argument(..., help="A body.toml of reader mesh, its folder, a shipped body, or a mesh file."),
-    unit: str = typer.Option("", "--unit", help="Of a mesh file: m, mm, in ... Required with one."),
-    axes: str = typer.Option("", "--axes", help="Of a mesh file: FRD, FLU, CFD or forward,port,up. Required with one."),
+    mesh: str = typer.Argument(
+        ...,
+        metavar="BODY",
+        autocompletion=complete.bodies,
+        help="A body.toml of reader mesh, its folder, a shipped body, or a mesh file.",
+    ),
+    unit: str = typer.Option("", "--unit", metavar="UNIT", help="Of a mesh file: m, mm, in ... Required with one."),
+    axes: str = typer.Option(
+        "", "--axes", metavar="AXES", help="Of a mesh file: FRD, FLU, CFD or forward,port,up. Required with one."
+    ),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was done."),
-    box: list[str] = typer.Option([], "--box", help="NAME=x0:x1,y0:y1,z0:z1 in m, FRD: what is inside is that part."),
+    box: list[str] = typer.Option(
+        [], "--box", metavar="NAME=BOX", help="NAME=x0:x1,y0:y1,z0:z1 in m, FRD: what is inside is that part."
+    ),
     boxes: Path | None = typer.Option(
-        None, "--boxes", help="A TOML file of [[box]] with name, x, y, z as [low, high]."
+        None, "--boxes", metavar="FILE.toml", help="A TOML file of [[box]] with name, x, y, z as [low, high]."
     ),
     split: str = typer.Option(
-        "", "--split", help='convex: cut what is like no form into nearly convex pieces (needs "coeflab[convex]").'
+        "",
+        "--split",
+        metavar="convex",
+        help='convex: cut what is like no form into nearly convex pieces (needs "coeflab[convex]").',
     ),
-    parts: int | None = typer.Option(None, "--parts", min=1, help="How many parts there must be; else an error."),
-    out: Path | None = typer.Option(None, "--out", help="Folder to write; without it NAME_simplified."),
+    parts: int | None = typer.Option(
+        None, "--parts", metavar="COUNT", min=1, help="How many parts there must be; else an error."
+    ),
+    out: Path | None = typer.Option(
+        None, "--out", metavar="FOLDER", help="Folder to write; without it NAME_simplified."
+    ),
     force: bool = typer.Option(False, "--force", help="Replace files that differ."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Write a body.toml of simple parts in place of a mesh, the mesh itself, and an overlay as SVG and GLB.
+    """Write a mesh as cylinders, plates, ellipsoids and boxes.
 
-    Cuts off the boxes, then separates shells, then cuts appendages from a round hull; with --split convex it cuts
+    A body.toml of these parts, the mesh itself, and an overlay as SVG and GLB. Cuts off the boxes, then separates shells, then cuts appendages from a round hull; with --split convex it cuts
     further what no form fits.
     """
     from coeflab.bodies.simplify.simplified import MESH

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from coeflab.motion.manoeuvre import Simulation
@@ -20,30 +20,42 @@ TABLES = ("csv", "parquet")
 
 def command(
     ctx: typer.Context,
-    file: Path = typer.Argument(..., help="A parameter file."),
-    manoeuvre: str = typer.Option("turning_circle", help="Name of the manoeuvre (see coeflab formats)."),
+    file: Path = typer.Argument(..., metavar="PARAMS", help="A parameter file."),
+    manoeuvre: str = typer.Option(
+        "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="See coeflab formats manoeuvres."
+    ),
     free: str = typer.Option(
         "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
     ),
     hold: str = typer.Option("", metavar="u", help="Motions that are held after all, such as u for a constant speed."),
     current: str = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down."),
-    simulator: str = typer.Option("rigid_body", help="Name of the simulator (see coeflab formats simulators)."),
-    integrator: str = typer.Option("adaptive", help="adaptive (scipy), or rk4 (fixed steps)."),
-    step: float = typer.Option(0.0, help="Step of rk4 in s; 0: chosen."),
-    record: float = typer.Option(0.0, help="Time between rows of the motion in s; 0: chosen."),
+    simulator: str = typer.Option(
+        "rigid_body", metavar="NAME", autocompletion=complete.simulators, help="See coeflab formats simulators."
+    ),
+    integrator: str = typer.Option(
+        "adaptive", metavar="NAME", autocompletion=complete.integrators, help="adaptive (scipy), or rk4 (fixed steps)."
+    ),
+    step: float = typer.Option(0.0, metavar="SECONDS", show_default=False, help="Step of rk4, s; chosen without it."),
+    record: float = typer.Option(
+        0.0, metavar="SECONDS", show_default=False, help="Time between rows, s; chosen without it."
+    ),
     tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
     accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
-    to: str = typer.Option("csv", help="Format of the motion: csv or parquet."),
-    out: Path | None = typer.Option(None, help="Folder for motion and figure; nothing is written without it."),
+    to: str = typer.Option(
+        "csv", metavar="FORMAT", autocompletion=complete.tables, help="Format of the motion: csv or parquet."
+    ),
+    out: Path | None = typer.Option(
+        None, metavar="FOLDER", help="Folder for motion and figure; nothing is written without it."
+    ),
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the manoeuvre, and stop."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Move the vehicle of a parameter file through a manoeuvre and read its figures off.
+    """Simulate a manoeuvre, such as a zigzag or a turning circle.
 
-    Any further --option VALUE goes to the manoeuvre: --rudder "20 deg", --speed "3 kn". See --help-options. Exit code 1
+    Any further --option VALUE goes to the manoeuvre: --rudder 20, --speed "3 kn". An angle without a unit is in degrees.
+    See --help-options. Exit code 1
     where the motion could not be computed to its end, or where the file determines nothing of it; then nothing is written.
     """
-    from coeflab.cli.fit import further
     from coeflab.core.errors import InputError, shown
     from coeflab.motion.simulation import simulate
     from coeflab.vehicle.parameter_file import read_parameter_file
@@ -60,7 +72,7 @@ def command(
     given = {"integrator": integrator, "step": step, "record": record}
     how: dict[str, Any] = {k: v for k, v in given.items() if v not in ("adaptive", 0.0)} | current_of(current)
     made = simulate(
-        parameters, manoeuvre, further(ctx.args), how, listed(free), listed(hold),
+        parameters, manoeuvre, of_manoeuvre(manoeuvre, ctx.args), how, listed(free), listed(hold),
         simulator=simulator, tables=tables, accelerations=accelerations,
     )  # fmt: skip
     written = [] if out is None or made.undetermined else _write(made, out, to)
@@ -78,6 +90,15 @@ def command(
         _print(made, written)
     if made.trajectory.why or made.undetermined or all(f.value is None for f in made.figures):
         raise typer.Exit(1)
+
+
+def of_manoeuvre(name: str, words: list[str]) -> dict[str, Any]:
+    """Options of a manoeuvre as they are typed: bare angles are in degrees."""
+    from coeflab.cli.fit import further
+    from coeflab.core.options import in_degrees
+    from coeflab.motion.manoeuvres import MANOEUVRES
+
+    return in_degrees(MANOEUVRES.load(name).Options, further(words), name)
 
 
 def listed(text: str) -> tuple[str, ...]:

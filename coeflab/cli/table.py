@@ -29,11 +29,13 @@ VALUES = "low:high:step, a number, or numbers with commas"
 
 def command(
     ctx: typer.Context,
-    params: Path = typer.Argument(..., help="A parameter file with fitted tables."),
-    response: str = typer.Option("", help="Only this response, such as C_D or Y'."),
-    out: Path | None = typer.Option(None, help="File to write; without it the table goes to standard output."),
+    params: Path = typer.Argument(..., metavar="PARAMS", help="A parameter file with fitted tables."),
+    response: str = typer.Option("", metavar="NAME", help="Only this response, such as C_D or Y'."),
+    out: Path | None = typer.Option(
+        None, metavar="FILE.csv", help="File to write; without it the table goes to standard output."
+    ),
 ) -> None:
-    """Evaluate a fitted table and print it as CSV.
+    """Evaluate a fitted table of a parameter file as CSV.
 
     Give every variable as --NAME=LOW:HIGH:STEP, a number or a comma list: angles in degrees, primes as such. --beta and
     --alpha also serve tables over v' = sin(beta) and w' = sin(alpha) cos(beta). The column "inside" is 1 within the

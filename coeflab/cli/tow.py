@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -31,7 +31,11 @@ RESERVED = 12  # lines of a terminal that are not for rows
 
 def command(
     body: str = typer.Argument(
-        "", help="A body.toml, its folder or a shipped body; or the folder of a tow.", show_default=False
+        "",
+        metavar="BODY",
+        autocompletion=complete.bodies,
+        help="A body.toml, its folder or a shipped body; or the folder of a tow.",
+        show_default=False,
     ),
     matrix: Path = typer.Option(
         None,
@@ -40,22 +44,34 @@ def command(
         help="Conditions, grids, studies, options; default: what six derivatives need.",
     ),
     solver: str = typer.Option(
-        "", help="openfoam, external ... (coeflab formats); default openfoam.", show_default=False
+        "",
+        metavar="NAME",
+        autocompletion=complete.solvers,
+        help="openfoam, external ... (coeflab formats); default openfoam.",
+        show_default=False,
     ),
-    out: Path = typer.Option(None, "--out", help="Folder of the tow; default runs/BODY.", show_default=False),
+    out: Path = typer.Option(
+        None, "--out", metavar="FOLDER", help="Folder of the tow; default runs/BODY.", show_default=False
+    ),
     dry_run: bool = typer.Option(False, "--dry-run", help="Write the cases; print cells, memory and hours expected."),
     go_on: bool = typer.Option(False, "--continue", help="Go on with a tow that ended, was stopped or killed."),
     status: bool = typer.Option(False, "--status", help="Print how far a tow is, from any terminal."),
     collect: bool = typer.Option(False, "--collect", help="Make campaign, fits and report of what is finished."),
-    runner: str = typer.Option("", help="local, slurm ... (coeflab formats); default local.", show_default=False),
+    runner: str = typer.Option(
+        "",
+        metavar="NAME",
+        autocompletion=complete.runners,
+        help="local, slurm ... (coeflab formats); default local.",
+        show_default=False,
+    ),
     cores: int = typer.Option(
-        0, min=0, help="That all runs together may take; 0: what the runner takes.", show_default=False
+        0, metavar="COUNT", min=0, help="That all runs together may take; 0: what the runner takes.", show_default=False
     ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object at the end."),
 ) -> None:
-    """Tow a body through a virtual tank: drift, attack, rotating arm; coefficients with uncertainty come out.
+    """Tow a body through a virtual tank (CFD).
 
-    Writes meshes, cases, runs, a campaign and a report into one folder. Ctrl-C and kill -9 lose nothing: --continue goes
+    Drift, attack and rotating arm; coefficients with uncertainty come out. Writes meshes, cases, runs, a campaign and a report into one folder. Ctrl-C and kill -9 lose nothing: --continue goes
     on. Exit code 1 when a condition did not converge.
     """
     from coeflab.core.errors import InputError

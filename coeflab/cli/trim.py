@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from coeflab.motion.trim.trim import Trim
@@ -18,18 +18,18 @@ EXAMPLE = "coeflab trim vehicle.parameters.json --speed 1.5 --yaw-rate 3"
 
 
 def command(
-    file: Path = typer.Argument(..., help="A parameter file."),
+    file: Path = typer.Argument(..., metavar="PARAMS", help="A parameter file."),
     speed: str = typer.Option("", metavar="VALUE", help='u, bare in m/s, or with its unit: "3 kn".'),
     sway: str = typer.Option("", metavar="VALUE", help="v, bare in m/s."),
     heave: str = typer.Option("", metavar="VALUE", help="w, bare in m/s."),
     yaw_rate: str = typer.Option("", metavar="VALUE", help="Rate of heading, bare in deg/s."),
     roll: str = typer.Option("", metavar="VALUE", help="Bare in deg."),
     pitch: str = typer.Option("", metavar="VALUE", help="Bare in deg."),
-    command: list[str] = typer.Option(
+    commands: list[str] = typer.Option(
         [],
-        "--command",
+        "--commands",
         metavar="NAME=VALUE",
-        help="A thruster in its unit, NAME.tilt, dr, ds or db in deg, thrust in N.",
+        help="A thruster in its unit, NAME.tilt, dr, ds or db in deg, thrust in N; several with blanks, or repeatable.",
     ),
     near: list[str] = typer.Option(
         [], "--near", metavar="NAME=VALUE", help="Among several solutions the one nearest to this; angles in deg."
@@ -39,16 +39,18 @@ def command(
     ),
     plane: str = typer.Option(
         "",
+        metavar="PLANE",
+        autocompletion=complete.planes,
         help="horizontal or vertical, where the file does not know enough of all six motions; by default what is asked "
         "for tells.",
     ),
     tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
     accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
-    starts: int = typer.Option(8, min=0, max=1000, help="Cold starts that look for other solutions."),
-    seed: int = typer.Option(0, min=0, help="Of the cold starts."),
+    starts: int = typer.Option(8, metavar="COUNT", min=0, max=1000, help="Cold starts that look for other solutions."),
+    seed: int = typer.Option(0, metavar="NUMBER", min=0, help="Of the cold starts."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Find the commands of a steady motion, or the steady motion of commands.
+    """Find the commands of a steady motion, or the reverse.
 
     Roll, pitch and rate of heading are constant. Motions that are not named are found. Commands that are not named are
     found too, or are zero where no motion is named. Says whether the solution is the only one, whether small motions
@@ -60,7 +62,7 @@ def command(
 
     given = {"speed": speed, "sway": sway, "heave": heave, "yaw_rate": yaw_rate, "roll": roll, "pitch": pitch}
     motion = {AXES.get(k, k): _measured(k, v, f"--{k.replace('_', '-')}") for k, v in given.items() if v}
-    orders = _named(command, "--command")
+    orders = _named(commands, "--commands")
     upright = bool({"w", "pitch", "ds", "db"} & {*motion, *orders})
     chosen = plane or ("vertical" if upright else "horizontal")
     craft = vehicle(read_parameter_file(file), tuple(free.replace(",", " ").split()), chosen, tables, accelerations)
@@ -104,7 +106,8 @@ def _named(texts: list[str], option: str) -> dict[str, float]:
     """
     from coeflab.core.options import named_numbers
 
-    return {name: _si(name, number, option) for name, number in named_numbers(texts, option).items()}
+    words = [word for text in texts for word in text.replace(",", " ").split() or [text]]
+    return {name: _si(name, number, option) for name, number in named_numbers(words, option).items()}
 
 
 def _si(name: str, value: float, option: str) -> float:

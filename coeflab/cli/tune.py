@@ -18,13 +18,17 @@ EXAMPLE = "coeflab tune cfd_data/huuv/tune.toml"
 
 
 def command(
-    plan: Path = typer.Argument(..., help="A TOML file: [tune], [measured] and one [[free]] a parameter."),
-    out: Path | None = typer.Option(None, "--out", help="Folder for the files; default reports/NAME."),
+    plan: Path = typer.Argument(
+        ..., metavar="PLAN", help="A TOML file: [tune], [measured] and one [[free]] a parameter."
+    ),
+    out: Path | None = typer.Option(
+        None, "--out", metavar="FOLDER", help="Folder for the files; default reports/NAME."
+    ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Tune numbers of a parameter file to measured steady turns, with priors and bounds.
+    """Tune numbers of a parameter file to measured steady turns.
 
-    Output-error least squares through the vehicle's own equations. Says which parameters the data do not determine, and
+    With priors and bounds. Output-error least squares through the vehicle's own equations. Says which parameters the data do not determine, and
     writes the tuned parameter file with its provenance, the motions before and after, and a figure. Exit code 1 when the
     fit did not come to an end.
     """

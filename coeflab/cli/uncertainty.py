@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from coeflab.motion.uncertainty.uncertainty import Carried
@@ -19,38 +19,50 @@ CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 def command(
     ctx: typer.Context,
-    file: Path = typer.Argument(..., help="A parameter file."),
-    manoeuvre: str = typer.Option("turning_circle", help="Name of the manoeuvre (see coeflab formats)."),
-    members: int = typer.Option(1000, help="Draws of the coefficients, each of which makes the manoeuvre."),
-    seed: int = typer.Option(1, help="Of the draws; the same seed gives the same numbers."),
+    file: Path = typer.Argument(..., metavar="PARAMS", help="A parameter file."),
+    manoeuvre: str = typer.Option(
+        "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="See coeflab formats manoeuvres."
+    ),
+    members: int = typer.Option(
+        1000, metavar="COUNT", help="Draws of the coefficients, each of which makes the manoeuvre."
+    ),
+    seed: int = typer.Option(1, metavar="NUMBER", help="Of the draws; the same seed gives the same numbers."),
     sobol: bool = typer.Option(
         False, "--sobol", help="Sobol indices of independent groups of coefficients; takes longer."
     ),
-    workers: int = typer.Option(0, help="Local processes; 0: one a core."),
+    cores: int = typer.Option(0, metavar="COUNT", show_default=False, help="Local processes; one a core without it."),
     scheduler: str = typer.Option("", metavar="ADDRESS", help="Dask scheduler in place of local processes."),
-    store: Path | None = typer.Option(
-        None, help="Folder for finished batches, so that a run that was stopped goes on; default OUT/batches."
+    state: Path | None = typer.Option(
+        None,
+        metavar="FOLDER",
+        help="Folder for finished batches, so that a run that was stopped goes on; default OUT/batches.",
     ),
     free: str = typer.Option(
         "", metavar="u,v,r", help="Motions that may change; default what the file knows enough of."
     ),
     hold: str = typer.Option("", metavar="u", help="Motions that are held after all, such as u for a constant speed."),
     current: str = typer.Option("", metavar="N,E,D", help="Steady current in m/s, north, east, down."),
-    kernel: str = typer.Option("auto", help="auto, compiled (numba) or numpy; the same numbers to 1e-12."),
+    kernel: str = typer.Option(
+        "auto",
+        metavar="NAME",
+        autocompletion=complete.kernels,
+        help="auto, compiled (numba) or numpy; the same numbers to 1e-12.",
+    ),
     tables: bool = typer.Option(False, "--tables", help="Fitted tables come before derivatives."),
     accelerations: str = typer.Option("measured", metavar="measured|computed", help=show.ACCELERATIONS),
-    out: Path | None = typer.Option(None, help="Folder for members and figure; nothing is written without it."),
+    out: Path | None = typer.Option(
+        None, metavar="FOLDER", help="Folder for members and figure; nothing is written without it."
+    ),
     help_options: bool = typer.Option(False, "--help-options", help="Explain the options of the manoeuvre, and stop."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Draw the coefficients of a parameter file, run the manoeuvre for each draw, and give intervals of its figures.
+    """Give intervals for the figures of a manoeuvre.
 
-    Says which coefficient is worth another test or CFD run. Any further --option VALUE goes to the manoeuvre: --rudder "20 deg".
-    Numbers do not depend on workers, scheduler, or on having been stopped and started again. Exit code 1 where the file
+    Draws the coefficients of a parameter file and runs the manoeuvre for each draw. Says which coefficient is worth another
+    test or CFD run. Any further --option VALUE goes to the manoeuvre: --rudder 20, in degrees without a unit. Numbers do not depend on workers, scheduler, or on having been stopped and started again. Exit code 1 where the file
     determines no figure of the manoeuvre.
     """
-    from coeflab.cli.fit import further
-    from coeflab.cli.simulate import current_of, listed
+    from coeflab.cli.simulate import current_of, listed, of_manoeuvre
     from coeflab.motion.uncertainty.uncertainty import Question, uncertainty
     from coeflab.vehicle.parameter_file import read_parameter_file
 
@@ -62,12 +74,12 @@ def command(
         return
     water = current_of(current)
     question = Question(
-        manoeuvre, further(ctx.args), members, seed, sobol, listed(free), listed(hold), tables, accelerations,
+        manoeuvre, of_manoeuvre(manoeuvre, ctx.args), members, seed, sobol, listed(free), listed(hold), tables, accelerations,
         (water.get("north", 0.0), water.get("east", 0.0), water.get("down", 0.0)), kernel,
     )  # fmt: skip
-    folder = store if store is not None else out / "batches" if out is not None else None
+    folder = state if state is not None else out / "batches" if out is not None else None
     with show.narrated():
-        made = uncertainty(read_parameter_file(file), question, workers, scheduler, folder)
+        made = uncertainty(read_parameter_file(file), question, cores, scheduler, folder)
     written = [] if out is None or made.undetermined else _write(made, out)
     if json:
         show.json_object({**as_json(made), "files": [str(p) for p in written]})

@@ -27,7 +27,7 @@ from coeflab.core.files import located
 from coeflab.core.limits import positive_number
 from coeflab.core.text.toml import TomlFile, dotted
 from coeflab.core.types import Array
-from coeflab.core.units import SI, quantity
+from coeflab.core.units import SI, with_unit
 from coeflab.core.wording import Verbatim
 
 if TYPE_CHECKING:
@@ -210,7 +210,7 @@ def number_in(dimension: str) -> Takes:
     """A number in SI or a text with its unit; ``dimension`` is a key of `coeflab.core.units.SI`."""
     schema = {"type": ["number", "string"], "pattern": NUMBER_WITH_UNIT, "unit": SI[dimension] or "1"}
     words = "a number" if dimension == "none" else f"an {dimension}" if dimension[0] in "aei" else f"a {dimension}"
-    return Takes(words, lambda v, _: quantity(v, dimension), schema)
+    return Takes(words, lambda v, _: with_unit(v, dimension), schema)
 
 
 def _blank(value: Any, _file: Path) -> str:
@@ -259,7 +259,7 @@ def numbers(count: int, dimension: str, words: str) -> Takes:
     def read(value: Any, _file: Path) -> tuple[float, ...]:
         if not isinstance(value, list) or len(value) != count:
             raise InputError(shown(value), words)
-        return tuple(quantity(v, dimension) for v in value)
+        return tuple(with_unit(v, dimension) for v in value)
 
     one = dict(number_in(dimension).schema)
     return Takes(words, read, {"type": "array", "items": one, "minItems": count, "maxItems": count})

@@ -14,7 +14,7 @@ import numpy as np
 from coeflab.core.declarations import Declaration, Takes, key_of, meanings, taken
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.text.toml import value as toml_value
-from coeflab.core.units import SI, quantity
+from coeflab.core.units import SI, quantity, with_unit
 
 Options = TypeVar("Options")
 
@@ -56,7 +56,12 @@ def measured(default: float, low: float, high: float, dimension: str) -> Any:
             raise InputError(shown(value), f"{low:g} to {high:g} {SI[dimension]}".rstrip())
         return number
 
-    return _option(default, f"{dimension}, bare in {SI[dimension]} or with its unit", read, SI[dimension])
+    bare = (
+        "with its unit, bare in deg on the command line"
+        if dimension == "angle"
+        else f"bare in {SI[dimension]} or with its unit"
+    )
+    return _option(default, f"{dimension}, {bare}", read, SI[dimension])
 
 
 def one_of(default: str, *choices: str) -> Any:
@@ -134,6 +139,8 @@ def _with_unit(key: Takes) -> str:
     unit = key.schema.get("unit", "1")
     if "enum" in key.schema:
         return ", ".join(toml_value(word) for word in key.schema["enum"])
+    if unit == SI["angle"]:
+        return f"{key.words} with its unit"
     return key.words if unit == "1" else f"{key.words}, bare in {unit} or with its unit"
 
 
@@ -149,7 +156,10 @@ def _default(field: dataclasses.Field[Any]) -> str:
     value = field.default
     if isinstance(value, tuple):
         return " ".join(value) or "none"
-    text = value if isinstance(value, str) else f"{value:.10g} {field.metadata['unit']}".rstrip()
+    unit = field.metadata["unit"]
+    if unit == SI["angle"]:
+        return f"{math.degrees(cast(float, value)):.10g} deg"
+    text = value if isinstance(value, str) else f"{value:.10g} {unit}".rstrip()
     return text or '""'
 
 
@@ -189,6 +199,57 @@ def parse_options(kind: type[Options], given: Mapping[str, Any], where: str) -> 
     if complaints:
         raise together(complaints)
     return kind(**filled)
+
+
+RAD_AT_MOST = 1.6  # a bare angle below was typed in rad, as it was read until 1.0, as likely as in degrees
+
+
+def in_degrees(kind: type, given: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """Options as a command line has them: an angle without a unit is in degrees.
+
+    Parameters
+    ----------
+    kind : type
+        The dataclass.
+    given : mapping of str to value
+    where : str
+        Stands before the option's name in an error.
+
+    Raises
+    ------
+    InputError
+        An angle between 0 and 1.6 without a unit, which may have been meant in rad.
+    """
+    out = dict(given)
+    for name in _bare_angles(kind, given):
+        if 0.0 < abs(given[name]) < RAD_AT_MOST:
+            raise InputError(
+                f"{shown(given[name])}, an angle without a unit", f'degrees, at least {RAD_AT_MOST:g}, or a unit: "{given[name]} deg"',
+                column=f"{where}.{name}", advice=f'Radians are written "{given[name]} rad".',
+            )  # fmt: skip
+        out[name] = f"{given[name]!r} deg"
+    return out
+
+
+def of_a_file(kind: type, given: Mapping[str, Any], where: str) -> Mapping[str, Any]:
+    """Options as a file has them, whose angles have a unit.
+
+    Raises
+    ------
+    InputError
+        An angle without a unit that is not 0.
+    """
+    for name in _bare_angles(kind, given):
+        try:
+            with_unit(given[name], "angle")
+        except InputError as why:
+            raise InputError(why.found, why.expected, column=f"{where}.{name}", advice=why.advice) from None
+    return given
+
+
+def _bare_angles(kind: type, given: Mapping[str, Any]) -> list[str]:
+    angles = {f.name for f in dataclasses.fields(cast(Any, kind)) if f.metadata.get("unit") == SI["angle"]}
+    return [n for n, v in given.items() if n in angles and isinstance(v, (int, float)) and not isinstance(v, bool)]
 
 
 def named_numbers(texts: Iterable[str], column: str) -> dict[str, float]:

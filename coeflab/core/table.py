@@ -5,11 +5,14 @@ What a check found.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from enum import StrEnum
 from html import escape
 from importlib import import_module
 from math import isfinite, isnan
+from textwrap import wrap
+from typing import NamedTuple
 
 from coeflab.core.types import brief
 
@@ -27,6 +30,8 @@ class Table:
     notes : tuple of str
     left : frozenset of int
         Columns that are set flush left; the others are numbers.
+    spare : tuple of str
+        Headers of columns that a narrow line does without, the first to go first.
     """
 
     title: str
@@ -34,6 +39,7 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     notes: tuple[str, ...] = ()
     left: frozenset[int] = frozenset({0})
+    spare: tuple[str, ...] = ()
 
     def _repr_html_(self) -> str:
         """The table for notebooks; every text escaped."""
@@ -46,6 +52,143 @@ class Table:
         notes = "".join(f'<p style="font-size: 85%">{escape(note)}</p>' for note in self.notes)
         caption = f'<caption style="text-align: left; font-weight: bold">{escape(self.title)}</caption>'
         return f"<table>{caption}<thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table>{notes}"
+
+
+class Line(NamedTuple):
+    """A line of a table that is set: what it is (title, head, row or note) and its cells, padded."""
+
+    kind: str
+    cells: tuple[str, ...]
+
+    @property
+    def text(self) -> str:
+        """The line as it is printed."""
+        return (MARGIN * (self.kind in ("head", "row")) + GAP.join(self.cells)).rstrip()
+
+
+MARGIN = GAP = "  "
+COMFORT, SPARED = 20, 32  # letters below which text is not folded while a column can go; such a column goes before that
+LONGEST_WORD = 36  # in a cell; what is longer is broken
+_TOGETHER = re.compile(r"(?<=\d) (?=(?:%|deg|rad|mm?|kn?|kg|s|N)\b|%)|(?<=\+-) | (?=\+- )")
+
+
+def folded(text: str, width: int, first: str = "", then: str = "", whole: bool = True) -> list[str]:
+    """A text as lines of at most ``width`` letters, never between a number and its unit.
+
+    Parameters
+    ----------
+    text : str
+    width : int
+    first, then : str
+        What the first line and the others begin with.
+    whole : bool
+        A word longer than a line, such as a path, stays whole.
+    """
+    kept = _TOGETHER.sub("\u00a0", text)
+    lines = wrap(
+        kept, width, initial_indent=first, subsequent_indent=then, break_long_words=not whole, break_on_hyphens=False
+    )
+    return [line.replace("\u00a0", " ") for line in lines] or [first]
+
+
+def set_lines(table: Table, width: int) -> tuple[Line, ...]:
+    """A table as lines of at most ``width`` letters.
+
+    First a column goes below that says the same in every row, then text is folded, then columns of `Table.spare` go, one by
+    one and named below; then text is folded down to its words, and what is still too wide goes on below, behind its first
+    column. Numbers are never folded.
+
+    Parameters
+    ----------
+    table : Table
+    width : int
+        A word that is longer than a line has its line.
+    """
+    chosen = list(range(len(table.headers)))
+    below: list[str] = []
+    for i in list(chosen):
+        if _room(table, chosen, SPARED) > width and _says_one(table, i):
+            chosen.remove(i)
+            said = table.rows[0][i]
+            below += [f"All rows: {table.headers[i]} {said}"] if said not in ("", ABSENT) else []
+    gone = []
+    for name in table.spare:
+        if _room(table, chosen, COMFORT) <= width:
+            break
+        gone += [name for i in chosen if table.headers[i] == name]
+        chosen = [i for i in chosen if table.headers[i] != name]
+    groups = [chosen] if _room(table, chosen, 1) <= width else _groups(table, chosen, width)
+    out = [Line("title", (text,)) for text in folded(table.title, width)]
+    for k, group in enumerate(groups):
+        if k:
+            out.append(Line("title", (f"{MARGIN}{MORE}:",)))
+        out += _block(table, group, width)
+    below += [f"Not shown: {', '.join(gone)}; --wide shows all."] if gone else []
+    for note in (*table.notes, *below):
+        out += [Line("note", (text,)) for text in folded(note, width, MARGIN, 2 * MARGIN)]
+    return tuple(out)
+
+
+MORE = "more"
+
+
+def _says_one(table: Table, i: int) -> bool:
+    """Whether a column of text says the same in each of several rows."""
+    return bool(
+        i in table.left and table.headers[i] and len(table.rows) > 1 and len({row[i] for row in table.rows}) == 1
+    )
+
+
+def _column(table: Table, i: int) -> list[str]:
+    return [table.headers[i], *(row[i] for row in table.rows)]
+
+
+def _least(table: Table, i: int, comfort: int) -> int:
+    """Letters that a column needs at least: its longest number, or the longest word of text."""
+    cells = _column(table, i)
+    text = cells if i in table.left else cells[:1]
+    numbers = [] if i in table.left else [len(cell) for cell in cells[1:]]
+    words = max((len(word) for cell in text for word in cell.split()), default=1)
+    at_ease = min(max(map(len, cells)), SPARED if table.headers[i] in table.spare and comfort > 1 else comfort)
+    return max(at_ease if i in table.left else 0, min(words, LONGEST_WORD), *numbers, 1)
+
+
+def _room(table: Table, chosen: list[int], comfort: int) -> int:
+    return sum(_least(table, i, comfort) + len(GAP) for i in chosen)
+
+
+def _groups(table: Table, chosen: list[int], width: int) -> list[list[int]]:
+    """Columns that fit beside each other, each group behind the first column."""
+    first, *others = chosen
+    out = [[first]]
+    for i in others:
+        if len(out[-1]) > 1 and _room(table, [*out[-1], i], 1) > width:
+            out.append([first])
+        out[-1].append(i)
+    return out
+
+
+def _block(table: Table, chosen: list[int], width: int) -> list[Line]:
+    """Header and rows of columns that fit, text folded as far as needed, the widest column first."""
+    widths = {i: max(1, *map(len, _column(table, i))) for i in chosen}
+    least = {i: _least(table, i, 1) for i in chosen}
+    while sum(widths.values()) + len(GAP) * len(chosen) > width:
+        reducible = [i for i in chosen if widths[i] > least[i]]
+        if not reducible:
+            break
+        widths[max(reducible, key=lambda i: widths[i])] -= 1
+    out = []
+    for k, row in enumerate((table.headers, *table.rows)):
+        cells = [[row[i]] if len(row[i]) <= widths[i] else folded(row[i], widths[i], whole=False) for i in chosen]
+        deepest = max(map(len, cells))
+        for n in range(deepest):
+            # A header stands on its numbers, a folded text begins with them.
+            above = [deepest - len(cell) if k == 0 else 0 for cell in cells]
+            texts = [cell[n - a] if 0 <= n - a < len(cell) else "" for cell, a in zip(cells, above, strict=True)]
+            sides = zip(chosen, texts, strict=True)
+            padded = (t.ljust(widths[i]) if i in table.left else t.rjust(widths[i]) for i, t in sides)
+            out.append(Line("row" if k else "head", tuple(padded)))
+    return out
 
 
 ABSENT = "-"
@@ -159,9 +302,8 @@ class Check:
 
 
 def html_by(renderer: str, noun: object) -> str:
-    """HTML of a noun for notebooks, by the function of that name in ``coeflab.report.tables.nouns``.
+    """HTML of a noun for notebooks, by the function of that name in ``coeflab.report.notebook``.
 
     The report is imported on first use and by name: nouns stand below it.
     """
-    tables = getattr(import_module("coeflab.report.tables.nouns"), renderer)(noun)
-    return "".join(t._repr_html_() for t in ((tables,) if isinstance(tables, Table) else tables))
+    return str(getattr(import_module("coeflab.report.notebook"), renderer)(noun))

@@ -63,7 +63,7 @@ def remembered(many: int) -> Callable[[Callable[Given, Made]], Callable[Given, M
 
 
 Noun = TypeVar("Noun")
-LONGEST_LINE, LONGEST_TEXT, FEW = 380, 60, 8
+LONGEST_LINE, LONGEST_TEXT, LONGEST_SAID, FEW = 380, 60, 160, 8
 
 
 def brief(cls: type[Noun]) -> type[Noun]:
@@ -74,6 +74,12 @@ def brief(cls: type[Noun]) -> type[Noun]:
     """
     cls.__repr__ = _in_a_line  # type: ignore[method-assign]
     return cls
+
+
+def in_angles(noun: object, said: str) -> str:
+    """A ``repr`` that says what a noun holds, ``<Kind said>``, in one line and cut where it grows long."""
+    line = " ".join(said.split())
+    return f"<{type(noun).__name__} {line if len(line) <= LONGEST_SAID else f'{line[: LONGEST_SAID - 3]}...'}>"
 
 
 def _in_a_line(noun: Any) -> str:

@@ -138,6 +138,22 @@ def factor(unit: str, dimension: str) -> float:
     return value
 
 
+def with_unit(value: Any, dimension: str) -> float:
+    """A number of a file in SI, `quantity`, where a bare number stands for SI but for angles: these need their unit, or are 0.
+
+    Raises
+    ------
+    InputError
+        Not a finite number, an angle without a unit, or a unit that does not fit.
+    """
+    if dimension == "angle" and isinstance(value, (int, float)) and value and not isinstance(value, bool):
+        raise InputError(
+            f"{shown(value)}, an angle without a unit", 'a text such as "20 deg"',
+            advice=f'A bare number was read in rad until now: write "{value!r} rad".' if math.isfinite(value) else "",
+        )  # fmt: skip
+    return quantity(value, dimension)
+
+
 def quantity(value: Any, dimension: str, *, file: str | Path | None = None, key: str = "") -> float:
     """A number of a TOML file in SI: a bare number is SI already, a text carries its unit (``"13.9792 ft"``).
 

@@ -21,7 +21,7 @@ from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError
 from coeflab.core.stored import Means, Name, Positive, Square6, Words, stored
 from coeflab.core.table import html_by
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, in_angles, locked
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS, derivative
@@ -102,7 +102,6 @@ class OtherMethod(NamedTuple):
 
 
 @stored("body method density matrix others? statements?")
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class AddedMass:
     """M_A, positive, FRD, about the file's reference point; acceleration derivatives are its negatives.
@@ -153,9 +152,13 @@ class AddedMass:
         if self.matrix.shape != (6, 6):
             raise InputError(f"a matrix of shape {self.matrix.shape}", "6 x 6")
 
+    def __repr__(self) -> str:
+        diagonal = ", ".join(f"{v:.4g}" for v in np.diag(self.matrix))
+        return in_angles(self, f"{self.body} by {self.method}: diagonal {diagonal}{', rough' if self.rough else ''}")
+
     def _repr_html_(self) -> str:
         """The matrix, for notebooks."""
-        return html_by("matrix", self)
+        return html_by("added_mass", self)
 
     def refuse(self) -> None:
         """Raise ValueError for what is no kinetic energy."""

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.stored import Choice, Count, Finite, Means, NotNegative, stored
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.table import html_by, percent, plus_minus
+from coeflab.core.types import Array, in_angles, locked
 from coeflab.law.scaling import Conditions, Scaling
-from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative
+from coeflab.law.symbols import ANGULAR, COMPONENTS, MOTIONS, derivative, primed
 from coeflab.law.transforms import derivative_transfer
 
 COVERS = "noise, curvature of any smooth form and where it sets in"  # of the U95 of a slope at the origin
@@ -91,7 +92,6 @@ WITHOUT_VALUE = (Status.NO_TABLE, Status.TOO_FEW_POINTS, Status.NOT_DETERMINED)
     "symbol value u95 unit value_si unit_si status origin parts table? campaign? estimator? window? n_points? citation? law? "
     "potential?"
 )
-@brief
 @dataclass(frozen=True, slots=True)
 class Coefficient:
     """One coefficient.
@@ -173,6 +173,23 @@ class Coefficient:
         Means("part of the value that -C_A(nu) nu gives, by `added_mass`; the rest is viscous", "1", since="1.2"),
     ] = None
 
+    @property
+    def said(self) -> str:
+        """Symbol, value and U95, or why there is none: ``Yv' = -0.0262 +- 0.0027``."""
+        name = primed(self.symbol) if self.unit == "1" else self.symbol
+        if self.value is None:
+            return f"{name}: {self.status.replace('_', ' ')}"
+        return f"{name} = {plus_minus(self.value, self.u95)}{'' if self.unit == '1' else f' {self.unit}'}"
+
+    def __repr__(self) -> str:
+        share = f" ({percent(self.u95, self.value)})" if self.u95 is not None else ""
+        come = self.campaign or self.citation
+        return in_angles(self, f"{self.said}{share}{f', {come}' if come else ''}")
+
+    def _repr_html_(self) -> str:
+        """Value and interval, for notebooks."""
+        return html_by("one_coefficient", self)
+
     def refuse(self) -> None:
         """Raise ValueError for a coefficient that no parameter file may hold."""
         if not self.symbol.endswith("'"):
@@ -208,7 +225,6 @@ class Coefficient:
         return replace(self, window=(self.window[0] * longer, self.window[1] * longer))
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class CoefficientSet:
     """Coefficients of one body, one scaling, one reference point.
@@ -239,6 +255,14 @@ class CoefficientSet:
     def __post_init__(self) -> None:
         object.__setattr__(self, "covariance", locked(self.covariance))
         object.__setattr__(self, "reference_point", locked(self.reference_point))
+
+    def __repr__(self) -> str:
+        by = f"primed by {self.scaling.length_name}" if self.conditions is None else "SI"
+        return in_angles(self, f"{self.body}, {by}: {', '.join(c.said for c in self.coefficients)}")
+
+    def _repr_html_(self) -> str:
+        """Values and intervals, for notebooks."""
+        return html_by("coefficients", self)
 
     def __getitem__(self, symbol: str) -> Coefficient:
         name = symbol.removesuffix("'")

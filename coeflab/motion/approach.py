@@ -38,14 +38,14 @@ def propulsion(vehicle: Vehicle, speed: float) -> tuple[dict[str, float], str]:
         The file has no resistance although the speed is free.
     """
     if "u" not in vehicle.free:
-        return {}, f"speed held at {speed:g} m/s, whatever thrust that takes"
+        return {}, f"speed held at {speed:g} m/s; the thrust follows"
     needed = vehicle.resistance(speed)
     if needed <= 0.0:
         raise InputError(
             f"a resistance of {needed:g} N at {speed:g} m/s", "a force against the motion, such as X0 or Xu|u|",
             column="coefficients", advice="Hold the speed: --hold u.",
         )  # fmt: skip
-    return {THRUST: needed}, f"thrust constant at {needed:.4g} N, which a straight run at {speed:g} m/s takes"
+    return {THRUST: needed}, f"constant thrust of {needed:.4g} N, for {speed:g} m/s straight ahead"
 
 
 def turning_sense(vehicle: Vehicle, control: str, about: str, speed: float) -> float:
@@ -215,10 +215,7 @@ def unlimited(vehicle: Vehicle, rate: str, speed: float) -> str:
     other, components = ("v", "YN") if rate == "r" else ("w", "ZM")
     if has_rotary_limit(vehicle, rate, components) or linear_growth(vehicle, (other, rate), speed) <= 0.0:
         return ""
-    return (
-        f"straight motion is unstable, and the file has no nonlinear term in {rate} of {components[0]} or {components[1]} "
-        "that would limit the turn"
-    )
+    return f"unstable, and no nonlinear term such as {components[0]}{rate}|{rate}| or {components[1]}{rate}|{rate}| limits the turn"
 
 
 def undetermined_at_once(vehicle: Vehicle, manoeuvre: Manoeuvre) -> str:
@@ -252,7 +249,7 @@ def in_current(current: Array) -> tuple[str, ...]:
 
 
 def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking: str = "") -> Figure:
-    """The figure with a word on motions that no data cover before the time it was read off.
+    """The figure, marked where the motion has left the data before the time it was read off.
 
     Parameters
     ----------
@@ -269,7 +266,10 @@ def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking:
     names = [name for name, flags in trajectory.outside.items() if np.any(flags & before)]
     if not names:
         return figure
-    beyond = f"beyond the data: {', '.join(names)}"
+    bare = [name.removesuffix(f": {UNCOVERED}") for name in names if name.endswith(UNCOVERED)]
+    left = [name for name in names if not name.endswith(UNCOVERED)]
+    said = (f"beyond the data in {', '.join(left)}" if left else "", f"no data on {', '.join(bare)}" if bare else "")
+    beyond = "; ".join(filter(None, said))
     if lacking and any(not name.endswith(UNCOVERED) for name in names):
         return replace(figure, value=None, status="not determined", why=f"{beyond}; {lacking}")
     return replace(figure, status="extrapolated", why=beyond)

@@ -23,7 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError, shown
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.table import html_by
+from coeflab.core.types import Array, brief, in_angles, locked
 from coeflab.law.force_law import BASE, Ints
 from coeflab.law.symbols import CONTROLS
 from coeflab.motion.trajectory import Trajectory
@@ -156,7 +157,6 @@ class Figure:
     high: float | None = None
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Simulation:
     """What was asked and what came out.
@@ -185,6 +185,14 @@ class Simulation:
     determined: float = inf
     citations: tuple[str, ...] = ()
     undetermined: str = ""
+
+    def __repr__(self) -> str:
+        figures = ", ".join(f"{f.name} {f.value:.4g} {f.unit}" for f in self.figures if f.value is not None)
+        return in_angles(self, f"{self.manoeuvre.name} of {self.vehicle.name}: {figures or 'no figure determined'}")
+
+    def _repr_html_(self) -> str:
+        """Track and figures, for notebooks."""
+        return html_by("simulation", self)
 
 
 def crossing(time: Array, values: Array, level: float, rises: bool, after: float = -np.inf) -> float | None:

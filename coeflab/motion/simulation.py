@@ -8,6 +8,7 @@ from typing import Any
 
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
+from coeflab.core.options import of_a_file
 from coeflab.law.symbols import MOTIONS
 from coeflab.motion.approach import at_once, undetermined_at_once, unlimited
 from coeflab.motion.manoeuvre import PlannedManoeuvre, Simulation
@@ -45,7 +46,8 @@ def manoeuvres_of(
                 file=asked.file, column=asked.key("parameter_file"),
             )  # fmt: skip
         try:
-            out.append(simulate(parameters, asked.name, asked.options, accelerations=asked.accelerations))
+            options = of_a_file(MANOEUVRES.load(asked.name).Options, asked.options, asked.name)
+            out.append(simulate(parameters, asked.name, options, accelerations=asked.accelerations))
         except InputError as why:
             raise InputError(
                 why.found, why.expected, file=asked.file, column=asked.key(why.column or "name"), advice=why.advice
@@ -142,5 +144,5 @@ def determined_until(trajectory: Trajectory, vehicle: Vehicle) -> tuple[float, s
             ]
             if beyond:
                 first = float(min(times[0] for times in beyond))
-                return first, f"drawn up to {first:.4g} s, from where on it is not determined: {lacking}"
+                return first, f"stopped at {first:.4g} s: {lacking}"
     return inf, ""

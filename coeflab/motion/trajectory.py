@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.table import html_by, number
-from coeflab.core.types import Array, brief, locked, locked_columns
+from coeflab.core.types import Array, in_angles, locked, locked_columns
 from coeflab.law.force_law import SLOWEST
 from coeflab.law.symbols import ANGULAR, CONTROLS, LINEAR, MOTIONS
 from coeflab.motion.dynamics import euler_angles, rotations
@@ -32,7 +32,6 @@ class Ended(StrEnum):
     TOO_FAST = "too_fast"
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Trajectory:
     """A motion, one row a time.
@@ -109,8 +108,13 @@ class Trajectory:
         moved = np.einsum("nij,nj->ni", rotations(np.asarray(self.attitude)), self.velocity[:, :3])
         return np.asarray(np.hypot(moved[:, 0], moved[:, 1]))
 
+    def __repr__(self) -> str:
+        turned, last = float(np.degrees(self.heading[-1])), float(self.time[-1] - self.time[0])
+        ended = self.ended.value.replace("_", " ")
+        return in_angles(self, f"{last:.4g} s in {len(self.time)} rows, {ended}, heading turned {turned:.4g} deg")
+
     def _repr_html_(self) -> str:
-        """Beginning, end and range, for notebooks."""
+        """Track, beginning, end and range, for notebooks."""
         return html_by("motion", self)
 
     def until(self, time: float) -> Trajectory:
@@ -148,7 +152,7 @@ def outside(vehicle: Vehicle, velocity: Array, controls: Mapping[str, Array]) ->
     values = _values(vehicle, velocity, controls)
     out: dict[str, Flags] = {}
     spoken = set()
-    for name, ranges in _ranges(vehicle).items():
+    for name, ranges in covered_ranges(vehicle).items():
         if name in values:
             motion, x = values[name]
             spoken.add(motion)
@@ -178,12 +182,12 @@ def outside_in_words(vehicle: Vehicle, velocity: Array, controls: Mapping[str, f
     rows, angles = velocity[None, :], {c: np.array([x]) for c, x in controls.items()}
     values, flags = _values(vehicle, rows, angles), outside(vehicle, rows, angles)
     out = []
-    for name, ranges in _ranges(vehicle).items():
+    for name, ranges in covered_ranges(vehicle).items():
         if name in values and flags[name][0]:
             factor, unit = (180.0 / np.pi, " deg") if name in CONTROLS or name.startswith("asin") else (1.0, "")
             spans = " or ".join(f"{number(low * factor)} to {number(high * factor)}{unit}" for low, high in ranges)
             here = f"{number(float(values[name][1][0]) * factor)}{unit}"
-            out.append(f"{name} = {here} lies outside of what the data cover, {spans}.")
+            out.append(f"{name} = {here} is outside the data, {spans}.")
     return tuple(out)
 
 
@@ -197,7 +201,7 @@ def _values(vehicle: Vehicle, velocity: Array, controls: Mapping[str, Array]) ->
     return values | {c: (c, controls[c]) for c in CONTROLS if c in controls}
 
 
-def _ranges(vehicle: Vehicle) -> dict[str, list[tuple[float, float]]]:
+def covered_ranges(vehicle: Vehicle) -> dict[str, list[tuple[float, float]]]:
     """Ranges of every variable, from low to high, those that touch joined."""
     out: dict[str, list[tuple[float, float]]] = {}
     for c in sorted(vehicle.covered, key=lambda c: c.low):

@@ -10,8 +10,8 @@ from enum import StrEnum
 from math import copysign, inf, nan
 from typing import TYPE_CHECKING, Any, Protocol
 
-from coeflab.core.table import ABSENT, Table
-from coeflab.core.types import brief
+from coeflab.core.table import ABSENT, Table, html_by
+from coeflab.core.types import brief, in_angles
 from coeflab.study.study import Study
 from coeflab.study.validation import printed_indices, validations
 
@@ -150,7 +150,6 @@ class Drawing(Protocol):
         """The numbers behind it."""
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Acceptance:
     """A publication reproduced.
@@ -180,6 +179,14 @@ class Acceptance:
     figures: tuple[tuple[str, Drawing], ...] = ()
     conventions: tuple[str, ...] = ()
     parameter_files: tuple[ParameterFile, ...] = ()
+
+    def __repr__(self) -> str:
+        good = sum(r.holds for r in self.numbers)
+        return in_angles(self, f"{self.name}: {good} of {len(self.numbers)} published numbers within what is allowed")
+
+    def _repr_html_(self) -> str:
+        """Its answer with pictures, for notebooks."""
+        return html_by("acceptance", self)
 
     @property
     def holds(self) -> bool:

@@ -27,6 +27,7 @@ from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.symbols import primed
 from coeflab.report.acceptance import headline, held_of_study
 from coeflab.report.answer import answer
+from coeflab.report.bench import bench_of
 from coeflab.report.document import Document, Section, digest_of, reproduction, shipped_name
 from coeflab.report.figures.svg import settings
 from coeflab.report.notation import keeping, users_texts
@@ -117,7 +118,7 @@ def document(study: Study, *, full: bool = True) -> Document:
     verbatim = users_texts(study)
     with keeping(verbatim):
         made = _document(study, full)
-        return replace(made if full else core(made), verbatim=verbatim)
+        return replace(made if full else core(made), verbatim=verbatim, bench=bench_of(study))
 
 
 def core(document: Document) -> Document:

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 
 from coeflab.core.files import shipped
 from coeflab.core.provenance import InputFile, sha256_of
-from coeflab.core.table import Severity, Table
-from coeflab.core.types import brief, locked
+from coeflab.core.table import Severity, Table, html_by
+from coeflab.core.types import brief, in_angles, locked
 from coeflab.core.version import VERSION
 from coeflab.report.acceptance import Acceptance
+from coeflab.report.bench import BenchData
 from coeflab.study.study import Plan, Study
 
 Range = tuple[float, float]
@@ -184,6 +185,10 @@ class Figure:
     panels: tuple[Panel, ...] = ()
     scene: Scene | None = None
 
+    def _repr_html_(self) -> str:
+        """The drawing, for notebooks."""
+        return html_by("figure", self)
+
 
 @brief
 @dataclass(frozen=True, slots=True)
@@ -237,7 +242,6 @@ class Chip:
     anchor: str = ""
 
 
-@brief
 @dataclass(frozen=True, slots=True)
 class Answer:
     """What a reader wants first: one sentence, the wanted coefficients beside published ones, two pictures, four chips.
@@ -274,6 +278,13 @@ class Answer:
     axes: Figure | None = None
     notes: tuple[str, ...] = ()
     table: Table | None = None
+
+    def __repr__(self) -> str:
+        return in_angles(self, self.sentence)
+
+    def _repr_html_(self) -> str:
+        """Sentence, rows, pictures and chips, for notebooks."""
+        return html_by("answer", self)
 
 
 @brief
@@ -324,6 +335,8 @@ class Document:
         Texts of users in it, which renderers set as they stand.
     answer : Answer or None
         The first page; None where a document has none.
+    bench : BenchData or None
+        What a workbench page computes with.
     """
 
     title: str
@@ -334,6 +347,7 @@ class Document:
     works: tuple[tuple[str, str], ...] = ()
     verbatim: tuple[str, ...] = ()
     answer: Answer | None = None
+    bench: BenchData | None = None
 
 
 PLAN = "plan.toml"

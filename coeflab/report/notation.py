@@ -387,6 +387,38 @@ def _html(text: str, kept: Kept | None) -> str:
     return _page(text, runs(text, kept))
 
 
+def html_with(text: str, marks: Callable[[str], Iterable[tuple[int, int, str, str]]]) -> str:
+    """A sentence as HTML with elements round some of its words.
+
+    Parameters
+    ----------
+    text : str
+    marks : callable
+        Gets the text with a neutral letter for every one of a user's, and gives in order, without overlap: beginning, end,
+        and what stands before and after as HTML. A mark that would cut a symbol in two is left out.
+    """
+    covered = _covered(text, kept())
+    tokens = [] if "$" in covered or "\\" in covered else list(_TOKENS.finditer(covered))
+    out, at = [], 0
+    for start, end, before, after in marks(covered):
+        if any(t.start() < edge < t.end() for t in tokens for edge in (start, end)):
+            continue
+        out += [_between(text, tokens, at, start), before, _between(text, tokens, start, end), after]
+        at = end
+    return _directed(text, "".join([*out, _between(text, tokens, at, len(text))]))
+
+
+def _between(text: str, tokens: Sequence[re.Match[str]], start: int, end: int) -> str:
+    """A part of a sentence as HTML, by the symbols of the whole."""
+    pieces: list[Run] = []
+    at = start
+    for found in tokens:
+        if start <= found.start() and found.end() <= end:
+            pieces += [text[at : found.start()], *_pieces(found)]
+            at = found.end()
+    return "".join(_element(piece) for piece in _joined([*pieces, text[at:end]])).replace("</i><i>", "")
+
+
 def cell_html(text: str) -> str:
     """A table's cell as HTML."""
     return _cell_html(text, kept())
@@ -437,7 +469,10 @@ def _drawn(text: str, kept: Kept | None) -> str:
 
 
 def _page(text: str, pieces: Sequence[Run]) -> str:
-    made = "".join(_element(piece) for piece in pieces).replace("</i><i>", "")
+    return _directed(text, "".join(_element(piece) for piece in pieces).replace("</i><i>", ""))
+
+
+def _directed(text: str, made: str) -> str:
     return f"<bdi>{made}</bdi>" if runs_to_the_left(text) else made
 
 

@@ -15,8 +15,8 @@ from coeflab.bodies.body import Body
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.axes import Datum
 from coeflab.core.provenance import InputFile
-from coeflab.core.table import Check, Severity
-from coeflab.core.types import brief, locked
+from coeflab.core.table import Check, Severity, html_by
+from coeflab.core.types import brief, in_angles, locked
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.formats.export import PlannedExport
@@ -134,7 +134,6 @@ class Plan:
             object.__setattr__(self, "reference_point", locked(self.reference_point))
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Study:
     """Everything that a run found; export and report are two leaves of this one object.
@@ -165,6 +164,17 @@ class Study:
         object.__setattr__(self, "unfitted", MappingProxyType(dict(self.unfitted)))
         object.__setattr__(self, "parameter_files", MappingProxyType(dict(self.parameter_files)))
         object.__setattr__(self, "hulls", MappingProxyType(dict(self.hulls)))
+
+    def __repr__(self) -> str:
+        judged = [c.passed for c in self.comparisons if c.passed is not None]
+        valued = sum(c.value is not None for c in self.coefficients)
+        agree = f", {sum(judged)} of {len(judged)} published values within U95" if judged else ""
+        files = f", {len(self.parameter_files)} parameter files" if self.parameter_files else ""
+        return in_angles(self, f"{self.plan.name}: {valued} coefficients by {len(self.fits)} fits{agree}{files}")
+
+    def _repr_html_(self) -> str:
+        """Its answer with pictures, for notebooks."""
+        return html_by("study", self)
 
     @property
     def coefficients(self) -> tuple[Coefficient, ...]:

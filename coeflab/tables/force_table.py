@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from coeflab.core.axes import Datum
 from coeflab.core.provenance import InputFile, Source
-from coeflab.core.types import Array, brief, locked, locked_columns
+from coeflab.core.table import html_by
+from coeflab.core.types import Array, in_angles, locked, locked_columns
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.transforms import force_transfer, velocity_transfer
@@ -67,7 +68,6 @@ class Exclusion:
     status: str = ""
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class ForceTable:
     """Forces that the fluid exerts on a body in steady motion.
@@ -166,6 +166,15 @@ class ForceTable:
 
     def __len__(self) -> int:
         return len(self.speed)
+
+    def __repr__(self) -> str:
+        over = f" over {' '.join(self.varies)}" if self.varies else ""
+        aside = f", {len(self.exclusions)} exclusions" if self.exclusions else ""
+        return in_angles(self, f"{self.name}: {len(self)} rows of {' '.join(self.forces)}{over}{aside}")
+
+    def _repr_html_(self) -> str:
+        """Its points and ranges, for notebooks."""
+        return html_by("force_table", self)
 
     @property
     def varies(self) -> tuple[str, ...]:

@@ -196,8 +196,7 @@ class PlanarMotionRun:
         return InputError(found, expected, file=file or self.listed, line=at, column=column or None, advice=advice)
 
 
-@brief
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, repr=False)
 class PlanarMotionTable(ForceTable):
     """A list of oscillating runs; the rows are their means over the record, which no steady fit may use.
 

@@ -19,7 +19,7 @@ from coeflab.core.declarations import Declaration
 from coeflab.core.errors import InputError, shown, together
 from coeflab.core.registry import Registry
 from coeflab.core.text.toml import TomlFile, quoted, read_toml, value
-from coeflab.core.units import quantity
+from coeflab.core.units import with_unit
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import CONTROL_COLUMNS
 from coeflab.tank import test_matrix
@@ -49,7 +49,7 @@ def _quantities(dimension: str, words: str, largest: float, said: str) -> takes.
     def read(given: Any, _file: Path) -> tuple[float, ...]:
         if not isinstance(given, list):
             raise InputError(shown(given), words)
-        numbers = tuple(quantity(one, dimension) for one in given)
+        numbers = tuple(with_unit(one, dimension) for one in given)
         for one, number in zip(given, numbers, strict=True):
             if abs(number) > largest:
                 raise InputError(shown(one), said)
@@ -64,7 +64,7 @@ def _moving(given: tuple[float, ...]) -> str:
     return "no zero: straight runs are added by themselves" if 0.0 in given else ""
 
 
-_ANGLE_LIMIT = 'an angle below 60 deg; a bare number is in rad, write "4 deg"'
+_ANGLE_LIMIT = 'an angle below 60 deg, such as "4 deg"'
 Angles = Annotated[
     tuple[float, ...],
     _quantities(

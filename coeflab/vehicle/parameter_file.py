@@ -28,6 +28,7 @@ from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, Wo
 from coeflab.core.table import html_by
 from coeflab.core.text.json import parse_json
 from coeflab.core.text.toml import read_text
+from coeflab.core.types import in_angles
 from coeflab.core.wording import repeated
 from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.coefficient import Coefficient
@@ -277,8 +278,13 @@ class ParameterFile(Strict):
         wanted = symbol.removesuffix("'") + "'"
         return next((c for c in self.coefficients if c.symbol == wanted), None)
 
+    def __repr__(self) -> str:
+        valued = sum(c.value is not None for c in self.coefficients)
+        by = f"{self.scaling.length_name} {self.scaling.length:.5g} m"
+        return in_angles(self, f"{self.name}: {valued} of {len(self.coefficients)} coefficients valued, primed by {by}")
+
     def _repr_html_(self) -> str:
-        """The coefficients, for notebooks."""
+        """The force law and the coefficients, for notebooks."""
         return html_by("parameters", self)
 
     def to_json(self) -> bytes:

@@ -50,6 +50,8 @@ os.environ.clear()
 os.environ.update(environment)
 sys.path[0] = os.path.dirname(sys.argv[0])
 sys.stdin = open(0)
+if os.isatty(1):  # the streams of the interpreter that waits were opened on something else
+    sys.stdout, sys.stderr = open(1, "w", closefd=False), open(2, "w", closefd=False)
 try:
     sys.exit(coeflab.cli.main())
 except SystemExit as ended:
@@ -70,8 +72,12 @@ class Forks:
         self._server: subprocess.Popen[bytes] | None = None
         self._at_import: dict[str, str] = {}
 
-    def run(self, arguments: Sequence[str | Path], folder: Path) -> subprocess.CompletedProcess[str]:
+    def run(
+        self, arguments: Sequence[str | Path], folder: Path, terminal: str = ""
+    ) -> subprocess.CompletedProcess[str]:
         """A process with these arguments in a folder; a fresh interpreter where the environment asks for one.
+
+        With the name of a ``terminal`` it writes there; then the streams of what comes back are empty.
 
         Raises
         ------
@@ -88,7 +94,7 @@ class Forks:
         if _at_import() != self._at_import:
             return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=PATIENCE)
         with tempfile.NamedTemporaryFile() as out, tempfile.NamedTemporaryFile() as err:
-            self._say(json.dumps([command, str(folder), dict(os.environ), out.name, err.name]))
+            self._say(json.dumps([command, str(folder), dict(os.environ), terminal or out.name, terminal or err.name]))
             child = int(self._heard())
             try:
                 code = int(self._heard(PATIENCE))

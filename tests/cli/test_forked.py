@@ -32,7 +32,7 @@ def written(folder: Path) -> dict[str, bytes]:
         ("added-mass", "huuv"),
         ("export", SAMPLE, "--to", "gazebo", "--accept-loss", "--out", "out"),
         ("simulate", HUUV, "--commands", "left=40 right=100", "--out", "out"),
-        ("trim", HUUV, "--command", "left=60", "--command", "right=0", "--json"),
+        ("trim", HUUV, "--commands", "left=60", "--commands", "right=0", "--json"),
         ("uncertainty", SAMPLE, "--manoeuvre", "zigzag", "--help-options"),
         ("glide", "no_such_glider"),
         ("tow", "no_such_tow", "--status"),

@@ -39,7 +39,7 @@ def test_tables_files_and_a_second_run(coeflab: Run, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_csv_and_json_tell_the_same(coeflab: Run, tmp_path: Path) -> None:
-    done = coeflab("glide", SLOCUM, "--step", "5", "--out", "out", "--json")
+    done = coeflab("glide", SLOCUM, "--record", "5", "--out", "out", "--json")
     content = json.loads(done.stdout)
     (glider,) = content["gliders"]
     rows = list(csv.DictReader((tmp_path / "out" / "slocum_motion.csv").read_text().splitlines()))
@@ -66,7 +66,7 @@ def test_without_out_nothing_is_written(fresh: Run, tmp_path: Path) -> None:
     [
         (("no_such_glider",), "no file or folder"),
         (("suboff_roddy_1",), '"glider": found nothing'),
-        (("slocum", "--step", "0"), "glider.step"),
+        (("slocum", "--record", "0"), "glider.step"),
         (("slocum", "--cycles", "0"), "cycles"),
     ],
 )

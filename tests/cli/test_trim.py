@@ -31,7 +31,7 @@ def test_commands_of_a_speed_as_a_table(coeflab: Run, twin: Path) -> None:
 
 
 def test_a_turn_of_given_commands_as_json_twice_the_same(coeflab: Run, twin: Path) -> None:
-    words = ("trim", twin, "--command", "left=60", "--command", "right=0", *FREE, "--json")
+    words = ("trim", twin, "--commands", "left=60", "--commands", "right=0", *FREE, "--json")
     done = coeflab(*words)
     assert (done.returncode, done.stderr) == (0, "")
     found = json.loads(done.stdout)
@@ -57,10 +57,10 @@ def test_an_infeasible_speed_names_the_equation_and_exits_1(coeflab: Run, twin: 
     ("words", "said"),
     [
         ((), "neither a motion nor a command"),
-        (("--command", "left"), "NAME=NUMBER"),
-        (("--command", "left=x"), "NAME=NUMBER"),
-        (("--command", "left=1", "--command", "left=2"), "twice"),
-        (("--command", "middle=1"), "one of left, right"),
+        (("--commands", "left"), "NAME=NUMBER"),
+        (("--commands", "left=x"), "NAME=NUMBER"),
+        (("--commands", "left=1", "--commands", "left=2"), "twice"),
+        (("--commands", "middle=1"), "one of left, right"),
         (("--speed", "nan"), "--speed"),
         (("--speed", "1", "--near", "lft=3"), "lft"),
         (("--speed", "1", "--plane", "slanted"), "plane"),
@@ -93,7 +93,7 @@ def test_a_unit_that_does_not_fit(coeflab: Run, twin: Path, words: tuple[str, st
 
 def test_a_file_of_three_motions_needs_no_plane(coeflab: Run) -> None:
     huuv = Path(__file__).parents[2] / "cfd_data" / "huuv" / "huuv.parameters.json"
-    done = coeflab("trim", huuv, "--command", "left=40", "--command", "right=100")
+    done = coeflab("trim", huuv, "--commands", "left=40", "--commands", "right=100")
     assert (done.returncode, done.stderr) == (0, "")
     assert "w, p, q held at the values of the start; the file does not know enough of p" in done.stdout
     assert "radius 1.14374 m" in " ".join(done.stdout.split())

@@ -40,7 +40,7 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str
     """What a run on one process prints and keeps when nobody kills it."""
     folder = tmp_path_factory.mktemp("undisturbed")
     (folder / "torpedo.parameters.json").write_bytes(uncertain_torpedo().to_json())
-    command = [str(COEFLAB), "uncertainty", "torpedo.parameters.json", *MANY, "--store", "store"]
+    command = [str(COEFLAB), "uncertainty", "torpedo.parameters.json", *MANY, "--state", "store"]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=folder)
     assert done.stderr == ""
     return done.stdout, {p.name: p.read_bytes() for p in finished(folder / "store")}
@@ -51,10 +51,10 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict[str
 def test_killed_and_started_again(
     torpedo: Path, tmp_path: Path, workers: str, undisturbed: tuple[str, dict[str, bytes]]
 ) -> None:
-    command = [str(COEFLAB), "uncertainty", str(torpedo), *MANY, "--workers", workers]
+    command = [str(COEFLAB), "uncertainty", str(torpedo), *MANY, "--cores", workers]
     store = tmp_path / "store"
     with subprocess.Popen(
-        [*command, "--store", str(store)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        [*command, "--state", str(store)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     ) as process:
         limit = time.monotonic() + 100.0
         while not finished(store):
@@ -68,7 +68,7 @@ def test_killed_and_started_again(
     assert not orphans
     before = finished(store)
     assert 1 <= len(before) < BATCHES
-    again = subprocess.run([*command, "--store", str(store)], capture_output=True, text=True, check=True)
+    again = subprocess.run([*command, "--state", str(store)], capture_output=True, text=True, check=True)
     printed, fresh = undisturbed
     assert again.stdout == printed
     assert f"{len(before)} of {BATCHES} batches were found" in again.stderr
@@ -115,11 +115,11 @@ def test_json_tells_the_same(coeflab: Run, torpedo: Path, tmp_path: Path) -> Non
     ("words", "said"),
     [
         (("--members", "0"), "0 members"),
-        (("--workers", "-1"), "workers"),
+        (("--cores", "-1"), "workers"),
         (("--manoeuvre", "loop"), "loop"),
         (("--rudder", "10 parsec"), "parsec"),
         (("--current", "1,2"), "--current"),
-        (("--store", "torpedo.parameters.json"), "cannot write"),
+        (("--state", "torpedo.parameters.json"), "cannot write"),
     ],
 )
 def test_wrong_input_is_one_clear_error(coeflab: Run, torpedo: Path, words: tuple[str, ...], said: str) -> None:

@@ -78,11 +78,12 @@ def test_nouns_of_other_verbs_are_short(suboff: Study) -> None:
     assert {k: n for k, n in found.items() if n > LONGEST} == {}
 
 
-def test_a_noun_says_what_it_is(suboff: Study) -> None:
-    assert repr(suboff).startswith("Study(plan=<Plan 'suboff'>, tables=<5 ForceTable>, fits=<8 FitResult>")
+def test_a_noun_says_what_it_holds(suboff: Study) -> None:
+    assert repr(suboff).startswith("<Study suboff: ")
     assert "\n" not in repr(suboff)
-    assert repr(suboff.parameter_files["suboff_bare_hull"]).startswith("ParameterFile(schema_version='1.")
-    assert "symbol='Yv', value=-0.02" in repr(suboff.coefficients[0])
+    assert "of 40 coefficients valued" in repr(suboff.parameter_files["suboff_fully_appended"])
+    assert repr(suboff.coefficients[0]).startswith("<Coefficient Yv' = -0.02")
+    assert repr(suboff.plan).startswith("Plan(name='suboff', title=")
     assert repr(suboff.body.source).startswith("Source(")  # type: ignore[union-attr]
 
 

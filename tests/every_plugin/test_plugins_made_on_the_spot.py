@@ -117,7 +117,7 @@ def test_new_plugins_need_no_edit_elsewhere(tmp_path: Path, write_campaign: Call
     said = dict(zip((" ".join(line[:2]) for line in lines), done.stdout.split("== ")[1:], strict=True))
     for command, words in {
         f"inspect {body}": "next:", "added-mass suboff_bare_hull": "ellipsoid", "params check": "torpedo",
-        f"simulate {vehicle}": "constant at 18 N",
+        f"simulate {vehicle}": "constant thrust of 18 N",
     }.items():  # fmt: skip
         (text,) = [t for c, t in said.items() if c.startswith(command)]
         assert words in text

@@ -32,15 +32,15 @@ def test_ranges_are_joined_where_they_touch_and_a_gap_is_outside() -> None:
     for row, flag in zip(nu, flags, strict=True):
         assert bool(outside_in_words(craft, row, {})) == flag
     spans = "-0.1000 to 0.1000 or 0.2000 to 0.3000"
-    assert outside_in_words(craft, nu[3], {}) == (f"r' = 0.1500 lies outside of what the data cover, {spans}.",)
+    assert outside_in_words(craft, nu[3], {}) == (f"r' = 0.1500 is outside the data, {spans}.",)
 
 
 def test_angles_of_the_flow_and_of_controls() -> None:
     craft = ranged(("asin(v/U)", -0.2, 0.2), ("dr", -0.3, 0.3))
     nu = np.array([2.0 * np.cos(0.25), 2.0 * sin(0.25), 0.0, 0.0, 0.0, 0.0])
     drift, rudder = outside_in_words(craft, nu, {"dr": 0.4})
-    assert drift.startswith(f"asin(v/U) = {degrees(0.25):.2f} deg lies outside")
-    assert rudder == "dr = 22.92 deg lies outside of what the data cover, -17.19 to 17.19 deg."
+    assert drift.startswith(f"asin(v/U) = {degrees(0.25):.2f} deg is outside")
+    assert rudder == "dr = 22.92 deg is outside the data, -17.19 to 17.19 deg."
     assert outside_in_words(craft, nu * [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], {"dr": -0.3}) == ()
 
 

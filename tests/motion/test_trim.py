@@ -141,7 +141,7 @@ def test_motions_beyond_the_data_and_limits_that_are_assumed_are_said() -> None:
     craft = vehicle(parameter_file({**PLANE, "Ndr": -3.0, "Ydr": 5.0}, MASS, TURNING, covered=covered), ("u", "v", "r"))
     said = " ".join(trim(craft, {"u": 1.0, "yaw_rate": 0.3}, starts=0).point.words())
     assert "r' = " in said
-    assert "lies outside of what the data cover, -0.1000 to 0.1000" in said
+    assert "is outside the data, -0.1000 to 0.1000" in said
     assert "dr: no limit in the file, 30.0000 deg either way taken." in said
     assert "data cover" not in " ".join(trim(craft, {"u": 1.0, "yaw_rate": 0.05}, starts=0).point.words())
 

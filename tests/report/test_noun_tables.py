@@ -1,12 +1,15 @@
-"""Nouns as they show themselves in a notebook: well formed, escaped, with their numbers."""
+"""Nouns as they show themselves in a notebook: a line and a card, well formed, escaped, with their numbers and a picture."""
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
 import pytest
 
+from coeflab.bodies.readers import read_body
 from coeflab.cli.show import plain_lines
 from coeflab.core.axes import Datum
 from coeflab.core.files import shipped
@@ -14,57 +17,119 @@ from coeflab.core.table import Table
 from coeflab.fits import FITS
 from coeflab.law.added_mass import AddedMass
 from coeflab.motion.simulation import simulate
+from coeflab.report.answer import answer
 from coeflab.report.tables import results
 from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import read_tables
 from tests.motion.vehicles import made
 from tests.report.studies import FULL, HOSTILE, LENGTH, small_study
 
+VOID = {"meta", "br", "img"}
+
 
 class Closed(HTMLParser):
     def __init__(self, text):
         super().__init__()
-        self.open, self.tags = [], []
+        self.open, self.tags, self.ids = [], [], []
         self.feed(text)
         self.close()
         assert self.open == []
 
     def handle_starttag(self, tag, attrs):
-        self.open.append(tag)
+        if tag not in VOID:
+            self.open.append(tag)
         self.tags.append(tag)
+        self.ids += [value for name, value in attrs if name == "id"]
+
+    def handle_startendtag(self, tag, attrs):
+        self.tags.append(tag)
+        self.ids += [value for name, value in attrs if name == "id"]
 
     def handle_endtag(self, tag):
         assert self.open.pop() == tag
 
 
+@pytest.fixture(scope="module")
 def nouns():
+    """Every noun that shows itself, what its line begins with, and what its card has to say."""
     tables = read_tables(PlannedTable(shipped("cfd_data") / "suboff_roddy_2", (), {}))
     result = FITS.load("polynomial").fit(tables, LENGTH, {"variable": "v", "degree": 3, "responses": "Y"})
-    file = made()
+    file, study = made(), small_study(FULL, named=HOSTILE, published=True)
+    run = simulate(file, "straight_run", {"duration": 2.0}, free=("u",))
     matrix = AddedMass(np.diag([1.0, 20.0, 20.0, 0.0, 5.0, 5.0]), np.zeros(3), Datum(HOSTILE), "body", "panel")
+    body = read_body(shipped("geometry") / "spheroid_example" / "body.toml")
+    fit = study.fits[0]
     return {
-        "table": (Table(HOSTILE, ("a", HOSTILE), (("1", HOSTILE),), (HOSTILE,)), "&lt;script&gt;"),
-        "fit": (small_study(FULL, named=HOSTILE).fits[0], "Yv&#x27;"),
-        "models": (result, "polynomial"),
-        "model": (result.models[0], "polynomial"),
-        "added mass": (matrix, "20.00"),
-        "parameters": (file, "-0.040000"),
-        "trajectory": (simulate(file, "straight_run", {"duration": 2.0}, free=("u",)).trajectory, "ended: complete"),
+        "study": (study, "<Study small: ", "<svg"),
+        "answer": (answer(study), "<Answer ", "<svg"),
+        "coefficient": (fit.coefficients["Yv"], "<Coefficient Yv' = -0.02981 +- 0.00013 (0.5 %), ", "<svg"),
+        "set": (fit.coefficients, "<CoefficientSet body of ", "<svg"),
+        "fit": (fit, "<FitResult slope_at_origin of ", "<svg"),
+        "models": (result, "<FitResult polynomial of suboff_roddy_2: 1 models", "<svg"),
+        "model": (result.models[0], "<FittedModel Y", "<svg"),
+        "force table": (study.tables[0], "<ForceTable ", "<svg"),
+        "body": (body, "<Body spheroid_example: ", "<svg"),
+        "added mass": (matrix, "<AddedMass body by panel: diagonal 1, 20, 20, 0, 5, 5>", "background: color-mix"),
+        "parameters": (file, "<ParameterFile ", "0.0400"),
+        "trajectory": (run.trajectory, "<Trajectory 2 s in ", "<svg"),
+        "simulation": (run, "<Simulation straight_run of ", "<svg"),
+        "figure": (answer(study).slope, "Figure(", "<svg"),
     }
 
 
-@pytest.mark.parametrize("name", ["table", "fit", "models", "model", "added mass", "parameters", "trajectory"])
-def test_a_noun_is_a_table_in_a_notebook(name):
-    noun, expected = nouns()[name]
+NAMES = ("study", "answer", "coefficient", "set", "fit", "models", "model", "force table", "body", "added mass",
+         "parameters", "trajectory", "simulation", "figure")  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_noun_is_a_line_and_a_card(nouns, name):
+    noun, line, expected = nouns[name]
+    assert repr(noun).startswith(line)
+    assert len(repr(noun)) < 500
+    assert "\n" not in repr(noun)
     text = noun._repr_html_()
-    assert "table" in Closed(text).tags
+    page = Closed(text)
     assert expected in text
     assert "<script" not in text
+    assert len(page.ids) == len(set(page.ids))
+    assert text == noun._repr_html_()
+
+
+def test_every_noun_of_the_contract_is_here(nouns):
+    assert set(nouns) == set(NAMES)
+
+
+def test_cards_of_one_notebook_share_no_id(nouns):
+    """An id that two outputs share would let one drawing be clipped by the frame of the other."""
+    ids = [set(Closed(nouns[name][0]._repr_html_()).ids) for name in ("study", "fit", "force table", "trajectory")]
+    for i, one in enumerate(ids):
+        assert one
+        assert not any(one & other for other in ids[i + 1 :])
+
+
+def test_every_reference_of_a_card_is_to_an_id_in_it(nouns):
+    for name in NAMES:
+        text = nouns[name][0]._repr_html_()
+        wanted = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
+        assert wanted <= set(Closed(text).ids), name
+
+
+def test_a_value_without_one_says_why_and_an_open_sign_crosses_zero(nouns):
+    study = nouns["study"][0]
+    assert repr(study.missing[0]) == f"<Coefficient Nr': no table, {HOSTILE}>"
+    assert "no table" in study.missing[0]._repr_html_()
+    c = nouns["set"][0]["Yv"]
+    assert "the sign is settled" in c._repr_html_()
+    assert "the sign is open" in replace(c, u95=2.0 * abs(c.value))._repr_html_()
 
 
 def test_text_columns_are_flush_left_and_numbers_flush_right():
     text = Table("t", ("a", "b"), (("x", "1"),))._repr_html_()
     assert '<td style="text-align: left">x</td><td style="text-align: right">1</td>' in text
+    hostile = Table(HOSTILE, ("a", HOSTILE), (("1", HOSTILE),), (HOSTILE,))._repr_html_()
+    assert "table" in Closed(hostile).tags
+    assert "&lt;script&gt;" in hostile
+    assert "<script" not in hostile
 
 
 def test_coefficients_fit_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.table import html_by, plus_minus
-from coeflab.core.types import Array, brief, locked
+from coeflab.core.types import Array, brief, in_angles, locked
 from coeflab.fits.results.fitted_model import UNLIKELY, FittedModel, OutOfSample, chance
 from coeflab.fits.results.oscillation import Oscillation
 from coeflab.fits.statistics.groups import Poolability
@@ -335,7 +335,6 @@ class Tied:
         object.__setattr__(self, "moves", locked(self.moves))
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class FitResult:
     """Coefficients of one campaign, or of several jointly, by one fit.
@@ -386,9 +385,14 @@ class FitResult:
         """The campaigns that it comes from."""
         return tuple(self.campaign.split(", "))
 
+    def __repr__(self) -> str:
+        found = [c.said for c in self.coefficients.coefficients if c.value is not None]
+        models = [f"{len(self.models)} models"] if self.models else []
+        return in_angles(self, f"{self.fit} of {self.campaign}: {', '.join([*models, *found]) or 'no coefficient'}")
+
     def _repr_html_(self) -> str:
-        """Coefficients and terms, for notebooks."""
-        return html_by("fit_tables", self)
+        """Its curve and coefficients, for notebooks."""
+        return html_by("fit", self)
 
     def sweep(self, symbol: str) -> Sweep:
         """The sweep of a coefficient."""

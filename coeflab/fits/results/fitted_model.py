@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.core.table import html_by
-from coeflab.core.types import Array, brief, locked, locked_columns
+from coeflab.core.types import Array, brief, in_angles, locked, locked_columns
 from coeflab.fits.statistics.groups import predict_left_out, thirds
 from coeflab.fits.statistics.linear_model import LinearFit, fit_linear, t_probability
 from coeflab.fits.statistics.remainder import Remainder
@@ -127,7 +127,6 @@ class Domain:
         return np.asarray(inside(self.spaces, points), dtype=bool)
 
 
-@brief
 @dataclass(frozen=True, slots=True, eq=False)
 class FittedModel:
     """One response as a linear combination of terms.
@@ -288,9 +287,15 @@ class FittedModel:
         sure = np.isfinite(values) & ~np.any(rows[:, bare] != 0.0, axis=1)
         return values, np.where(sure, spread, np.nan), self.domain.contains(columns)
 
+    def __repr__(self) -> str:
+        over = " ".join(self.domain.variables)
+        return in_angles(
+            self, f"{self.response} [{self.unit}] over {over}, {self.form}: {len(self.terms)} terms, {self.campaign}"
+        )
+
     def _repr_html_(self) -> str:
-        """Its terms, for notebooks."""
-        return html_by("terms", self)
+        """Its figure and terms, for notebooks."""
+        return html_by("model", self)
 
     def named(self, symbol: str) -> tuple[float, float]:
         """Value and 95 % half-width of one coefficient."""

@@ -53,6 +53,8 @@ WRONG, REMOVE = 0.005, 0.1
 PINNED = ((1e-4, 1.0),)
 # Smallest noise (of the largest force), leverage that is rounding.
 ROUNDING, WEIGHTLESS = 3e-8, 1e-10
+# What a what-if may take out of the curve: then a term is at most a tenth of the noise, and there is no remainder.
+PARTS = ("even", "v|v|", "cubic", "remainder")
 DECAY, ORDERS, STATED_FREEDOM, FEWEST, MOST_LIKELY = 0.8, 16, 2.0, 5, 100
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
@@ -259,6 +261,7 @@ def prepare(
     settings: Array | None = None,
     strips: Strips | None = None,
     odd: bool = False,
+    without: tuple[str, ...] = (),
 ) -> Design:
     """Factorise a sweep.
 
@@ -275,6 +278,8 @@ def prepare(
         Rows are means over several settings.
     odd : bool
         The curve is odd by declaration: no constant, no even part, whichever sides have rows.
+    without : tuple of str
+        Of `PARTS`, for a what-if: the interval then covers no curve that has them.
 
     Returns
     -------
@@ -287,16 +292,19 @@ def prepare(
     ratios = np.ones(n) if variance is None else variance
     labels = np.unique(np.round(t, 9) if settings is None else settings, return_inverse=True)[1].astype(np.int64)
     one_sided = not t.min() < 0.0 < t.max()
-    even = not symmetric and not one_sided and not odd
+    even = not symmetric and not one_sided and not odd and "even" not in without
     terms = _terms(t, even) if strips is None else strips.mean(_terms(strips.nodes.ravel(), even), 0)
     p = terms.shape[1]
     members = []
     specifications = _specifications(t, even, labels, variance is not None, strips)
+    if "remainder" in without:
+        specifications = [s for s in specifications if s[0] not in ODD and s[0] not in SIDES]
     total = sum(s[4] for s in specifications)
     for name, is_odd, sizes, kernel, odds in specifications:
         polynomial = SIZES if name == "none" else COARSE
         nuisance = PINNED if odd else NUISANCE if even or one_sided else ((np.inf, 1.0),)
-        grid = np.array(list(product(range(len(nuisance)), polynomial, polynomial)))
+        curved = [(NOTHING,) if part in without else polynomial for part in ("v|v|", "cubic")]
+        grid = np.array(list(product(range(len(nuisance)), *curved)))
         first = np.array(nuisance)[grid[:, 0].astype(int)]
         precision = np.zeros((len(grid), p))
         if even or one_sided or odd:
@@ -474,7 +482,7 @@ def _shares(design: Design, y: Array, weights: Array) -> dict[str, float]:
 @remembered(24)
 def estimate(
     x: Array, y: Array, se: Array | None = None, *, symmetric: bool = False, groups: Array | None = None,
-    odd: bool = False,
+    odd: bool = False, without: tuple[str, ...] = (),
 ) -> OriginSlope:  # fmt: skip
     """Slope of one campaign at x = 0.
 
@@ -491,6 +499,8 @@ def estimate(
     odd : bool
         The curve is odd by declaration, and not by what rows show: no constant, no even part. Rows at rest say nothing of it
         and should be left out.
+    without : tuple of str
+        Of `PARTS`, for a what-if; see `prepare`.
 
     Returns
     -------
@@ -504,20 +514,24 @@ def estimate(
     rows = rows_of(x, y, se, odd=odd)
     few = condensed_rows(x, y, se, odd=odd)
     if few is None:
-        return _estimate(rows, symmetric, groups, odd)
-    found = estimate_condensed(few, symmetric=symmetric, odd=odd)
+        return _estimate(rows, symmetric, groups, odd, without)
+    found = estimate_condensed(few, symmetric=symmetric, odd=odd, without=without)
     used, wrong = few.rows(found.used.astype(float), 0.0) > 0.5, few.rows(found.wrong, 1.0)
     return replace(found, used=used, wrong=wrong, without=np.full(len(rows.x), np.nan))
 
 
-def estimate_condensed(few: Condensed, *, symmetric: bool = False, odd: bool = False) -> OriginSlope:
+def estimate_condensed(
+    few: Condensed, *, symmetric: bool = False, odd: bool = False, without: tuple[str, ...] = ()
+) -> OriginSlope:
     """Slope of one campaign of very many rows, every array by the strips."""
     used = np.ones(len(few.x), dtype=bool)
     rows = Rows(few.x, few.y, few.variance, few.stated, used, few.mirrored, few.notes, few.strips)
-    return replace(_estimate(rows, symmetric, None, odd), pure_error=few.scatter)
+    return replace(_estimate(rows, symmetric, None, odd, without), pure_error=few.scatter)
 
 
-def _estimate(rows: Rows, symmetric: bool, groups: Array | None, odd: bool) -> OriginSlope:
+def _estimate(
+    rows: Rows, symmetric: bool, groups: Array | None, odd: bool, without_parts: tuple[str, ...] = ()
+) -> OriginSlope:
     x, y, variance, stated, notes = rows.x, rows.y, rows.variance, rows.stated, rows.notes
     used, mirrored, strips = rows.used.copy(), rows.mirrored, rows.strips
     wrong, without, with_all, reason = np.zeros(len(x)), np.full(len(x), np.nan), np.nan, ""
@@ -533,6 +547,7 @@ def _estimate(rows: Rows, symmetric: bool, groups: Array | None, odd: bool) -> O
         design = prepare(
             x[kept], None if variance is None else variance[kept], symmetric=symmetric,
             settings=None if groups is None else np.asarray(groups)[kept], strips=strips and strips.of(kept), odd=odd,
+            without=without_parts,
         )  # fmt: skip
         many = estimate_many(design, y[kept], stated)
         wrong[kept], without[kept] = many.wrong[0], many.without[0]

@@ -86,5 +86,5 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         or linear_growth(vehicle, ("v", "r"), float(trajectory.velocity[0, 0])) <= 0
     ):
         return tuple(out)
-    why = "straight motion is unstable, and the file has no nonlinear term in r of Y or N that would limit the rate"
+    why = "unstable, and no nonlinear term such as Yr|r| or Nr|r| limits the rate"
     return tuple(replace(f, value=None, status="not determined", why=why) for f in out)

@@ -294,7 +294,7 @@ def _on_processes(
         except BrokenProcessPool:
             raise CoeflabError(
                 "A worker process was killed, perhaps for want of memory. Finished batches are kept where there is a store: "
-                "start again, with fewer --workers."
+                "start again, with fewer --cores."
             ) from None
         finally:
             pool.shutdown(wait=False, cancel_futures=True)

@@ -368,7 +368,7 @@ def uncertainty(
         The store cannot be written.
     """
     if workers < 0:
-        raise InputError(f"{workers} workers", "a number from 0; 0: one a core", column="--workers")
+        raise InputError(f"{workers} workers", "a number from 0; 0: one a core", column="--cores")
     setup, plan = _setup(parameters, question)
     _, body, varied = prepared(setup)
     members = varied.members(question.members, question.seed)

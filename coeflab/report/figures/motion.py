@@ -57,14 +57,22 @@ def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: b
         tagged(axes.plot(across, np.where(beyond, np.nan, up), color=COLOURS["a"], linewidth=1.4, zorder=3), "track")
         tagged(axes.plot(across, np.where(beyond, up, np.nan), zorder=2.8, **BEYOND), "beyond")
         axes.plot(across[:1], up[:1], linestyle="none", marker="o", markersize=4.0, color=COLOURS["a"], zorder=4)
-        _bodies(axes, trajectory, across, up, vertical, length)
+        if length > 0.0:
+            _bodies(axes, trajectory, across, up, vertical, length)
         marks = {"track": Line2D([], [], color=COLOURS["a"], linewidth=1.4, label="track")}
         if np.any(beyond):
             marks["beyond"] = Line2D([], [], label="beyond the data", **BEYOND)
         legend(figure, [tagged(mark, key) for key, mark in marks.items()], top)
         shown = numbers(axes, _places(trajectory, across, up, beyond), names[0], names[1])
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, "The dot is the start, the strokes are the body.", description, (shown,))
+    return Figure(
+        anchor,
+        svg,
+        title,
+        "The dot is the start" + (", the strokes are the body." if length > 0.0 else "."),
+        description,
+        (shown,),
+    )
 
 
 def _places(trajectory: Trajectory, across: Array, up: Array, beyond: NDArray[np.bool_]) -> list[Series]:

@@ -1,20 +1,27 @@
-"""What lies below a folder: reports and parameter files, those that cannot be read with the reason.
+"""What lies below a folder: reports, parameter files and their coefficients; those that cannot be read with the reason.
 
 Files below a folder by the key that stands in an address: nothing outside, nothing hidden, no links that lead out.
 """
 
 from __future__ import annotations
 
+import json
+import math
 import os
-from dataclasses import dataclass, field
+import re
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
 from html.parser import HTMLParser
 from pathlib import Path
 from threading import Lock
 from urllib.parse import quote, unquote_to_bytes
 
 from coeflab.core.errors import CoeflabError
+from coeflab.core.table import percent, plus_minus
 from coeflab.core.types import brief
+from coeflab.report.document import digest_of
 from coeflab.report.printable import shortened
+from coeflab.vehicle.derived import sense, stability
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 
 SERVED = {
@@ -63,11 +70,42 @@ def _unfit(part: str) -> bool:
     )
 
 
-HEAD, SNIFFED = 1 << 17, 1 << 12
+HEAD, SNIFFED = 1 << 19, 1 << 12
 PARAMETERS = ".parameters.json"
 OWN_REPORTS = ("report.html", "summary.html")
 MOST_FILES, MOST_ENTRIES = 2_000, 200_000
-LONGEST = 300
+LONGEST, MOST_ROWS = 300, 60
+SLOPE = len("Yv'")
+DRAWN = re.compile(r'<svg xmlns="http://www.w3.org/2000/svg" viewBox="[\d. ]+" role="img".*?</svg>', re.DOTALL)
+ROWS = re.compile(r'<script type="application/json" class="rows">(.*?)</script>', re.DOTALL)
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Valued:
+    """A coefficient of a report or of a parameter file.
+
+    Attributes
+    ----------
+    symbol : str
+        With prime.
+    value, u95 : float or None
+    status : str
+        In words; says why there is no value.
+    source : str
+        Campaign or work.
+    """
+
+    symbol: str
+    value: float | None
+    u95: float | None
+    status: str = ""
+    source: str = ""
+
+    @property
+    def said(self) -> str:
+        """Value and U95, or why there is none."""
+        return self.status if self.value is None else plus_minus(self.value, self.u95)
 
 
 @brief
@@ -85,6 +123,15 @@ class ReportEntry:
         Format and key of each of its files.
     fault : str
         Why it cannot be read; else empty.
+    verdict : str
+        Its first sentence.
+    written : str
+        Day of the file, 2026-11-22 in universal time. Files that come out the same are not written again, so its inputs are
+        those of that day.
+    picture : str
+        Key of the file that holds its first drawing; empty without one.
+    coefficients : tuple of Valued
+        The rows of its answer.
     """
 
     path: str
@@ -93,33 +140,71 @@ class ReportEntry:
     digest: str = ""
     keys: tuple[tuple[str, str], ...] = ()
     fault: str = ""
+    verdict: str = ""
+    written: str = ""
+    picture: str = ""
+    coefficients: tuple[Valued, ...] = ()
+
+    @property
+    def key(self) -> str:
+        """Of its first file; empty where it cannot be read."""
+        return self.keys[0][1] if self.keys else ""
+
+    @property
+    def called(self) -> str:
+        """What it is called."""
+        return self.title or self.path
 
     @property
     def words(self) -> str:
         """What a search looks through."""
-        return f"{self.path} {self.title} {self.study} {self.digest}".casefold()
+        symbols = " ".join(c.symbol for c in self.coefficients)
+        return f"{self.path} {self.title} {self.study} {self.digest} {self.verdict} {self.written} {symbols}".casefold()
 
 
 @brief
 @dataclass(frozen=True, slots=True)
 class ParameterEntry:
-    """A parameter file; attributes as of `ReportEntry`."""
+    """A parameter file; attributes as of `ReportEntry`. The digest is that of the inputs that it names."""
 
     path: str
     key: str = ""
     name: str = ""
     body: str = ""
     length: str = ""
-    symbols: tuple[str, ...] = ()
-    valued: int = 0
+    coefficients: tuple[Valued, ...] = ()
     models: int = 0
     version: str = ""
     fault: str = ""
+    verdict: str = ""
+    study: str = ""
+    digest: str = ""
+    written: str = ""
+    picture: str = ""
+
+    @property
+    def symbols(self) -> tuple[str, ...]:
+        """Symbols in order, without a value too."""
+        return tuple(c.symbol for c in self.coefficients)
+
+    @property
+    def valued(self) -> int:
+        """How many coefficients have a value."""
+        return sum(c.value is not None for c in self.coefficients)
+
+    @property
+    def called(self) -> str:
+        """What it is called."""
+        return self.name
 
     @property
     def words(self) -> str:
         """What a search looks through."""
-        return f"{self.path} {self.name} {self.body} {' '.join(self.symbols)}".casefold()
+        about = f"{self.path} {self.name} {self.body} {self.study} {self.digest} {self.verdict} {self.written}"
+        return f"{about} {' '.join(self.symbols)}".casefold()
+
+
+Entry = ReportEntry | ParameterEntry
 
 
 @brief
@@ -139,6 +224,38 @@ class Listing:
             tuple(e for e in self.parameters if all(w in e.words for w in wanted)),
             self.more,
         )
+
+    def coefficients(self, query: str) -> tuple[tuple[Valued, Entry], ...]:
+        """Coefficients that a query names, each with the file that holds it; parameter files first.
+
+        A word that begins a symbol is one, in any case and with or without prime: ``yv`` finds Yv', then Yv|v|' and
+        Yvdot'. The other words have to stand in the file's entry.
+        """
+        entries: list[Entry] = [*self.parameters, *self.reports]
+        every = [(c, e) for e in entries for c in e.coefficients]
+        known = {_bare(c.symbol) for c, _ in every}
+        words = [w for w in query.casefold().split() if w]
+        symbols = [_bare(w) for w in words if any(s.startswith(_bare(w)) for s in known if len(_bare(w)) > 1)]
+        if not symbols:
+            return ()
+        others = [w for w in words if _bare(w) not in symbols]
+        found = [
+            (c, e) for c, e in every
+            if any(_bare(c.symbol).startswith(s) for s in symbols) and all(w in e.words for w in others)
+        ]  # fmt: skip
+        return tuple(sorted(found, key=lambda pair: (_bare(pair[0].symbol) not in symbols, pair[0].symbol)))
+
+    def files_of(self, report: ReportEntry) -> tuple[ParameterEntry, ...]:
+        """The parameter files that lie beside a report and come from the same inputs."""
+        folder = report.path.rpartition("/")[0]
+        return tuple(
+            e for e in self.parameters
+            if report.digest and e.digest == report.digest and e.path.rpartition("/")[0] == folder and e.key
+        )  # fmt: skip
+
+
+def _bare(symbol: str) -> str:
+    return symbol.casefold().removesuffix("'")
 
 
 Stamp = tuple[int, int]
@@ -179,6 +296,15 @@ class Shelf:
         path = place_of(self.folder, key)
         return None if path is None or path.suffix.lower() != ".json" else read_parameter_file(path)
 
+    def drawing(self, key: str) -> str:
+        """The first drawing of a report's page, one ``<svg>`` element; empty where the key means no report with one."""
+        path = place_of(self.folder, key)
+        if path is None or path.suffix.lower() != ".html":
+            return ""
+        with path.open("rb") as stream:
+            found = DRAWN.search(stream.read(HEAD).decode("utf-8", "replace"))
+        return found[0] if found else ""
+
     def _entry(self, name: str) -> ReportEntry | ParameterEntry | None:
         path = place_of(self.folder, key_of(name))
         if path is None:
@@ -190,6 +316,8 @@ class Shelf:
             if known is not None and known[0] == stamp:
                 return known[1]
             entry = _parameters(path, name) if path.suffix.lower() == ".json" else _report(path, name)
+            if entry is not None:
+                entry = replace(entry, written=f"{datetime.fromtimestamp(about.st_mtime, UTC):%Y-%m-%d}")
         except OSError as why:
             fault = f"cannot be read: {why.strerror or why}"
             return ParameterEntry(name, fault=fault) if name.endswith(".json") else ReportEntry(name, fault=fault)
@@ -223,7 +351,7 @@ def _joined(entries: list[ReportEntry]) -> tuple[ReportEntry, ...]:
         stem = e.path.rpartition(".")[0]
         main = out.get(stem) or stems.get(stem) or e
         keys = dict(main.keys) | dict(e.keys)
-        out[stem] = ReportEntry(main.path, main.title, main.study, main.digest, tuple(sorted(keys.items())), main.fault)
+        out[stem] = replace(main, keys=tuple(sorted(keys.items())))
     return tuple(out.values())
 
 
@@ -235,14 +363,38 @@ def _report(path: Path, name: str) -> ReportEntry | None:
         if not head.startswith(b"%PDF-"):
             return ReportEntry(name, fault="found no PDF; expected one by its name.")
         return ReportEntry(name, keys=(("PDF", key_of(name)),))
-    said = _Said()
-    said.feed(head.decode("utf-8", "replace"))
+    said, text = _Said(), head.decode("utf-8", "replace")
+    said.feed(text)
     if said.generator != "coeflab":
         own = path.name in OWN_REPORTS
         return ReportEntry(name, fault="found another page; expected a report of coeflab.") if own else None
     study, _, digest = said.subject.removeprefix("Study ").rpartition(", inputs ")
-    return ReportEntry(name, shortened(said.title, LONGEST), shortened(study, LONGEST), digest[:64],
-                       (("HTML", key_of(name)),))  # fmt: skip
+    return ReportEntry(
+        name, shortened(said.title, LONGEST), shortened(study, LONGEST), digest[:64], (("HTML", key_of(name)),),
+        verdict=shortened(" ".join(said.verdict.split()), LONGEST), picture=key_of(name) if DRAWN.search(text) else "",
+        coefficients=_rows(text),
+    )  # fmt: skip
+
+
+def _rows(page: str) -> tuple[Valued, ...]:
+    """The rows of the answer that a page carries for its own download; none where they are not what a report writes."""
+    found = ROWS.search(page)
+    try:
+        rows = json.loads(found[1])["rows"] if found else []
+        return tuple(
+            Valued(_word(r["symbol"]), _size(r["value"]), _size(r["U95"]), _word(r["status"]), _word(r["from"]))
+            for r in rows[:MOST_ROWS]
+        )
+    except (ValueError, TypeError, KeyError, RecursionError):
+        return ()
+
+
+def _word(text: object) -> str:
+    return shortened(text, LONGEST) if isinstance(text, str) else ""
+
+
+def _size(value: object) -> float | None:
+    return float(value) if isinstance(value, (int, float)) and math.isfinite(value) else None
 
 
 def _parameters(path: Path, name: str) -> ParameterEntry | None:
@@ -261,11 +413,27 @@ def _parameters(path: Path, name: str) -> ParameterEntry | None:
         shortened(found.name, LONGEST),
         shortened(found.body, LONGEST),
         f"{shortened(found.scaling.length_name, 40)} {found.scaling.length:g} m",
-        tuple(c.symbol for c in found.coefficients),
-        sum(c.value is not None for c in found.coefficients),
+        tuple(
+            Valued(c.symbol, c.value, c.u95, c.status.replace("_", " "), c.campaign or c.citation)
+            for c in found.coefficients
+        ),
         len(found.models),
         found.schema_version,
+        verdict=_verdict(found),
+        study=shortened(found.provenance.study, LONGEST),
+        digest=digest_of(found.provenance.inputs),
+        picture=key_of(name) if found.covered else "",
     )
+
+
+def _verdict(found: ParameterFile) -> str:
+    """Whether straight motion is stable, and the widest interval of the velocity derivatives; empty where neither is known."""
+    said = [f"{sense(d)}, {d.name} = {d.value:.2f}" for d in stability(found)]
+    wide = [(abs(c.u95 / c.value), c) for c in found.coefficients if c.value and c.u95 and len(c.symbol) == SLOPE]
+    if wide:
+        share, c = max(wide, key=lambda pair: pair[0])
+        said.append(f"largest U95 of a slope {percent(share, 1.0)}, of {c.symbol}")
+    return "; ".join(said)
 
 
 def fault(why: CoeflabError, path: Path) -> str:
@@ -281,23 +449,29 @@ class _Said(HTMLParser):
 
     def __init__(self) -> None:
         super().__init__()
-        self.generator = self.title = self.subject = ""
-        self._inside = ""
+        self.generator = self.title = self.subject = self.verdict = ""
+        self._inside = self._until = ""
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        if not self.verdict and (given.get("id") == "answer-heading" or "lead" in (given.get("class") or "").split()):
+            self._until = tag
         if tag == "bdi":
             return
-        given = dict(attrs)
         if tag == "meta" and given.get("name") == "generator":
             self.generator = given.get("content") or ""
         digest = tag == "p" and "digest" in (given.get("class") or "").split() and not self.subject
         self._inside = "title" if tag == "title" and not self.title else "subject" if digest else ""
 
     def handle_endtag(self, tag: str) -> None:
+        if tag == self._until:
+            self._until = ""
         if tag != "bdi":
             self._inside = ""
 
     def handle_data(self, data: str) -> None:
+        if self._until:
+            self.verdict += data
         if self._inside == "title":
             self.title += data
         elif self._inside == "subject":

@@ -1,4 +1,4 @@
-"""The gallery's server: this machine only, read only, one folder.
+"""The gallery's server: this machine only, read only, one folder; reports and parameter files as cards.
 
 A page of some other site could make a browser ask this server for files under a name of its own (DNS rebinding), so the
 Host header has to be this machine's. Reports are shown sandboxed: whatever a file contains, it can fetch nothing.
@@ -14,13 +14,14 @@ import os
 import re
 import shutil
 from collections.abc import Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
 from importlib.resources import files
 from io import BufferedIOBase
 from pathlib import Path
 from socketserver import ThreadingTCPServer
+from threading import Lock
 from typing import Any, BinaryIO, cast
 from urllib.parse import parse_qs, urlsplit
 
@@ -32,8 +33,11 @@ from coeflab.report.notation import cell_html, html, keeping, users_texts
 from coeflab.report.printable import shortened, visible
 from coeflab.report.tables import models as comparison_tables
 from coeflab.vehicle.comparison import compare
+from coeflab.vehicle.parameter_file import ParameterFile
 
 SHOWN, SYMBOLS = 200, 12
+DRAWING = Lock()  # of Matplotlib, whose settings are those of the process
+EMPTY = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1 1" role="img"></svg>'
 LONGEST, COLUMN = 120, 48
 
 
@@ -48,9 +52,12 @@ def index(folder: str, whole: Listing, query: str) -> bytes:
     query : str
         Empty for everything.
     """
-    found = whole.having(query)
+    found, named_ones = whole.having(query), whole.coefficients(query)
     return _page(
         "index",
+        coefficients=named_ones[:SHOWN],
+        n_coefficients=len(named_ones),
+        beside={r.path: whole.files_of(r) for r in found.reports[:SHOWN]},
         title=f"Gallery of {shortened(folder, LONGEST)}",
         query=query,
         reports=found.reports[:SHOWN],
@@ -94,9 +101,54 @@ def policy() -> str:
     """Content-Security-Policy of these pages: their own style, no script, nothing from anywhere."""
     digest = base64.b64encode(hashlib.sha256(_style().encode()).digest()).decode()
     return (
-        f"default-src 'none'; img-src data:; style-src 'sha256-{digest}'; form-action 'self'; base-uri 'none'; "
+        f"default-src 'none'; img-src 'self' data:; style-src 'sha256-{digest}'; form-action 'self'; base-uri 'none'; "
         "frame-ancestors 'none'"
     )
+
+
+def picture_of(shelf: Shelf, key: str) -> str:
+    """The drawing of a key, an SVG file light and dark: a report's first one, or a parameter file's law with its points.
+
+    Parameters
+    ----------
+    shelf : Shelf
+    key : str
+        As it came.
+
+    Returns
+    -------
+    str
+        Empty where the key means nothing that has a drawing.
+    """
+    svg = shelf.drawing(key)
+    if not svg:
+        parameters = shelf.parameters(key)
+        svg = "" if parameters is None else _law(parameters.to_json())
+    head, closing, rest = svg.partition(">")
+    return f"{head}{closing}<style>{_colours()}</style>{rest}" if svg else ""
+
+
+@lru_cache(SHOWN)
+def _law(content: bytes) -> str:
+    """By the bytes of the file: equal files are drawn once."""
+    from coeflab.report.figures.nouns import law_figure
+
+    parameters = ParameterFile.model_validate_json(content)
+    with DRAWING, keeping(users_texts(parameters)):
+        figure = law_figure(parameters, "law")
+    return EMPTY if figure is None else figure.svg
+
+
+@cache
+def _colours() -> str:
+    """What the report's style says of the colours of figures, on light and on dark."""
+    found = re.findall(r"--fig-(\w+): (#[0-9a-f]{6})", _style())
+    names = [name for name, _ in found].index(found[0][0], 1)
+    light, dark = (
+        "".join(f"--fig-{name}:{colour};" for name, colour in part)
+        for part in (found[:names], found[names : 2 * names])
+    )
+    return f"svg{{{light}}}@media(prefers-color-scheme:dark){{svg{{{dark}}}}}"
 
 
 def symbols(entry: ParameterEntry) -> Any:
@@ -180,6 +232,7 @@ POLICIES = {
     "script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     ".pdf": "default-src 'none'; object-src 'self'; style-src 'unsafe-inline'; frame-ancestors 'none'",
     ".json": "sandbox; default-src 'none'; frame-ancestors 'none'",
+    ".svg": "sandbox; default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'",
 }
 
 
@@ -297,6 +350,8 @@ class _Request(BaseHTTPRequestHandler):
             self._page(HTTPStatus.OK, index(shelf.folder.name or str(shelf.folder), shelf.listing(), query))
         elif where.path == "/compare":
             self._compare(shelf, list(dict.fromkeys(asked.get("file", []))))
+        elif where.path.startswith("/picture/"):
+            self._picture(shelf, where.path.removeprefix("/picture/"))
         elif where.path.startswith("/file/"):
             self._file(place_of(shelf.folder, where.path.removeprefix("/file/")))
         else:
@@ -333,6 +388,18 @@ class _Request(BaseHTTPRequestHandler):
         tables += [comparison_tables.models(p, with_statements=False) for p in pairs]
         with keeping(users_texts(*found)):
             self._page(HTTPStatus.OK, comparison(tables, [s for s in said if s[1]], names))
+
+    def _picture(self, shelf: Shelf, key: str) -> None:
+        try:
+            content = picture_of(shelf, key).encode("utf-8", "replace")
+        except (CoeflabError, OSError):
+            content = b""
+        if not content:
+            self._refuse(HTTPStatus.NOT_FOUND, "There is no such picture here.")
+            return
+        self._head(HTTPStatus.OK, "image/svg+xml", len(content), POLICIES[".svg"])
+        if self.command == "GET":
+            self.wfile.write(content)
 
     def _file(self, path: Path | None) -> None:
         if path is None:

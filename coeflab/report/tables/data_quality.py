@@ -48,7 +48,7 @@ def coverage(tables: Sequence[ForceTable]) -> Table:
             ends = (number(float(levels[0]), 4), number(float(levels[-1]), 4), number(float(gap), 3))
             rows.append((t.name, name, str(len(levels)), str(moved), *ends, ABSENT if name.startswith("U") else side))
     headers = ("table", "setting", "levels", "rows off zero", "from", "to", "largest gap", "sides")
-    return Table("Settings", headers, tuple(rows), (), frozenset({0, 1, 7}))
+    return Table("Settings", headers, tuple(rows), (), frozenset({0, 1, 7}), ("rows off zero",))
 
 
 def convergence(tables: Sequence[ForceTable]) -> Table:

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from coeflab.core.stored import FIRST_VERSION
-from coeflab.core.table import ABSENT, Check, Table, coefficient, number, with_u95
+from coeflab.core.table import ABSENT, Table, coefficient, number, with_u95
 from coeflab.formats.export import LOSSLESS, Apart, Kind, Loss
 from coeflab.law.added_mass import potential_part
 from coeflab.law.symbols import COMPONENTS, MOTIONS
@@ -86,7 +86,9 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
         if f.beyond
     ]
     headers = ("", "table", "points", "worst", "rms", "where", "allowed", "")
-    return Table(f"{whose} against the measured points", headers, rows, tuple(notes), frozenset({0, 1, 5, 7}))
+    return Table(
+        f"{whose} against the measured points", headers, rows, tuple(notes), frozenset({0, 1, 5, 7}), ("where", "rms")
+    )
 
 
 def at_points_verdict(f: LawAtPoints) -> str:
@@ -221,18 +223,12 @@ def contents(parameters: ParameterFile, kind: str) -> Table:
         *p.provenance.notes,
     )
     headers = ("", "value", "SI", "unit", "U95", "status", "origin", "how")
-    return Table(f"{p.name} ({p.body})", headers, rows, notes, frozenset({0, 3, 5, 6, 7}))
+    return Table(f"{p.name} ({p.body})", headers, rows, notes, frozenset({0, 3, 5, 6, 7}), ("how", "origin"))
 
 
 def _length(p: ParameterFile) -> str:
     size = f"{p.scaling.length:.6g} m"
     return size if p.scaling.length_name == size else f"{p.scaling.length_name} {size}"
-
-
-def findings(found: Sequence[Check]) -> Table:
-    """Findings with their severity."""
-    rows = tuple((str(c.severity), c.subject, c.statistic, c.rule, c.comment or ABSENT) for c in found)
-    return Table("Findings", ("severity", "what", "found", "expected", "means"), rows, (), frozenset(range(5)))
 
 
 Json = dict[str, Any]

@@ -54,7 +54,14 @@ def quality(models: tuple[FittedModel, ...]) -> Table:
     )
     angles = dict.fromkeys(v for m in models for v in m.domain.variables if v in FLOW_ANGLES)
     notes = (*notes, *(FLOW_ANGLES[v] for v in angles))
-    return Table("Quality of the fitted models", headers, rows, notes, frozenset({0, 1, 11, 12}))
+    return Table(
+        "Quality of the fitted models",
+        headers,
+        rows,
+        notes,
+        frozenset({0, 1, 11, 12}),
+        ("condition", "runs", "AICc", "outside", "domain", "terms"),
+    )
 
 
 MOST_POINTS = 5
@@ -191,7 +198,9 @@ def coefficients(found: Comparison) -> Table:
     )  # fmt: skip
     headers = ("", "first", "U95", "second", "U95", "difference", "combined", "ratio", "verdict", "")
     title = f"{found.b} against {found.a}"
-    return Table(title, headers, rows, () if found.models else found.statements, frozenset({0, 8, 9}))
+    return Table(
+        title, headers, rows, () if found.models else found.statements, frozenset({0, 8, 9}), ("ratio", "combined")
+    )
 
 
 def models(found: Comparison, *, with_statements: bool = True) -> Table:
@@ -205,7 +214,9 @@ def models(found: Comparison, *, with_statements: bool = True) -> Table:
     )  # fmt: skip
     headers = ("", "points", "rms diff.", "largest", "at", "combined", "% within", "verdict", "")
     left = frozenset({0, 4, 7, 8})
-    return Table("Fitted tables", headers, rows, found.statements if with_statements else (), left)
+    return Table(
+        "Fitted tables", headers, rows, found.statements if with_statements else (), left, ("at", "points", "largest")
+    )
 
 
 def side_by_side(first: ParameterFile, others: Sequence[Comparison], names: Sequence[str]) -> Table:

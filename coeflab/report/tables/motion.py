@@ -48,7 +48,9 @@ def figure_table(figures: tuple[Figure, ...], title: str, length: float) -> Tabl
         if f.why:
             reasons.setdefault(f.why, []).append(f.name)
     notes = tuple(f"{_listed(names, len(figures))}: {why}" for why, names in reasons.items())
-    return Table(title, headers, tuple(rows), notes, frozenset({0, 2, len(headers) - 2, len(headers) - 1}))
+    return Table(
+        title, headers, tuple(rows), notes, frozenset({0, 2, len(headers) - 2, len(headers) - 1}), ("definition",)
+    )
 
 
 def _listed(names: list[str], everything: int) -> str:
@@ -146,6 +148,7 @@ def steady(glider: Glider, glides: Sequence[SteadyGlide]) -> Table:
         rows or ((glider.phases[0].name, *([ABSENT] * 11)),),
         tuple(notes),
         frozenset({0, 11}),
+        ("power W", "L/D", "position m", "ahead m/s", "sinking m/s"),
     )  # fmt: skip
 
 

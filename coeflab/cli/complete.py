@@ -1,0 +1,153 @@
+"""Values that a shell offers behind an argument: shipped names, plugins, words, and paths beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module
+from pathlib import Path
+
+
+def _names(words: Iterable[str], begun: str) -> list[str]:
+    return sorted(word for word in words if word.startswith(begun))
+
+
+def _or_paths(words: Iterable[str], begun: str) -> list[str]:
+    """Names that fit, then files and folders; a folder with its stroke."""
+    folder, _, start = begun.rpartition("/")
+    place = Path(folder or ("/" if begun.startswith("/") else ".")).expanduser()
+    ahead = begun[: len(begun) - len(start)]
+    entries = [e for e in place.iterdir() if e.name.startswith(start)] if place.is_dir() else []
+    found = [f"{ahead}{e.name}" + "/" * e.is_dir() for e in entries if start or not e.name.startswith(".")]
+    return [*_names(words, begun), *sorted(found)]
+
+
+def _plugins(registry: str, begun: str) -> list[str]:
+    package, _, name = registry.rpartition(".")
+    return _names(getattr(import_module(f"coeflab.{package}"), name).usable(), begun)
+
+
+def _shipped(kind: str, file: str) -> list[str]:
+    from coeflab.core.files import shipped
+
+    return [place.parent.name for place in shipped(kind).glob(f"*/{file}")]
+
+
+def validations(incomplete: str) -> list[str]:
+    """Shipped studies and publications."""
+    from coeflab.published import validations as shipped_ones
+
+    return _names(shipped_ones(), incomplete)
+
+
+def studies(incomplete: str) -> list[str]:
+    """The same, and plans by path."""
+    from coeflab.published import validations as shipped_ones
+
+    return _or_paths(shipped_ones(), incomplete)
+
+
+def campaigns(incomplete: str) -> list[str]:
+    """Shipped campaigns, and paths."""
+    return _or_paths(_shipped("cfd_data", "campaign.toml"), incomplete)
+
+
+def bodies(incomplete: str) -> list[str]:
+    """Shipped bodies, and paths."""
+    return _or_paths(_shipped("geometry", "body.toml"), incomplete)
+
+
+def inspected(incomplete: str) -> list[str]:
+    """Shipped campaigns and bodies, and paths."""
+    shipped_ones = (*_shipped("cfd_data", "campaign.toml"), *_shipped("geometry", "body.toml"))
+    return _or_paths(shipped_ones, incomplete)
+
+
+def gliders(incomplete: str) -> list[str]:
+    """Shipped gliders, and paths."""
+    return _or_paths(("thauv", "slocum"), incomplete)
+
+
+def fits(incomplete: str) -> list[str]:
+    """Fits."""
+    return _plugins("fits.FITS", incomplete)
+
+
+def importers(incomplete: str) -> list[str]:
+    """Importers of tables."""
+    return _plugins("tables.importers.IMPORTERS", incomplete)
+
+
+def exporters(incomplete: str) -> list[str]:
+    """Targets of an export."""
+    return _plugins("formats.EXPORTERS", incomplete)
+
+
+def manoeuvres(incomplete: str) -> list[str]:
+    """Manoeuvres."""
+    return _plugins("motion.manoeuvres.MANOEUVRES", incomplete)
+
+
+def simulators(incomplete: str) -> list[str]:
+    """Simulators."""
+    return _plugins("motion.simulators.SIMULATORS", incomplete)
+
+
+def solvers(incomplete: str) -> list[str]:
+    """Solvers of the tow tank."""
+    return _plugins("tank.solvers.SOLVERS", incomplete)
+
+
+def runners(incomplete: str) -> list[str]:
+    """Runners of the tow tank."""
+    return _plugins("tank.runners.RUNNERS", incomplete)
+
+
+def methods(incomplete: str) -> list[str]:
+    """Methods of added mass."""
+    return [*_names(("all", "strip:lamb"), incomplete), *_plugins("bodies.added_mass.ADDED_MASS", incomplete)]
+
+
+def reports(incomplete: str) -> list[str]:
+    """Formats of a report; behind a comma another."""
+    ahead, comma, last = incomplete.rpartition(",")
+    return [f"{ahead}{comma}{name}" for name in _plugins("report.formats.REPORTERS", last)]
+
+
+def formats(incomplete: str) -> list[str]:
+    """Kinds of plugins, and plugins."""
+    from coeflab.core.registry import registries
+
+    kinds = [registry.package.rpartition(".")[2] for registry in registries()]
+    return _names({*kinds, *(name for registry in registries() for name in registry.usable())}, incomplete)
+
+
+def schemas(incomplete: str) -> list[str]:
+    """Kinds of files."""
+    from coeflab.cli.schema import KINDS
+
+    return _names(KINDS, incomplete)
+
+
+def planes(incomplete: str) -> list[str]:
+    """Planes of a motion."""
+    return _names(("horizontal", "vertical"), incomplete)
+
+
+def tables(incomplete: str) -> list[str]:
+    """Formats of a motion."""
+    return _names(("csv", "parquet"), incomplete)
+
+
+def integrators(incomplete: str) -> list[str]:
+    """Integrators."""
+    return _names(("adaptive", "rk4"), incomplete)
+
+
+def kernels(incomplete: str) -> list[str]:
+    """Kernels of many motions."""
+    return _names(("auto", "compiled", "numpy"), incomplete)
+
+
+def optimizers(incomplete: str) -> list[str]:
+    """Sparse regressions."""
+    return _names(("stlsq", "sr3"), incomplete)

@@ -1,0 +1,95 @@
+"""What the README prints: its commands run, its figures are theirs, its pages exist."""
+
+from __future__ import annotations
+
+import re
+import runpy
+import shlex
+import shutil
+from pathlib import Path
+
+import pytest
+
+from coeflab.cli import ORDER
+from coeflab.motion.simulation import simulate
+from coeflab.vehicle.parameter_file import read_parameter_file
+from tests.cli.conftest import Run
+
+ROOT = Path(__file__).parents[2]
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+REMUS = ROOT / "cfd_data" / "remus100" / "remus100.parameters.json"
+BY_CI = ("validate suboff", "test")  # .ci/run, as they stand
+ELSEWHERE = ("report suboff --to html,pdf",)  # tests/reports/test_gallery.py and tests/report make these pages
+UNSTABLE = "reports/suboff/suboff_fully_appended.parameters.json"
+
+
+def commands() -> list[str]:
+    blocks = re.findall(r"^```\n(.*?)^```", TEXT, flags=re.MULTILINE | re.DOTALL)
+    lines = [line.partition("  #")[0].strip() for block in blocks for line in block.splitlines()]
+    return [line for line in lines if line and not line.startswith("source ")]
+
+
+def test_the_two_commands_of_ci_are_the_first() -> None:
+    assert commands()[:2] == [f"python3 start.py {words}" for words in BY_CI]
+    ci = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    assert all(command in ci for command in commands()[:2])
+
+
+@pytest.mark.slow
+def test_every_other_command_runs_in_turn(coeflab: Run, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    """In one folder, as a reader types them; SUBOFF's zigzag on the parameter file of the shared study."""
+    shutil.copytree(ROOT / "cfd_data" / "remus100", tmp_path / "cfd_data" / "remus100")
+    suboff = request.getfixturevalue("suboff")
+    appended = suboff.parameter_files["suboff_fully_appended"]
+    (tmp_path / UNSTABLE).parent.mkdir(parents=True)
+    (tmp_path / UNSTABLE).write_bytes(appended.to_json())
+    for command in commands()[2:]:
+        program, *words = shlex.split(command)
+        assert program == "coeflab"
+        if command.removeprefix("coeflab ") in ELSEWHERE:
+            continue
+        done = coeflab(*words)
+        unstable = UNSTABLE in words
+        assert done.returncode == (1 if unstable else 0), (command, done.stderr, done.stdout)
+        if unstable:
+            assert "no nonlinear term such as Yr|r|" in " ".join(done.stdout.split())
+    made = {str(p.relative_to(tmp_path)) for p in tmp_path.rglob("*") if p.is_file()}
+    assert {"reports/my_study/report.html", "reports/zigzag/zigzag.csv", "reports/zigzag/zigzag.svg"} <= made
+
+
+def test_every_command_that_is_named_exists() -> None:
+    named = {line.split()[1] for line in commands()[2:] if not line.split()[1].startswith("-")}
+    named |= set(re.findall(r"`coeflab ([a-z-]+)", TEXT))
+    assert named <= set(ORDER)
+
+
+def test_the_zigzag_has_the_figures_that_are_printed() -> None:
+    found = simulate(read_parameter_file(REMUS), "zigzag", {"rudder": "20 deg"})
+    degrees = {"rad": (57.29577951308232, "deg")}
+    ours = {
+        f.name: (f.value * degrees.get(f.unit, (1.0, ""))[0], degrees.get(f.unit, (1.0, f.unit))[1])
+        for f in found.figures
+    }
+    printed = re.findall(r"^\| ([a-z ]+) \| ([\d.]+) \| (s|m|deg) \|$", TEXT, flags=re.MULTILINE)
+    assert [name for name, _, _ in printed] == list(ours)
+    for name, value, unit in printed:
+        assert (f"{ours[name][0]:.3g}", ours[name][1]) == (value, unit)
+    assert {f.status for f in found.figures} == {"extrapolated"}
+
+
+def test_the_shipped_file_is_what_its_maker_writes() -> None:
+    made = runpy.run_path(str(ROOT / "cfd_data" / "make_remus.py"))["parameter_file"]()
+    assert REMUS.read_bytes() == made.to_json()
+
+
+def test_pages_and_pictures_exist() -> None:
+    links = re.findall(r"\]\(([^)#]+)\)|src=\"([^\"]+)\"", TEXT)
+    assert links
+    assert not [a or b for a, b in links if not (ROOT / (a or b)).is_file()]
+
+
+def test_it_is_short() -> None:
+    """The first own result is on the first screen."""
+    lines = TEXT.splitlines()
+    assert len(lines) <= 110
+    assert lines.index("## Your first own result") < 20

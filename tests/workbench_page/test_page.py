@@ -1,0 +1,117 @@
+"""What a person does on the page: keyboard, pointer, screen reader, a saved figure; nothing from elsewhere."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from coeflab.core.errors import InputError
+from coeflab.report.document import Document
+from coeflab.report.formats import REPORTERS
+from tests.workbench_page.conftest import settled
+
+SHOWN = 'document.querySelector("#bench .big").textContent'
+
+
+@pytest.fixture
+def opened(visit, address):
+    def at(width=1440, scheme="light", **more):
+        page = visit(address, width, scheme, **more)
+        if more.get("java_script_enabled", True):
+            settled(page)
+        return page
+
+    return at
+
+
+def test_a_document_without_sweeps_has_no_bench():
+    with pytest.raises(InputError, match="slopes at the origin"):
+        REPORTERS.load("workbench").render(Document("t", "s", ()))
+
+
+def test_equal_studies_give_equal_pages(bench):
+    first, second = (REPORTERS.load("workbench").render(Document("t", "s", (), bench=bench)) for _ in range(2))
+    assert first == second
+    assert len(first["workbench.html"]) < 300_000
+
+
+def test_keyboard_alone_changes_value_and_brings_it_back(opened):
+    page = opened()
+    before = page.evaluate(SHOWN)
+    assert page.locator("#bench-limit").get_attribute("aria-valuetext") == "14°: 14 of 14 points"
+    page.focus("#bench-limit")
+    page.keyboard.press("ArrowLeft")
+    assert page.locator("#bench-limit").get_attribute("aria-valuetext") == "12°: 13 of 14 points"
+    page.focus("#bench-point-3")
+    page.keyboard.press("Space")
+    assert page.evaluate("document.activeElement.id") == "bench-point-3"
+    page.focus("#bench-part-remainder")
+    page.keyboard.press("Space")
+    settled(page)
+    assert page.evaluate(SHOWN) != before
+    assert page.get_by_text("U95 holds only if the curve has none of the parts you took out.").is_visible()
+    page.get_by_role("button", name="Reset", exact=True).press("Enter")
+    settled(page)
+    assert page.evaluate(SHOWN) == before
+    assert page.heard == []
+
+
+def test_a_click_on_a_point_leaves_it_out_and_the_others_follow_when_asked(opened):
+    page = opened()
+    page.locator("circle[data-at='0']").click()
+    settled(page)
+    assert not page.locator("#bench-point-0").is_checked()
+    page.get_by_role("button", name="Same for Nv′").click()
+    page.select_option("#bench-coefficient", label="Nv′")
+    settled(page)
+    assert not page.locator("#bench-point-0").is_checked()
+
+
+def test_without_settings_nothing_is_determined(opened):
+    page = opened()
+    page.evaluate("""() => { const { edits, changed } = document.getElementById("bench").bench;
+        edits[0] = { limit: null, dropped: Array.from({ length: 12 }, (_, i) => i), without: [] }; changed(); }""")
+    settled(page)
+    assert page.evaluate(SHOWN) == "not determined"
+    text = page.locator(".values").inner_text()
+    assert "2 different settings, at least 3 are needed" in text
+    assert "Yv' has no value" in text
+    assert "not determined: Yv′ has no value" in text
+
+
+def test_the_figure_is_saved_as_a_drawing_of_its_own(opened):
+    page = opened(accept_downloads=True)
+    with page.expect_download() as waiting:
+        page.get_by_role("button", name="Save SVG").first.click()
+    saved = Path(waiting.value.path()).read_text(encoding="utf-8")
+    assert waiting.value.suggested_filename == "boat Yv.svg"
+    assert saved.startswith("<svg")
+    assert "var(" not in saved
+    assert "#0067a8" in saved
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(1440, "light"), (390, "dark")])
+def test_axe_finds_no_serious_violation_and_nothing_is_fetched(opened, width, scheme):
+    from axe_playwright_python.sync_playwright import Axe
+
+    page = opened(width, scheme)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    found = [v for v in Axe().run(page).response["violations"] if v["impact"] in ("serious", "critical")]
+    assert [(v["id"], [n["html"][:200] for n in v["nodes"]]) for v in found] == []
+    assert [url for url in page.fetched if not re.match(r"(file|blob|data):", url)] == []
+    assert page.heard == []
+
+
+def test_first_screen_holds_value_figure_and_index(opened):
+    page = opened()
+    for place in (".big >> nth=0", "svg >> nth=0", "svg >> nth=1", "text=Course stability"):
+        box = page.locator(f"#bench {place}").bounding_box()
+        assert box["y"] + box["height"] <= 900, place
+
+
+def test_without_scripts_the_study_is_told(opened):
+    page = opened(java_script_enabled=False)
+    assert page.locator("table >> text=Yv'").is_visible()
+    assert page.locator("h1").inner_text() == "A boat <b>"
