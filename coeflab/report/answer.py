@@ -32,7 +32,7 @@ from coeflab.vehicle.reference import Comparison, Reference, Relation
 LONGEST, MOST_LETTERS, MOST_ROWS, MOST_COLUMNS = 160, 240, 6, 3
 NO_DATA = "no data"
 WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
-BAR = 8  # letters of a difference that is as large as U95
+BAR = 6  # letters of a difference that is as large as U95
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
 WIDE = 0.5  # a U95 of half the value asks for more runs
@@ -421,7 +421,7 @@ def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
 
 
 def answer_table(found: Answer) -> Table:
-    """The rows as texts, 80 columns wide with three short published names.
+    """The rows as texts, 79 columns wide at most with three short published names.
 
     Parameters
     ----------
@@ -441,7 +441,7 @@ def answer_table(found: Answer) -> Table:
     names = short if len(set(short)) == len(short) else list(found.columns)
     is_judged = any(r.share is not None for r in found.rows)
     rows = tuple((primed(r.symbol), *_cells(r), *((_bar(r),) if is_judged else ())) for r in found.rows)
-    headers = ("", "ours +- U95", *names, *(("difference/U95",) if is_judged else ()))
+    headers = ("", "ours +- U95", *names, *(("diff./U95",) if is_judged else ()))
     left = {0, *((len(headers) - 1,) if is_judged else ())}
     return Table("Answer", headers, rows, found.notes, frozenset(left))
 
