@@ -190,8 +190,8 @@ def test_a_tow_without_a_campaign_named_is_refused(folder: Path, tmp_path: Path)
 
 def test_tables_of_tows_fit_80_columns(bodies: tuple[Towed, ...], capsys: pytest.CaptureFixture[str]) -> None:
     for one in bodies:
-        show.folded(own_tow(one))
-        show.folded(tow_against(one))
+        show.table(own_tow(one))
+        show.table(tow_against(one))
     shown = capsys.readouterr().out
     assert max(map(len, shown.splitlines())) <= 80
     assert "Own tow: AFF-8" in shown
