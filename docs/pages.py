@@ -5,7 +5,7 @@ python docs/pages.py [PAGE.md ...]       then: mkdocs build --strict
 A page is run from its first line to its last in an empty folder: a block with a title is a file, a `console` block holds
 commands behind `$ ` and what they print. A comment before the block says which part is shown:
 `<!-- 6 lines from "Side by side" -->`, `<!-- 5 lines -->`, `<!-- nothing -->`, and the exit code where it is not zero, `<!-- exit code 1 -->`.
-A command that stands twice is run once. `<!-- varies -->` says that the output depends on the machine: it is not compared.
+A command that stands twice is run once; a file of the checkout that a command names is there. `<!-- varies -->` says that the output depends on the machine: it is not compared.
 A picture in pictures/ that a command of the page writes is copied from there. mkdocs takes the hooks at the end of this file.
 """
 
@@ -76,7 +76,12 @@ def written(text: str, folder: Path, run: Runner = process, *, anew: bool = True
         printed: list[str] = []
         for line in _joined("\n".join(typed)):
             if line not in known:
-                known[line] = run(shlex.split(line[2:]), folder)
+                words = shlex.split(line[2:])
+                for word in words[1:]:
+                    if (HERE.parent / word).is_file() and not (folder / word).exists():
+                        (folder / word).parent.mkdir(parents=True, exist_ok=True)
+                        (folder / word).write_bytes((HERE.parent / word).read_bytes())
+                known[line] = run(words, folder)
             done = known[line]
             if done.returncode != wanted:
                 raise RuntimeError(f"{line}: exit code {done.returncode}, not {wanted}\n{done.stdout}{done.stderr}")
@@ -175,6 +180,14 @@ def main(names: Sequence[str]) -> None:
 _formulas: list[str] = []
 
 
+def on_config(config: Any) -> Any:
+    """A page that the navigation of mkdocs.yml does not name stands at the end of its reference."""
+    listed = set(re.findall(r"[\w-]+\.md", repr(config.nav)))
+    reference = next(part["Reference"] for part in config.nav if "Reference" in part)
+    reference.extend(page.name for page in sorted(HERE.glob("*.md")) if page.name not in listed)
+    return config
+
+
 def on_files(files: Any, config: Any) -> Any:
     """Take in the files outside of docs that a page shows or links to."""
     from mkdocs.structure.files import File
@@ -191,7 +204,9 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
     from latex2mathml.converter import convert
 
     def formula(found: re.Match[str]) -> str:
-        text = (found["shown"] or found["inline"]).replace("'", "\u2032")  # a letter: as a superscript it is raised twice
+        text = (found["shown"] or found["inline"]).replace(
+            "'", "\u2032"
+        )  # a letter: as a superscript it is raised twice
         _formulas.append(convert(text, display="block" if found["shown"] else "inline"))
         return f"formula{len(_formulas) - 1}set"
 

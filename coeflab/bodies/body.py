@@ -178,7 +178,7 @@ class Body:
         if self.shape is None:
             raise InputError(
                 f"{self.name}, a body of particulars without a shape",
-                "a body that says what it looks like",
+                "a body with a shape",
                 advice="Give its body.toml parts ([[part]], reader primitives), or name another body.",
             )
         return self.shape
@@ -330,7 +330,7 @@ class ConfigurationKeys(takes.Declaration):
                 continue
             if goes is FULL and key in SIMPLE:
                 raise InputError("both", f"centre_of_gravity and inertia_matrix, or {key}", column=key)
-            raise InputError("a key beside others than its own", f"only {', '.join(SIMPLE)}, or {', '.join(FULL)}, or "
+            raise InputError("keys that do not go together", f"only {', '.join(SIMPLE)}, or {', '.join(FULL)}, or "
                              f"mass_prime, {', '.join(PRIMES)}", column=key)  # fmt: skip
         if self.inertia_matrix is not None and self.mass is not None:
             doubt = inertia_doubt(self.mass, np.zeros(3), self.inertia_matrix)

@@ -125,19 +125,14 @@ def must_vanish(shape: Shape, point: Array) -> NDArray[np.bool_]:
     return vanishing((x, y, z))
 
 
-EXACT = "ellipsoids, one alone or so far apart that they hardly feel each other, by Lamb's closed form, which is exact"
+EXACT = "Lamb's exact form for one ellipsoid, or ellipsoids too far apart to interact"
 ELSE = (
-    "the panel method; else, for parts among which are plates or none that touch, and for a mesh like one plate, their closed "
-    "forms with corrected ends; else strips with Lamb's end correction; else the ellipsoid of equal volume and proportions; "
-    "what calls itself a rough guide comes last: strips of a short body, an ellipsoid whose projected areas or second moments "
+    "the panel method; else closed forms with corrected ends, for parts that include plates or do not touch and for a mesh like one plate; else strips with Lamb's end correction; else the ellipsoid of equal volume and proportions; rough guides come last: strips of a short body, an ellipsoid whose projected areas or second moments "
     "of volume are off by over 10 %, a mesh as one plate"
 )
 RULE = f"{EXACT}; else {ELSE}"
-UNCHECKED = (
-    "NOT CHECKED: the parts stand for a mesh, and {} computes the parts; what they miss of the mesh only the panel method on the mesh "
-    "tells"
-)
-OF_MESH = f"for parts that stand for a mesh, the panel method on that mesh; else {ELSE}, parts that are poor stand-ins"
+UNCHECKED = "NOT CHECKED: the parts replace a mesh, and {} computes the parts; only the panel method on the mesh shows what they miss"
+OF_MESH = f"for parts that replace a mesh, the panel method on that mesh; else {ELSE}, parts that are poor stand-ins"
 CAUTION = (
     "NONE OF THE METHODS SHOWN IS GOOD FOR THIS BODY: {} is a rough guide; compare them all, or describe the body by parts, thin ones "
     "as plates (coeflab simplify, or a body.toml of reader primitives), for the method primitives"

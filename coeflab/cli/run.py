@@ -100,6 +100,7 @@ def summarise(study: Study) -> None:
     if show.whole():
         _every_table(study)
     else:
+        _tows(study)
         show.table(model_tables.quality(models))
         show.table(model_tables.campaigns(study.fits))
     findings(study.checks)
@@ -116,6 +117,23 @@ def answered(found: Answer) -> None:
         show.marked(str(chip.severity), f"{chip.name}: {chip.text}")
 
 
+def _tows(study: Study) -> None:
+    """Of every body that was towed the coefficients, and its comparison error; of the others that they were not."""
+    from coeflab.core.wording import listed
+    from coeflab.report.tables import results as tables
+    from coeflab.study.towed import towed
+
+    absent = []
+    for tow in towed(study):
+        if not tow.tow.campaign:
+            absent.append(f"{tow.tow.name} ({listed(tow.tow.absent)})")
+            continue
+        show.table(tables.own_tow(tow))
+        show.table(tables.tow_against(tow))
+    if absent:
+        show.sentence(f"Not towed yet: {listed(absent)}.")
+
+
 def _every_table(study: Study) -> None:
     """Comparison, coefficients, fitted models and force laws."""
     from coeflab.report.acceptance import headline, held_of_study
@@ -123,16 +141,13 @@ def _every_table(study: Study) -> None:
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import results as tables
-    from coeflab.study.towed import towed
     from coeflab.vehicle.derived import stability
     from coeflab.vehicle.force_law import points_of
 
     show.sentence(tables.headline(study))
     show.text()
     show.table(tables.side_by_side(study))
-    for tow in towed(study):
-        show.table(tables.own_tow(tow))
-        show.table(tables.tow_against(tow))
+    _tows(study)
     show.table(tables.verdicts(study))
     show.table(tables.by_campaign(study))
     show.table(tables.coefficients(study))

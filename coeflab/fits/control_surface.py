@@ -141,17 +141,17 @@ def _told(rows: Rows, model: FittedModel, chosen: Options) -> str:
     left, half, freedom = float(extra.coefficients[-1]), float(extra.half_width[-1]), float(extra.freedom[-1])
     error = float(np.sqrt(extra.covariance[-1, -1]))
     if not np.isfinite(half) or error == 0.0:
-        return "The rows do not tell whether alpha acts through the effective angle alone."
+        return "The rows do not show whether alpha acts through the effective angle alone."
     chance = float(t_probability(left / error, freedom))
     found = f"a slope of {left:.3g} +- {half:.2g} per radian is left for alpha alone (p = {chance:.2g})"
     if chance >= UNLIKELY:
-        return f"As the effective angle says, alpha and delta act together: {found}."
+        return f"As the effective angle assumes, alpha and delta act together: {found}."
     other = "delta+alpha" if chosen.effective == "delta-alpha" else "delta-alpha"
     turned = -2.0 * _sign(chosen) * float(extra.coefficients[0])
     advice = (
         f"Try effective = {other}."
         if abs(left - turned) < abs(left)
-        else "The table holds more than the surface's own force, or C_L and C_m need their cubic term."
+        else "The table contains more than the surface's own force, or C_L and C_m need their cubic term."
     )
     return f"alpha acts on {model.response} otherwise than through {chosen.effective}: {found}. {advice}"
 
@@ -159,7 +159,7 @@ def _told(rows: Rows, model: FittedModel, chosen: Options) -> str:
 def _lifts(model: FittedModel) -> str:
     value, half = model.named("C_L1")
     if not np.isfinite(half) or abs(value) <= half:
-        return "The rows do not tell which sign of delta raises lift."
+        return "The rows do not show which sign of delta raises lift."
     return f"A {'positive' if value > 0.0 else 'negative'} delta raises lift."
 
 

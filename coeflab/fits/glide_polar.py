@@ -209,18 +209,18 @@ def _fitted(rows: Rows, name: str, unit: str) -> FittedModel:
 
 def _said(model: FittedModel, name: str, speed: Array, errors: Array | None) -> tuple[str, ...]:
     """What K holds, and whether the force goes with the square of the speed."""
-    held = f"K_{name}0 and K_{name} hold the fluid's density and are not divided by an area."
+    held = f"K_{name}0 and K_{name} include the fluid's density and are not divided by an area."
     if np.ptp(speed) <= SAME_SPEED * speed.max():
         return held, f"All rows run at {speed.mean():.4g} m/s: that the force goes with V^2 is assumed, not tested."
     relative = speed / speed.mean() - 1.0
     extra = fit_linear(np.column_stack([design(model.terms, model.x), relative]), model.y, errors)
     error = float(np.sqrt(extra.covariance[-1, -1]))
     if not np.isfinite(extra.half_width[-1]) or error == 0.0:
-        return held, "The rows do not tell whether the force goes with V^2."
+        return held, "The rows do not show whether the force goes with V^2."
     chance = float(t_probability(float(extra.coefficients[-1]) / error, float(extra.freedom[-1])))
     where = f"with V from {speed.min():.4g} to {speed.max():.4g} m/s"
     if chance >= UNLIKELY:
-        return held, f"{name}/V^2 shows no trend {where} (p = {chance:.2g}), as the law says."
+        return held, f"{name}/V^2 shows no trend {where} (p = {chance:.2g}), as the law assumes."
     return held, f"{name}/V^2 changes {where} (p = {chance:.2g}): the force does not go with V^2 alone."
 
 
@@ -273,8 +273,7 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
         value, half = fitted["deg"]
         if not (np.isfinite(half) and abs(value) > half) or value * printed[slope] <= 0.0:
             said.append(
-                f"{slope}: printed {printed[slope]:g}, fitted {value:.4g} +- {half:.2g} per degree: of another sign, or "
-                "the fit does not tell it from zero; it says nothing about the unit."
+                f"{slope}: printed {printed[slope]:g}, fitted {value:.4g} +- {half:.2g} per degree: of another sign, or the fit cannot distinguish it from zero; it does not decide the unit."
             )
             continue
         unit = min(fitted, key=lambda u: abs(float(np.log(printed[slope] / fitted[u][0]))))
@@ -284,7 +283,7 @@ def angle_unit_of(printed: Mapping[str, float], result: FitResult) -> AngleUnit:
         said.append(f"{slope}: printed {printed[slope]:g} is per {unit}, {place} the fitted {value:.5g} +- {half:.2g}.")
     if len(votes) == 1:
         return AngleUnit(next(iter(votes)), tuple(said))
-    why = "The slopes disagree about the unit of the angle." if votes else "No slope tells the unit of the angle."
+    why = "The slopes disagree about the unit of the angle." if votes else "No slope decides the unit of the angle."
     return AngleUnit("", (*said, why))
 
 

@@ -117,9 +117,9 @@ def _said(model: FittedModel, axis: str) -> tuple[str, ...]:
         if np.isfinite(half) and value - half > 0.0:
             out.append(f"{s} is positive beyond its interval: it drives the motion. Check the axes and the signs.")
         elif np.isfinite(half) and abs(value) <= half:
-            out.append(f"{s} is not told from zero by these rows.")
+            out.append(f"{s} cannot be distinguished from zero by these rows.")
     if np.all(model.x[axis] >= 0.0) or np.all(model.x[axis] <= 0.0):
-        out.append(f"All rows have {axis} of one sign; the form takes the force the other way as equal and opposite.")
+        out.append(f"All rows have {axis} of one sign; the form assumes an equal and opposite force the other way.")
     return tuple(out)
 
 

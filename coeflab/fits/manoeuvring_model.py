@@ -157,7 +157,7 @@ joins_campaigns = True
 
 MORE_TERMS = "Add terms of a higher power or of two motions, or fit a narrower range."
 UNWEIGHTED = (
-    "Rows weigh alike: their stated standard errors are noise of one run, not the error of the model. weights = yes "
+    "Equal weights: the stated standard errors are the noise of one run, not the error of the model. weights = yes "
     "uses them."
 )
 UNUSED = "Stated standard errors of single runs are not used; weights = yes uses them inside every campaign."
@@ -391,5 +391,5 @@ def _finished(model: FittedModel, first: Sequence[str], more: Sequence[str], idl
         *more,
     ]
     if absent:
-        said.insert(0, f"Not determined, as the tables do not hold their motion: {', '.join(absent)}.")
+        said.insert(0, f"Not determined, since no table varies their motion: {', '.join(absent)}.")
     return replace(model, statements=tuple(said))

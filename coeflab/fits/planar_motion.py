@@ -280,9 +280,9 @@ def _taken_out(table: PlanarMotionTable) -> dict[str, str]:
     out = {f"filter of {c}": f.text for c, f in table.filters.items()}
     in_air = any(r.in_air is not None for r in table.runs)
     model = "by the runs in air" if in_air else "none" if table.inertia is None else f"m = {table.inertia.mass:g} kg"
-    out["model inertia taken out"] = model
+    out["model inertia subtracted"] = model
     if table.restoring is not None:
-        out["restoring moments taken out"] = "K {:g}, M {:g} N m/rad".format(*table.restoring)
+        out["restoring moments subtracted"] = "K {:g}, M {:g} N m/rad".format(*table.restoring)
     return out
 
 

@@ -32,12 +32,12 @@ from coeflab.law.symbols import COMPONENTS
 from coeflab.law.terms import Term, design, symmetric
 from coeflab.tables.force_table import ForceTable, counted_once
 
-summary = "sparse force law: the terms of a library that the data ask for (pysindy)"
+summary = "sparse force law: the terms of a library that the data need (pysindy)"
 citations = ("brunton2016", "kaptanoglu2022", "fasel2022", "chen2008", "mackinnon1985", "bell2002")
 
 RIDGE = 1e-8
 FEWEST_A_FOLD = 2
-UNWEIGHTED = "Rows weigh alike: their stated standard errors are noise of one run, not the error of the model."
+UNWEIGHTED = "Equal weights: the stated standard errors are the noise of one run, not the error of the model."
 AFTER_SELECTION = "The terms were chosen on these rows, so U95 and the error of left-out rows are too small."
 WIDER = "Allow a larger library: a higher degree, or more variables."
 
@@ -140,7 +140,7 @@ def _alike(matrix: Array, y: Array, component: str, terms: Sequence[Term], inter
     """Terms that the rows cannot tell apart, and terms that they do not excite."""
     unit, _, size, _ = scaled(matrix, y, intercept=intercept)
     out = [
-        f"{component}{terms[j].suffix} and {component}{terms[i].suffix} cannot be told apart on these rows; the library "
+        f"{component}{terms[j].suffix} and {component}{terms[i].suffix} cannot be separated on these rows; the library "
         f"keeps {component}{terms[i].suffix}."
         for j, i in twins(unit).items()
     ]

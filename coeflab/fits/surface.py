@@ -212,7 +212,7 @@ def _slices_in_words(model: FittedModel) -> tuple[str, ...]:
     first, second = model.domain.variables
     return (
         f"The printed form {model.response}({first}) + {model.response}({second}) counts {symbol} = {value:.4g} +- {half:.2g} twice and is wrong "
-        f"by that much everywhere; this fit holds it once.",
+        f"by that much everywhere; this fit counts it once.",
     )
 
 

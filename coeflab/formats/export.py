@@ -28,7 +28,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_model import ParameterModel
 
 SAME = 1e-6  # a computed and a stated entry, with the digits that files print
-ROLL = "it stands in its place; write the vehicle's"
+ROLL = "it is used instead; write the vehicle's"
 WAYS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 
 
@@ -73,7 +73,7 @@ def lost_by_all(parameters: ParameterFile, holds: frozenset[str], water: WaterIn
             Lost(
                 Kind.MISMATCH,
                 f"the added mass is that of {hull.body}, the coefficients are those of {parameters.body}: the potential parts, and "
-                "what stands for viscous, are those of another shape",
+                "the viscous remainders, belong to another shape",
             )
         )
     return tuple(out)
@@ -90,7 +90,7 @@ def _vehicle(parameters: ParameterFile, holds: frozenset[str]) -> list[str]:
             "are left to the simulator"
         )
     if parameters.thrusters and "thrusters" not in holds:
-        out.append(f"thrusters {', '.join(t.name for t in parameters.thrusters)}: their forces are yours to add")
+        out.append(f"thrusters {', '.join(t.name for t in parameters.thrusters)}: add their forces yourself")
     if parameters.surfaces and "surfaces" not in holds:
         out.append(
             f"limits and rates of {', '.join(s.control for s in parameters.surfaces)}: angles are taken as given"
@@ -107,10 +107,8 @@ def _by_coefficients(model: ParameterModel, parameters: ParameterFile) -> bool:
 
 
 def _table(model: ParameterModel) -> str:
-    return (
-        f"{model.response} over {', '.join(model.names)} ({model.form}): simulators are given the coefficients alone; the targets "
-        "csv and toml hold the table"
-    )
+    over = f"{model.response} over {', '.join(model.names)} ({model.form})"
+    return f"{over}: simulators get the coefficients only; the targets csv and toml contain the table"
 
 
 def _accelerations(parameters: ParameterFile, water: WaterInertia) -> list[str]:
@@ -127,7 +125,7 @@ def _accelerations(parameters: ParameterFile, water: WaterInertia) -> list[str]:
         place = (
             f"the added mass of {hull.body} by {hull.method} has {share * (given.value or 0.0):.4g}, {share:.3g} times it"
             if hull is not None and water.used == COMPUTED
-            else "zero stands in its place"
+            else "zero is written instead"
         )
         out.append(f"{primed(name)} {given.value:.4g} ({given.origin}) is not used: {place}")
     return out

@@ -110,7 +110,7 @@ def _nearest(form: SecondOrder, law: ForceLaw, parameters: ParameterFile) -> tup
     if not said:
         return form, ()
     words = (
-        f"{', '.join(said)}: hold what this form has no place for (v^3 and its like, U for u), with the least largest difference over "
+        f"{', '.join(said)}: fitted to include what this form cannot express (v^3 and its like, U for u), with the least largest difference over "
         "the range in which the law holds"
     )
     return SecondOrder(form.linear, signed, absolute, form.resistance), (words,)
@@ -389,7 +389,7 @@ def written_changes(parameters: ParameterFile, target: str, ideal: str, matrix: 
     water = water_inertia(parameters)
     return (
         "axes, signs, primes and reference point are the file's; primes are multiplied by 1/2 rho L^k U^n in the program",
-        f"totals are written, for {target} adds no C_A(nu) nu; products of the ideal fluid that nothing measured speaks of stand as "
+        f"totals are written, for {target} adds no C_A(nu) nu; products of the ideal fluid without a measured coefficient are written as "
         f"{ideal}",
         f"{matrix}: {water.source}",
         *water.warnings,

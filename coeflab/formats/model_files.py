@@ -99,7 +99,7 @@ def _imported(path: Path, kind: str, density: float | None) -> ModelFile:
         parameters = importer.read(path, density)
     except NoDensityError:
         parameters = importer.read(path, STAND_IN)
-        findings.append(Check(kind, DENSITY, Severity.NOTE, f"{STAND_IN:g} kg/m^3 stands in", "a density in the file",
+        findings.append(Check(kind, DENSITY, Severity.NOTE, f"{STAND_IN:g} kg/m^3 is assumed", "a density in the file",
                               "Only primes depend on it; give --density."))  # fmt: skip
     findings += importer.examine(path)
     known = any(c.subject.startswith(DENSITY) for c in findings)

@@ -391,7 +391,7 @@ def link_file(
     doubts = matrix_doubts(link.matrix)
     notes += doubts
     if doubts and np.any(link.added):
-        notes.append("so the C_A(nu) nu of the simulator stands here product by product, not as an added mass")
+        notes.append("so the C_A(nu) nu of the simulator is written product by product, not as an added mass")
     name = one_line(link.model or path.stem)[:200]
     stated = Stated(
         name=name,

@@ -107,8 +107,7 @@ def at_once(vehicle: Vehicle, phases: Sequence[Phase]) -> tuple[str, ...]:
     if not at:
         return ()
     return (
-        f"{listed(at)} at the ordered angle at once, as the file states no rate: times, distances and overshoots are those of "
-        "infinite rate",
+        f"{listed(at)} at the ordered angle at once: the file states no rate, so times, distances and overshoots are those of an infinite rate",
     )
 
 
@@ -243,8 +242,7 @@ def in_current(current: Array) -> tuple[str, ...]:
         return ()
     flows = ", ".join(f"{v:g} {name}" for v, name in zip(current, ("north", "east", "down"), strict=True) if v)
     return (
-        f"current of {flows} m/s: speeds are through the water, positions over the ground, and distances such as advance and "
-        "head reach hold the drift, for which IMO and ITTC correct",
+        f"current of {flows} m/s: speeds are through the water, positions over the ground, and distances such as advance and head reach include the drift, for which IMO and ITTC correct",
     )
 
 

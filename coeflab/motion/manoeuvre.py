@@ -506,6 +506,6 @@ def beyond_curves(vehicle: Vehicle, manoeuvre: Manoeuvre) -> tuple[str, ...]:
         if asked and not t.curve.low <= min(asked) <= max(asked) <= t.curve.high:
             out.append(
                 f"{t.name} is ordered {min(asked):g} to {max(asked):g} {t.curve.unit}; its curve holds "
-                f"{t.curve.low:g} to {t.curve.high:g}, and the thrust at the end stands in"
+                f"{t.curve.low:g} to {t.curve.high:g}; beyond, the thrust at the end is used"
             )
     return tuple(out)

@@ -401,10 +401,10 @@ def _why(how: Ended, time: float, state: Array, step: float) -> str:
     """What happened, with time and state; empty where nothing did."""
     if how is Ended.COMPLETE:
         return ""
-    shorter = f"; a step shorter than {step:.3g} s, or the adaptive integrator, may serve" if step else ""
+    shorter = f"; a step shorter than {step:.3g} s, or the adaptive integrator, may help" if step else ""
     happened = {
-        Ended.NOT_FINITE: f"the next state is no number{shorter}",
-        Ended.TOO_FAST: f"the speed runs away{shorter}",
+        Ended.NOT_FINITE: f"the next state is not finite{shorter}",
+        Ended.TOO_FAST: f"the speed diverges{shorter}",
         Ended.STEP_TOO_SMALL: "the integrator finds no step that keeps its tolerance",
     }[how]
     values = " ".join(f"{v:.4g}" for v in state[7:13])

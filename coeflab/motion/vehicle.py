@@ -219,8 +219,10 @@ def vehicle(
     said = list(statements)
     if moves != MOTIONS:
         lacking = [m for m in MOTIONS if m not in moves]
-        why = "" if free else f"; the file does not know enough of {', '.join(m for m in MOTIONS if m not in known)}"
-        said.append(f"{', '.join(lacking)} held at the values of the start{why}")
+        why = (
+            "" if free else f"; the file has too few coefficients for {', '.join(m for m in MOTIONS if m not in known)}"
+        )
+        said.append(f"{', '.join(lacking)} fixed at the initial values{why}")
     inertia = _inertia(parameters, moves)
     said += (*water.statements, *parameters.narrowed)
     hydrostatics = parameters.hydrostatics
@@ -231,7 +233,9 @@ def vehicle(
             gravity=STANDARD_GRAVITY,
         )
         if set(moves) & set("wpq"):
-            said.append("no hydrostatics in the file: neutrally buoyant, centre of buoyancy at that of gravity")
+            said.append(
+                "no hydrostatics in the file: assumed neutrally buoyant, centre of buoyancy at the centre of gravity"
+            )
     made = Vehicle(
         name=parameters.name, mass=mass.mass, centre=centre, inertia=inertia, added=water.matrix, water=water, law=law, hydrostatics=hydrostatics, thrusters=parameters.thrusters,
         surfaces=parameters.surfaces, free=moves, speed=parameters.conditions.speed, length=parameters.scaling.length,

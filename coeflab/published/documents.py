@@ -21,7 +21,7 @@ from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
 
 Progress = Callable[[str], None]
-COMPARED, REPRODUCE = "compared", "reproduce"
+COMPARED, CONVENTIONS, REPRODUCE = "compared", "conventions", "reproduce"
 
 
 @brief
@@ -91,29 +91,35 @@ LONGEST = 8  # rows of a table of numbers that the core prints
 
 
 def _parted(whole: Document, found: Acceptance) -> Document:
-    """Long tables whose every number holds belong to the appendix; the overview counts them."""
+    """Long tables whose every number holds belong to the appendix, and axes that the first page shows; the overview counts them."""
     shown = {t.title for t in found.tables if not t.holds}
+    has_axes = whole.answer is not None and whole.answer.axes is not None
 
     def marked(section: Section) -> Section:
+        if section.anchor == CONVENTIONS and has_axes:
+            drawn = Section("axes-drawn", "Axes and signs, drawn", figures=section.figures, appendix=True)
+            return replace(section, figures=(), subsections=(*section.subsections, drawn))
         if section.anchor != COMPARED:
             return section
-        long = f"Tables of more than {LONGEST} rows whose every number holds: coeflab report {found.name} --full."
         parts = tuple(
             replace(s, appendix=s.title not in shown and any(len(t.rows) > LONGEST for t in s.tables))
             for s in section.subsections
         )
-        return replace(section, paragraphs=(*section.paragraphs, long), subsections=parts)
+        long = f"Tables of more than {LONGEST} rows whose every number holds: coeflab report {found.name} --full."
+        said = (long,) if any(s.appendix for s in parts) else ()
+        return replace(section, paragraphs=(*section.paragraphs, *said), subsections=parts)
 
     return replace(whole, sections=tuple(map(marked, whole.sections)))
 
 
 def _commanded(whole: Document) -> Document:
-    """The command that makes it again, with its appendix."""
-    sections = tuple(
-        replace(s, code=tuple(f"{line} --full" for line in s.code)) if s.anchor == REPRODUCE else s
-        for s in whole.sections
-    )
-    return replace(whole, sections=sections)
+    """The command that makes it again, with its appendix; `coeflab run` writes the core alone."""
+
+    def marked(section: Section) -> Section:
+        text = tuple(p.replace("writes the same HTML", "writes the core of it as HTML") for p in section.paragraphs)
+        return replace(section, code=tuple(f"{line} --full" for line in section.code), paragraphs=text)
+
+    return replace(whole, sections=tuple(marked(s) if s.anchor == REPRODUCE else s for s in whole.sections))
 
 
 def only(document: Document, names: Sequence[str]) -> Document:

@@ -21,6 +21,7 @@ from coeflab.report.acceptance import Acceptance, held, overview
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
+from coeflab.report.figures.svg import size_of
 from coeflab.report.sections.campaign import anchor
 from coeflab.report.tables.models import quality
 from coeflab.study.study import Study
@@ -31,9 +32,9 @@ from coeflab.vehicle.reference import Comparison, Reference, Relation
 LONGEST, MOST_LETTERS, MOST_ROWS, MOST_COLUMNS = 160, 240, 6, 3
 NO_DATA = "no data"
 WIDTH, MOST_MODELS = 46, 12  # of a table that stands in the place of rows
-BAR = 8  # letters of a difference that is as large as U95
+BAR = 6  # letters of a difference that is as large as U95
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
-LARGEST = 100_000  # letters of a drawing that a first page may hold
+LARGEST, TALL = 100_000, 440.0  # letters of a drawing that a first page may hold; points, with the axes below it
 WIDE = 0.5  # a U95 of half the value asks for more runs
 
 
@@ -64,7 +65,7 @@ def answer(found: Study | Acceptance, *, drawn: bool = True) -> Answer:
     ----------
     found : Study or Acceptance
     drawn : bool
-        With its figures; a terminal shows none.
+        With its figures; a terminal shows none. A tall one leaves no room for the axes.
 
     Returns
     -------
@@ -320,7 +321,8 @@ def _drawn(found: Study | Acceptance, made: Answer) -> Answer:
         if models and (left is None or right is None):
             first, second = (*model_figures(models[0], "answer-model"), None, None)[:2]
             left, right = left or first, right or (second if left is None else first)
-    return replace(made, slope=left, forest=right, axes=axes_figure())
+    is_tall = left is not None and size_of(left.svg)[1] > TALL
+    return replace(made, slope=left, forest=right, axes=None if is_tall else axes_figure())
 
 
 def _slope(study: Study, made: Answer) -> Figure | None:
@@ -381,7 +383,11 @@ def _of_publication(found: Acceptance) -> Answer:
     some = f"{count - good} of {count} numbers outside what is allowed"
     said = f"all {count} numbers within what is allowed" if good == count else some
     none = "none of them validates: calibration and consistency only"
-    said += f"; {valid} of them validate: predicted, or printed and recomputed" if valid else f"; {none}"
+    said += (
+        f"; {'all' if valid == count else valid} of them validate: predicted, or printed and recomputed"
+        if valid
+        else f"; {none}"
+    )
     table = _narrow(overview(found), ("what", "hold", "used", "verdict"))
     return Answer(f"{_short(found.title)}: {said}.", chips=_published_chips(found), table=table)
 
@@ -415,7 +421,7 @@ def _published_chips(found: Acceptance) -> tuple[Chip, ...]:
 
 
 def answer_table(found: Answer) -> Table:
-    """The rows as texts, 80 columns wide with three short published names.
+    """The rows as texts, 79 columns wide at most with three short published names.
 
     Parameters
     ----------
@@ -435,7 +441,7 @@ def answer_table(found: Answer) -> Table:
     names = short if len(set(short)) == len(short) else list(found.columns)
     is_judged = any(r.share is not None for r in found.rows)
     rows = tuple((primed(r.symbol), *_cells(r), *((_bar(r),) if is_judged else ())) for r in found.rows)
-    headers = ("", "ours +- U95", *names, *(("difference/U95",) if is_judged else ()))
+    headers = ("", "ours +- U95", *names, *(("diff./U95",) if is_judged else ()))
     left = {0, *((len(headers) - 1,) if is_judged else ())}
     return Table("Answer", headers, rows, found.notes, frozenset(left))
 

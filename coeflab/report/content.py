@@ -22,6 +22,7 @@ from typing import TypeVar
 
 from coeflab.core.machine import cores, end_with_parent
 from coeflab.core.table import Severity, Table
+from coeflab.core.version import VERSION
 from coeflab.core.wording import Verbatim, listed
 from coeflab.fits.results.fit_result import FitResult
 from coeflab.law.symbols import primed
@@ -123,7 +124,7 @@ def document(study: Study, *, full: bool = True) -> Document:
 
 def core(document: Document) -> Document:
     """A report without what belongs to the appendix; no paragraph, note or caption is longer than three lines."""
-    sections = _kept(document.sections)
+    sections = tuple(_short(s, document.digest) if s.anchor == "reproduce" else s for s in _kept(document.sections))
     known = {s.anchor for s in _every(sections)}
     answer = document.answer
     if answer is not None:
@@ -145,7 +146,7 @@ def three_lines(texts: Sequence[str]) -> tuple[str, ...]:
             out.append(text)
             continue
         piece = ""
-        for part in (p for s in re.split(r"(?<=[.;:]) (?=\S)", text) for p in _parted(s)):
+        for part in (p for s in re.split(r"(?<=[.;]) (?=\S)", text) for p in _parted(s)):
             if piece and len(piece) + 1 + len(part) > LINES:
                 out.append(piece)
                 piece = part
@@ -167,6 +168,18 @@ def first_lines(text: str) -> str:
 
 def _found(anchor: str, known: set[str]) -> str:
     return anchor if anchor in known or not anchor else "coefficients" if "coefficients" in known else ""
+
+
+def _short(reproduce: Section, digest: str) -> Section:
+    """How to reproduce, in three sentences; the whole report says the rest."""
+    if not reproduce.code:
+        return reproduce
+    text = (
+        *reproduce.paragraphs[:1],
+        f"Made by coeflab {VERSION}. Nothing is released yet: note the commit too, and install it with pip install . -c constraints.txt.",
+        f"Equal inputs, sources and libraries give this report byte for byte. Digest of the inputs under Provenance: {digest}.",
+    )
+    return replace(reproduce, paragraphs=three_lines(text))
 
 
 def _every(sections: Sequence[Section]) -> Iterator[Section]:
@@ -356,7 +369,14 @@ def _models(study: Study) -> tuple[Section, ...]:
         "number; outside the domain the stated rule holds.",
     )
     each = tuple(noun_tables.terms(m) for m in models)
-    return (Section("models", "Fitted models", text, filled(model_tables.quality(models), *each)),)
+    return (
+        Section(
+            "models",
+            "Fitted models",
+            text,
+            filled(model_tables.quality(models), model_tables.campaigns(study.fits), *each),
+        ),
+    )
 
 
 def _laws(study: Study) -> tuple[Section, ...]:

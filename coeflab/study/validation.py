@@ -147,7 +147,7 @@ class Validation:
         if self.u_validation is None:
             return "no verdict: the measurement has no U95"
         if self.within:
-            text = "|E| < U_V: a modelling error cannot be told from the uncertainties at this level"
+            text = "|E| < U_V: no modelling error can be shown at this level of uncertainty"
         else:
             low, high = self.error - self.u_validation, self.error + self.u_validation
             text = f"|E| > U_V: modelling error, or parts that U_V lacks, between {low:.3g} and {high:.3g}"

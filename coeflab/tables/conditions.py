@@ -186,7 +186,7 @@ def name_pattern(text: str) -> NamePattern:
     for match in _FIELD.finditer(text):
         between = text[position : match.start()]
         if fields and between in ("", "*"):
-            raise fail("two numbers without text between them", "text between them, by which they can be told apart")
+            raise fail("two numbers without text between them", "text between them that separates them")
         pieces.append(_literal(between))
         one = _field(match[1], fail)
         fields.append(one)

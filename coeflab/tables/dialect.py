@@ -241,7 +241,7 @@ def _distinct(names: list[str], line: int, group: Row | None) -> tuple[list[str]
     again = [n for n, many in seen.items() if many > 1]
     if not again:
         return out, []
-    said = f"line {line}: {', '.join(map(shown, again[:8]))} stand over several columns; the later ones are numbered"
+    said = f"line {line}: {', '.join(map(shown, again[:8]))} head several columns; the later ones are numbered"
     over = [f"{shown(' '.join(g.split()))} over {shown(n)}" for g, n in zip(group[1], out) if g] if group else []
     return out, [said, f"line {group[0]}: {', '.join(over[:12])}"] if group and over else [said]
 

@@ -324,7 +324,10 @@ def plateau(
     status = max((m.status for m in means.values()), key=ORDER.index)
     why = _why(means, status, window.shape[1], block)
     if unsettled and status is not Convergence.DRIFTING:
-        status, why = Convergence.DRIFTING, f"{', '.join(unsettled)} settles to the end: no plateau in the second half"
+        status, why = (
+            Convergence.DRIFTING,
+            f"{', '.join(unsettled)} still settling at the end: no plateau in the second half",
+        )
     enough = window.shape[1] >= CALIBRATED_ROWS
     short = [c for c, m in means.items() if m.status is Convergence.TOO_SHORT]
     unsure = dict.fromkeys(short, enough) if status is Convergence.TOO_SHORT else {}

@@ -153,7 +153,7 @@ def fault(
 
 def _unmapped(raw: RawTable, column: RawColumn) -> InputError:
     return fault(
-        raw, f"the column {shown(column.name)}, of which nothing is known", 'what it is, under [columns]', column,
+        raw, f"the unidentified column {shown(column.name)}", 'what it is, under [columns]', column,
         f'Such as {shown(column.name)} = "Y [N]", "label" or "ignore"; `coeflab inspect` proposes.',
     )  # fmt: skip
 
@@ -222,7 +222,7 @@ def _left_out(raw: RawTable, columns: Sequence[Assigned]) -> Iterator[str]:
             continue
         blank = np.flatnonzero(np.isnan(one.values))
         if blank.size:
-            yield f"left out for want of {one.column.name}: {places(raw, blank)}"
+            yield f"left out, no {one.column.name}: {places(raw, blank)}"
 
 
 def places(raw: RawTable, rows: Sequence[int] | NDArray[np.int64]) -> str:

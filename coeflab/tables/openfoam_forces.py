@@ -192,7 +192,7 @@ def _read_file(case: FoamCase, file: Path, kind: str) -> History:
         if moments.is_file():
             _beside(out, _read_file(case, moments, "moment"), place)
         else:
-            out.remarks.append(f"{place}: there is no {moments.name} beside it, so no moments")
+            out.remarks.append(f"{place}: no {moments.name} in the same folder, so no moments")
     return out
 
 

@@ -226,7 +226,7 @@ def read_tables(planned: PlannedTable) -> tuple[ForceTable, ...]:
             raise InputError(
                 f"[columns] with importer = {shown(campaign.importer)}", 'importer = "table" or another raw one',
                 file=declaration, column="columns",
-                advice=f"{campaign.importer} reads headers such as Y [N] as they stand.",
+                advice=f"{campaign.importer} reads headers such as Y [N] as they are.",
             )  # fmt: skip
         with IMPORTERS.guarded(campaign.importer):
             return declared(importer.read(campaign, planned.only, campaign.options), campaign)

@@ -569,7 +569,7 @@ def _in_processes(
                 yield from waiting.popleft().result()
         except BrokenProcessPool:
             raise CoeflabError(
-                "A process that read runs was killed, perhaps for want of memory. What was read is kept where there is a state "
+                "A process that read runs was killed, perhaps out of memory. What was read is kept where there is a state "
                 "file: start again, with fewer workers."
             ) from None
         finally:

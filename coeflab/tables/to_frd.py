@@ -150,7 +150,7 @@ BLANK, MARKED = "blank in the source", 'marked "uncertain" in the source'
 SYMMETRIC = ("X", "Z", "M")
 STRAIGHT, SIDEWAYS = 1e-12, 1e-3  # sine of an angle that is none; cosine of one beyond which Y says nothing of C
 ONE_AXIS = 1e-9  # of the largest rate: smaller ones are rounding
-TAKEN_OUT = "inertia of the model taken out"
+TAKEN_OUT = "inertia of the model subtracted"
 
 
 def force_table(columns: Columns, campaign: Campaign, table: TableDeclaration) -> ForceTable:
@@ -373,7 +373,7 @@ def in_body_axes(columns: Columns, campaign: Campaign) -> Columns:
             raise columns.fail(
                 f"{of} without {lacking} at {angle} = {np.degrees(np.arcsin(min(row.max(), 1.0))):.3g} deg", f"a column {lacking}"
                 + f", or {y} of the body" * (lacking == "side"), row=int(np.argmax(row)), name=of,
-                advice=f"{part} of the body holds a part of it.",
+                advice=f"{part} of the body contains a part of it.",
             )  # fmt: skip
         own, sign = sources[part]
         moved[own] = sign * np.asarray(sum(k * columns.forces[name] for name, k in needed.items()))
@@ -390,7 +390,7 @@ def _wind_complaints(columns: Columns, own: Mapping[str, str]) -> Iterator[Input
     wind = [c for c in WIND if c in columns.forces]
     if "drag" not in wind:
         yield columns.fail(f"{' and '.join(wind)} without drag", "a column drag", name=wind[0],
-                           advice="X, Y and Z of the body hold parts of the drag, C_D0 is one of the slope of Z.")  # fmt: skip
+                           advice="X, Y and Z of the body contain parts of the drag; C_D0 is part of the slope of Z.")  # fmt: skip
     for part, beside in (("X", "drag"), ("Z", "drag"), ("Y", "side")):
         if own[part] in columns.forces and beside in wind:
             yield columns.fail(f"{' and '.join(wind)} beside {own[part]}", f"{beside} along the flow or {own[part]} along the body",
@@ -418,7 +418,7 @@ def _on_circle(columns: Columns, centre: str, linear: Array) -> Array:
         raise columns.fail(
             found, "a radius that is not zero" if signed else "a radius above zero", row=row, name="R",
             advice="A run without rotation goes to a table of its own."
-            + ("" if signed else f' Where the sign of R tells the sides apart, write centre = "{SIGNED}{side}".'),
+            + ("" if signed else f' Where the sign of R separates the sides, write centre = "{SIGNED}{side}".'),
         )  # fmt: skip
     axis = np.cross(linear, SIDES[side])
     size, speed = np.linalg.norm(axis, axis=1), np.linalg.norm(linear, axis=1)

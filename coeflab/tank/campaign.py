@@ -7,6 +7,7 @@ on when or how often a run was started, so that a finished run gives the same by
 from __future__ import annotations
 
 import csv
+import hashlib
 import io
 import math
 from collections.abc import Mapping, Sequence
@@ -189,7 +190,7 @@ def campaign_files(
             continue
         origin = f"by fourfold symmetry, from {_SOURCES[name]}.csv turned by 90 deg about x" if name in turned else ""
         files[f"{name}.csv"], notes = _table(group, origin)
-        declared.append(_declared(name, group, notes, origin))
+        declared.append(_declared(name, group, notes, origin, hashlib.sha256(files[f"{name}.csv"]).hexdigest()))
     if not declared:
         return {}
     files[FILE] = _campaign_text(tank, body, runs, version, inputs or {}, declared, tuple(turned), stated).encode()
@@ -347,9 +348,9 @@ def _short(x: float) -> str:
     return f"{x:.3g}" if x > 0.0 else ""
 
 
-def _declared(name: str, group: Sequence[TowedRun], names: Mapping[str, list[str]], origin: str) -> str:
-    """The ``[[table]]`` of one table."""
-    lines = ["[[table]]", f'file = "{name}.csv"']
+def _declared(name: str, group: Sequence[TowedRun], names: Mapping[str, list[str]], origin: str, digest: str) -> str:
+    """The ``[[table]]`` of one table, whose bytes have the sha256 ``digest``."""
+    lines = ["[[table]]", f'file = "{name}.csv"', f'sha256 = "{digest}"']
     if any(r.condition.turns for r in group):
         lines.append(f"{'contains_inertia = false':<41} # the solver's frame turns: hydrodynamic force only")
     lines.append(f"labels = {value(names['labels'])}")

@@ -151,7 +151,7 @@ def _still_settling(columns: Mapping[str, Array], means: Mapping[str, Mean], sca
         left = settling(values, means[name].error)
         if abs(left) > tolerance:
             out.append(f"{name} by {left:+.2g}")
-    return f"still settles: {', '.join(out)}" if out else ""
+    return f"still settling: {', '.join(out)}" if out else ""
 
 
 def settling(values: Array, error: float) -> float:

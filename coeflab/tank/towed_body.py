@@ -220,7 +220,7 @@ def _patches(
         own = which == k
         if not np.any(own):
             raise InputError(
-                f"the part {shown(piece.name)}, nothing of which meets the water", "parts that reach out of the others",
+                f"the part {shown(piece.name)}, which lies wholly inside the body", "parts that reach out of the others",
                 advice="Delete it, or move it.",
             )  # fmt: skip
         label[own], found = _labelled(piece, surface, middles[own])

@@ -287,11 +287,11 @@ def _mass_about(mass: MassProperties, body: Body, among: CoefficientSet) -> tupl
     shift = among.reference_point - body.reference_point
     if body.datum != among.datum:
         return None, [
-            f"mass properties left out: {body.name} counts from {shown(body.datum.id)}, the coefficients from "
+            f"mass properties left out: {body.name} is measured from {shown(body.datum.id)}, the coefficients from "
             f"{shown(among.datum.id)}"
         ]
     if np.any(np.abs(shift[1:]) > 1e-6):
-        return None, ["mass properties left out: the body states them about a point that no shift along x leads from"]
+        return None, ["mass properties left out: the body states them about a point that differs in more than x"]
     if abs(shift[0]) <= 1e-6:
         return mass, []
     dx = float(shift[0])
@@ -355,7 +355,7 @@ def assemble(
         if s.datum != first.datum:
             raise ScalingMismatchError(
                 f"{chosen[0].campaign} measures points from {shown(first.datum.id)}, {f.campaign} from {shown(s.datum.id)}; "
-                "nothing says how far apart they are. Give both the same datum; words of explanation go into datum_note."
+                "their distance is not stated. Give both the same datum; explain it in datum_note."
             )
         if not np.allclose(s.reference_point, first.reference_point, atol=1e-9):
             raise ScalingMismatchError(
@@ -365,7 +365,7 @@ def assemble(
     models, repeated = recorded(chosen)
     notes += repeated
     if first.datum.note:
-        notes.append(f"points count from {first.datum}")
+        notes.append(f"points are measured from {first.datum}")
     configuration = body.configuration(group.body) if body else None
     mass = configuration.mass if configuration else None
     if mass and body:

@@ -152,7 +152,7 @@ def _compared(first: ParameterModel, second: ParameterModel, a: ParameterFile, b
     known = np.isfinite(difference)
     sure = known & np.isfinite(combined)
     if not np.any(known):
-        return replace(blank, reason="nowhere in common do both have a value")
+        return replace(blank, reason="no common point at which both have a value")
     worst = int(np.nanargmax(np.abs(difference)))
     found = replace(
         blank,

@@ -103,7 +103,7 @@ def without_restoring(parameters: ParameterFile) -> str:
     said = "G_v is the limit of high speed, without the restoring moment of weight and buoyancy"
     if parameters.hydrostatics is None:
         speed = number(parameters.conditions.speed, 3)
-        said += f"; at {speed} m/s the vertical plane is not determined, as BG is not known"
+        said += f"; at {speed} m/s the vertical plane is not determined, since BG is unknown"
     return f"{said}."
 
 
@@ -190,11 +190,11 @@ def _derived(
         return Derived(name, subject, value, None, "no interval: a coefficient in it has no U95")
     for label, size, half in denominators:
         if reaches_zero(size, half):
-            text = f"no interval: that of the denominator {label} = {size:.3g} +- {half:.2g} holds zero"
+            text = f"no interval: that of the denominator {label} = {size:.3g} +- {half:.2g} contains zero"
             return Derived(name, subject, value, None, text)
     result = propagate(function, gradient, cells, draws, seed)
     apart = abs(result.linear / result.monte_carlo - 1.0) if result.monte_carlo > 0.0 else 0.0
     text = f"linear and Monte Carlo half-widths differ by {100.0 * apart:.1f} %"
     if apart > 0.1:
-        text += ": the interval is skew, read the percentiles"
+        text += ": the interval is skew, use the percentiles"
     return Derived(name, subject, value, result, text)

@@ -197,7 +197,7 @@ def _fitted(
 ) -> tuple[tuple[ForceTerm, ...], tuple[str, ...]]:
     out: list[ForceTerm] = []
     statements = [
-        f"the table of {m.response} is no force that a motion needs and was left out"
+        f"the table of {m.response} is not a force that a motion needs; left out"
         for m in parameters.models
         if not _components(m)
     ]
@@ -213,7 +213,7 @@ def _fitted(
             out.append(ForceTerm(name, component, term, si, power, scale, "table", t.value, readings=readings))
     if used:
         names = ", ".join(dict.fromkeys(m.response for m in used))
-        statements.append(f"tables of {names}: beyond the box of their data the value at the edge stands in")
+        statements.append(f"tables of {names}: outside the range of their data the value at the edge is used")
     return tuple(out), tuple(statements)
 
 

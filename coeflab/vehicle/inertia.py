@@ -96,12 +96,12 @@ def water_inertia(parameters: ParameterFile, accelerations: str = MEASURED) -> W
         if refused:
             why = f"accelerations {COMPUTED}, not {MEASURED}: with {names} {refused}"
             return WaterInertia(computed, accelerations, COMPUTED, f"accelerations {COMPUTED}, {by}", (why,))
-        source = f"accelerations {MEASURED}, {names} of the file; every other entry of {by}"
+        source = f"accelerations {MEASURED}, {names} of the file; all other entries from {by}"
         return WaterInertia(matrix, accelerations, MEASURED, source, apart)
     warnings = list(apart)
     if accelerations == COMPUTED:
         warnings.append(f"accelerations {MEASURED}, not {COMPUTED}: the file has no computed added mass")
-    source = f"accelerations {MEASURED}, {names} only; every other entry is unknown and written as zero"
+    source = f"accelerations {MEASURED}, {names} only; all other entries are unknown and zero"
     if refused and parameters.mass is not None:
         matrix = np.diag(np.diag(matrix))
         warnings.append(
@@ -192,8 +192,8 @@ def _completed(matrix: Array, stated: dict[Entry, tuple[str, float]]) -> tuple[A
         if i < j and other != value:
             unit = "kg m^2" if i > 2 else "kg m" if j > 2 else "kg"
             said.append(
-                f"{primed(name)} and {primed(mirror)} of the file, {value:.4g} and {other:.4g} {unit} of added mass, are one entry and its "
-                f"mirror image: their mean, {(value + other) / 2.0:.4g} {unit}, stands for both"
+                f"{primed(name)} and {primed(mirror)} of the file, {value:.4g} and {other:.4g} {unit} of added mass, should be equal: "
+                f"their mean, {(value + other) / 2.0:.4g} {unit}, is used for both"
             )
     return out, tuple(said)
 

@@ -216,8 +216,7 @@ class ParameterFile(Strict):
     def narrowed(self) -> tuple[str, ...]:
         """Where less is offered than is covered, in words."""
         return tuple(
-            f"{c.variable} of {c.campaign}: the law holds from {o.low:.3g} to {o.high:.3g}{unit}, the data go from {c.low:.3g} to "
-            f"{c.high:.3g}{unit}; beyond the former it misses its points"
+            f"{c.variable} of {c.campaign}: the law holds from {o.low:.3g} to {o.high:.3g}{unit}, the data span {c.low:.3g} to {c.high:.3g}{unit}"
             for c, o in zip(self.covered, self.offered, strict=True)
             for unit in [" rad" if c.unit == "rad" else ""]
             if max(o.low - c.low, c.high - o.high) > NARROWER * max(abs(c.low), abs(c.high))
@@ -231,7 +230,7 @@ class ParameterFile(Strict):
         symbols = [c.symbol for c in self.coefficients]
         twice = repeated(symbols)
         if twice:
-            raise ValueError(f"{', '.join(twice)} stands more than once")
+            raise ValueError(f"{', '.join(twice)} occurs more than once")
         at = self.conditions
         for c in self.coefficients:
             if c.value is None or c.value_si is None:
@@ -245,10 +244,10 @@ class ParameterFile(Strict):
         named = [t.name for t in self.thrusters] + [c.control for c in self.surfaces]
         again = repeated(named)
         if again:
-            raise ValueError(f"{', '.join(again)} stands more than once")
+            raise ValueError(f"{', '.join(again)} occurs more than once")
         tables = [(m.response, m.names) for m in self.models]
         for response, names in repeated(tables):
-            raise ValueError(f"{response} over {', '.join(names)} stands more than once")
+            raise ValueError(f"{response} over {', '.join(names)} occurs more than once")
         strange = too_new(self, self.schema_version)
         if strange:
             raise ValueError(strange)

@@ -101,7 +101,7 @@ class ParameterModel(Strict):
     def _consistent(self) -> ParameterModel:
         names = self.names
         if len(set(names)) != len(names):
-            raise ValueError(f"{self.response}: a variable stands more than once")
+            raise ValueError(f"{self.response}: a variable occurs more than once")
         for t in self.terms:
             strange = sorted({f.variable for f in t.factors} - set(names))
             if strange:

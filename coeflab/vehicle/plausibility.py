@@ -139,7 +139,7 @@ SIMILAR = (0.5, 2.0)
 USUAL_SPEEDS = (0.5, 4.0)
 MOMENTS = {"N": (5, 0, 1), "M": (4, 0, 2)}
 NOT_EVEN = (
-    "By symmetry X is even in drift; where the measured one is not, no law can follow it. Exports and motions keep the range of "
+    "Symmetry makes X even in drift; no law can follow a measured X that is not. Exports and motions keep the range of "
     "the other components."
 )
 CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth
@@ -250,7 +250,7 @@ def added_mass_findings(p: ParameterFile, signs: str = "") -> list[Check]:
     out = _diagonal(np.diag(stated), signs)
     unknown = np.isnan(np.diag(stated)) & np.any(matrix, axis=1)
     if np.any(unknown):
-        out.append(_added_mass_check("M_A", Severity.WARN, f"no {_names(unknown)}", "a diagonal beside its products",
+        out.append(_added_mass_check("M_A", Severity.WARN, f"no {_names(unknown)}", "a diagonal together with its products",
                           "Its products cannot be used."))  # fmt: skip
         matrix = np.where(unknown[:, None] | unknown, 0.0, matrix)
     out += _asymmetry(matrix)
@@ -292,7 +292,7 @@ def _size(p: ParameterFile, diagonal: Array) -> list[Check]:
     prime = float(np.max(diagonal[1:])) / p.scaling.unit("m", p.conditions.density)
     if p.scaling.length_name != "1 m" and 0.0 < prime < SMALLEST_PRIME:
         out.append(_added_mass_check("M_A Yv, Zw", Severity.FAIL, f"{prime:.1e} of 1/2 rho L^3", f"at least {SMALLEST_PRIME:g}",
-                          "Primes read as SI? Convert them; in a .m file r3 = rho*L^3/2 tells that they are primes."))  # fmt: skip
+                          "Primes read as SI? Convert them; in a .m file r3 = rho*L^3/2 shows that they are primes."))  # fmt: skip
     if p.mass is not None and (heaviest := float(np.max(diagonal))) > HEAVY * p.mass.mass:
         out.append(_added_mass_check("M_A", Severity.WARN, f"{heaviest / p.mass.mass:.3g} of the mass", f"at most {HEAVY:g}",
                           "Usual for flat bodies only."))  # fmt: skip
@@ -504,7 +504,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
     A point missed where the law is said to hold fails; points outside of that range are a warning that names them. So does a
     law that is no longer the one whose misses the file states.
     """
-    rule = "every point within 3 scatter of repeated runs + 5 % of the largest force"
+    rule = "every point within 3 times the scatter of repeated runs + 5 % of the largest force"
     out = []
     stated = {(f.component, f.table): f for f in parameters.law_at_points}
     for f in points_of(parameters):
@@ -521,7 +521,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
         said = f"worst {100.0 * f.worst / largest:.2g} %, rms {100.0 * f.rms / largest:.2g} %, at {f.worst_at or 'no point'}"
         severity, comment = Severity.PASS, "The law holds at its points."
         if f.small:
-            severity, comment = Severity.NOTE, "Next to nothing beside its like in this table (below 1 %): not judged."
+            severity, comment = Severity.NOTE, "Below 1 % of the largest force or moment of this table: not judged."
         elif f.missed:
             severity = Severity.FAIL
             comment = (
@@ -531,8 +531,8 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
         elif f.beyond:
             severity = Severity.WARN
             comment = (
-                f"The law is not said to hold at {', '.join(f.beyond)}, which it misses by up to {100.0 * f.worst_beyond / largest:.2g} %. "
-            ) + (NOT_EVEN if f.component == "X" else "Exports and motions are given the smaller range.")
+                f"The law misses {', '.join(f.beyond)} by up to {100.0 * f.worst_beyond / largest:.2g} %; its stated range leaves them out. "
+            ) + (NOT_EVEN if f.component == "X" else "Exports and motions use the smaller range.")
         out.append(Check("law at points", f"{f.component} {f.table}", severity, said, rule, comment))
     return tuple(out)
 

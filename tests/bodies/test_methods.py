@@ -171,7 +171,7 @@ def test_statements_name_what_is_estimated(tmp_path: Path) -> None:
 
 def test_methods_that_do_not_apply() -> None:
     suboff, huuv = shipped_body("suboff_bare_hull"), shipped_body("huuv")
-    with pytest.raises(InputError, match="which is not made of parts"):
+    with pytest.raises(InputError, match="which has no parts"):
         primitives.added_mass(suboff, RHO)
     with pytest.raises(InputError, match="no body of revolution about x"):
         strip.added_mass(huuv, RHO)

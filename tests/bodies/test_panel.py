@@ -50,7 +50,7 @@ def test_a_sphere() -> None:
     assert np.diag(found.matrix)[:3] == pytest.approx(0.5 * RHO * np.pi / 6.0, rel=1e-3)
     assert not np.any(found.matrix[3:])
     assert held(found, ellipsoid_added_mass(np.full(3, 0.5), RHO))
-    assert found.statements[-1] == "set to zero, being below its error: p, q, r"
+    assert found.statements[-1] == "set to zero, below its error: p, q, r"
     assert found.verdict == "symmetric, positive semidefinite"
 
 

@@ -257,7 +257,7 @@ def hollow() -> Body:
         ("rod", (("m", (5, 5, 5), (6, 6, 6)),), None, "holds no vertex of the mesh; expected a box within x -1 to 1"),
         ("rod", (("m", (0, 0, -1), (2, 1, 1)), ("m", (0, -1, -1), (2, 0, 1))), None, 'two boxes called "m"'),
         ("rod", (("m", (-3, -1, -1), (3, 1, 1)),), None, ""),
-        ("rod", (("m", (0.9999, -1, -1), (3, 1, 1)),), None, "holds next to no volume"),
+        ("rod", (("m", (0.9999, -1, -1), (3, 1, 1)),), None, "contains next to no volume"),
     ],
 )
 def test_gates(made: str, boxes: tuple, expected: int | None, said: str) -> None:

@@ -174,7 +174,7 @@ def test_nothing_called_good_is_further_off_than_its_spread(
     alone = added_masses(replace(stand_in, mesh=None), RHO, reproducible=True)
     assert np.all(np.isnan(alone.spread))
     assert alone.recommended.rough == bool(made.shape.rough)
-    said = "NONE OF THE METHODS SHOWN IS GOOD" if made.shape.rough else "NOT CHECKED: the parts stand for a mesh"
+    said = "NONE OF THE METHODS SHOWN IS GOOD" if made.shape.rough else "NOT CHECKED: the parts replace a mesh"
     assert alone.recommended.statements[0].startswith(said)
     assert "is an ellipsoid: exact" not in str([r.statements for r in alone.results])
     assert alone.recommended.rough != (name in CLOSE)

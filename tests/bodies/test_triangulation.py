@@ -69,7 +69,7 @@ def test_rough_guides_come_last_and_say_so(rough: tuple[str, ...], refused: tupl
 
 
 def test_the_rule_names_what_is_rough() -> None:
-    for words in ("one alone or so far apart", "rough guide comes last", "over 10 %", "a mesh as one plate"):
+    for words in ("too far apart to interact", "rough guides come last", "over 10 %", "a mesh as one plate"):
         assert words in RULE
 
 
@@ -133,7 +133,7 @@ def test_a_stand_in_is_never_exact(fit: StandIn, rough: bool) -> None:
     said = (
         "as parts are poor stand-ins for a mesh: s0: class other (misfit 0.45"
         if rough
-        else "NOT CHECKED: the parts stand"
+        else "NOT CHECKED: the parts replace"
     )
     assert said in found.caution
     assert found.recommended.statements[0] == found.caution

@@ -152,7 +152,7 @@ def without_interval(content: dict[str, Any]) -> None:
         (moved, "C_n", "other reference points"),
         (lambda c: c["reference_point"].update(datum="nose"), "C_n", "other datums"),
         (elsewhere, "C_D", "no point of the grid in common"),
-        (without_value, "C_D", "nowhere in common"),
+        (without_value, "C_D", "no common point"),
         (without_interval, "C_D", "no interval on one side"),
     ],
 )

@@ -78,9 +78,9 @@ def test_a_density_that_the_file_lacks(coeflab: Run, tmp_path: Path) -> None:
     (tmp_path / "m.sdf").write_text(text, encoding="utf-8")
     stood_in = coeflab("params", "check", "m.sdf")
     assert stood_in.returncode == 0, stood_in.stderr
-    assert "1000 kg/m^3 stands in" in flat(stood_in.stdout)
+    assert "1000 kg/m^3 is assumed" in flat(stood_in.stdout)
     given = coeflab("params", "check", "m.sdf", "--density", "1020")
-    assert "stands in" not in flat(given.stdout)
+    assert "is assumed" not in flat(given.stdout)
     assert "1020" in flat(given.stdout)
     assert coeflab("params", "check", "m.sdf", "--density", "-1").returncode == 2
 

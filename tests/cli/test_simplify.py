@@ -79,7 +79,7 @@ def test_a_ducted_quadrotor_is_never_exact(coeflab: Run, tmp_path: Path) -> None
     assert "* recommended: panel, by the rule: for parts that stand for a mesh, the panel method on that mesh" in said
     sway = next(line.split() for line in said.splitlines() if line.split()[:1] == ["Yvdot"])
     assert float(sway[3]) == pytest.approx(-mesh["panel"][1][1], rel=2e-3)
-    assert "ellipsoid: Lamb's values of the ellipsoid that stands for the mesh" in said
+    assert "ellipsoid: Lamb's values of the ellipsoid that replaces the mesh" in said
     assert "a rough guide to it: hull: class other (misfit 0.45" in said
     assert "is an ellipsoid: exact" not in said
     assert " 0.0 %" not in said

@@ -95,5 +95,5 @@ def test_a_file_of_three_motions_needs_no_plane(coeflab: Run) -> None:
     huuv = Path(__file__).parents[2] / "cfd_data" / "huuv" / "huuv.parameters.json"
     done = coeflab("trim", huuv, "--commands", "left=40", "--commands", "right=100")
     assert (done.returncode, done.stderr) == (0, "")
-    assert "w, p, q held at the values of the start; the file does not know enough of p" in flat(done.stdout)
+    assert "w, p, q fixed at the initial values; the file has too few coefficients for p" in flat(done.stdout)
     assert "radius 1.14374 m" in " ".join(done.stdout.split())

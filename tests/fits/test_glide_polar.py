@@ -141,7 +141,7 @@ def test_slopes_that_disagree_or_do_not_speak_leave_the_unit_open() -> None:
     assert angle_unit_of({"K_L": 9.5281, "K_M": -1.4179 * DEGREES}, result).unit == ""
     assert angle_unit_of({"K_L": -9.5281}, result).unit == ""
     assert angle_unit_of({"K_L0": -1.9169}, result).unit == ""
-    assert "No slope tells" in angle_unit_of({"K_L": 0.0}, result).statements[-1]
+    assert "No slope decides" in angle_unit_of({"K_L": 0.0}, result).statements[-1]
     with pytest.raises(InputError, match="one of K_L0, K_L"):
         angle_unit_of({"C_L": 1.0}, result)
 

@@ -241,8 +241,8 @@ def test_campaigns_of_two_laws_are_called_different_and_both_values_are_said() -
     alone = {c: v for c, v, _ in dict(p.alone)["Yv"]}
     assert alone["a"] == pytest.approx(-0.028, abs=2e-3)
     assert alone["b"] == pytest.approx(-0.048, abs=8e-3)
-    assert "The campaigns disagree: one law does not serve them all" in said(result, "Y")
-    assert "U95 does not hold their difference" in said(result, "Y")
+    assert "The campaigns disagree: one law does not fit them all" in said(result, "Y")
+    assert "U95 does not include their difference" in said(result, "Y")
     assert "disagree" not in said(result, "N")
 
 
@@ -265,7 +265,7 @@ def test_a_campaign_left_out_is_predicted_by_hand() -> None:
 def test_with_one_campaign_there_is_none_to_leave_out() -> None:
     result = fitted(tables("suboff_cfd_barehull"), terms="Yv Yv|v| Yr")
     assert result.poolings == ()
-    assert "Each campaign left out in turn: not available, as there is one campaign." in said(result, "Y")
+    assert "Each campaign left out in turn: needs two campaigns." in said(result, "Y")
 
 
 def test_a_campaign_at_rest_in_every_motion_of_a_component_is_not_used() -> None:
@@ -315,7 +315,9 @@ def test_the_bare_hull_in_one_plane_leaves_the_other_to_the_equations() -> None:
     assert value(tied, "Mw") == pytest.approx(-value(tied, "Nv"), rel=1e-12)
     assert tied.coefficients["Mw"].n_points == 0
     assert "from the equations alone" in tied.coefficients["Mw"].estimator
-    assert "Not tested, as the rows without equations leave a coefficient open: Mw = -Nv." in said(tied, "M")
+    assert "Not tested, since without the equations the rows do not determine a coefficient: Mw = -Nv." in said(
+        tied, "M"
+    )
     assert "nan" not in said(tied, "M") + said(tied, "Z")
 
 

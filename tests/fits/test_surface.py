@@ -194,7 +194,7 @@ def test_the_printed_sum_of_two_slices_counts_the_value_at_rest_twice():
     said = [s for s in additive.statements if "twice" in s]
     assert said == [
         f"The printed form C_D(alpha) + C_D(beta) counts C_D_0 = {at_rest:.4g} +- {half:.2g} twice and is wrong by that "
-        "much everywhere; this fit holds it once."
+        "much everywhere; this fit counts it once."
     ]
     assert not any("twice" in s for s in full.statements)
 
@@ -231,7 +231,7 @@ def test_two_variables_that_the_symmetry_turns_around_count_by_their_product():
 def test_a_variable_that_never_varies_is_named():
     table = campaign()
     flat = replace(table, motion={**table.motion, "w": np.zeros(len(table))})
-    with pytest.raises(InputError, match=r"found alpha never varies in the rows of C_D .*polynomial takes beta alone"):
+    with pytest.raises(InputError, match=r"found alpha never varies in the rows of C_D .*polynomial for beta alone"):
         fit(flat, degree=3, responses="C_D")
 
 

@@ -130,7 +130,7 @@ def test_a_surface_of_infinite_rate_is_said(manoeuvre: str, control: str) -> Non
     free = ("u", "w", "q") if "ds" in control else HORIZONTAL
     said = [s for s in run(made(metacentric=0.02), manoeuvre, free).statements if "infinite rate" in s]
     assert len(said) == (1 if control else 0)
-    assert all(s.startswith(f"{control} at the ordered angle at once, as the file states no rate") for s in said)
+    assert all(s.startswith(f"{control} at the ordered angle at once: the file states no rate") for s in said)
 
 
 def test_a_stated_rate_is_no_assumption_and_a_limit_alone_is_none() -> None:

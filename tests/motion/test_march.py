@@ -131,7 +131,7 @@ def test_a_member_that_runs_away_stops_alone(kernel: str) -> None:
     assert np.isfinite(found.marching.end_state).all()
     assert found.marching.end_time[1] < 0.1 < 5.0 == found.marching.end_time[0]
     motion = found.trajectory(1)
-    assert "stopped at 0 s: the next state is no number" in motion.why
+    assert "stopped at 0 s: the next state is not finite" in motion.why
     assert "u v w p q r = 1 0.3" in motion.why
     whole = march(v, coasting(5.0, [1.0, 0.3, 0, 0, 0, 0]), 0.02, 0.1, kernel)
     np.testing.assert_allclose(found.marching.records[0], whole.marching.records[0], rtol=1e-12, atol=1e-14)

@@ -29,7 +29,8 @@ def test_one_solution_in_closed_form() -> None:
     assert max(map(abs, got.residuals.values())) < 1e-9
     assert got.violated == got.saturated == ()
     assert (
-        got.words()[0] == "One solution: 2 unknowns, 2 equations of rank 2; 5 of 5 starts came to it, none to another."
+        got.words()[0]
+        == "One solution: 2 unknowns, 2 equations of rank 2; 5 of 5 starts converged to it, none to another."
     )
 
 

@@ -49,7 +49,7 @@ def test_every_status() -> None:
         ((1.0, -0.9, 0.0), (2.0, -3.0, 1.0), "side force and mass: only as a ratio"),
         ((-1.0, -0.9, -0.8), (2.0, 3.0, 1.0), "side force, mass and arm: only as ratios to each other"),
         ((1.0, -0.5, 0.0), (2.0, 3.0, 1.0), "side force +100 % and mass -50 %"),
-        ((0.0, 1.0, 0.01), (2.0, 3.0, 1.0), "mass: the data hardly show it at all"),
+        ((0.0, 1.0, 0.01), (2.0, 3.0, 1.0), "mass: the data barely depend on it"),
     ],
 )
 def test_together(change: tuple[float, ...], values: tuple[float, ...], expected: str) -> None:

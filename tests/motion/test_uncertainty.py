@@ -132,7 +132,7 @@ def test_indices_of_stability_are_those_of_the_draws() -> None:
 def test_seed_and_numbers() -> None:
     first, again = (uncertainty(uncertain_torpedo(), SHORT) for _ in range(2))
     assert numbers(first) == numbers(again)
-    assert not any("did not come to their end" in s for s in first.statements)
+    assert not any("ended early" in s for s in first.statements)
     plain = uncertainty(uncertain_torpedo(), replace(SHORT, kernel="numpy"))
     np.testing.assert_allclose(plain.values, first.values, rtol=1e-9)
     other = uncertainty(uncertain_torpedo(), Question("zigzag", SHORT.options, 60, seed=2, hold=HELD))
@@ -213,7 +213,7 @@ def test_members_that_cannot_start_are_counted() -> None:
     file = uncertain_torpedo({"X0'": 20.0}, {})
     carried = uncertainty(file, Question("zigzag", {"executes": 2}, members=100, hold=("w", "p", "q"), kernel="numpy"))
     assert {s.status for s in carried.spreads} == {"no interval"}
-    (line,) = [s for s in carried.statements if "did not come to their end" in s]
+    (line,) = [s for s in carried.statements if "ended early" in s]
     assert "no start" in line
     assert not any(i.known for i in carried.importances)
 
@@ -269,7 +269,7 @@ def test_a_motion_that_fixed_steps_do_not_stand_is_said() -> None:
     asked = Question("turning_circle", {"longest": 20.0}, members=40, hold=("w", "p", "q"))
     stiff = with_uncertainty(made({**STABLE, "Nr|r|": -1e3}), {"Ndr'": 5e-4}, {})
     (said,) = (s for s in uncertainty(stiff, asked).statements if "fixed steps" in s)
-    assert "do not stand this motion" in said
+    assert "are too long for this motion" in said
     sound = with_uncertainty(made(), {"Ndr'": 5e-4}, {})
     for manoeuvre in ("turning_circle", "pull_out"):
         found = uncertainty(sound, replace(asked, manoeuvre=manoeuvre, options={}))

@@ -117,10 +117,11 @@ def test_a_limit_that_is_nearly_reached_shows_in_the_overview():
     assert acceptance_document.overview(made).rows[0][2:] == ("1 of 1", "90 %", "pass")
 
 
-def test_the_summary_keeps_verdict_first_figure_and_all_numbers():
+def test_the_summary_is_the_first_page_without_links():
     made = found(2.05)
-    short = acceptance_summary(made, acceptance_document.document(made))
-    assert [s.anchor for s in short.sections] == ["verdict", "figure"]
-    assert short.sections[0].figures == ()
-    assert [f.anchor for f in short.sections[1].figures] == ["a-b", "allowances"]
-    assert short.works == ()
+    whole = acceptance_document.document(made)
+    short = acceptance_summary(made, whole)
+    assert (short.sections, short.works, short.name) == ((), (), "boat")
+    assert short.answer.sentence == whole.answer.sentence
+    assert {c.anchor for c in short.answer.chips} == {""}
+    assert any(c.anchor for c in whole.answer.chips)

@@ -17,7 +17,7 @@ from coeflab.report.content import document
 from coeflab.report.document import Answer, AnswerRow, Section
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, slope_figure
 from coeflab.report.sections import acceptance as acceptance_document
-from coeflab.report.summary import acceptance_summary, study_summary
+from coeflab.report.summary import study_summary
 from coeflab.study.study import PlannedTow, Study
 from coeflab.study.towed import Towed, TowedRow
 from coeflab.vehicle.reference import PublishedValue, Reference, Relation, compare_set
@@ -135,6 +135,19 @@ def test_any_name_and_any_sweep(angles: list[float], named: str):
     assert max(map(len, plain_lines(folded))) <= 80
 
 
+def test_a_bar_of_one_u95_and_one_beyond():
+    rows = (
+        AnswerRow("Yv", -0.0262, 0.0027, published=(-0.0278, -0.0281, -0.0303), difference=0.0027),
+        AnswerRow("Nv", -0.0147, 0.0019, published=(-0.0136, -0.0140, -0.0131), difference=-0.0057),
+    )
+    made = answer_table(Answer("S", ("experiment 1990", "steady CFD", "PMM CFD 2012"), "experiment 1990", rows))
+    assert made.headers == ("", "ours +- U95", "experiment", "steady CFD", "PMM CFD", "diff./U95")
+    assert [row[-1] for row in made.rows] == ["+1.00 ######", "-3.00 ######!"]
+    assert made.rows[1][1:5] == ("-0.0147 +- 0.0019 (13 %)", "-0.0136", "-0.0140", "-0.0131")
+    assert plain_lines(made)[1].split()[-1] == "diff./U95"
+    assert max(map(len, plain_lines(made))) <= 79
+
+
 def test_why_there_is_no_value():
     made = answer(small_study(FEW), drawn=False)
     assert [r.status for r in made.rows] == ["too few points", "too few points", "no data"]
@@ -242,14 +255,14 @@ def test_senses_in_the_sketch():
 def test_every_document_has_its_answer():
     study = compared(OTHER, REPORT, QUOTED)
     whole = document(study)
-    assert whole.answer == study_summary(study).answer
+    assert study_summary(study).answer.rows == tuple(replace(r, anchor="") for r in whole.answer.rows)
     assert whole.answer.sentence == answer(study).sentence
     linked = {*(r.anchor for r in whole.answer.rows), *(c.anchor for c in whole.answer.chips)} - {""}
     assert linked <= {s.anchor for s in every(whole.sections)}
     assert "campaign-tow-yv" in linked
     made = found(2.05)
     published = acceptance_document.document(made)
-    assert acceptance_summary(made, published).answer == published.answer == answer(made)
+    assert published.answer == answer(made)
 
 
 def test_a_publication_has_its_tables_in_the_place_of_rows():
@@ -292,7 +305,7 @@ def test_suboff(suboff: Study):
     assert [r.agrees for r in made.rows] == [True] * 4 + [None] * 2
     assert [r.published[0] for r in made.rows] == [-0.027834, -0.013648, -0.01391, 0.010324, 0.0052, -0.0044]
     lines = plain_lines(replace(answer_table(made), notes=()))
-    assert max(map(len, lines)) <= 80
+    assert max(map(len, lines)) <= 79
     assert lines[2].split() == [
         "Yv'",
         "-0.0262",
@@ -304,6 +317,6 @@ def test_suboff(suboff: Study):
         "-0.0281",
         "-0.0303",
         "+0.60",
-        "#####",
+        "####",
     ]
     assert lines[6].split() == ["Yr'", "no", "data", "0.0052", "0.0044", "0.0046", "-"]

@@ -4,14 +4,17 @@ import base64
 import hashlib
 import json
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 
-from coeflab.report.content import document
-from coeflab.report.document import Document, Section
+from coeflab.report.content import core, document
+from coeflab.report.document import AnswerRow, Document, Section
 from coeflab.report.formats import REPORTERS, Renderer
+from coeflab.report.formats.html import Ends, bar_of, published, row_of
+from coeflab.report.sections.coefficients import zeros
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
 
 VOID = {"meta", "link", "br", "hr", "img", "input"}
@@ -138,7 +141,7 @@ def test_links_inside_the_page_lead_somewhere():
 def test_every_figure_is_described():
     text = text_of(small_study(FULL))
     figures = re.findall(r"<figure.*?</figure>", text, flags=re.DOTALL)
-    assert len(figures) == 10
+    assert len(figures) == 10 + 3  # slope, coefficients over the published ones, axes
     for figure in figures:
         assert 'role="img"' in figure
         for element in ("title", "desc"):
@@ -164,7 +167,44 @@ def test_the_contents_are_open_and_their_list_takes_the_keyboard():
 def test_every_table_has_a_caption_and_column_headers():
     page = Page(text_of(small_study(FULL, published=True)))
     assert len(page.named("caption")) == len(page.named("table")) > 3
-    assert all(a.get("scope") == "col" for a in page.named("th"))
+    assert all(a.get("scope") in ("col", "row") for a in page.named("th"))
+
+
+def test_drawings_share_their_styles_and_keep_them():
+    made = document(small_study(FULL, published=True))
+    page = REPORTERS.load("html").render(made)["report.html"].decode()
+    style = re.search(r"<style>(.*?)</style>", page, flags=re.DOTALL)[1]
+    shared = dict(re.findall(r"^figure svg \.(s\d+) { (.*) }$", style, flags=re.MULTILINE))
+    assert len(shared) > 10
+    drawings = re.findall(r"<svg .*?</svg>", page, flags=re.DOTALL)
+    left = [s for d in drawings for s in re.findall(r' style="([^"]*)"', d)]
+    assert len(left) == len(set(left))
+    again = [re.sub(r' class="(s\d+)"', lambda m: f' style="{shared[m[1]]}"', d) for d in drawings]
+    for svg, own in zip((made.answer.slope.svg, made.answer.forest.svg), again, strict=False):
+        for kind in (' d="', ' style="'):
+            parts = [[re.sub(r"\s+", "", part) for part in re.findall(f'{kind}([^"]*)"', s)] for s in (svg, own)]
+            assert parts[0] == parts[1]
+    assert len(page.encode()) < 450_000
+
+
+def test_the_first_mention_of_a_term_leads_to_its_definition():
+    text = text_of(small_study(FULL, published=True))
+    linked = re.findall(r'<a class="term" href="#(term-[^"]+)"', text)
+    assert len(linked) == len(set(linked)) > 3
+    assert all(f'<dt id="{anchor}">' in text for anchor in linked)
+
+
+def test_a_row_of_the_answer_has_the_digits_of_its_u95():
+    row = AnswerRow("Yv", -0.026224, 0.002682, published=(-0.0139, 0.02), difference=0.00161, agrees=True)
+    made = row_of(row)
+    assert (made.own, made.share, made.difference, made.against) == ("-0.0262 +- 0.0027", "10", "+0.0016", "+0.60")
+    assert (made.verdict, bar_of(row)) == ("agrees", Ends(50.0, 15.0, False))
+    assert [published(v) for v in row.published] == [("-0.0139", 2), ("0.0200", 2)]
+    far = replace(row, difference=-0.02, agrees=False)
+    assert (row_of(far).verdict, bar_of(far)) == ("differs", Ends(0.0, 50.0, True))
+    empty = AnswerRow("Yr", None, None)
+    assert (row_of(empty).status, row_of(empty).verdict, bar_of(empty)) == ("no data", "missing", None)
+    assert row_of(replace(row, value=1e-9)).share == "> 1000"
 
 
 def test_no_path_of_this_machine_is_in_it():
@@ -172,17 +212,19 @@ def test_no_path_of_this_machine_is_in_it():
 
 
 @pytest.mark.slow
-def test_the_validation_makes_a_page_of_moderate_size(suboff, suboff_page):
+def test_the_validation_makes_a_page_of_moderate_size(suboff, suboff_document, suboff_page):
     study, text = suboff, suboff_page.decode()
-    assert len(text.encode()) < 3_000_000
+    assert len(text.encode()) < 2_200_000
+    assert len(REPORTERS.load("html").render(core(suboff_document))["report.html"]) < 500_000
     drawings = re.findall(r"<svg.*?</svg>", text, flags=re.DOTALL)
     budgeted = [c for c in study.coefficients if c.symbol in study.plan.wanted and c.value is not None]
     hulls = {h.body.name for h in study.hulls.values()}
     assert hulls == {"suboff_aff8", "suboff_bare_hull"}
-    planes, sketches, motions = 4, 3, 2 * 4
+    planes, sketches, motions, first_page = 4, 3, 2 * 4, 3
     settings = len(study.tables) + 1  # of every table, and the local incidence of the one that turns
-    sweeps = 2 * sum(len(f.sweeps) for f in study.fits)
-    assert len(drawings) == sweeps + len(budgeted) + len(hulls) + planes + sketches + motions + settings
+    by_symmetry = [{c.symbol for c in zeros(study, f.campaign, f.coefficients.coefficients)} for f in study.fits]
+    sweeps = 2 * sum(s.symbol not in z for f, z in zip(study.fits, by_symmetry, strict=True) for s in f.sweeps)
+    assert len(drawings) == sweeps + len(budgeted) + len(hulls) + planes + sketches + motions + settings + first_page
     assert text.count('class="space" hidden') == len(hulls)
     assert max(len(d.encode()) for d in drawings) < 60_000
     assert Page(text).crossed == []

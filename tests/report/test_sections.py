@@ -69,7 +69,7 @@ def test_the_check_of_symmetry_does_as_its_rule_says(offset, noise, severity):
         c for c in symmetry_check(replace(small_study(FULL), tables=(table,), fits=(fit,))) if "Yv" in c.subject
     ]
     assert found.severity.value == severity
-    assert found.rule.startswith("passes where its 95 % interval holds zero or it is below 0.1 % of the largest")
+    assert found.rule.startswith("pass: the 95 % interval contains zero, or below 0.1 % of the largest")
 
 
 def test_data_quality_finds_the_planted_offset_and_names_the_doubtful_cell():

@@ -65,9 +65,8 @@ def test_an_index_is_stable_unstable_or_not_determined_by_its_interval(values, h
     (sentence,) = [text for text in in_words(study) if "G_h" in text]
     assert sentence.startswith(f"On a straight course with controls fixed {said}: synthetic (G_h")
     assert sentence in document(study).sections[0].paragraphs
-    summary = study_summary(study).sections
-    assert in_words(study, with_values=False)[0] in summary[0].paragraphs
-    assert said in next(s for s in summary if s.anchor == "stability").tables[0].rows[0]
+    (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability"]
+    assert chip.text.startswith(f"{said}, G_h = ")
 
 
 def test_a_missing_rate_derivative_is_named():
@@ -123,16 +122,16 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     (said,) = in_words(study)
     start = "On a straight course with controls fixed unstable at high speed (no restoring moment) by its value alone: synthetic"
     assert said.startswith(start)
-    assert ", at 1.50 m/s not determined, as BG is not known; stable by its value alone: synthetic (G_h" in said
+    assert ", at 1.50 m/s not determined, since BG is unknown; stable by its value alone: synthetic (G_h" in said
     assert "BG is not known" in in_words(study, with_values=False)[0]
     (known,) = in_words(with_files(made({**STABLE, "Mw": 6e-2})))
     assert known.startswith(start)
     assert "BG" not in known
-    row = next(s for s in study_summary(study).sections if s.anchor == "stability").tables[0].rows[0]
-    assert (row[2], row[4]) == ("stable by its value alone", "unstable at high speed by its value alone")
+    (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability"]
+    assert chip.text.startswith("stable by its value alone, G_h = ")
     (found,) = [c for c in stability_check(study) if c.subject.endswith("G_v")]
     assert "unstable at high speed" in found.statistic
-    assert "as BG is not known" in found.comment
+    assert "since BG is unknown" in found.comment
 
 
 def test_no_parameter_file_no_stability():

@@ -117,7 +117,7 @@ def test_reports_show_the_title_as_it_stands(make: Callable[[Study], Any]) -> No
     assert "of <i>X" not in visible
     content = pdf.content(made)
     holding = [p for p in pieces(content) if "Wang" in unset("".join(x for x in p if isinstance(x, str)))]
-    assert len(holding) > 2
+    assert len(holding) > 1
     assert all("Li in Yr 2024" in unset("".join(x if isinstance(x, str) else "\0" for x in p)) for p in holding)
     assert any(isinstance(x, dict) for p in pieces(content) for x in p), "our own symbols are set"
 

@@ -108,7 +108,7 @@ def test_inertia_of_a_rotating_arm_flips_the_sign_of_suboff(read_table: Read) ->
     table = read_table(csv, inertia=inertia, table="contains_inertia = true")
     slope = table.primed_force("Y", 4.0) / table.primed_motion("r", 4.0)
     assert slope == pytest.approx([0.0044, 0.0044], rel=1e-12)
-    assert "inertia of the model taken out" in table.notes[0]
+    assert "inertia of the model subtracted" in table.notes[0]
     untouched = read_table(csv, table=ARM)
     assert untouched.primed_force("Y", 4.0) / untouched.primed_motion("r", 4.0) == pytest.approx([-0.0130] * 2)
 

@@ -95,7 +95,7 @@ def test_the_sheet_of_a_simman_tank_keeps_every_column_apart() -> None:
     assert [(c, table.column(c).unit) for c in ("Y", "Y (2)", "r'", "Q (2)")] == [
         ("Y", "N"), ("Y (2)", "N"), ("r'", "°/s2"), ("Q (2)", "Nmm"),
     ]  # fmt: skip
-    assert "stand over several columns" in table.remarks[0]
+    assert "head several columns" in table.remarks[0]
     assert '"RUDDER" over "given (2)"' in table.remarks[1]
 
 

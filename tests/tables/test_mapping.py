@@ -337,7 +337,7 @@ def test_all_complaints_about_columns_come_at_once(tmp_path: Path) -> None:
         'column "Fz": found no unit; expected a unit of force',
         'column "Mz [N]": found [N], a unit of another dimension',
         'column "Cx [-]": found "My" and "Cx" as M; expected one of them',
-        'column "K": found the column "K", of which nothing is known',
+        'column "K": found the unidentified column "K"',
         'found no column "Fx"; expected one of "Drift", "Fy"',
     ):
         assert any(part in line for line in lines), part
@@ -360,7 +360,7 @@ def test_cells_without_a_number_are_excluded_and_rows_without_a_setting_left_out
     assert {e.reason for e in table.exclusions} == {"no number in the source"}
     assert table.usable["Y"].tolist() == [True, False, False, False, True]
     assert table.lines == (2, 3, 4, 5, 7)
-    assert "left out for want of Drift: line 6" in table.notes
+    assert "left out, no Drift: line 6" in table.notes
 
 
 def test_cells_and_labels_and_standard_errors(tmp_path: Path) -> None:

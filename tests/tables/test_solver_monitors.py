@@ -279,7 +279,7 @@ def test_su2_two_config_files(tmp_path: Path) -> None:
     (tmp_path / "run/other.cfg").write_text("SOLVER= INC_RANS\n")
     both = read("su2", tmp_path / "run")
     assert not both.conditions
-    assert any("CONV_FILENAME does not tell" in r for r in both.history.remarks)
+    assert any("CONV_FILENAME does not show" in r for r in both.history.remarks)
 
 
 def test_su2_refusals(tmp_path: Path) -> None:

@@ -134,7 +134,7 @@ def test_what_is_left_out_is_said_with_its_line(tmp_path: Path) -> None:
     assert table.remarks == (
         "line 3: left out, 2 of 3 cells",
         "line 7: left out, 2 of 3 cells, and the line has no end: the file is cut there",
-        "the head stands again in line 5; left out",
+        "the header is repeated in line 5; left out",
     )
     first = read(tmp_path, "a b c\n1 2\n3 4 5\n6 7 8\n")
     assert (list(first.column("c").values), first.remarks) == ([5.0, 8.0], ("line 2: left out, 2 of 3 cells",))

@@ -192,7 +192,7 @@ def test_a_control_by_degrees_in_place_of_radians(planes: Body) -> None:
 
 
 def test_a_part_that_the_hull_hides(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="nothing of which meets the water"):
+    with pytest.raises(InputError, match="which lies wholly inside the body"):
         written(tmp_path, SPHEROID.replace("tip = 0.15", "tip = 0.04", 1))
 
 

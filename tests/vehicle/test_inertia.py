@@ -35,7 +35,7 @@ def test_measured_entries_stand_and_the_computed_matrix_completes_them() -> None
     assert (found.asked, found.used) == ("measured", "measured")
     assert "Yvdot', Nvdot', Yrdot', Nrdot', Zqdot' of the file" in found.source
     (said,) = found.warnings
-    assert "their mean, 4 kg m, stands for both" in said
+    assert "their mean, 4 kg m, is used for both" in said
 
 
 def test_computed_is_the_file_without_its_derivatives() -> None:

@@ -101,7 +101,7 @@ def test_version_1_3_means_what_it_meant() -> None:
 
 
 THRUSTER: list[tuple[str, Callable[[dict[str, Any]], object]]] = [
-    ("left stands more than once", lambda d: d["thrusters"][1].update(name="left")),
+    ("left occurs more than once", lambda d: d["thrusters"][1].update(name="left")),
     ("direction is 2 long, not 1", lambda d: d["thrusters"][0].update(direction=[2.0, 0.0, 0.0])),
     (
         "thrust falls at a command of",
@@ -210,7 +210,7 @@ def test_values_agree_with_each_other(suboff: Study, name: str) -> None:
 
 Edit = Callable[[dict[str, Any]], object]
 BAD: list[tuple[Edit, list[str]]] = [
-    (lambda d: d["coefficients"].append(d["coefficients"][0]), ["stands more than once"]),
+    (lambda d: d["coefficients"].append(d["coefficients"][0]), ["occurs more than once"]),
     (lambda d: d["coefficients"][0].update(symbol="Yv"), ["without prime", "Yv'"]),
     (lambda d: d["coefficients"][0].update(symbol="Qv'"), ["coefficients.0", "SNAME derivative"]),
     (lambda d: d["coefficients"][0].update(value="big"), ["coefficients.0.value", 'found "big"', "a valid number"]),

@@ -231,7 +231,7 @@ def test_a_response_stands_once_per_set_of_variables(tmp_path):
     content = json.loads(NEW.read_text())
     content["models"].append(content["models"][0])
     (tmp_path / "p.json").write_text(json.dumps(content))
-    with pytest.raises(InputError, match="C_D over alpha, beta stands more than once"):
+    with pytest.raises(InputError, match="C_D over alpha, beta occurs more than once"):
         read_parameter_file(tmp_path / "p.json")
 
 

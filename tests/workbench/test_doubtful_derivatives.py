@@ -132,7 +132,7 @@ def test_a_plan_with_flipped_literature_fails(tmp_path: Path) -> None:
     assert {(c.subject, c.severity.value) for c in doubts(study)} == {("p Yr'", "warn"), ("p Nr'", "fail")}
     (index,) = (c for c in study.checks if c.name == "stability" and c.subject == "p G_h")
     assert "stable" not in index.statistic
-    assert "Nr' - xG'm' is not below zero: it drives what it should damp" in index.comment
+    assert "Nr' - xG'm' is not negative: it drives the motion instead of damping it" in index.comment
 
 
 def arm(folder: Path, inertia: bool, declared: str, hull: str = "") -> Study:
@@ -165,11 +165,15 @@ def arm(folder: Path, inertia: bool, declared: str, hull: str = "") -> Study:
 
 
 ARMS = [
-    (True, "contains_inertia = false", "if the table holds the model's inertia (contains_inertia = true), Yr' = 0.000"),
+    (
+        True,
+        "contains_inertia = false",
+        "if the table contains the model's inertia (contains_inertia = true), Yr' = 0.000",
+    ),
     (
         False,
         "contains_inertia = true",
-        "if it never held the inertia that was taken out (contains_inertia = false), Yr' = 0.000",
+        "if it never contained the inertia that was subtracted (contains_inertia = false), Yr' = 0.000",
     ),
 ]
 
@@ -240,4 +244,4 @@ def test_without_a_mass_only_what_leaves_the_body_is_doubted(suboff: Study) -> N
     assert one(study, file) == []
     (found,) = one(study, changed(file, Yr=-0.05))
     assert found.subject == "suboff_bare_hull Yr'"
-    assert "does the force hold the model's inertia?" in found.comment
+    assert "does the force contain the model's inertia?" in found.comment

@@ -172,13 +172,12 @@ def test_a_tow_without_any_converged_run_has_its_reasons(folder: Path, tmp_path:
 
 def test_without_any_tow_the_study_stands(folder: Path, tmp_path: Path) -> None:
     shutil.copy(folder / "published.toml", tmp_path)
-    (tmp_path / "plan.toml").write_text(
-        (folder / "plan.toml").read_text().replace('"suboff_cfd_barehull"', '"nothing"')
-    )
+    text = (folder / "plan.toml").read_text().replace('"suboff_tow_', '"no_tow_')
+    (tmp_path / "plan.toml").write_text(text.replace('"suboff_cfd_barehull"', '"nothing"'))
     plan = read_plan(tmp_path / "plan.toml")
     assert [t.campaign for t in plan.tows] == ["", "", ""]
     assert len(plan.tables) == 2
-    assert plan.tows[0].absent == ("suboff_tow_bare_hull", "nothing")
+    assert plan.tows[0].absent == ("no_tow_bare_hull", "nothing")
 
 
 def test_a_tow_without_a_campaign_named_is_refused(folder: Path, tmp_path: Path) -> None:
@@ -190,8 +189,8 @@ def test_a_tow_without_a_campaign_named_is_refused(folder: Path, tmp_path: Path)
 
 def test_tables_of_tows_fit_80_columns(bodies: tuple[Towed, ...], capsys: pytest.CaptureFixture[str]) -> None:
     for one in bodies:
-        show.folded(own_tow(one))
-        show.folded(tow_against(one))
+        show.table(own_tow(one))
+        show.table(tow_against(one))
     shown = capsys.readouterr().out
     assert max(map(len, shown.splitlines())) <= 80
     assert "Own tow: AFF-8" in shown

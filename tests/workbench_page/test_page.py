@@ -106,8 +106,8 @@ def test_axe_finds_no_serious_violation_and_nothing_is_fetched(opened, width, sc
 
 def test_first_screen_holds_value_figure_and_index(opened):
     page = opened()
-    for place in (".big >> nth=0", "svg >> nth=0", "svg >> nth=1", "text=Course stability"):
-        box = page.locator(f"#bench {place}").bounding_box()
+    for place in ("#bench .big >> nth=0", "#bench svg >> nth=0", "#bench svg >> nth=1", "text=Course stability"):
+        box = page.locator(place).bounding_box()
         assert box["y"] + box["height"] <= 900, place
 
 

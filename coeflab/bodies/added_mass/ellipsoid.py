@@ -115,7 +115,7 @@ citations = ("lamb1932", "carlson1995")
 
 EQUIVALENT = "equivalent ellipsoid: the body's length and volume, breadth over depth by its second moments"
 
-STANDS_IN = "Lamb's values of the ellipsoid that stands for the mesh"
+STANDS_IN = "Lamb's values of the ellipsoid that replaces the mesh"
 
 
 def _axes(shape: Shape) -> NDArray[np.float64]:

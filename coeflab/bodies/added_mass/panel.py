@@ -223,7 +223,7 @@ class VolumeGap:
         out = f"volume of the finest panels {self.finest:+.2%} from {self.body}"
         if self.meshes == 1:
             return out
-        return f"{out}, {self.left:+.2%} once extrapolated: carried in the error estimate"
+        return f"{out}, {self.left:+.2%} once extrapolated: included in the error estimate"
 
 
 def volume_gap(body: Body, mesh: TriangleMesh, meshes: Sequence[Array]) -> VolumeGap:
@@ -514,7 +514,7 @@ def _said(solutions: Sequence[PanelSolution], compiled: bool, thin: float) -> li
     counts = " and ".join(f"{s.count:,}" for s in solutions)
     kernel = "compiled (numba)" if compiled else "plain (numpy)"
     out = [
-        f"{counts} flat panels, direct formulation, kernel {kernel}; asymmetry before it was taken out "
+        f"{counts} flat panels, direct formulation, kernel {kernel}; asymmetry before symmetrising "
         f"{solutions[0].asymmetry:.1e} of the largest entry"
     ]
     lost = [s for s in solutions if not s.converged]
@@ -535,7 +535,7 @@ def _judged(found: Refinement, meshes: int, asked: bool) -> list[str]:
     worst = float(np.max(np.diag(found.error)[live] / np.diag(found.matrix)[live], initial=0.0))
     estimate = f"error estimate at most {worst:.2g} of a diagonal entry"
     if found.used is None:
-        out = [f"the differences between meshes hardly shrink: not extrapolated, {estimate}"]
+        out = [f"the differences between meshes barely shrink: not extrapolated, {estimate}"]
     elif found.observed is None:
         out = [f"extrapolated with order {found.used:.2g} from two meshes, order not observed, {estimate}"]
     else:
@@ -545,5 +545,5 @@ def _judged(found: Refinement, meshes: int, asked: bool) -> list[str]:
         out = [f"extrapolated with order {found.used:.2g}, {estimate}; observed order {found.observed:.1f}{edged}"]
     if not np.all(live):
         names = ", ".join(np.array(list("uvwpqr"))[found.void])
-        out.append(f"set to zero, being below its error: {names}")
+        out.append(f"set to zero, below its error: {names}")
     return out

@@ -64,7 +64,7 @@ summary = "closed forms of cylinders, plates, ellipsoids and boxes, composed by 
 citations = ("huuv2025", "coeflab_plates", "lamb1932", "fossen2011")
 presets: Mapping[str, Mapping[str, str]] = {"huuv": {"cylinder_ends": "huuv"}}
 
-COMPOSED = "parts do not feel each other's flow"
+COMPOSED = "no interaction between parts"
 CYLINDERS = {
     "huuv": "cylinders by HUUV equations 28-31 as corrected: 0.1 along, 1 across, ends not corrected",
     "lamb": "cylinders with Lamb's k1, k2, k' of the spheroid of equal length and volume",
@@ -116,7 +116,7 @@ def _statements(parts: tuple[Part, ...], ends: str) -> tuple[str, ...]:
     for part in parts:
         form = part.form
         if isinstance(form, Cylinder) and form.length < 2.0 * form.radius:
-            out.append(f"{part.name}: shorter than its diameter, sections say little about it")
+            out.append(f"{part.name}: shorter than its diameter, sections are a poor model of it")
         if isinstance(form, Plate) and form.aspect > PLATE_ASPECTS[-1]:
             out.append(
                 f"{part.name}: aspect {form.aspect:.3g}, interpolated between {PLATE_ASPECTS[-1]:g} and infinity"
@@ -159,7 +159,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
         shape, said = _as_plate(shape)
     if not isinstance(shape, Parts):
         raise InputError(
-            f"{body.name}, which is not made of parts",
+            f"{body.name}, which has no parts",
             "a body of parts, or a mesh like one plate",
             advice="Use the method ellipsoid or strip, or make parts of a mesh with coeflab simplify.",
         )

@@ -212,7 +212,7 @@ def read(path: Path) -> Body:
     source = file.mesh.source(path.parent)
     if not source.file.is_file():
         raise toml.fail(
-            "mesh.path", f"no file {shown(source.file.name)}", "the mesh that the parts stand for",
+            "mesh.path", f"no file {shown(source.file.name)}", "the mesh that the parts replace",
             "Put it back, or delete [mesh]: results are then as rough as the parts.",
         )  # fmt: skip
     return replace(body, mesh=source, files=(*body.files, source.input_file(body.name)))

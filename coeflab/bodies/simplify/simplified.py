@@ -201,7 +201,7 @@ class SimplifiedPart:
         """What it was found to be, in words."""
         like = self.likeness
         held = "equal area" if like.form == "plate" else "equal volume"
-        kind = like.form if like.clear else f"other, as no form is good; a {like.form} of {held} stands in"
+        kind = like.form if like.clear else f"other, as no form is good; a {like.form} of {held} is used"
         kind = kind.replace("a ellipsoid", "an ellipsoid")
         out = [f"{'attachment' if self.cut else 'body'} of {self.volume:.5g} m^3: {kind} ({like.reason})"]
         if not like.clear:
@@ -323,11 +323,10 @@ class Simplification:
             "the overlay, and correct here what is wrong.",
             "Lengths in m, FRD, from the datum. Along its own axes a cylinder or spheroid lies along x; a plate has its "
             "chord along x, its span along y, its normal along z. rotation = [roll, pitch, yaw].",
-            "fit: how well the form stands for its piece of the mesh; class other is like none. volume, areas (projected along "
+            "fit: how well the form matches its piece of the mesh; class other matches none. volume, areas (projected along "
             "the part's own axes) and length: form over piece, less one. Delete the fit of a part that you correct; "
             "what has none counts as you describe it.",
-            "mesh: what the parts stand for. Panel method and strips take it in their place; delete it where the parts are to "
-            "be another body than the mesh.",
+            "mesh: what the parts replace. Panel method and strips use the mesh itself; delete this table where the parts are to be another body.",
             *RULES,
             *self.statements,
         )

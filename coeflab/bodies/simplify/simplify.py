@@ -252,7 +252,7 @@ def _boxed(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece]
         block = solids.box(np.add(b.low, hair), np.subtract(b.high, hair))
         inside = rest ^ block
         if inside.volume() <= least:
-            raise InputError(f"the box {shown(b.name)}, which holds next to no volume", "a box around a part")
+            raise InputError(f"the box {shown(b.name)}, which contains next to no volume", "a box around a part")
         out.append(_Piece(inside, b.name, False))
         rest = rest - block
     return out, rest
@@ -315,7 +315,7 @@ def _convex(found: list[_Piece], likes: list[Likeness]) -> tuple[list[_Piece], l
                 "--split convex without the package vhacdx", "vhacdx", advice='Install "coeflab[convex]".'
             ) from None
         lost += piece.solid.volume() - sum(p.volume() for p in parts)
-        said.append(f"what is like no form, {piece.solid.volume():.5g} m^3, cut into {len(parts)} nearly convex pieces")
+        said.append(f"what matches no form, {piece.solid.volume():.5g} m^3, cut into {len(parts)} nearly convex pieces")
         out += [replace(piece, solid=p) for p in parts]
         forms += [likeness(p) for p in parts]
     return out, forms, lost, said

@@ -86,7 +86,7 @@ def equations_in_words(
         n_runs,
     )
     spoken, tested = [e.spoken for e in equations], int(np.isfinite(found.probability).sum())
-    said = [f"Kept exactly: {', '.join(spoken)}."]
+    said = [f"Imposed exactly: {', '.join(spoken)}."]
     rejected, how = found.together < UNLIKELY, " by t tests of the free fit (errors by run, CR2)"
     how += f", p times {tested} for that many equations" if tested > 1 else ""
     for text, p in zip(spoken, np.minimum(found.probability * tested, 1.0), strict=True):
@@ -100,9 +100,11 @@ def equations_in_words(
         verb = "reject" if found.together < UNLIKELY else "do not contradict"
         said.append(f"The data {verb} {' with '.join(untold)} ({chance(found.together)}){how}.")
     elif untold:
-        said.append(f"Not tested, as the rows without equations leave a coefficient open: {', '.join(untold)}.")
+        said.append(
+            f"Not tested, since without the equations the rows do not determine a coefficient: {', '.join(untold)}."
+        )
     if rejected:
-        said.append("U95 does not hold the error that a rejected equation puts into the values.")
+        said.append("U95 does not include the error from a rejected equation.")
     if len(parts) > 1:
         sizes = [scatter(p.matrix, p.data.rows.y, p.errors) for p in parts]
         listed = ", ".join(f"{p.name}' {s:.2g}" for p, s in zip(parts, sizes, strict=True))
@@ -119,7 +121,7 @@ def equations_in_words(
         idle = p.idle
         own = [f"{s} comes from the equations alone: its motion does not occur in the rows of {p.name}." for s in idle]
         if rest := [s for s in free if s not in idle]:
-            own.append(f"Without the equations the rows leave open: {', '.join(rest)}.")
+            own.append(f"Without the equations the rows do not determine: {', '.join(rest)}.")
         out.append([*said, *own])
     return out
 
@@ -203,7 +205,7 @@ def _values_alone(
     return tuple(out)
 
 
-NO_CAMPAIGN = "Each campaign left out in turn: not available, as there is one campaign."
+NO_CAMPAIGN = "Each campaign left out in turn: needs two campaigns."
 
 
 @brief

@@ -242,7 +242,7 @@ def differences(tables: Sequence[ForceTable], length: float) -> tuple[str, ...]:
     numbers = {c: None if at is None else float(np.median(at)) for c, at in rows.items()}
     known = [n for n in numbers.values() if n is not None]
     if len(known) < len(by):
-        out.append(f"Reynolds numbers are not known of {', '.join(c for c, n in numbers.items() if n is None)}.")
+        out.append(f"Reynolds numbers unknown: {', '.join(c for c, n in numbers.items() if n is None)}.")
     if known and max(known) > (1.0 + ALIKE) * min(known):
         out.append(f"Different Reynolds numbers: {', '.join(f'{n:.3g} ({c})' for c, n in numbers.items() if n)}.")
     if len({t.source.kind for t in by.values()}) > 1:

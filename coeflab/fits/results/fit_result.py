@@ -114,28 +114,28 @@ class Pooling:
         own = [s for s in self.shares if s.intercept is not None and s.half_width is not None]
         if own:
             listed = ", ".join(f"{plus_minus(s.intercept, s.half_width)} ({s.campaign})" for s in own)
-            out.append(f"Every campaign has its own {self.response}0', which is taken off its rows: {listed}.")
+            out.append(f"Every campaign has its own {self.response}0', subtracted from its rows: {listed}.")
         told = [str(s.left_out) for s in self.shares if s.left_out.predicted or len(self.shares) > 1]
         if len(self.shares) == 1:
             alone = f"Only {self.shares[0].campaign} has rows of {self.response}: one law for several campaigns is not tested"
             return (*out, *told, f"{alone}." if told else f"{alone}, and leaving a campaign out is not available.")
         quiet, loud = min(self.shares, key=lambda s: s.noise), max(self.shares, key=lambda s: s.noise)
         listed = ", ".join(f"{s.noise:.2g} ({s.campaign})" for s in self.shares)
-        said = f"Rows weigh by 1 / scatter^2 of their campaign about its own law: {listed}"
+        said = f"Weights are 1 / scatter^2 of each campaign about its own law: {listed}"
         if quiet is not loud:
             said += f"; a row of {quiet.campaign} counts as {(loud.noise / quiet.noise) ** 2:.3g} of {loud.campaign}"
         out.append(f"{said}.")
         out += told
         verdict = {
-            None: "Whether one law serves all campaigns cannot be tested",
-            False: "One law is not contradicted, nor is it shown"
+            None: "Whether one law fits all campaigns cannot be tested",
+            False: "One law is neither contradicted nor shown"
             if self.doubtful
             else "The campaigns do not contradict one law",
-            True: "The campaigns disagree: one law does not serve them all",
+            True: "The campaigns disagree: one law does not fit them all",
         }[self.rejected]
         out.append(f"{verdict} ({self.statistic}; Wald test by campaign, HC2, approximate Hotelling T^2).")
         if self.rejected:
-            out.append(f"{self.values_alone} U95 does not hold their difference.".lstrip())
+            out.append(f"{self.values_alone} U95 does not include their difference.".lstrip())
         return tuple(out)
 
 

@@ -317,10 +317,7 @@ def _only_together(parts: list[tuple[str, float]]) -> str:
     more = f" and {len(parts) - len(shown)} more" if len(parts) > len(shown) else ""
     names = ", ".join(s for s, _ in shown)
     mix = " ".join(f"{d:+.2g} [{s}]" for s, d in shown) + (" ..." if more else "")
-    return (
-        f"{names}{more} are determined only together: adding any multiple of {mix} (each scaled by its column) changes no "
-        "prediction."
-    )
+    return f"{names}{more} are determined only in combination: adding any multiple of {mix} (each scaled by its column) changes no prediction."
 
 
 def in_words(fit: LinearFit, symbols: tuple[str, ...]) -> tuple[str, ...]:
@@ -336,7 +333,7 @@ def in_words(fit: LinearFit, symbols: tuple[str, ...]) -> tuple[str, ...]:
     if len(fit.open_directions) > MOST_DIRECTIONS:
         out.append(
             f"{len(fit.open_directions) - MOST_DIRECTIONS} more combinations are not determined: "
-            f"{fit.rank} of {len(symbols)} terms can be told apart. Ask for fewer."
+            f"{fit.rank} of {len(symbols)} terms can be separated. Ask for fewer."
         )
     pairs = [(abs(fit.correlation[i, j]), i, j) for i, j in combinations(range(len(symbols)), 2)]
     close = sorted((pair for pair in pairs if pair[0] > COLLINEAR), reverse=True)
@@ -346,7 +343,7 @@ def in_words(fit: LinearFit, symbols: tuple[str, ...]) -> tuple[str, ...]:
         out.append(f"{len(close) - MOST_PAIRS} more pairs are nearly collinear (beyond {COLLINEAR}).")
     if fit.digits < FEWEST_DIGITS:
         out.append(
-            f"Only {max(fit.digits, 0):.0f} digits of the coefficients are sure: the terms are nearly dependent."
+            f"Only {max(fit.digits, 0):.0f} digits of the coefficients are reliable: the terms are nearly dependent."
         )
     return tuple(out)
 
@@ -398,9 +395,9 @@ def _remainder_in_words(model: FittedModel, found: Remainder) -> str:
     said = f"The residuals are not random: the form misses something, most likely {found.likeliest} (a right form: {right})."
     without = model.rejected
     if not without:
-        return f"{said} U95 holds what that may move."
+        return f"{said} U95 includes what that may change."
     have = "has" if len(without) == 1 else "have"
-    return f"{said} It is rejected for {', '.join(without)}, which {have} no U95; that of the others holds what it may move."
+    return f"{said} It is rejected for {', '.join(without)}, which {have} no U95; that of the others includes what it may change."
 
 
 def _own_powers(model: FittedModel, variable: str) -> list[tuple[int, bool]]:

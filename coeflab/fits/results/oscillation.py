@@ -13,7 +13,7 @@ from coeflab.fits.statistics.harmonics import CUBIC, QUADRATIC, AtZero
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
 class OscillatedForce:
-    """One force component of one run, primed, filter and model inertia taken out.
+    """One force component of one run, primed, filter and model inertia subtracted.
 
     Attributes
     ----------

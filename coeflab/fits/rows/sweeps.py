@@ -34,7 +34,7 @@ from coeflab.law.terms import canonical
 from coeflab.tables.force_table import AT_REST, SAME_SIZE, Exclusion, ForceTable, counted_once
 
 INCIDENCE = {"dr": "v", "ds": "w", "db": "w"}
-ASTERN = "does not run ahead (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
+ASTERN = "moves astern (u <= 0): an angle beyond 90 degrees, or degrees declared as radians?"
 NEAR_ZERO = np.sin(np.radians(0.3))  # what is left of a setting of zero when a model is aligned
 
 
@@ -132,10 +132,7 @@ def one_size(x: Array, variable: str, speed: Array) -> str:
     said += ["both signs"] if np.any(x > AT_REST) and np.any(x < -AT_REST) else []
     seen = f" ({', '.join(said)})" if said else ""
     name, how = f"{variable}'", " (L/R: other radii, not speeds)" if variable in "qr" else ""
-    return (
-        f"one |{name}|, {size:.3g}{seen}: {name} and {name}|{name}| are one; measure "
-        f"|{name}| near {size / 3.0:.2g} and {2.0 * size / 3.0:.2g}{how}"
-    )
+    return f"one |{name}|, {size:.3g}{seen}: {name} and {name}|{name}| cannot be separated; measure |{name}| near {size / 3.0:.2g} and {2.0 * size / 3.0:.2g}{how}"
 
 
 def arm_shift(tables: Sequence[ForceTable]) -> float:
@@ -206,7 +203,7 @@ def check_varies(rows: Rows) -> None:
             others = ", ".join(v for v in rows.x if v != name)
             raise InputError(
                 f"{name} never varies in the rows of {rows.response} ({rows.campaign})", "variables that all vary",
-                column="variables", advice=f"The fit polynomial takes {others} alone.",
+                column="variables", advice=f"Use the fit polynomial for {others} alone.",
             )  # fmt: skip
 
 

@@ -286,7 +286,7 @@ def rows_of(x: Array, y: Array, se: Array | None, odd: bool = False) -> Rows:
     if odd:
         notes.append("odd by declared symmetry: the mirrored side is no new data and adds no degree of freedom")
     elif not len(x) or not x.min() < 0.0 < x.max():
-        notes.append("one-sided sweep: even and odd parts cannot be told apart")
+        notes.append("one-sided sweep: even and odd parts cannot be separated")
     return Rows(x, y, variance, stated, np.logical_not(again), mirrored, tuple(notes))
 
 

@@ -246,7 +246,6 @@ def describe(selection: Selection, names: Mapping[int, str]) -> tuple[str, ...]:
         out.append(f"Kept in bootstrap resamples at that threshold: {often}.")
     if selection.runner_up < 2.0:
         out.append(
-            f"Another set of terms is as good within {selection.runner_up:.2g} of the criterion: the data do not tell "
-            "them apart."
+            f"Another set of terms is as good within {selection.runner_up:.2g} of the criterion: the data do not distinguish them."
         )
     return tuple(out)

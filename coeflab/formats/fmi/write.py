@@ -275,5 +275,5 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         "the water is at rest",
         "weight and buoyancy are equal and act at one point: the file states no buoyancy; a righting moment goes to the inputs external.*"
         if parameters.hydrostatics is None
-        else "weight and buoyancy by the parameters mass.* and hydrostatics.*; the outputs hydrodynamic.* do not hold them",
+        else "weight and buoyancy by the parameters mass.* and hydrostatics.*; the outputs hydrodynamic.* do not contain them",
     )

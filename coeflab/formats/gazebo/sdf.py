@@ -74,7 +74,7 @@ def sdf(
         for tag, text in plugin:
             SubElement(system, tag).text = text
     frame = f"Link frame: x forward, y port, z up, origin at the reference point; density {number(p.conditions.density)} kg/m^3"
-    shape = "The collision is a cylinder of the displaced volume in the centre of buoyancy: Buoyancy takes these two of it. Visuals are yours to add."
+    shape = "The collision is a cylinder of the displaced volume in the centre of buoyancy: Buoyancy takes these two of it. Add visuals yourself."
     inertia = f"Inertia of the water: {one_line(water_inertia(p).source)}"
     titled = f"{one_line(p.name)}, body: {one_line(p.body)}"
     water = "world" if name != "world" else "world_of_water"
@@ -161,8 +161,7 @@ def placed(parameters: ParameterFile) -> tuple[str, ...]:
         "the link's origin is the reference point",
         *moved,
         f"weight and buoyancy at {at.gravity:g} m/s^2: {at.said}",
-        f"the collision, a cylinder {at.length:.4g} m long of radius {at.radius:.4g} m, is that volume in its centre, at {_spaced(at.centre_of_buoyancy)} m; the "
-        "system Buoyancy of the world beside the model makes the force of it, and in a world without that system the model sinks",
+        f"the collision, a cylinder {at.length:.4g} m long of radius {at.radius:.4g} m, is that volume in its centre, at {_spaced(at.centre_of_buoyancy)} m; the system Buoyancy of the world gives its force, and in a world without that system the model sinks",
     )
 
 

@@ -265,9 +265,9 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     said = [
         f"HoloOcean 2.3: the vehicle is a spheroid {t.length:.6g} m long, diameter {t.diam:.4g} m, that displaces its mass; HoloOcean adds its added "
         "mass, and of C_A(nu) nu only the products with p: no Munk moment",
-        f"Cd {t.Cd:.4g} from X0; lift and drag are computed with 1026 kg/m^3 whatever rho is, for which Cd and area_fraction make up",
+        f"Cd {t.Cd:.4g} from X0; lift and drag are computed with 1026 kg/m^3 whatever rho is, for which Cd and area_fraction compensate",
         f"cross-flow drag is that of a cylinder, C_D {CROSS_FLOW:.4g} on {t.length:.4g} x {t.diam:.4g} m, in sway and yaw: not a matter of the file",
-        f"T_yaw {t.T_yaw:.4g} s: damping in yaw does not grow with the speed, it stands for Nr at {speed:g} m/s",
+        f"T_yaw {t.T_yaw:.4g} s: damping in yaw does not grow with the speed; it equals Nr at {speed:g} m/s",
         "r_bb lies in r_bg, so that nothing rights the vehicle or damps roll and pitch: "
         f"{states_buoyancy(parameters, 'the file states no buoyancy')}; write the vehicle's",
         "axes and reference point are the file's",
@@ -277,7 +277,7 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     if "e" in found:
         said.append(f"e {t.e:.4g} from Xww")
     kept = [k for k in _DEFAULTS if k not in found]
-    said.append(f"HoloOcean's default stands in {', '.join(kept)}: the file says nothing of them")
+    said.append(f"HoloOcean's default is used for {', '.join(kept)}: not in the file")
     unused = [n for n, value in (("T_surge", t.T_surge), ("T_sway", t.T_sway), ("T_yaw", t.T_yaw)) if value == NEVER]
     if unused:
         said.append(f"{', '.join(unused)} {NEVER:g} s, which is no damping: the file has none there")

@@ -32,7 +32,7 @@ from coeflab.law.scaling import Conditions, Scaling
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.plausibility import SLUGS, Written, gravity, gyration, munk_twice, no_mass, water, weight
 
-summary = "MSS .m files with plain assignments: primed or SI derivatives, slug and foot units told by rho or g"
+summary = "MSS .m files with plain assignments: primed or SI derivatives, slug and foot units recognised by rho or g"
 citations = ("sname1950", "fossen2011", "mss")
 reads = "MSS .m"
 signs = "MSS takes Xudot ... and damping such as Yv negative."
@@ -199,11 +199,11 @@ def _foreign(found: MFile, path: Path, density: float | None) -> Stated:
     notes = []
     if v.imperial:
         told = [f"{k} = {x:g}" for k, x in filter(None, (found.named(*DENSITIES), found.named(*GRAVITIES)))]
-        notes.append(f"slug, foot and pound told by {', '.join(told)}; converted to SI")
+        notes.append(f"slug, foot and pound, recognised by {', '.join(told)}; converted to SI")
     name = v.scaling.length_name
     notes.append(f"lengths made dimensionless by {name}" + ("" if name != "1 m" else ": the file states none"))
     notes.append(
-        "primed derivatives, told by r2 = rho*L^2/2 and the like; U is taken where the file's own equations may have u"
+        "primed derivatives, recognised by r2 = rho*L^2/2 and the like; U is taken where the file's own equations may have u"
         if v.primed
         else "dimensional derivatives: forces do not scale with U unless the velocities in the name say so"
     )
@@ -236,7 +236,7 @@ def _foreign(found: MFile, path: Path, density: float | None) -> Stated:
 
 def _coriolis_note(found: MFile, kept: bool) -> str:
     if kept and found.changes_coriolis:
-        return "the file adds C_A(nu) nu and then sets entries of it, which is not read: totals here hold all of it"
+        return "the file adds C_A(nu) nu and then sets entries of it, which is not read: totals here include all of it"
     if kept:
         return "the file adds C_A(nu) nu itself: its derivatives are viscous, totals are written here"
     if found.adds_coriolis:

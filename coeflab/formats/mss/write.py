@@ -41,7 +41,7 @@ _PLACES = {"prime": "h.", "rest": "h.rest.", "potential": "h.ideal."}
 _HEADINGS = {
     "prime": "Primed by rho and L: totals, potential part included",
     "rest": "Damping about a state of rest, SI, not scaled with U",
-    "potential": "Primed products of the ideal fluid, -C_A(nu)*nu, that no coefficient above speaks of",
+    "potential": "Primed products of the ideal fluid, -C_A(nu)*nu, that no coefficient above covers",
 }
 
 
@@ -70,7 +70,7 @@ def _head(function: str, parameters: ParameterFile) -> list[str]:
         "%",
         "% Axes: x forward, y starboard, z down. Equations of motion with rigid-body MRB and CRB:",
         "%   (MRB + MA)*nu_dot + CRB*nu + g = tau + tau_control",
-        "% tau holds -C_A(nu)*nu already (the Munk moment in Nv and Mw): do not add m2c(MA, nu).",
+        "% tau contains -C_A(nu)*nu already (the Munk moment in Nv and Mw): do not add m2c(MA, nu).",
         "%",
         "% Primes: Y = 1/2 rho U^2 L^2 Y', v' = v/U, r' = r L/U, U = |(u, v, w)|; a in a name is an absolute value,",
         "% h.Yvav that of v|v|.",
@@ -196,6 +196,6 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     buoyant = "h.volume, h.g and h.xB h.yB h.zB are the numbers of the g above, as for MSS gvect"
     return (
         *written_changes(parameters, "the function", "h.ideal", "MA"),
-        f"tau holds no weight and no buoyancy{'' if parameters.hydrostatics is None else f': {buoyant}'}",
+        f"tau contains no weight and no buoyancy{'' if parameters.hydrostatics is None else f': {buoyant}'}",
         "r2 in the function is 1/2 rho L^2, r3 is 1/2 rho L^3 and so on; U is never below 1e-9 m/s",
     )

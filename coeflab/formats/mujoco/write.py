@@ -100,7 +100,7 @@ def _fitted(parameters: ParameterFile) -> tuple[_Geom, ForceLaw]:
     raise InputError(
         _flipped(tried[-1], law, parameters, RATES), "a damping of the same sign in both: a fluid ellipsoid has one lift, one drag "
         "and no linear damping of turning", column="coefficients",
-        advice="Use a target that holds the law: fmi, xdyn, mss or gazebo.",
+        advice="Use a target that can express the law: fmi, xdyn, mss or gazebo.",
     )  # fmt: skip
 
 

@@ -42,7 +42,7 @@ _PLACES = {"prime": "self.", "rest": "self.rest_", "potential": "self.ideal_"}
 _HEADINGS = {
     "prime": "Primed by rho and L: totals, potential part included",
     "rest": "Damping about a state of rest, SI, not scaled with U",
-    "potential": "Primed products of the ideal fluid, -C_A(nu) nu, that no coefficient above speaks of",
+    "potential": "Primed products of the ideal fluid, -C_A(nu) nu, that no coefficient above covers",
 }
 _HEAD = '''
 import math
@@ -202,7 +202,7 @@ def _force(terms: tuple[ForceTerm, ...]) -> list[str]:
         "    def hydrodynamics(self, nu, delta=(0.0, 0.0, 0.0)):",
         '        """X Y Z K M N of the water on the body (N, N m) for u v w p q r and control angles dr ds db (rad).',
         "",
-        "        It holds -C_A(nu) nu already, the Munk moment in Nv and Mw: m2c(MA, nu) must not be added.",
+        "        It contains -C_A(nu) nu already, the Munk moment in Nv and Mw: m2c(MA, nu) must not be added.",
         '        """',
         *(f"        {name} = nu[{k}]" for k, name in enumerate(MOTIONS)),
         *(f"        {name} = delta[{CONTROLS.index(name)}]" for name in written_controls(terms)),

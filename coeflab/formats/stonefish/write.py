@@ -431,7 +431,7 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         f"whatever their names): a drag k v^2 as k/(2U) v^3 + k U/2 v meets it in value and slope at U = {speed:g} m/s, and is 25 % above "
         "it at half that speed and 8 % at one and a half times it",
         drags.in_words(),
-        f"Stonefish adds {mass:.4g} kg to the mass, alike in all directions, from the mesh; in a turn that mass has its inertia, -m w x v, which the differences in this report hold",
+        f"Stonefish adds {mass:.4g} kg to the mass, alike in all directions, from the mesh; in a turn that mass has its inertia, -m w x v, which the differences in this report include",
         "axes and reference point are the file's",
     ]
     if not np.all(link.form > 0.0):

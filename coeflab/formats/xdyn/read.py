@@ -354,7 +354,7 @@ def _stated(body: XdynBody, law: MultipliedOut, path: Path) -> Stated:
     notes.append(f"lengths made dimensionless by {scaling.length_name}" + ("" if named else ": the file states none"))
     at = Conditions(body.density, abs(body.speed) or SPEED)
     if not body.speed:
-        notes.append(f"the file's initial speed is zero; {SPEED:g} m/s stands for it")
+        notes.append(f"the file's initial speed is zero; {SPEED:g} m/s is used instead")
     matrix = moved(body.added, law.point - body.centre)
     ideal = ideal_quadratics(matrix)
     doubts = matrix_doubts(matrix)

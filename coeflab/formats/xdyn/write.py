@@ -262,7 +262,7 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
         *written_changes(
             parameters, "xdyn", "expressions ending in _ideal", "added mass about the body frame's origin"
         ),
-        "velocities over the ground stand for those through the water; currents are for linear and quadratic damping only",
+        "velocities over the ground are used as those through the water; currents are for linear and quadratic damping only",
     ]
     if parameters.hydrostatics is not None:
         said.append(
@@ -278,12 +278,12 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
             "expressions use the velocities at the reference point, and forces act there"
         )
     if any(_damped(t, centre is None or not centre.any()) for t in terms):
-        said.append("damping about a state of rest stands as damping matrices, with the opposite sign")
+        said.append("damping about a state of rest is written as damping matrices, with the opposite sign")
     if any(m.area is not None for m in parameters.models):
         said.append(
             "no hydrodynamic polar is written for C_D and the like: xdyn's takes C_L, C_D and C_m as functions of one angle in one "
             "plane, and would add to the expressions of the coefficients"
         )
     if parameters.conditions.viscosity is None:
-        said.append(f"viscosity {VISCOSITY:g} m^2/s, which no expression uses, stands where the file has none")
+        said.append(f"viscosity {VISCOSITY:g} m^2/s, which no expression uses: the file has none")
     return tuple(said)

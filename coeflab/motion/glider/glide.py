@@ -179,7 +179,9 @@ class GlideRun:
         t = self.trajectory
         out = [*([] if t.ended is Ended.COMPLETE else [f"The motion ended early: {t.why}."]), *t.statements]
         if np.min(self.depth, initial=0.0) < -ABOVE:
-            out.append(f"It rises to {-np.min(self.depth):.1f} m above the surface, which these equations do not know.")
+            out.append(
+                f"It rises to {-np.min(self.depth):.1f} m above the surface, which these equations do not model."
+            )
         missed = [
             p.name
             for i in range(len(self.ends))

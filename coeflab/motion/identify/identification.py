@@ -392,11 +392,7 @@ def column(component: str, term: Term, columns: Mapping[str, Array], rest: bool 
     return out if power == 0 else np.asarray(out * np.maximum(speed, SLOWEST) ** power)
 
 
-HOW = (
-    "Interval: 95 %, the scatter over stretches of the series (jackknife, Student) and what one more term of the library would "
-    "move. What a wrong mass, inertia or thrust would move is not in it. In simulated series with white noise of 1 to 5 % such "
-    "intervals held the true value in 94 to 97 of 100 cases where the terms were given (docs/fixed_forms.md)."
-)
+HOW = "Interval: 95 %, the scatter over stretches of the series (jackknife, Student) and the effect of one more term of the library. It leaves out what a wrong mass, inertia or thrust would change. In simulated series with white noise of 1 to 5 % such intervals contained the true value in 94 to 97 of 100 cases where the terms were given (docs/fixed_forms.md)."
 
 
 class Outcome(StrEnum):
@@ -411,9 +407,8 @@ class Outcome(StrEnum):
     def meaning(self) -> str:
         """In words."""
         return {
-            Outcome.IDENTIFIED: "needed, and no other term of the library does as well in its place",
-            Outcome.EXCHANGEABLE: "needed, but another term does as well in its place, so the value is not the term's "
-            "alone, and the other values of its component lean on the choice",
+            Outcome.IDENTIFIED: "needed, and no other term of the library does as well",
+            Outcome.EXCHANGEABLE: "needed, but another term does as well, so the value is not the term's alone, and the other values of its component depend on the choice",
             Outcome.NOT_NEEDED: "excited, but zero within three times its scatter beside the other terms",
             Outcome.NOT_IDENTIFIABLE: "the series do not excite it, or only together with another term",
         }[self]

@@ -291,9 +291,7 @@ def _statements(
     """What was assumed, and what the series cannot show."""
     out = [HOW, *body.water.statements]
     if o.form == "weak":
-        out.append(
-            "Even and odd rows serve each other as instruments, which takes out the bias of noise that is white."
-        )
+        out.append("Even and odd rows serve each other as instruments, which removes the bias of white noise.")
     else:
         out.append("Central differences and plain least squares: noise biases the coefficients. Prefer the weak form.")
     coarse = {s.file: 2.0 * half / float(np.median(np.diff(s.time))) for s in series}
@@ -322,7 +320,6 @@ def _statements(
     unknown = sorted({t.component for t in library} - set(fitted))
     if unknown and not np.any(body.added):
         out.append(
-            f"{', '.join(unknown)}: the added mass is not known and counts as zero, and no known force sets a scale that would "
-            "tell it; every value leans on that."
+            f"{', '.join(unknown)}: the added mass is not known and counts as zero, and no known force sets the scale; every value depends on that."
         )
     return tuple(out)

@@ -57,7 +57,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
         Phase("reversed", {"ds": -order}, o.longest, Until("pitch", o.way == "dive", 0.0)),
         Phase("amidships", {"ds": 0.0}, level),
     )
-    planes = f"first stern planes {np.degrees(order):+.4g} deg, which {o.way} by the coefficients of the file"
+    planes = f"first stern planes {np.degrees(order):+.4g} deg, to {o.way} by the coefficients of the file"
     return Manoeuvre(NAME, phases, nu, orders=orders, statements=(said, planes))
 
 

@@ -59,7 +59,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     phases = tuple(
         Phase(f"{k + 1}: {np.degrees(a):+.4g} deg", {"dr": sense * a}, hold) for k, a in enumerate(_angles(o))
     )
-    rudder = "angles are positive where they turn to starboard by the coefficients of the file"
+    rudder = "angles are positive to starboard, by the coefficients of the file"
     return Manoeuvre(NAME, phases, nu, orders=orders, statements=(said, rudder))
 
 

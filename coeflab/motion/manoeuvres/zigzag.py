@@ -81,7 +81,7 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
         sides = {"dr": angle}, {"dr": -angle}
         said = (
             thrust,
-            f"first rudder {np.degrees(angle):+.4g} deg, which turns to starboard by the coefficients of the file",
+            f"first rudder {np.degrees(angle):+.4g} deg, to starboard by the coefficients of the file",
         )
     phases = tuple(
         Phase(f"execute {k + 1}", sides[k % 2], o.longest, Until("heading", k % 2 == 0, (-1.0) ** k * o.execute))
@@ -103,7 +103,7 @@ def _by_thrusters(
         )
     sides = (mirrored(vehicle, other), other) if turning > 0.0 else (other, mirrored(vehicle, other))
     first = " ".join(f"{name}={value:g}" for name, value in sides[0].items())
-    return sides, (f"thrusters in place of the rudder, first {first}, which turns to starboard; then exchanged",)
+    return sides, (f"thrusters instead of a rudder: first {first} (to starboard), then exchanged",)
 
 
 def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]:

@@ -149,13 +149,13 @@ class OperatingPoint:
         free = sum(u.low < u.high for u in self.unknowns)
         count = f"{free} unknowns, {len(self.equations)} equations of rank {f.rank}"
         said = {
-            Outcome.UNIQUE: f"One solution: {count}; {tried} came to it, none to another.",
-            Outcome.SEVERAL: f"{1 + len(f.others)} isolated solutions: {count}; {tried} came to one of them.",
+            Outcome.UNIQUE: f"One solution: {count}; {tried} converged to it, none to another.",
+            Outcome.SEVERAL: f"{1 + len(f.others)} isolated solutions: {count}; {tried} converged to one of them.",
             Outcome.FAMILY: f"Not unique: a family of {self.dimension} parameter{'s' * (self.dimension > 1)}; {count}.",
             Outcome.SINGULAR: f"One solution, where the equations are singular: {count}; none found beside it.",
-            Outcome.INFEASIBLE: f"No solution within the bounds: none of {f.starts} starts came to one. "
+            Outcome.INFEASIBLE: f"No solution within the bounds: none of {f.starts} starts converged to one. "
             + self._least(),
-            Outcome.NOT_CONVERGED: f"The search did not come to rest from any of {f.starts} starts. " + self._least(),
+            Outcome.NOT_CONVERGED: f"The search did not converge from any of {f.starts} starts. " + self._least(),
         }[self.outcome]
         out = [said]
         if self.outcome in (Outcome.FAMILY, Outcome.SEVERAL):
@@ -205,7 +205,7 @@ def least_effort(unknowns: Sequence[Unknown]) -> str:
         for u in unknowns
         if u.weight > 0.0 and u.low < u.high
     ]
-    return f"the least sum of squares of {', '.join(parts)}" if parts else "the one that the first start comes to"
+    return f"the least sum of squares of {', '.join(parts)}" if parts else "the one that the first start converges to"
 
 
 def nearest(unknowns: Sequence[Unknown], point: Mapping[str, float]) -> tuple[Unknown, ...]:

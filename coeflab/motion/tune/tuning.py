@@ -28,7 +28,7 @@ from coeflab.vehicle.parameter_parts import ParameterCovariance
 OK, PRIOR, BOUND, OPEN = "ok", "prior_only", "at_bound", "not_identifiable"
 STATUSES = {
     OK: "the data determine it",
-    PRIOR: "more than nine tenths of what is known of it is its prior",
+    PRIOR: "more than nine tenths of its information is the prior",
     BOUND: "it ended at a bound, so there is no interval",
     OPEN: "the data do not determine it: its 95 % half-width would exceed its own size; no interval",
 }
@@ -178,10 +178,10 @@ def statements(p: Problem, found: Estimate) -> tuple[str, ...]:
             f"The residuals are {found.birge:.2g} times the stated errors; the intervals are widened by that (Birge ratio)."
         )
     if np.any(found.open):
-        out.append("Parameters without an interval stand where a weak leash to the start left them.")
-    out.append("Intervals hold for the form of the model and for everything that was not free at its value.")
+        out.append("Parameters without an interval stay near their start value, held by a weak prior.")
+    out.append("Intervals apply to this form of the model, with everything that was not free at its value.")
     if int(np.isfinite(p.measured).sum()) <= len(p.start):
-        out.append("There are no more measurements than parameters; nothing is left to judge the model by.")
+        out.append("There are no more measurements than parameters; the model cannot be judged.")
     return tuple(out)
 
 
@@ -200,7 +200,7 @@ def together_in_words(names: Sequence[str], change: Array, values: Array) -> str
     away = away / away[np.argmax(np.abs(away))]
     parts = [(n, float(c)) for n, c in zip(names, away, strict=True) if abs(c) >= TAKES_PART]
     if len(parts) == 1:
-        return f"{parts[0][0]}: the data hardly show it at all."
+        return f"{parts[0][0]}: the data barely depend on it."
     together = listed([n for n, _ in parts])
     if all(abs(c - 1.0) <= SAME_RATIO for _, c in parts):
         only = "as a ratio" if len(parts) == 2 else "as ratios to each other"

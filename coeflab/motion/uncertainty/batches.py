@@ -293,7 +293,7 @@ def _on_processes(
                 yield waiting[done], done.result()
         except BrokenProcessPool:
             raise CoeflabError(
-                "A worker process was killed, perhaps for want of memory. Finished batches are kept where there is a store: "
+                "A worker process was killed, perhaps out of memory. Finished batches are kept where there is a store: "
                 "start again, with fewer --cores."
             ) from None
         finally:

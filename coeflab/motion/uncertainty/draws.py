@@ -374,5 +374,5 @@ def _why(
     half = [0.0 if k is None else 2.0 * float(varied.deviation[k]) for k in at]
     for label, size, u95 in ((force, values[0], half[0]), (f"{moment_rate} - xG'm'", values[3] - moment, half[3])):
         if reaches_zero(size, u95):
-            return f"the interval of the denominator {label} = {size:.3g} +- {u95:.2g} holds zero"
+            return f"the interval of the denominator {label} = {size:.3g} +- {u95:.2g} contains zero"
     return ""

@@ -331,9 +331,7 @@ CHUNK = 2000  # members whose eigenvalues are taken at once, for memory's sake
 SEEN = 0.005  # of the variance: less shows as 0 % in whole per cent
 # Of a figure, fixed steps against the adaptive integrator: far below any interval that is worth its members.
 STEPPED = 1e-3
-EACH = (
-    "every member starts in an equilibrium of its own: its thrust is what its straight run at the approach speed takes"
-)
+EACH = "every member starts in an equilibrium of its own: its thrust is that of its straight run at the approach speed"
 LOGGER = logging.getLogger("coeflab.uncertainty")
 
 
@@ -483,8 +481,8 @@ def _missed(setup: Setup, nominal: tuple[Figure, ...], ended: str, exact: tuple[
     if not missed:
         return []
     return [
-        f"fixed steps of {setup.step:.3g} s do not stand this motion: at the values of the file they miss {', '.join(missed)} "
-        "of the adaptive integrator. No interval holds that error"
+        f"fixed steps of {setup.step:.3g} s are too long for this motion: at the values of the file they miss {', '.join(missed)} "
+        "of the adaptive integrator. No interval includes that error"
     ]
 
 
@@ -556,7 +554,7 @@ def _said(ended: tuple[str, ...], how: str) -> list[str]:
     out = []
     if stopped:
         counts = ", ".join(f"{e} {stopped.count(e)}" for e in sorted(set(stopped)))
-        out.append(f"motions that did not come to their end: {len(stopped)} of {len(ended)} ({counts})")
+        out.append(f"motions that ended early: {len(stopped)} of {len(ended)} ({counts})")
     if how != Ended.COMPLETE.value:
         out.append(f"the motion at the values of the file ended early: {how}")
     return out

@@ -11,9 +11,11 @@ import base64
 import hashlib
 import json
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib.resources import files
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -24,6 +26,7 @@ from numpy.typing import NDArray
 from coeflab.core.table import ABSENT, LARGEST_SHARE, coefficient, plus_minus, with_u95
 from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Section, Series
+from coeflab.report.glossary import definitions_html, linked_html
 from coeflab.report.notation import cell_html, html, keeping, label, unit_html, unit_label
 from coeflab.report.printable import shortened, visible
 
@@ -116,7 +119,7 @@ def _packed(values: NDArray[Any]) -> str:
 
 summary = "one HTML file with tables and figures, for browser and printer"
 STYLES = ("style.css", "symbols.css", "contents.css", "answer.css")
-SCRIPTS = ("contents.js", "figures.js", "painting.js", "scenes.js", "copying.js", "pdf.js", "saving.js")
+SCRIPTS = ("contents.js", "zooming.js", "figures.js", "painting.js", "scenes.js", "copying.js", "pdf.js", "saving.js")
 citations: tuple[str, ...] = ()
 
 
@@ -145,7 +148,10 @@ def render(document: Document) -> Mapping[str, bytes]:
         "rows_json": rows_json,
         "anchors": anchors,
     }
+    seen: set[str] = set()
+    environment.globals["definitions"] = lambda: Markup(definitions_html(seen))
     environment.filters |= {
+        "linked": lambda text: Markup(linked_html(text, seen)),
         "spelled": spelled,
         "spelled_cell": spelled_cell,
         "visible": visible,
@@ -158,7 +164,7 @@ def render(document: Document) -> Mapping[str, bytes]:
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     with keeping(document.verbatim):
         page = template.render(document=document, style=style, script=script, digest=digest)
-    return {"report.html": page.encode()}
+    return {"report.html": lighter(page).encode()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +188,15 @@ def row_of(row: AnswerRow) -> Row:
     against = ABSENT if row.share is None else f"{row.share:+.2f}" if abs(row.share) < 10.0 else f"{row.share:+.0f}"
     verdict = "missing" if row.value is None else {True: "agrees", False: "differs", None: "open"}[row.agrees]
     share = _in_percent(row.u95, row.value)
-    return Row(primed(row.symbol), own, share, row.status or "no data" * (row.value is None), sign + difference, against, verdict)
+    return Row(
+        primed(row.symbol),
+        own,
+        share,
+        row.status or "no data" * (row.value is None),
+        sign + difference,
+        against,
+        verdict,
+    )
 
 
 def filename(text: str) -> str:
@@ -254,6 +268,35 @@ def anchors(document: Document) -> frozenset[str]:
             yield from of(section.subsections)
 
     return frozenset(of(document.sections))
+
+
+_DRAWING = re.compile(r"<svg .*?</svg>", re.DOTALL)
+_STYLE = re.compile(r' style="([^"]*)"')
+_STEPS = re.compile(r' d="([^"]*)"')
+
+
+def _tight(steps: re.Match[str]) -> str:
+    return ' d="' + re.sub(r"\s*([A-Za-z])\s*", r"\1", steps[1]).strip() + '"'
+
+
+def lighter(page: str) -> str:
+    """The same page with the styles that drawings share as classes, shorter marks of their parts and no idle spaces."""
+    often = Counter(style for drawing in _DRAWING.findall(page) for style in _STYLE.findall(drawing))
+    names = {style: f"s{i}" for i, style in enumerate(s for s, count in often.items() if count > 1)}
+    rules = "\n".join(f"figure svg .{name} {{ {style} }}" for style, name in names.items())
+    order = count()
+
+    def drawn(found: re.Match[str]) -> str:
+        text = _STYLE.sub(lambda m: f' class="{names[m[1]]}"' if m[1] in names else m[0], found[0])
+        text = _STEPS.sub(_tight, text)
+        prefix = re.search(r'aria-labelledby="([^" ]*)-title ', text)
+        if prefix:
+            short = f"_{next(order)}-"
+            text = re.sub(rf'(?<=["# (]){re.escape(prefix[1])}-(?=\d|title|desc)', short, text)
+        return text
+
+    head, end, rest = page.partition("</style>")
+    return f"{head}{rules}\n{end}{_DRAWING.sub(drawn, rest)}" if names else page
 
 
 def spelled(text: str) -> Markup:

@@ -21,7 +21,7 @@ from coeflab.core.table import percent, plus_minus
 from coeflab.core.types import brief
 from coeflab.report.document import digest_of
 from coeflab.report.printable import shortened
-from coeflab.vehicle.derived import sense, stability
+from coeflab.vehicle.derived import INDICES, sense, stability
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 
 SERVED = {
@@ -75,7 +75,7 @@ PARAMETERS = ".parameters.json"
 OWN_REPORTS = ("report.html", "summary.html")
 MOST_FILES, MOST_ENTRIES = 2_000, 200_000
 LONGEST, MOST_ROWS = 300, 60
-SLOPE = len("Yv'")
+SLOPES = tuple(s for *several, _ in INDICES.values() for s in several)
 DRAWN = re.compile(r'<svg xmlns="http://www.w3.org/2000/svg" viewBox="[\d. ]+" role="img".*?</svg>', re.DOTALL)
 ROWS = re.compile(r'<script type="application/json" class="rows">(.*?)</script>', re.DOTALL)
 
@@ -229,7 +229,7 @@ class Listing:
         """Coefficients that a query names, each with the file that holds it; parameter files first.
 
         A word that begins a symbol is one, in any case and with or without prime: ``yv`` finds Yv', then Yv|v|' and
-        Yvdot'. The other words have to stand in the file's entry.
+        Yvdot'. The other words have to stand in the file's entry, or in the campaign.
         """
         entries: list[Entry] = [*self.parameters, *self.reports]
         every = [(c, e) for e in entries for c in e.coefficients]
@@ -241,7 +241,7 @@ class Listing:
         others = [w for w in words if _bare(w) not in symbols]
         found = [
             (c, e) for c, e in every
-            if any(_bare(c.symbol).startswith(s) for s in symbols) and all(w in e.words for w in others)
+            if any(_bare(c.symbol).startswith(s) for s in symbols) and all(w in f"{e.words} {c.source.casefold()}" for w in others)
         ]  # fmt: skip
         return tuple(sorted(found, key=lambda pair: (_bare(pair[0].symbol) not in symbols, pair[0].symbol)))
 
@@ -427,12 +427,12 @@ def _parameters(path: Path, name: str) -> ParameterEntry | None:
 
 
 def _verdict(found: ParameterFile) -> str:
-    """Whether straight motion is stable, and the widest interval of the velocity derivatives; empty where neither is known."""
+    """Whether straight motion is stable, and the widest interval of the derivatives that say so; empty without either."""
     said = [f"{sense(d)}, {d.name} = {d.value:.2f}" for d in stability(found)]
-    wide = [(abs(c.u95 / c.value), c) for c in found.coefficients if c.value and c.u95 and len(c.symbol) == SLOPE]
+    wide = [(abs(c.u95 / c.value), c) for c in found.coefficients if c.value and c.u95 and c.symbol in SLOPES]
     if wide:
         share, c = max(wide, key=lambda pair: pair[0])
-        said.append(f"largest U95 of a slope {percent(share, 1.0)}, of {c.symbol}")
+        said.append(f"largest U95 {percent(share, 1.0)}, of {c.symbol}")
     return "; ".join(said)
 
 

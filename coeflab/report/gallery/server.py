@@ -228,8 +228,8 @@ ALWAYS = {
     "Cache-Control": "no-cache",
 }
 POLICIES = {
-    ".html": "sandbox allow-scripts; default-src 'none'; img-src data:; style-src 'unsafe-inline'; "
-    "script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    ".html": "sandbox allow-scripts allow-downloads; default-src 'none'; img-src data:; "
+    "style-src 'unsafe-inline'; script-src 'unsafe-inline' blob:; worker-src blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     ".pdf": "default-src 'none'; object-src 'self'; style-src 'unsafe-inline'; frame-ancestors 'none'",
     ".json": "sandbox; default-src 'none'; frame-ancestors 'none'",
     ".svg": "sandbox; default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'",

@@ -38,12 +38,11 @@ def check(study: Study) -> Sequence[Check]:
                     "agreement",
                     f"{primed(c.symbol)} {a.campaign}, {b.campaign}",
                     Severity.PASS if agree else Severity.WARN,
-                    f"{c.value:.4g} and {d.value:.4g}, apart by {difference:.2g}",
+                    f"{c.value:.4g} and {d.value:.4g}, difference {difference:.2g}",
                     f"within the combined U95 {combined:.2g}",
                     "Agree."
                     if agree
-                    else "Apart by more than the assessed parts explain: Reynolds number, rig, grid and "
-                    "modelling errors are not in these U95.",
+                    else "The difference exceeds the combined U95, which leaves out Reynolds number, rig, grid and modelling error.",
                 )
             )
     return out

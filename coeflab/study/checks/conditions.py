@@ -72,7 +72,7 @@ def _carried(t: ForceTable) -> Iterator[Check]:
         yield Check(
             "conditions", f"{t.name} inertia", Severity.WARN, "contains_inertia = false in an experiment that turns",
             "a balance on a rotating arm carries the model's inertia",
-            "If the forces hold it, Yr' and Nr' are wrong, often in sign: contains_inertia = true and [inertia] take it out.",
+            "If the forces contain it, Yr' and Nr' are wrong, often in sign: contains_inertia = true and [inertia] subtract it.",
         )  # fmt: skip
 
 

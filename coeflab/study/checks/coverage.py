@@ -30,7 +30,9 @@ def _points(s: Sweep, status: Status) -> Check:
         return Check("coverage", subject, Severity.WARN, f"{n} points, {s.reason}", "three settings", status.advice)
     severity = Severity.PASS if n >= FEW else Severity.NOTE
     comment = (
-        "Enough to tell forms apart." if n >= FEW else "Few points: intervals rest on very few degrees of freedom."
+        "Enough points to distinguish forms."
+        if n >= FEW
+        else "Few points: intervals rest on very few degrees of freedom."
     )
     return Check("coverage", subject, severity, f"{n} points", f"at least {FEW}", comment)
 
@@ -55,7 +57,7 @@ def _sides(s: Sweep) -> Check | None:
             Severity.WARN,
             "all points on one side",
             "points on both sides of zero",
-            "Even and odd parts cannot be told apart; the body is taken as symmetric.",
+            "Even and odd parts cannot be separated; the body is assumed symmetric.",
         )
     low, high = float(s.x.min()), float(s.x.max())
     if min(-low, high) < 0.5 * max(-low, high):
@@ -124,7 +126,7 @@ def replicates(s: Sweep, groups: int) -> list[Check]:
                     f"{s.campaign} {primed(s.symbol)}",
                     Severity.WARN,
                     f"points {names} differ by {gap:.3g}, {gap / spread if spread else np.inf:.1f} standard deviations",
-                    f"farthest of a group, probability {REPLICATE_LEVEL:g} over {groups} groups",
+                    f"largest deviation in a group, probability {REPLICATE_LEVEL:g} over {groups} groups",
                     "One of them may be a bad run; all are in the fit.",
                 )
             )

@@ -237,7 +237,7 @@ def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows:
         strange = data_gate.strange_settings(first.x, y, scatter, signs)
         for at, other in strange.items():
             said = rows.setdefault(int(first.rows[at]), _Row())
-            said.cells.append(f"{_setting(name, first.x[at])} lies by itself")
+            said.cells.append(f"{_setting(name, first.x[at])} is isolated")
             said.components += [c for c in by_component if c not in said.components]
             if other is not None:
                 partner, mirror = _setting(name, first.x[other]), _setting(name, -first.x[other])
@@ -254,12 +254,12 @@ def _shared_errors(table: ForceTable, cells: dict[tuple[int, str], _Cell], rows:
                 said.cells += [
                     _cell_text(table, c, int(row), _Cell(first, at, k.seen, k.parity)) for c, k in by_component.items()
                 ]
-                said.comments.append("No component is off by itself; together they are.")
+                said.comments.append("No single component is off; together they are.")
             if int(row) in rows and len(rows[int(row)].components) > 1 and at not in strange:
                 suits = data_gate.setting_that_suits(first.x, y[:, at], expected, scatter)
                 if suits is not None:
                     rows[int(row)].comments.append(
-                        f"{_setting(name, suits)} instead of {_setting(name, first.x[at])} suits all components."
+                        f"{_setting(name, suits)} instead of {_setting(name, first.x[at])} would fit all components."
                     )
 
 
@@ -328,7 +328,7 @@ def _as_check(table: ForceTable, row: int, said: _Row, readings: int) -> Check:
         _where(table, row),
         Severity.WARN,
         "; ".join([*said.cells, *said.values]),
-        f"probability of so far a reading above {LEVEL:g}/{readings}"
+        f"probability of such a deviation above {LEVEL:g}/{readings}"
         if said.cells
         else "no row moves a value by its U95",
         " ".join([*words, ADVICE if said.cells else INFLUENTIAL]),
@@ -351,7 +351,7 @@ def _together(table: ForceTable, tables: Sequence[ForceTable], length: float, ro
     return Check(
         "data_gate", table.name, Severity.WARN,
         "; ".join([f"{len(rows)} rows do not belong to their sweep, in {components}: line {_some(where)}", *values]),
-        "at most one reading in fifty campaigns that are clean", ADVICE,
+        "at most one false alarm in fifty clean campaigns", ADVICE,
     )  # fmt: skip
 
 
@@ -384,7 +384,7 @@ def _pasted(table: ForceTable, again: NDArray[np.bool_]) -> list[Check]:
         out.append(
             Check("data_gate", table.name, Severity.WARN if several else Severity.NOTE,
                   f"{int(again.sum())} rows repeat an earlier row to the last digit: line {_some(where)}", "rows differ",
-                  "Copies are no repeats: they narrow intervals without new data. Delete them.")
+                  "Copies are not repeats: they narrow intervals without new data. Delete them.")
         )  # fmt: skip
     if _is_mirrored(table, again):
         out.append(
@@ -419,7 +419,7 @@ def _astern(table: ForceTable, ahead: NDArray[np.bool_]) -> list[Check]:
         return []
     where = [str(table.lines[i]) if table.lines else table.labels[i] for i in np.flatnonzero(~ahead)]
     return [
-        Check("data_gate", f"{table.name} line {_some(where)}", Severity.WARN, "does not run ahead (u <= 0), the others do",
+        Check("data_gate", f"{table.name} line {_some(where)}", Severity.WARN, "moves astern (u <= 0) while the others move ahead",
               "u > 0", "An angle beyond 90 degrees: a slip of the decimal point?")
     ]  # fmt: skip
 
@@ -429,7 +429,7 @@ def _summary(campaign: str, readings: int, missed: int, found: Sequence[Check]) 
     said = f"{readings - missed} of {readings} readings predicted from their sweep, {grave} warnings"
     if missed:
         return Check("data_gate", campaign, Severity.NOTE, said, "every reading in a sweep of at least five",
-                     f"{missed} readings are in no sweep of five in which one variable alone changes: nothing is known of them.")  # fmt: skip
+                     f"{missed} readings are in no sweep of five in which one variable alone changes: not checked.")  # fmt: skip
     severity = Severity.NOTE if grave else Severity.PASS
     return Check(
         "data_gate",

@@ -30,8 +30,8 @@ def check(study: Study) -> Sequence[Check]:
         if not alike.same:
             severity = Severity.NOTE if alike.same is None else Severity.WARN
             out.append(
-                Check("hull", f"{name}: {hull.name}", severity, f"the forces are those of {file.body}; {alike.words}", "one body",
-                      "Potential parts are those of another shape; say why that will do, or give the body itself.")
+                Check("hull", f"{name}: {hull.name}", severity, f"the forces belong to {file.body}; {alike.words}", "one body",
+                      "The potential parts belong to another shape: give the reason, or the body itself.")
             )  # fmt: skip
     return out
 
@@ -42,7 +42,7 @@ def _held(subject: str, what: str, ours: float, theirs: float, unit: str, limit:
     comment = {
         Severity.PASS: "The body fits the vehicle.",
         Severity.WARN: "Is this the body that was towed?",
-        Severity.FAIL: "This is another vehicle: its added mass says nothing about these forces.",
+        Severity.FAIL: "This is another vehicle: its added mass does not apply to these forces.",
     }[severity]
     statistic = f"{ours:.4g} {unit} against {theirs:.4g} {unit}, {what}"
     return Check("hull", subject, severity, statistic, f"within {limit:.0%}", comment)

@@ -9,7 +9,7 @@ from coeflab.core.table import Check
 from coeflab.study.study import Study
 from coeflab.vehicle.plausibility import law_findings
 
-summary = "how far the law of a parameter file is from the points behind it, and where it is said to hold"
+summary = "distance of a parameter file's law from its measured points, and where the law holds"
 citations = ("roddy1990",)
 
 

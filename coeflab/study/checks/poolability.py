@@ -18,18 +18,21 @@ def check(study: Study) -> Sequence[Check]:
         if fit.differences:
             out.append(
                 Check("poolability", fit.campaign, Severity.NOTE, " ".join(fit.differences), "campaigns of one kind",
-                      "The joint fit takes the forces of these campaigns as those of one law.")
+                      "The joint fit assumes one law for these campaigns.")
             )  # fmt: skip
         for p in fit.poolings:
             if len(p.shares) < 2:
                 continue
             severity, said = {
-                None: (Severity.NOTE, "The rows cannot tell whether one law serves all campaigns."),
+                None: (Severity.NOTE, "The rows cannot show whether one law fits all campaigns."),
                 False: (Severity.PASS, "The campaigns do not contradict one law."),
-                True: (Severity.WARN, f"The campaigns disagree. {p.values_alone} U95 does not hold their difference."),
+                True: (
+                    Severity.WARN,
+                    f"The campaigns disagree. {p.values_alone} U95 does not include their difference.",
+                ),
             }[p.rejected]
             if p.doubtful:
-                severity, said = Severity.WARN, f"One law is not contradicted, nor is it shown. {p.values_alone}"
+                severity, said = Severity.WARN, f"One law is neither contradicted nor shown. {p.values_alone}"
             out.append(
                 Check("poolability", f"{fit.campaign} {p.response}'", severity, p.statistic, "p of 0.1 or more", said)
             )

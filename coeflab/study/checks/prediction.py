@@ -28,7 +28,7 @@ def check(study: Study) -> Sequence[Check]:
                 Severity.WARN,
                 f"left-out rows are missed by {error / spread:.3g} of their own scatter",
                 "below 1",
-                "The form has too many terms for these rows, or a point far from the others carries it.",
+                "The form has too many terms for these rows, or one remote point dominates it.",
             )
         )
     return out

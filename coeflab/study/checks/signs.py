@@ -45,7 +45,7 @@ def _signed(owner: str | None, c: Coefficient, source: str) -> Check | None:
     sure = c.u95 is not None and abs(c.value) > c.u95
     severity = Severity.PASS if good else Severity.FAIL if sure else Severity.WARN
     if good:
-        comment = f"As it must be: {NEGATIVE[symbol]}."
+        comment = f"As expected: {NEGATIVE[symbol]}."
     elif source:
         comment = f"{source}Check its axes and the convention of its sign; {NEGATIVE[symbol]}."
     else:

@@ -35,14 +35,12 @@ def _indices(parameters: ParameterFile) -> list[Check]:
             whether = "Directionally" if d.decided else "Directional stability with controls fixed is"
             comment = f"{whether} {verdict}{'.' if whether[-2:] == 'is' else ' with controls fixed.'}"
             if d.driven:
-                comment += (
-                    f" {d.driven} is not below zero: it drives what it should damp, and the index is no criterion."
-                )
+                comment += f" {d.driven} is not negative: it drives the motion instead of damping it, and the index does not apply."
             else:
-                comment += "" if d.decided else " The interval holds zero."
+                comment += "" if d.decided else " The interval contains zero."
             comment += f" {without_restoring(parameters)}" if name == "G_v" else ""
             comment += f" {', '.join(literature)} from literature (PMM)." if literature else ""
-            comment += f" {d.statement}." if half is None else " Mass is not assessed in U95."
+            comment += f" {d.statement}." if half is None else " U95 leaves out the mass."
         subject = f"{parameters.name} {name}"
         out.append(Check("stability", subject, Severity.NOTE, statistic, "above zero is stable", comment))
     return out

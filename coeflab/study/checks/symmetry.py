@@ -12,10 +12,7 @@ from coeflab.study.study import Study
 summary = "intercepts of Y, K, N at zero drift and yaw rate against their own error"
 citations = ("wahba1990",)
 NOTHING, LARGE = 1e-3, 0.05
-RULE = (
-    f"passes where its 95 % interval holds zero or it is below {100 * NOTHING:g} % of the largest; noted below {100 * LARGE:g} %, "
-    "else a warning"
-)
+RULE = f"pass: the 95 % interval contains zero, or below {100 * NOTHING:g} % of the largest; note: below {100 * LARGE:g} %; else warning"
 
 
 def _intercept(sweep: Sweep) -> Check | None:
@@ -25,11 +22,11 @@ def _intercept(sweep: Sweep) -> Check | None:
     reach = float(abs(sweep.y).max())
     share = abs(value) / reach if reach else 0.0
     if abs(value) <= error:
-        severity, comment = Severity.PASS, "The force at rest angle is within its error of zero."
+        severity, comment = Severity.PASS, "The force at zero angle is within its error of zero."
     elif share < NOTHING:
-        severity, comment = Severity.PASS, "The force at rest angle is next to nothing."
+        severity, comment = Severity.PASS, "The force at zero angle is negligible."
     elif share < LARGE:
-        severity, comment = Severity.NOTE, "Model or rig bias; the intercept takes it up."
+        severity, comment = Severity.NOTE, "Model or rig bias; the intercept absorbs it."
     else:
         severity, comment = Severity.WARN, "A large bias: look for a misaligned model, tare or angle offset."
     return Check(

@@ -4,7 +4,7 @@ A strip of the body at x that resists its cross-flow velocity v + x r with c(x) 
 Nr = -S c x^2 (S: the integral along the body). So with the potential parts taken off, Nv/Yv and Yr/Yv are centres of what
 separates and lifts, and Nr/Yv is the square of a distance. Flow separates, and tails are set, aft. A wrong sign of Nv or Yr
 moves its centre ahead or off the body; so does inertia of the model in a rotating arm's force, which reads Yr' - m' and
-Nr' - m' xG', or inertia taken out of a force that never held it. In the vertical plane Zw, -Mw, -Zq, Mq stand for Yv, Nv, Yr,
+Nr' - m' xG', or inertia subtracted from a force that never contained it. In the vertical plane Zw, -Mw, -Zq, Mq stand for Yv, Nv, Yr,
 Nr.
 """
 
@@ -65,9 +65,9 @@ class _Plane:
     def readings(self, c: Coefficient, prime: float) -> Iterator[tuple[str, float]]:
         """What the value would be in place of what stands there: with the inertia treated the other way, with its other sign."""
         if prime and self.taken_out is not True:
-            yield "if the table holds the model's inertia (contains_inertia = true)", _value(c) + prime
+            yield "if the table contains the model's inertia (contains_inertia = true)", _value(c) + prime
         if prime and self.taken_out is not False:
-            yield "if it never held the inertia that was taken out (contains_inertia = false)", _value(c) - prime
+            yield "if it never contained the inertia that was subtracted (contains_inertia = false)", _value(c) - prime
         yield "with the other sign", -_value(c)
 
 
@@ -198,9 +198,7 @@ def _doubted(p: _Plane, c: Coefficient, found: str, rule: str, readings: Sequenc
     own = f"{c.symbol} = {_value(c):.4g}"
     comment = f"No other sign or inertia explains {own}: check it and its point."
     if p.mass is None and c is p.rate:
-        comment = (
-            f"Check {own}, its sign and its point. The mass is not known here: does the force hold the model's inertia?"
-        )
+        comment = f"Check {own}, its sign and its point. The mass is not known here: does the force contain the model's inertia?"
     if readings:
         said = "; ".join(f"{words}, {c.symbol} = {value:.4g}" for words, value in readings)
         held = f" m' = {p.mass:.4g}." if p.mass is not None and any("inertia" in w for w, _ in readings) else ""

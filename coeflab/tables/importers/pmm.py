@@ -245,7 +245,7 @@ def _runs(campaign: Campaign, table: TableDeclaration, cells: Cells) -> list[Pla
         air = texts.get("in_air", [""] * len(cells))[i]
         if not record.has_motion and (amplitude is None or phase is None):
             raise fail(
-                "a run whose file holds no motion, without amplitude or phase", f"{moved} [...] and phase [deg]", moved,
+                "a run whose file has no motion, without amplitude or phase", f"{moved} [...] and phase [deg]", moved,
                 f"{moved} = amplitude sin(2 pi f t + phase); or put {moved}(t) into {texts['file'][i]}.",
             )  # fmt: skip
         # A motion about or along a table's axis that points the other way is the same with the phase turned by half.

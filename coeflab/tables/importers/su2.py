@@ -246,7 +246,7 @@ def _config(files: Sequence[Path]) -> tuple[_Config | None, list[str]]:
         return configs[0], []
     if beside:
         names = shown(", ".join(p.name for p in beside), 200)
-        return None, [f"conditions not read: config files {names}, and CONV_FILENAME does not tell which one is meant"]
+        return None, [f"conditions not read: config files {names}, and CONV_FILENAME does not show which one is meant"]
     return None, [f"conditions not read: no .cfg file beside {files[0].name}"]
 
 

@@ -36,7 +36,7 @@ from coeflab.tables.text_dialect import (
     unread,
 )
 
-summary = "any delimited text: delimiter, decimal mark, units and encoding found out and said"
+summary = "any delimited text: delimiter, decimal mark, units and encoding detected and reported"
 citations = ()
 reads = "tables of delimited text"
 
@@ -227,7 +227,7 @@ def _remarks(body: _Body) -> list[str]:
         said = listed([str(n) for n in body.again[:5]]) + (
             f" and {len(body.again) - 5} more" if len(body.again) > 5 else ""
         )
-        out.append(f"the head stands again in line {said}; left out")
+        out.append(f"the header is repeated in line {said}; left out")
     return out
 
 

@@ -275,7 +275,7 @@ def case_files(
     if taken := TAKEN.intersection(body.patches):
         raise InputError(
             f"a part named {sorted(taken)[0]}", f"any name but {', '.join(sorted(TAKEN))}", file=tank.body,
-            advice="OpenFOAM, or coeflab in its cases, calls something else so.",
+            advice="OpenFOAM or coeflab uses this name for something else.",
         )  # fmt: skip
     divided, pairs = split(body, condition.half)
     values = {

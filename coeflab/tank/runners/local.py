@@ -141,7 +141,7 @@ def _begun(job: Job, nice: int) -> subprocess.Popen[bytes]:
 def _said(job: Job) -> str:
     """The last that the process of a job said."""
     lines = (job.folder / LOG).read_text(errors="replace").splitlines()
-    return f"{job.name}: {lines[-1].removeprefix('error: ') if lines else 'it said nothing'}"
+    return f"{job.name}: {lines[-1].removeprefix('error: ') if lines else 'it printed nothing'}"
 
 
 def _end(processes: Sequence[subprocess.Popen[bytes]]) -> None:

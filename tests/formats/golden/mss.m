@@ -12,7 +12,7 @@ function [tau, MA, h] = file(nu, delta)
 %
 % Axes: x forward, y starboard, z down. Equations of motion with rigid-body MRB and CRB:
 %   (MRB + MA)*nu_dot + CRB*nu + g = tau + tau_control
-% tau holds -C_A(nu)*nu already (the Munk moment in Nv and Mw): do not add m2c(MA, nu).
+% tau contains -C_A(nu)*nu already (the Munk moment in Nv and Mw): do not add m2c(MA, nu).
 %
 % Primes: Y = 1/2 rho U^2 L^2 Y', v' = v/U, r' = r L/U, U = |(u, v, w)|; a in a name is an absolute value,
 % h.Yvav that of v|v|.
@@ -62,7 +62,7 @@ h.Xdrdr = -0.002;  % fit
 h.Nvdr = 0.0003;  % fit
 h.Mds = -0.005;  % fit
 
-% Primed products of the ideal fluid, -C_A(nu)*nu, that no coefficient above speaks of
+% Primed products of the ideal fluid, -C_A(nu)*nu, that no coefficient above covers
 h.ideal.Xwq = -0.145;
 h.ideal.Ywp = 0.145;
 h.ideal.Zvp = -0.15;

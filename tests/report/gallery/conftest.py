@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+from functools import cache
 from threading import Thread
 
 import pytest
@@ -13,6 +14,7 @@ from coeflab.report.gallery.server import GalleryServer
 from tests.cli.test_compare import VALUES, changed, made
 
 
+@cache
 def report(title: str = "Tow of a boat", name: str = "boat") -> bytes:
     section = Section("verdict", "Verdict", ("Fine.",))
     return REPORTERS.load("html").render(Document(title, "", (section,), name, "0123456789abcdef"))["report.html"]

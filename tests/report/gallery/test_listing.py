@@ -1,12 +1,18 @@
 from __future__ import annotations
 
+import json
+import os
+import shutil
 from pathlib import Path
 
 import pytest
 
+from coeflab.core.files import shipped
+from coeflab.report.document import digest_of
 from coeflab.report.gallery import listing
 from coeflab.report.gallery.listing import Shelf
 from coeflab.report.printable import visible
+from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.cli.test_compare import VALUES, made
 from tests.report.gallery.conftest import report
 from tests.report.studies import ENDLESS, HOSTILE
@@ -25,6 +31,76 @@ def test_parameter_files_say_body_symbols_and_version(folder):
     assert (entry.name, entry.body, entry.length, entry.fault) == ("second", "hull", "LBP 4.26086 m", "")
     assert entry.symbols == tuple(VALUES)
     assert entry.version == made(VALUES).schema_version
+
+
+PAGE = """<!DOCTYPE html><meta name="generator" content="coeflab"><title>Tow</title>
+<p class="subtitle digest">Study <bdi>tow</bdi>, inputs {digest}</p>
+<h2 id="answer-heading">Both agree within <i>U</i><sub>95</sub></h2><p class="lead">no verdict</p>
+<figure><svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 3 2" role="img"><path d="M0 0"/></svg></figure>
+<script type="application/json" class="rows">{rows}</script>"""
+HUUV = shipped("cfd_data") / "huuv" / "huuv.parameters.json"
+ROWS = [{"symbol": "Yv'", "value": -0.026, "U95": 0.003, "status": "", "from": "tank"},
+        {"symbol": "Nr'", "value": None, "U95": None, "status": "no data", "from": ""}]  # fmt: skip
+
+
+WRITTEN = json.dumps({"rows": ROWS})
+
+
+def written(folder, rows=WRITTEN, digest="d" * 16):
+    (folder / "boat" / "report.html").write_text(PAGE.format(rows=rows, digest=digest))
+    return Shelf(folder).listing().reports[0]
+
+
+def test_a_card_says_verdict_day_and_where_its_picture_is(folder):
+    place = folder / "boat" / "report.html"
+    assert Shelf(folder).listing().reports[0].verdict == "Fine."
+    written(folder)
+    os.utime(place, (0, 86400 * 365))
+    found = Shelf(folder).listing().reports[0]
+    assert (found.verdict, found.written, found.picture) == (
+        "Both agree within U95", "1971-01-01", "boat/report.html",
+    )  # fmt: skip
+    assert Shelf(folder).drawing(found.picture).startswith("<svg")
+    assert [(c.symbol, c.said) for c in found.coefficients] == [("Yv'", "-0.0260 +- 0.0030"), ("Nr'", "no data")]
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        "",
+        "{}",
+        '{"rows": 1}',
+        '{"rows": [1]}',
+        '{"rows": [{"symbol": "Yv"}]}',
+        "[" * 100_000,
+        "null",
+        '{"rows": {"a": 1}}',
+    ],
+)
+def test_rows_that_no_report_writes_are_none(folder, rows):
+    assert written(folder, rows).coefficients == ()
+
+
+def test_a_search_finds_coefficients_in_files_and_reports(folder):
+    written(folder)
+    found = Shelf(folder).listing()
+    hits = found.coefficients("yv")
+    assert [(c.symbol, e.path) for c, e in hits] == [
+        ("Yv'", "a.parameters.json"), ("Yv'", "alias.parameters.json"), ("Yv'", "b.parameters.json"), ("Yv'", "boat/report.html"),
+    ]  # fmt: skip
+    assert [(c.said, e.called) for c, e in found.coefficients("YV' second")] == [("-0.0400 +- 0.0020", "second")]
+    assert [e.path for _, e in found.coefficients("tank yv'")] == ["boat/report.html"]
+    assert {c.symbol for c, _ in found.coefficients("Y")} == set()
+    assert found.coefficients("boat") == ()
+
+
+def test_parameter_files_of_the_same_inputs_stand_with_their_report(folder):
+    shutil.copy(HUUV, folder / "boat")
+    digest = digest_of(read_parameter_file(HUUV).provenance.inputs)
+    report_of = written(folder, digest=digest)
+    assert len(digest) == 16
+    assert [e.path for e in Shelf(folder).listing().files_of(report_of)] == ["boat/huuv.parameters.json"]
+    assert Shelf(folder).listing().files_of(written(folder)) == ()
 
 
 def test_bad_files_stand_there_with_one_line(folder):

@@ -3,13 +3,16 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import socket
 from concurrent.futures import ThreadPoolExecutor
 from urllib.parse import quote
+from xml.etree import ElementTree
 
 import pytest
 
 from coeflab.core.errors import InputError, OutputError
+from coeflab.core.files import shipped
 from coeflab.report.gallery.server import MOST_COMPARED, GalleryServer
 from tests.cli.test_compare import VALUES, made
 from tests.report.gallery.conftest import report
@@ -33,6 +36,35 @@ def test_the_index_lists_reports_and_parameter_files_and_nothing_secret(ask):
     assert "Yr'" in re.sub(r"<[^>]*>", "", page)
     for word in ("secret", "outside", ".git", "notes.txt", "<script"):
         assert word not in page
+
+
+def test_pictures_are_drawings_that_can_do_nothing(ask, folder):
+    shutil.copy(shipped("cfd_data") / "huuv" / "huuv.parameters.json", folder)
+    assert b'src="/picture/huuv.parameters.json"' in ask("/")[2]
+    status, headers, body = ask("/picture/huuv.parameters.json")
+    assert (status, headers["Content-Type"]) == (200, "image/svg+xml")
+    assert headers["Content-Security-Policy"].startswith("sandbox; default-src 'none'")
+    assert body.startswith(b"<svg")
+    assert b"law of the file" in body
+    assert b"prefers-color-scheme:dark" in body
+    assert ElementTree.fromstring(body).tag.endswith("svg")
+    for path in (
+        "/picture/boat/report.pdf",
+        "/picture/nowhere.json",
+        "/picture/../outside.json",
+        "/picture/link.json",
+        "/picture/",
+    ):
+        assert ask(path)[0] == 404
+    (folder / "bad.parameters.json").write_text("{}")
+    assert ask("/picture/bad.parameters.json")[0] == 404
+
+
+def test_a_search_for_a_symbol_shows_its_values(ask):
+    page = re.sub(r"<[^>]*>", "", ask("/?q=yr")[2].decode())
+    assert "Coefficients 3" in page
+    assert "a.parameters.json" in page
+    assert "Coefficients" not in re.sub(r"<[^>]*>", "", ask("/?q=boat")[2].decode()).replace("and coefficients", "")
 
 
 def test_a_search_needs_no_script(ask):

@@ -70,6 +70,7 @@ class Plot {
     this.legend();
     this.groups();
     this.probe(data.title);
+    this.zoom = new Zoom(this);
   }
 
   artists(key) { return this.svg.querySelectorAll(`[data-series="${CSS.escape(key)}"]`); }

@@ -1,6 +1,6 @@
 "use strict";
 // The page itself: controls, figures and values. All numbers come from bench.js, in a worker where there can be one.
-const mountBench = (root, data, source) => {
+const mountBench = (root, data, source, prefix = "bench") => {
   const make = (tag, attributes = {}, ...inside) => {
     const out = document.createElement(tag);
     for (const [name, value] of Object.entries(attributes)) {
@@ -92,17 +92,17 @@ const mountBench = (root, data, source) => {
   const shown = {};
 
   // Controls.
-  const select = make("select", { id: "bench-coefficient", onchange: (e) => { state.index = Number(e.target.value); chosen(); } });
+  const select = make("select", { id: `${prefix}-coefficient`, onchange: (e) => { state.index = Number(e.target.value); chosen(); } });
   const campaignNames = Object.keys(data.campaigns);
   for (const name of campaignNames) {
     const own = data.campaigns[name].sweeps.filter((i) => data.sweeps[i].value !== null);
     select.append(make("optgroup", { label: name }, own.map((i) => make("option", { value: i }, plain(data.sweeps[i].symbol)))));
   }
-  const slider = make("input", { type: "range", id: "bench-limit", min: 0, step: 1, oninput: () => moved() });
-  const limitText = make("output", { for: "bench-limit" }), limitLabel = make("label", { for: "bench-limit", class: "label" });
+  const slider = make("input", { type: "range", id: `${prefix}-limit`, min: 0, step: 1, oninput: () => moved() });
+  const limitText = make("output", { for: `${prefix}-limit` }), limitLabel = make("label", { for: `${prefix}-limit`, class: "label" });
   const parts = [["v|v|", "quadratic"], ["cubic", "cubic"], ["remainder", "smooth remainder"], ["even", "even part"]];
   const boxes = parts.map(([key]) => make("input", {
-    type: "checkbox", id: `bench-part-${key.replace(/\W/g, "a")}`, onchange: (e) => {
+    type: "checkbox", id: `${prefix}-part-${key.replace(/\W/g, "a")}`, onchange: (e) => {
       const edit = editOf(state.index);
       edit.without = parts.map(([k]) => k).filter((k) => (k === key ? !e.target.checked : edit.without.includes(k)));
       changed();
@@ -118,7 +118,7 @@ const mountBench = (root, data, source) => {
     make("fieldset", {}, make("label", { for: select.id, class: "label" }, "Coefficient"), select),
     make("fieldset", {}, limitLabel, slider, limitText),
     make("fieldset", {}, make("legend", {}, "The curve may contain"),
-      make("div", { class: "choice" }, make("input", { type: "checkbox", id: "bench-part-line", checked: true, disabled: true }), make("label", { for: "bench-part-line" }, "line: the slope")),
+      make("div", { class: "choice" }, make("input", { type: "checkbox", id: `${prefix}-part-line`, checked: true, disabled: true }), make("label", { for: `${prefix}-part-line` }, "line: the slope")),
       boxes.map((b, i) => make("div", { class: "choice" }, b, boxLabels[i]))),
     make("fieldset", {}, pointsLegend, points),
     make("div", { class: "row" }, reset, resetAll, share));
@@ -161,7 +161,7 @@ const mountBench = (root, data, source) => {
     pointsLegend.textContent = `Points used: ${used}`;
     const order = s.x.map((_, i) => i).sort((a, b) => s.x[a] - s.x[b] || a - b), focus = document.activeElement && document.activeElement.dataset ? document.activeElement.dataset.point : undefined;
     points.replaceChildren(...order.map((i) => {
-      const beyond = !within(s, edit, i), id = `bench-point-${i}`;
+      const beyond = !within(s, edit, i), id = `${prefix}-point-${i}`;
       return make("div", { class: `choice${beyond ? " beyond" : ""}`, title: s.labels[i] },
         make("input", { type: "checkbox", id, "data-point": i, checked: !edit.dropped.includes(i) && !beyond, disabled: beyond, onchange: () => toggle(i) }),
         make("label", { for: id }, setting(s, s.x[i]), make("span", { class: "unseen" }, `, ${s.labels[i]}`)));
@@ -236,7 +236,7 @@ const mountBench = (root, data, source) => {
       inside.push(`<circle class="point" data-at="${p.i}" cx="${f.px(p.xy[0]).toFixed(2)}" cy="${f.py(p.xy[1]).toFixed(2)}" r="5" fill="${gone || far || wrong ? "var(--paper, #fff)" : own}" stroke="${own}" stroke-width="1.5"${far ? ' stroke-dasharray="2 2"' : ""}><title>${escaped(words)}</title></circle>`);
     }
     const said = has ? `${plain(s.symbol)} ${value(row.value, row.u95)}` : "not determined";
-    return whole(w, h, `${s.body.replaceAll("_", " ")}: ${name} over ${s.variable}′, ${s.campaign}`, said, [...f.out, clip(w, h, m, inside, "bench-sweep")]);
+    return whole(w, h, `${s.body.replaceAll("_", " ")}: ${name} over ${s.variable}′, ${s.campaign}`, said, [...f.out, clip(w, h, m, inside, `${prefix}-sweep`)]);
   };
   const trackFigure = () => {
     const w = widthOf(track), h = Math.round(Math.max(0.36 * w, 200)), m = [56, 28, 14, 44], { motion, still } = shown, lines = [];
@@ -254,7 +254,7 @@ const mountBench = (root, data, source) => {
       inside.push(`<path d="${f.path(north, east.map((v) => -v))}" fill="none" stroke="${own}" stroke-width="1.8"${dash ? ` stroke-dasharray="${dash}"` : ""}/>`);
       if (run.determined !== Infinity) inside.push(`<path d="M${(f.px(north[north.length - 1]) - 5).toFixed(1)} ${(f.py(-east[east.length - 1]) - 5).toFixed(1)}l10 10m0-10l-10 10" stroke="${own}" stroke-width="2"><title>not determined from here on</title></path>`);
     }
-    return whole(w, h, "Track of the zigzag", "blue now, dashed grey as in the study", [...f.out, clip(w, h, m, inside, "bench-track")]);
+    return whole(w, h, "Track of the zigzag", "blue now, dashed grey as in the study", [...f.out, clip(w, h, m, inside, `${prefix}-track`)]);
   };
   const picture = make("div", { onclick: (e) => { const at = e.target.dataset && e.target.dataset.at; if (at !== undefined) { const i = Number(at), edit = editOf(state.index); if (within(current(), edit, i)) toggle(i); } } });
   const track = make("div");
@@ -266,10 +266,10 @@ const mountBench = (root, data, source) => {
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   } }, "Save SVG");
-  const viewChoice = ["force", "ratio"].map((v) => make("input", { type: "radio", name: "bench-view", id: `bench-view-${v}`, checked: v === state.view, onchange: () => { state.view = v; if (shown.row) show(); } }));
+  const viewChoice = ["force", "ratio"].map((v) => make("input", { type: "radio", name: `${prefix}-view`, id: `${prefix}-view-${v}`, checked: v === state.view, onchange: () => { state.view = v; if (shown.row) show(); } }));
   const viewLabels = viewChoice.map((b) => make("label", { for: b.id }));
   const key = make("p", { class: "quiet" });
-  const zigzagChoice = make("select", { id: "bench-zigzag", onchange: (e) => { [state.file, state.zigzag] = e.target.value.split(" ").map(Number); changed(); } });
+  const zigzagChoice = make("select", { id: `${prefix}-zigzag`, onchange: (e) => { [state.file, state.zigzag] = e.target.value.split(" ").map(Number); changed(); } });
   data.files.forEach((f, i) => f.zigzags.forEach((z, j) => zigzagChoice.append(make("option", { value: `${i} ${j}` }, `${z.name} zigzag, ${f.name}`))));
   const zigzagBox = make("section", { "aria-label": "Track of the zigzag" }, make("div", { class: "row" }, make("label", { for: zigzagChoice.id, class: "unseen" }, "Zigzag"), zigzagChoice, save(track, () => "zigzag")), track);
   zigzagChoice.style.width = "auto";

@@ -1,0 +1,65 @@
+"""The workbench page in a notebook cell, by anywidget (the extra "notebook")."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from coeflab.core.errors import InputError
+from coeflab.report.bench import bench_of
+from coeflab.report.formats.workbench import data_json, numbers, source
+from coeflab.study.study import Study
+
+# Every cell has names of its own, so that two benches do not share a label.
+RENDER = """
+let benches = 0;
+export default { render({ model, el }) {
+  const root = document.createElement("div"), inside = document.createElement("div");
+  root.className = "bench";
+  inside.className = "columns";
+  root.append(inside);
+  el.append(root);
+  return mountBench(inside, JSON.parse(model.get("content")), model.get("numbers"), `bench${benches++}`);
+} };
+"""
+
+
+def module() -> str:
+    """The script of the cell, an ECMAScript module with ``render``."""
+    return "\n".join((numbers(), source("page.js"), RENDER))
+
+
+def widget(study: Study) -> Any:
+    """The workbench of a study, for the last line of a notebook cell.
+
+    Parameters
+    ----------
+    study : Study
+
+    Returns
+    -------
+    anywidget.AnyWidget
+
+    Raises
+    ------
+    InputError
+        No sweep of the study gives a slope, or anywidget is not installed.
+    """
+    bench = bench_of(study)
+    if bench is None:
+        raise InputError(f"{study.plan.name}, without a sweep that gives a slope", "a study with slopes at the origin")
+    try:
+        any_widget, traits = import_module("anywidget"), import_module("traitlets")
+    except ModuleNotFoundError as why:
+        raise InputError(
+            f"no module {why.name}",
+            "anywidget",
+            advice='Install "coeflab[notebook]", or write the page: --to workbench.',
+        ) from None
+    members = {
+        "_esm": module(),
+        "_css": source("page.css"),
+        "content": traits.Unicode(data_json(bench)).tag(sync=True),
+        "numbers": traits.Unicode(numbers()).tag(sync=True),
+    }
+    return type("Workbench", (any_widget.AnyWidget,), members)()
