@@ -53,7 +53,7 @@ def test_json_leaves_remarks_on_standard_error(coeflab: Run, tmp_path: Path) -> 
 
 def test_a_thin_box_gets_no_ellipsoid_without_a_caveat(coeflab: Run, tmp_path: Path) -> None:
     trimesh.creation.box(extents=(1.0, 0.5, 0.02)).export(tmp_path / "thin.stl")
-    said = coeflab("added-mass", tmp_path / "thin.stl", "--unit", "m", "--axes", "FRD").stdout
+    said = coeflab("added-mass", tmp_path / "thin.stl", "--unit", "m", "--axes", "FRD", "--wide").stdout
     for words in (
         "* recommended: primitives, by the rule",
         "NONE OF THE METHODS SHOWN IS GOOD FOR THIS BODY: primitives is a rough guide",
@@ -130,7 +130,7 @@ def test_a_mesh_file_of_4356_m(coeflab: Run, tmp_path: Path, command: str) -> No
 def test_what_rounding_leaves_has_no_spread(coeflab: Run, tmp_path: Path) -> None:
     """The panel method finds that a ring does not turn the water about its axis; others do not matter beside that."""
     trimesh.creation.torus(0.5, 0.1).export(tmp_path / "ring.stl")
-    done = coeflab("added-mass", tmp_path / "ring.stl", "--unit", "m", "--axes", "FLU")
+    done = coeflab("added-mass", tmp_path / "ring.stl", "--unit", "m", "--axes", "FLU", "--wide")
     lines = [line for line in done.stdout.splitlines() if line.split()[:1] in (["Nrdot"], ["Yrdot"])]
     assert [line.split()[-1] for line in lines] == ["-", "-"]
 
@@ -138,7 +138,7 @@ def test_what_rounding_leaves_has_no_spread(coeflab: Run, tmp_path: Path) -> Non
 def test_a_spread_beyond_tenfold_has_no_digits(coeflab: Run, tmp_path: Path) -> None:
     """About the axis of a duct the panels find the corners of its facets, sections the water within."""
     trimesh.creation.annulus(0.4, 0.5, 0.3).export(tmp_path / "duct.stl")
-    done = coeflab("added-mass", tmp_path / "duct.stl", "--unit", "m", "--axes", "FLU")
+    done = coeflab("added-mass", tmp_path / "duct.stl", "--unit", "m", "--axes", "FLU", "--wide")
     assert next(line for line in done.stdout.splitlines() if "Nrdot" in line).endswith("> 1000 %")
 
 
