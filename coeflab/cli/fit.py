@@ -265,7 +265,7 @@ def _of_symbols(study: Study, symbols: list[str]) -> None:
             parts = {"random": c.parts.random, "form": c.parts.model_form, "input": c.parts.input}
             made = ", ".join(f"{name} {percent(part, c.value)}" for name, part in parts.items() if part)
             points = f"{c.n_points} points of {c.campaign}, {noun_tables.window_text(c)}"
-            show.sentence(f"{points}; U95 {percent(c.u95, c.value)} = {made}." if made else f"{points}.")
+            show.sentence(f"{points}; {made}." if made else f"{points}.")
         show.text()
         for content in (tables.sensitivity(sweep), tables.left_out(sweep), _forms(sweep)):
             show.table(content)
@@ -280,7 +280,8 @@ def _forms(sweep: Sweep) -> Table:
         return every
     best = {e.family.name: i for i, e in enumerate(sweep.forms) if e.lack_of_fit >= SUITS}
     without = list(dict.fromkeys(e.family.name for e in sweep.forms if e.family.name not in best))
-    notes = [f"Widest window with lack of fit p >= {SUITS:g}, of {len(every.rows)}; none is recommended."]
+    notes = [f"Widest window with p of the lack of fit >= {SUITS:g}, of {len(every.rows)}; none is recommended."]
     notes += [f"In no window: {', '.join(without)}."] if without else []
     rows = tuple(every.rows[i] for i in sorted(best.values()))
-    return replace(every, rows=rows, notes=tuple(notes), spare=("AICc", "dof", "95 % HC3"))
+    headers = tuple("p" if h == "lack of fit" else h for h in every.headers)
+    return replace(every, headers=headers, rows=rows, notes=tuple(notes), spare=("AICc", "95 % HC3", "dof"))

@@ -98,7 +98,7 @@ def test_the_arguments_of_the_error_settle_it(drift: Path, tmp_path: Path) -> No
     ]  # Y to starboard grows with beta, which is evidence, no decision
     done = invoke("import", drift, "--out", tmp_path / "out", *sets(axes__beta="-"), *given)
     assert done.exit_code == 0, done.output
-    assert done.output.rstrip().endswith(f"Next: coeflab fit {tmp_path / 'out'}")
+    assert " ".join(done.output.replace("\\\n", " ").split()).endswith(f"Next: coeflab fit {tmp_path / 'out'}")
     table = table_of(tmp_path / "out")
     assert table.forces["X"].tolist() == [-12.3, -12.9, -13.07, -13.0, -12.5]
     assert table.forces["Y"].tolist()[:4] == [-29.4, -11.8, -0.72, 11.8]
@@ -302,7 +302,7 @@ def test_the_next_command_repeats_what_was_given(runs: Path) -> None:
 def test_the_list_of_commands_says_what_they_do() -> None:
     listed = " ".join(invoke("--help").output.split())
     assert "import Make a campaign of a table or a folder of runs" in listed
-    assert "inspect Show a force table in SI and FRD" in listed
+    assert "inspect Show a table in SI and FRD, a mesh, or a body" in listed
 
 
 def test_inspect_of_an_unknown_file(drift: Path, monkeypatch: pytest.MonkeyPatch) -> None:

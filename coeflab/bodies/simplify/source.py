@@ -58,10 +58,13 @@ def names_body(name: str) -> bool:
 
     A name that both a shipped campaign and a shipped body bear is the campaign's.
     """
+    bodies = {found.parent.name for found in shipped("geometry").glob(f"*/{BODY}")}
     try:
         path = located(name, "cfd_data")
     except InputError:
-        return name in {found.parent.name for found in shipped("geometry").glob(f"*/{BODY}")}
+        return name in bodies
+    if path == shipped("cfd_data") / name and name in bodies:  # a vehicle may have its files there, and no campaign
+        return not (path / CAMPAIGN).exists()
     if path.is_dir():
         return (path / BODY).is_file() and not (path / CAMPAIGN).exists()
     return path.name == BODY or path.suffix.lower().lstrip(".") in FORMATS
