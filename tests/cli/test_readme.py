@@ -19,7 +19,8 @@ ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
 REMUS = ROOT / "cfd_data" / "remus100" / "remus100.parameters.json"
 BY_CI = ("validate suboff", "test")  # .ci/run, as they stand
-ELSEWHERE = ("report suboff --to html,pdf",)  # tests/reports/test_gallery.py and tests/report make these pages
+# tests/reports/test_gallery.py and tests/report make these pages, tests/workbench_page that one; tests/cli/test_serve.py serves.
+ELSEWHERE = ("report suboff --to html,pdf", "report suboff --to workbench", "serve reports")
 UNSTABLE = "reports/suboff/suboff_fully_appended.parameters.json"
 
 
