@@ -234,6 +234,14 @@ def in_degrees(kind: type, given: Mapping[str, Any], where: str) -> dict[str, An
 def of_a_file(kind: type, given: Mapping[str, Any], where: str) -> Mapping[str, Any]:
     """Options as a file has them, whose angles have a unit.
 
+    Parameters
+    ----------
+    kind : type
+        The dataclass.
+    given : mapping of str to value
+    where : str
+        Stands before the option's name in an error.
+
     Raises
     ------
     InputError

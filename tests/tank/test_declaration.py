@@ -152,7 +152,8 @@ def test_the_default_text_turns_controls_that_the_body_has(tank_file: Path) -> N
 @pytest.mark.parametrize(
     ("text", "words", "line"),
     [
-        (WATER + "[matrix]\ndrift = [2]\n", "below 60 deg", 8),
+        (WATER + "[matrix]\ndrift = [2]\n", "an angle without a unit", 8),
+        (WATER + '[matrix]\ndrift = ["2 rad"]\n', "below 60 deg", 8),
         (WATER + "[matrix]\ndrift = 2\n", "a list of different angles", 8),
         (WATER + '[matrix]\nyaw = [0.1, "0.1"]\n', "twice", 8),
         (WATER + "[matrix]\nyaw = [0, 0.1]\n", "straight runs are added", 8),

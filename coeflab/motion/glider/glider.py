@@ -248,12 +248,13 @@ class Glider:
     def file(self) -> bytes:
         """The glider file, in SI; reading it gives an equal glider."""
         m, s, e, p = self.mass, self.sliding_mass, self.engine, self.polar
+        covered = None if p.covered is None else [f"{angle!r} rad" for angle in p.covered]
         content = {
             "glider": {"name": self.name, "title": self.title, "citation": self.citation, "gravity": self.gravity},
             "mass": {name: getattr(m, name) for name in GliderMass.__slots__},
             "sliding_mass": {name: getattr(s, name) for name in SlidingMass.__slots__},
             "engine": {name: getattr(e, name) for name in BuoyancyEngine.__slots__},
-            "polar": {name: getattr(p, name) for name in StatedPolar.__slots__},
+            "polar": {name: getattr(p, name) for name in StatedPolar.__slots__} | {"covered": covered},
             "basis": dict(self.basis),
             "phase": [{name: getattr(p, name) for name in GliderPhase.__slots__} for p in self.phases],
         }
