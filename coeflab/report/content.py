@@ -43,6 +43,7 @@ from coeflab.report.tables import models as model_tables
 from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables import results as tables
 from coeflab.study.study import Study
+from coeflab.study.validation import validations
 from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.reference import Comparison, Relation
 
@@ -300,6 +301,10 @@ def _re_analysis(study: Study) -> list[str]:
     if len(ours) > len(judged):
         out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
     out.extend(headline(held_of_study(study)))
+    missed = [v for v in validations(study, study.budgets) if v.within is False]
+    if missed:
+        each = listed([f"{primed(v.symbol)} of {v.simulation} against {v.experiment}" for v in missed])
+        out.append(f"Predicted beyond U_V: {each}.")
     out.append(
         "This is a re-analysis: both sides use the same measurements. A pass says that our evaluation reproduces theirs within "
         "U95, not that the measurements are right."

@@ -24,8 +24,8 @@ OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
     "Each slope comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder, each by how well it explains "
     "the points. No form or window is chosen and no published value enters: docs/slope_at_origin.md.",
-    f"U95 covers {COVERS}. random: scatter of the points; form: the rest; input: declared inputs and grid. All in % of the "
-    "value; a dash: not assessed, not in U95.",
+    f"U95 covers {COVERS}. random: scatter of the points; form: the rest; input: declared inputs and grid, and for a "
+    "term tied to a slope what that slope brings in. All in % of the value; a dash: not assessed, not in U95.",
 )
 
 

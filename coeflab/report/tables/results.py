@@ -170,7 +170,7 @@ def own_tow(found: Towed) -> Table:
     assessed = any(r.u_grid for r in found.rows) or all(r.value is None for r in found.rows)
     grid = "" if assessed else "No grid study: not in U95."
     notes = tuple(n for n in (where, *reasons, grid, found.tow.note) if n)
-    headers = ("", "tow", "U95", "grid", *found.columns)
+    headers = ("", "tow", "U95" if not grid else "U95 without grid", "grid", *found.columns)
     return Table(f"Own tow: {found.tow.name}", headers, tuple(rows), notes, frozenset({0}))
 
 
