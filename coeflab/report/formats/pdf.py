@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import io
 import json
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.resources import files
 from typing import Any, Literal
 
 from coeflab.core.errors import OutputError
-from coeflab.core.table import Table, coefficient, percent, plus_minus
+from coeflab.core.table import Table, percent, plus_minus
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import primed
+from coeflab.report.answer import answer_table
 from coeflab.report.document import Answer, AnswerRow, Document, Figure, Section
 from coeflab.report.figures.svg import plain, size_of
 from coeflab.report.notation import Raised, Run, cell_runs, keeping, kept, runs, unit_runs
-from coeflab.report.printable import breakable, glyphs, shortened
+from coeflab.report.printable import BREAK, WORD, breakable, glyphs, shortened
 
 summary = "one PDF to print and to keep: typeset tables, mathematics and vector figures"
 citations: tuple[str, ...] = ()
@@ -28,6 +31,9 @@ WHOLE, WORDY = 20, re.compile(r"[a-df-z,]")
 LONG, DEEP = 18, 3
 NO_DATA = "no data"
 FEW, ON_A_PAGE, CHAPTER = 14, 3000, 4
+FINER = 4
+FILE = re.compile(r"/?(?:[\w-]+[./])+[A-Za-z]\w{0,7}[,;:.]?")
+PLACES = re.compile(r"(?<=[/_])(?=.)|(?<=\.)(?=[A-Za-z]\w*\.)")
 
 
 def render(document: Document) -> Mapping[str, bytes]:
@@ -57,7 +63,16 @@ def typeset(content: Mapping[str, Any]) -> bytes:
 
 def page_pictures(document: Document, ppi: float) -> tuple[bytes, ...]:
     """The pages of the PDF as PNG pictures, ``ppi`` pixels an inch."""
-    return _compiled(content(document), "png", ppi)
+    return tuple(map(_averaged, _compiled(content(document), "png", ppi * FINER)))
+
+
+def _averaged(page: bytes) -> bytes:
+    """A picture in which each pixel is the mean of those it stands for: the typesetter leaves out rows of a drawing."""
+    from PIL import Image
+
+    made = io.BytesIO()
+    Image.open(io.BytesIO(page)).convert("RGB").reduce(FINER).save(made, "PNG", optimize=True)
+    return made.getvalue()
 
 
 def _compiled(content: Mapping[str, Any], form: Literal["pdf", "png"], ppi: float | None) -> tuple[bytes, ...]:
@@ -100,7 +115,7 @@ def _content(document: Document) -> dict[str, Any]:
         "answer": None if document.answer is None else _answer(document.answer),
         "whole": document.answer is None or any(s.appendix for s in document.sections),
         "parts": _numbered([part for s in document.sections for part in _parts(s, 1)]),
-        "works": [breakable(glyphs(text)) for _, text in document.works],
+        "works": [_folding(glyphs(text)) for _, text in document.works],
     }
 
 
@@ -117,7 +132,7 @@ def _answer(answer: Answer) -> dict[str, Any]:
         "sentence": _text(answer.sentence),
         "compared": _text(answer.compared),
         "columns": [_text(shortened(c, LONGEST_COLUMN)) for c in answer.columns],
-        "rows": [_answer_row(r, len(answer.columns)) for r in answer.rows],
+        "rows": [_answer_row(r, cells) for r, cells in zip(answer.rows, _digits(answer), strict=True)],
         "chips": [{"name": glyphs(c.name), "text": _text(c.text), "severity": c.severity.value} for c in answer.chips],
         "notes": [_text(n) for n in answer.notes],
         "table": None if answer.table is None else _table(answer.table, 1),
@@ -125,7 +140,17 @@ def _answer(answer: Answer) -> dict[str, Any]:
     }
 
 
-def _answer_row(row: AnswerRow, columns: int) -> dict[str, Any]:
+def _digits(answer: Answer) -> list[list[str | None]]:
+    """The published values of each row as the answer's table prints them, None where there is none."""
+    out = []
+    printed = answer_table(replace(answer, table=None)).rows
+    for row, cells in zip(answer.rows, printed, strict=True):
+        found = [None if p is None else text for p, text in zip(row.published, cells[2:], strict=False)]
+        out.append([*found, *[None] * len(answer.columns)][: len(answer.columns)])
+    return out
+
+
+def _answer_row(row: AnswerRow, published: list[str | None]) -> dict[str, Any]:
     """Its cells as texts; the share of U95 that the difference is, which the bar shows, or None."""
     ours = row.status if row.value is None else plus_minus(row.value, row.u95)
     within = percent(row.u95, row.value) if row.value is not None and row.u95 is not None else ""
@@ -135,10 +160,7 @@ def _answer_row(row: AnswerRow, columns: int) -> dict[str, Any]:
         "open": row.value is None,
         "within": _text(within or (row.status if row.value is not None else "")),
         "source": _text(row.source),
-        "published": [
-            None if value is None else _text(coefficient(value))
-            for value in (*row.published, *[None] * columns)[:columns]
-        ],
+        "published": [None if value is None else _text(value) for value in published],
         "difference": None
         if row.difference is None
         else _text(f"{row.difference:+.1e}" if row.u95 is None else _signed(row)),
@@ -162,7 +184,7 @@ def _parts(section: Section, level: int, later: bool = True) -> Iterator[dict[st
         "fresh": level > 1 and later and len(section.subsections) >= CHAPTER,
         "title": _text(shortened(section.title, LONGEST_TITLE)),
         "paragraphs": [_text(p) for p in section.paragraphs],
-        "code": [breakable(glyphs(line)) for line in section.code],
+        "code": [_folding(glyphs(line)) for line in section.code],
         "figures": [_figure(f) for f in section.figures],
         "tables": [_table(t, level) for t in section.tables],
     }
@@ -224,7 +246,7 @@ def _longest(cells: list[list[Any]]) -> list[list[Any]]:
 def _word(table: Table, column: int) -> str:
     """The longest word of a column, its header among them: the least width that it can have."""
     texts = [table.headers[column], *(row[column] for row in table.rows)]
-    words = (w for text in texts for w in breakable(glyphs(text)).replace("\u200b", " ").split())
+    words = (w for text in texts for w in _folding(glyphs(text)).replace("\u200b", " ").split())
     return max(words, key=len, default="")
 
 
@@ -237,9 +259,19 @@ def _text(text: str) -> list[Any]:
     return [_piece(p) for p in runs(text, kept())]
 
 
+def _folding(text: str) -> str:
+    """Like `breakable`; a name of a file breaks after its separators only, as long as their parts are short."""
+    return "".join(_folded(w) for w in re.split(r"(\s+)", text)) if len(text) > WORD else text
+
+
+def _folded(word: str) -> str:
+    parts = PLACES.split(word)
+    return BREAK.join(parts) if FILE.fullmatch(word) and max(map(len, parts)) <= WORD < len(word) else breakable(word)
+
+
 def _piece(piece: Run) -> Any:
     if isinstance(piece, str):
-        return breakable(glyphs(piece))
+        return _folding(glyphs(piece))
     if isinstance(piece, Raised):
         return {"up": piece.text}
     return {
