@@ -60,7 +60,7 @@ class BenchData:
     files : tuple of mapping
         Parameter files: stability indices and zigzags, or why there are none.
     left_out : tuple of str
-        What of the study is not on the bench, and why, in words.
+        What of the study is not on the page, and why, in words.
     """
 
     sweeps: tuple[Mapping[str, Any], ...]

@@ -64,7 +64,7 @@ def test_a_click_on_a_point_leaves_it_out_and_the_others_follow_when_asked(opene
     settled(page)
     assert not page.locator("#bench-point-0").is_checked()
     page.get_by_role("button", name="Same for Nv′").click()
-    page.select_option("#bench-coefficient", label="Nv′")
+    page.select_option("#bench-coefficient", label="Nv′ of boat")
     settled(page)
     assert not page.locator("#bench-point-0").is_checked()
 

@@ -145,7 +145,7 @@ const benchOf = (data) => {
     const damping = [[index.symbols[0], slopeForce, 2 * Math.sqrt(cells[0][0])], [`${index.symbols[3]} - xG'm'`, b, 2 * Math.sqrt(cells[3][3])]];
     const driven = damping.find(([, size]) => size >= 0), open = bounded ? damping.find(([, size, half]) => Math.abs(size) <= half) : null;
     if (!bounded) out.why = "no interval: a coefficient in it has no U95";
-    else if (open) out.why = `no interval: that of the denominator ${open[0]} holds zero`;
+    else if (open) out.why = `no interval: U95 of ${open[0]} includes zero`;
     else {
       let variance = 0;
       g.forEach((x, i) => g.forEach((y, j) => { variance += x * cells[i][j] * y; }));

@@ -60,7 +60,11 @@ const mountBench = (root, data, source, prefix = "bench") => {
       time: m.time, north: m.state.map((s) => s[0]), east: m.state.map((s) => s[1]), heading: m.state.map((s) => s[13]),
       rudder: m.controls.map((c) => c[0]), figures: m.figures, determined: m.determined, why: m.why,
     });
-    say({ id, motion: trim(bench.motion(z, campaigns)), still: trim(zigzagOf(z, z.law.coefficient)), last: true });
+    const unknown = [...new Set(z.links.map((l) => l[1]))].filter((i) => {
+      const s = data.sweeps[i], found = campaigns[s.campaign].rows[data.campaigns[s.campaign].sweeps.indexOf(i)];
+      return "YN".includes(s.component) && found.value !== null && Math.abs(found.value) <= found.u95;
+    }).map((i) => data.sweeps[i].symbol);
+    say({ id, unknown, motion: trim(bench.motion(z, campaigns)), still: trim(zigzagOf(z, z.law.coefficient)), last: true });
   };
   try {
     const text = `${source}\nconst data = ${JSON.stringify(data)};\nconst bench = benchOf(data);\nconst work = ${work};\nonmessage = (e) => work(bench, e.data, (m) => postMessage(m));`;
@@ -96,7 +100,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
   const campaignNames = Object.keys(data.campaigns);
   for (const name of campaignNames) {
     const own = data.campaigns[name].sweeps.filter((i) => data.sweeps[i].value !== null);
-    select.append(make("optgroup", { label: name }, own.map((i) => make("option", { value: i }, plain(data.sweeps[i].symbol)))));
+    select.append(make("optgroup", { label: name }, own.map((i) => make("option", { value: i }, `${plain(data.sweeps[i].symbol)} of ${name}`))));
   }
   const slider = make("input", { type: "range", id: `${prefix}-limit`, min: 0, step: 1, oninput: () => moved() });
   const limitText = make("output", { for: `${prefix}-limit` }), limitLabel = make("label", { for: `${prefix}-limit`, class: "label" });
@@ -115,13 +119,15 @@ const mountBench = (root, data, source, prefix = "bench") => {
   const reset = make("button", { type: "button", onclick: () => { delete edits[state.index]; chosen(); } }, "Reset");
   const resetAll = make("button", { type: "button", onclick: () => { for (const k of Object.keys(edits)) delete edits[k]; chosen(); } }, "Reset all");
   const left = make("div", { class: "controls" },
-    make("fieldset", {}, make("label", { for: select.id, class: "label" }, "Coefficient"), select),
-    make("fieldset", {}, limitLabel, slider, limitText),
-    make("fieldset", {}, make("legend", {}, "The curve may contain"),
-      make("div", { class: "choice" }, make("input", { type: "checkbox", id: `${prefix}-part-line`, checked: true, disabled: true }), make("label", { for: `${prefix}-part-line` }, "line: the slope")),
-      boxes.map((b, i) => make("div", { class: "choice" }, b, boxLabels[i]))),
-    make("fieldset", {}, pointsLegend, points),
-    make("div", { class: "row" }, reset, resetAll, share));
+    make("div", { class: "first" },
+      make("fieldset", {}, make("label", { for: select.id, class: "label" }, "Coefficient"), select),
+      make("fieldset", {}, limitLabel, slider, limitText)),
+    make("div", { class: "more" },
+      make("fieldset", {}, make("legend", {}, "The curve may contain"),
+        make("div", { class: "choice" }, make("input", { type: "checkbox", id: `${prefix}-part-line`, checked: true, disabled: true }), make("label", { for: `${prefix}-part-line` }, "line: the slope")),
+        boxes.map((b, i) => make("div", { class: "choice" }, b, boxLabels[i]))),
+      make("fieldset", {}, pointsLegend, points),
+      make("div", { class: "row" }, reset, resetAll, share)));
 
   const current = () => data.sweeps[state.index];
   const moved = () => {
@@ -201,7 +207,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
 
   const widthOf = (box) => Math.round(Math.min(Math.max(box.clientWidth, 320), 1200));
   const sweepFigure = () => {
-    const s = current(), edit = edits[state.index] || { limit: null, dropped: [], without: [] }, { row, before } = shown, w = widthOf(picture), h = Math.round(Math.max(0.56 * w, 250)), m = [66, 28, 14, 44];
+    const s = current(), edit = edits[state.index] || { limit: null, dropped: [], without: [] }, { row, before } = shown, w = widthOf(picture), h = Math.round(Math.max(0.5 * w, 240)), m = [66, 28, 14, 44];
     const ratio = state.view === "ratio", has = row.value !== null, middle = has ? row.curve[(data.nodes - 1) / 2] : before.curve[(data.nodes - 1) / 2];
     const most = Math.max(...s.x.map(Math.abs), ...s.leftOut.map((p) => Math.abs(p[0])));
     const near = 0.04 * most, at = (x, y) => (ratio ? [Math.abs(x), (y - middle) / x] : [x, y]);
@@ -238,23 +244,42 @@ const mountBench = (root, data, source, prefix = "bench") => {
     const said = has ? `${plain(s.symbol)} ${value(row.value, row.u95)}` : "not determined";
     return whole(w, h, `${s.body.replaceAll("_", " ")}: ${name} over ${s.variable}′, ${s.campaign}`, said, [...f.out, clip(w, h, m, inside, `${prefix}-sweep`)]);
   };
+  // Words inside a figure, broken to its width.
+  const wrapped = (sentences, width) => sentences.flatMap((sentence) => sentence.split(" ").reduce((out, word) => {
+    const last = out[out.length - 1];
+    if (last && (last.length + word.length + 1) * 6.9 < width) out[out.length - 1] = `${last} ${word}`; else out.push(word);
+    return out;
+  }, []));
+  const written = (sentences, x, y, width) => wrapped(sentences, width).map((line, i) => `<text x="${x}" y="${y + 18 * i}" fill="${colour.ink}" stroke="var(--paper, #fff)" stroke-width="3" paint-order="stroke">${escaped(line)}</text>`);
+  const notice = (sentences) => {
+    const w = widthOf(track), lines = written(sentences, 14, 30, w - 28), h = Math.max(36 + 18 * lines.length, 90);
+    return whole(w, h, "Track of the zigzag", sentences.join(" "), [`<rect x="0.5" y="0.5" width="${w - 1}" height="${h - 1}" fill="none" stroke="${colour.rule}"/>`, ...lines]);
+  };
+  const notKnown = () => `U95 of ${shown.unknown.map(plain).join(", ")} includes zero: the slope is not known, and the zigzag is that of its value only`;
+  const stopped = (run) => (run.determined > 0 ? `Stopped at ${short(run.determined, 4)} s: ${run.why}.` : `Not determined: the first orders leave the data. ${run.why[0].toUpperCase()}${run.why.slice(1)}.`);
+  // As the report draws a track: east to the right, north up, one scale; the dot is the start.
   const trackFigure = () => {
-    const w = widthOf(track), h = Math.round(Math.max(0.36 * w, 200)), m = [56, 28, 14, 44], { motion, still } = shown, lines = [];
+    const w = widthOf(track), h = Math.round(Math.max(0.5 * w, 300)), m = [56, 28, 14, 44], { motion, still } = shown, lines = [];
     const cut = (run) => { const n = run.determined === Infinity ? run.time.length : Math.max(run.time.findIndex((t) => t > run.determined), 1); return [run.east.slice(0, n), run.north.slice(0, n)]; };
     if (still && !still.lost) lines.push([...cut(still), colour.muted, "7 4", still]);
     if (motion && !motion.lost) lines.push([...cut(motion), colour.a, "", motion]);
-    const norths = lines.flatMap((l) => l[1]), easts = lines.flatMap((l) => l[0]);
-    let along = padded(norths, 0.04), side = padded(easts, 0.1);
-    const per = (along[1] - along[0]) / (w - m[0] - m[2]), need = per * (h - m[1] - m[3]);
-    if (side[1] - side[0] < need) { const c = 0.5 * (side[0] + side[1]); side = [c - need / 2, c + need / 2]; }
-    else { const wide = (side[1] - side[0]) / (h - m[1] - m[3]) * (w - m[0] - m[2]), c = 0.5 * (along[0] + along[1]); along = [c - wide / 2, c + wide / 2]; }
-    // East is drawn down: the course runs to the right, starboard lies below it.
-    const f = frame(w, h, along, [-side[1], -side[0]], ["along the first course, m", "to port, m"], m), inside = [];
-    for (const [east, north, own, dash, run] of lines) {
-      inside.push(`<path d="${f.path(north, east.map((v) => -v))}" fill="none" stroke="${own}" stroke-width="1.8"${dash ? ` stroke-dasharray="${dash}"` : ""}/>`);
-      if (run.determined !== Infinity) inside.push(`<path d="M${(f.px(north[north.length - 1]) - 5).toFixed(1)} ${(f.py(-east[east.length - 1]) - 5).toFixed(1)}l10 10m0-10l-10 10" stroke="${own}" stroke-width="2"><title>not determined from here on</title></path>`);
+    const words = shown.unknown.length ? [`${notKnown()}.`] : [];
+    if (motion.why) words.push(stopped(motion));
+    if (lines.every((l) => l[0].length < 2)) return notice(words);
+    let across = padded(lines.flatMap((l) => l[0]), 0.1), up = padded(lines.flatMap((l) => l[1]), 0.04);
+    const wide = w - m[0] - m[2], tall = h - m[1] - m[3], per = Math.max((across[1] - across[0]) / wide, (up[1] - up[0]) / tall);
+    const about = ([low, high], half) => [0.5 * (low + high) - half, 0.5 * (low + high) + half];
+    across = about(across, 0.5 * per * wide);
+    up = about(up, 0.5 * per * tall);
+    const f = frame(w, h, across, up, ["east, m", "north, m"], m), inside = [], drawn = lines.filter((l) => l[0].length > 1);
+    for (const [east, north, own, dash, run] of drawn) {
+      inside.push(`<path d="${f.path(east, north)}" fill="none" stroke="${own}" stroke-width="1.8"${dash ? ` stroke-dasharray="${dash}"` : ""}/>`);
+      if (run.determined !== Infinity) inside.push(`<path d="M${(f.px(east[east.length - 1]) - 5).toFixed(1)} ${(f.py(north[north.length - 1]) - 5).toFixed(1)}l10 10m0-10l-10 10" stroke="${own}" stroke-width="2"><title>not determined from here on</title></path>`);
     }
-    return whole(w, h, "Track of the zigzag", "blue now, dashed grey as in the study", [...f.out, clip(w, h, m, inside, `${prefix}-track`)]);
+    inside.push(`<circle cx="${f.px(0).toFixed(1)}" cy="${f.py(0).toFixed(1)}" r="4" fill="${colour.a}"><title>start</title></circle>`);
+    if (drawn.some((l) => l[4].determined !== Infinity)) words.push("Cross: not determined from here on.");
+    inside.push(...written(words, m[0] + 10, m[1] + 20, wide - 20));
+    return whole(w, h, "Track of the zigzag", ["blue now, dashed grey as in the study", ...words].join(". "), [...f.out, clip(w, h, m, inside, `${prefix}-track`)]);
   };
   const picture = make("div", { onclick: (e) => { const at = e.target.dataset && e.target.dataset.at; if (at !== undefined) { const i = Number(at), edit = editOf(state.index); if (within(current(), edit, i)) toggle(i); } } });
   const track = make("div");
@@ -271,16 +296,19 @@ const mountBench = (root, data, source, prefix = "bench") => {
   const key = make("p", { class: "quiet" });
   const zigzagChoice = make("select", { id: `${prefix}-zigzag`, onchange: (e) => { [state.file, state.zigzag] = e.target.value.split(" ").map(Number); changed(); } });
   data.files.forEach((f, i) => f.zigzags.forEach((z, j) => zigzagChoice.append(make("option", { value: `${i} ${j}` }, `${z.name} zigzag, ${f.name}`))));
-  const zigzagBox = make("section", { "aria-label": "Track of the zigzag" }, make("div", { class: "row" }, make("label", { for: zigzagChoice.id, class: "unseen" }, "Zigzag"), zigzagChoice, save(track, () => "zigzag")), track);
+  const zigzagBox = make("section", { class: "zigzag", "aria-label": "Track of the zigzag" }, make("div", { class: "row" }, make("label", { for: zigzagChoice.id, class: "unseen" }, "Zigzag"), zigzagChoice, save(track, () => "zigzag")), track);
   zigzagChoice.style.width = "auto";
   const centre = make("div", { class: "pictures" },
     make("div", { class: "row" }, viewChoice.map((b, i) => make("span", { class: "choice" }, b, viewLabels[i])), save(picture, () => `${current().campaign} ${current().symbol}`)),
     picture, key, zigzagBox);
 
-  const number = make("p", { class: "big" }), said = make("div", { "aria-live": "polite" }), rest = make("div"), indexBox = make("section"), motionBox = make("section");
-  const right = make("div", { class: "values" }, make("section", {}, said, rest), indexBox, motionBox);
+  const number = make("p", { class: "big" }), said = make("div", { class: "said", "aria-live": "polite" }), rest = make("div", { class: "compared" }), indexBox = make("section", { class: "index" }), motionBox = make("section", { class: "motion" });
+  const right = make("div", { class: "values" }, make("section", { class: "value" }, said, rest), indexBox, motionBox);
   const table = (caption, head, rows) => make("table", {}, make("caption", {}, caption), make("thead", {}, make("tr", {}, head.map((t, i) => make("th", { scope: "col", class: i ? "number" : false }, t)))),
     make("tbody", {}, rows.map((r) => make("tr", {}, r.map((c, i) => (i ? make("td", { class: "number" }, c) : make("th", { scope: "row" }, c)))))));
+  // A sign without an interval is said with the reason, not as a finding.
+  const byValue = (x) => x.sense.endsWith(" by its value alone");
+  const senseOf = (x) => (byValue(x) ? `${x.sense.replace(" by its value alone", "")}, but ${x.why.replace("no interval: ", "").replaceAll("'", "′")}` : x.sense);
   const show = () => {
     const s = current(), { row, before } = shown, edit = edits[state.index] || { limit: null, dropped: [], without: [] }, has = row.value !== null;
     viewLabels[0].textContent = `${s.component}′ over ${s.variable}′`;
@@ -294,7 +322,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     if (row.removed.length) lines.push(make("p", { class: "warn" }, `Left out by the fit, does not fit the others: ${row.removed.map((i) => s.labels[i]).join(", ")}`));
     if (s.status === "form_rejected") lines.push(make("p", { class: "warn" }, "The study rejects the form of this sweep."));
     if (edit.without.length) lines.push(make("p", { class: "warn" }, "U95 holds only if the curve has none of the parts you took out."));
-    else if (edit.dropped.length || edit.limit !== null) lines.push(make("p", { class: "quiet" }, "U95 does not hold your choice of points."));
+    else if (edit.dropped.length || edit.limit !== null) lines.push(make("p", { class: "quiet" }, "U95 does not include the effect of your choice of points."));
     said.replaceChildren(...lines);
     const apart = (x) => (has ? `${row.value > x ? "+" : ""}${short(row.value - x, 2)}` : "");
     const rows = [["Study", value(before.value, before.u95), apart(before.value)], ...s.published.map(([name, x]) => [name, short(x, 4), apart(x)])];
@@ -306,10 +334,10 @@ const mountBench = (root, data, source, prefix = "bench") => {
       const [now, then] = shown.indices[i][j], uses = x.sources.includes(state.index);
       if (!uses && !x.sources.some((k) => k >= 0 && edits[k] && !local().isUntouched(edits[k]))) return;
       list.push(make("p", { class: "big" }, ...spelled(x.name), ` ${value(now.value, now.u95)}`),
-        make("p", {}, make("span", { class: now.sense === "not determined" ? "warn" : now.sense.startsWith("stable") ? "pass" : "fail" }, now.sense), ` (${f.name}; study ${value(then.value, then.u95)}, ${then.sense})`));
-      if (now.why) list.push(make("p", { class: "quiet" }, now.why));
+        make("p", {}, make("span", { class: now.sense === "not determined" || byValue(now) ? "warn" : now.sense.startsWith("stable") ? "pass" : "fail" }, senseOf(now)), ` (${f.name}; study ${value(then.value, then.u95)}, ${senseOf(then)})`));
+      if (now.why && !byValue(now)) list.push(make("p", { class: "quiet" }, now.why));
       const fixed = x.symbols.map((t, n) => (x.sources[n] < 0 ? `${t.replace("'", "′")} ${short(x.values[n], 4)} (${x.origins[n]})` : "")).filter(Boolean);
-      if (fixed.length) list.push(make("p", { class: "quiet" }, `Not on the bench: ${fixed.join(", ")}`));
+      if (fixed.length) list.push(make("p", { class: "quiet" }, `Not on this page: ${fixed.join(", ")}`));
     }));
     if (!list.length) list.push(make("p", { class: "quiet" }, "No stability index uses this coefficient."));
     indexBox.replaceChildren(make("h2", {}, "Course stability, positive is stable"), ...list);
@@ -319,7 +347,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     const f = data.files[state.file], z = f && f.zigzags[state.zigzag], { motion, still } = shown;
     zigzagBox.hidden = !data.files.some((file) => file.zigzags.length);
     if (!z) {
-      track.replaceChildren();
+      track.innerHTML = f && f.why ? notice([`No zigzag: ${f.why}.`]) : "";
       zigzagChoice.value = "";
       motionBox.replaceChildren(make("h2", {}, "Zigzag"), make("p", { class: "quiet" }, f ? `${f.name} makes none: ${f.why}.` : "The study makes no parameter file."));
       return;
@@ -327,18 +355,19 @@ const mountBench = (root, data, source, prefix = "bench") => {
     zigzagChoice.value = `${state.file} ${state.zigzag}`;
     const head = make("h2", {}, `Zigzag ${z.name}, ${f.name}`);
     if (motion.lost) {
-      track.replaceChildren();
+      track.innerHTML = notice([`Not determined: ${plain(motion.lost)} has no value.`]);
       motionBox.replaceChildren(head, make("p", { class: "warn" }, `not determined: ${plain(motion.lost)} has no value`));
       return;
     }
     track.innerHTML = trackFigure();
     const cell = (x) => { if (x.value === null) return x.status; const [v, unit] = angleOf(x); return `${v.toFixed(Math.min(Math.max(2 - Math.floor(Math.log10(Math.abs(v) || 1)), 0), 4))}${unit}`; };
     const rows = motion.figures.map((x, i) => [x.name, cell(x), cell(still.figures[i])]), notes = [];
-    if (motion.why) notes.push(make("p", { class: "warn" }, motion.determined > 0 ? `Stopped at ${short(motion.determined, 4)} s: ${motion.why}.` : `Not determined: the first orders leave the data. ${motion.why[0].toUpperCase()}${motion.why.slice(1)}.`));
+    if (shown.unknown.length) notes.push(make("p", { class: "warn" }, `${notKnown()}.`));
+    if (motion.why) notes.push(make("p", { class: "warn" }, stopped(motion)));
     const beyond = [...new Set(motion.figures.filter((x) => x.status === "extrapolated").map((x) => x.why))];
     if (beyond.length) notes.push(make("p", { class: "quiet" }, `Extrapolated, ${beyond[beyond.length - 1]}.`));
     notes.push(make("p", { class: "quiet" }, `Runge-Kutta of order 4, ${short(z.step, 3)} s. Terms tied to a slope follow it; no term is fitted again.`));
-    motionBox.replaceChildren(head, table("", ["", "now", "study"], rows), ...notes);
+    motionBox.replaceChildren(head, ...notes.splice(0, shown.unknown.length ? 1 : 0), table("", ["", "now", "study"], rows), ...notes);
   };
 
   root.replaceChildren(left, centre, right);
