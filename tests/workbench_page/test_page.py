@@ -81,6 +81,29 @@ def test_without_settings_nothing_is_determined(opened):
     assert "not determined: Yv′ has no value" in text
 
 
+def test_a_slope_that_is_not_known_is_said_with_the_zigzag(opened):
+    page = opened()
+    page.evaluate("""() => { const { edits, changed, data } = document.getElementById("bench").bench, x = data.sweeps[0].x;
+        const far = x.map((v, i) => [Math.abs(v), i]).sort((a, b) => a[0] - b[0]).slice(3).map(v => v[1]).sort((a, b) => a - b);
+        edits[0] = { limit: null, dropped: far, without: [] }; changed(); }""")
+    settled(page)
+    row = page.evaluate('document.getElementById("bench").bench.shown.row')
+    assert abs(row["value"]) <= row["u95"]
+    words = "U95 of Yv′ includes zero: the slope is not known"
+    assert words in page.locator(".motion").inner_text()
+    assert "U95 of Yv′ includes zero" in page.locator(".zigzag svg").text_content()
+    assert "able, but U95 of Yv′ includes zero" in page.locator(".index").inner_text()
+
+
+def test_on_a_phone_the_slider_and_the_curve_are_seen_together(opened):
+    page = opened(390)
+    top, slider, curve = (
+        page.locator(p).bounding_box() for p in ("#bench .big >> nth=0", "#bench-limit", "#bench svg >> nth=0")
+    )
+    assert top["y"] < slider["y"] < curve["y"]
+    assert curve["y"] + curve["height"] - slider["y"] < 600
+
+
 def test_the_figure_is_saved_as_a_drawing_of_its_own(opened):
     page = opened(accept_downloads=True)
     with page.expect_download() as waiting:

@@ -250,7 +250,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     if (last && (last.length + word.length + 1) * 6.9 < width) out[out.length - 1] = `${last} ${word}`; else out.push(word);
     return out;
   }, []));
-  const written = (sentences, x, y, width) => wrapped(sentences, width).map((line, i) => `<text x="${x}" y="${y + 18 * i}" fill="${colour.ink}" stroke="var(--paper, #fff)" stroke-width="3" paint-order="stroke">${escaped(line)}</text>`);
+  const written = (sentences, x, y, width) => wrapped(sentences, width).map((line, i) => `<text x="${x}" y="${y + 18 * i}" fill="${colour.ink}">${escaped(line)}</text>`);
   const notice = (sentences) => {
     const w = widthOf(track), lines = written(sentences, 14, 30, w - 28), h = Math.max(36 + 18 * lines.length, 90);
     return whole(w, h, "Track of the zigzag", sentences.join(" "), [`<rect x="0.5" y="0.5" width="${w - 1}" height="${h - 1}" fill="none" stroke="${colour.rule}"/>`, ...lines]);
@@ -259,27 +259,28 @@ const mountBench = (root, data, source, prefix = "bench") => {
   const stopped = (run) => (run.determined > 0 ? `Stopped at ${short(run.determined, 4)} s: ${run.why}.` : `Not determined: the first orders leave the data. ${run.why[0].toUpperCase()}${run.why.slice(1)}.`);
   // As the report draws a track: east to the right, north up, one scale; the dot is the start.
   const trackFigure = () => {
-    const w = widthOf(track), h = Math.round(Math.max(0.5 * w, 300)), m = [56, 28, 14, 44], { motion, still } = shown, lines = [];
+    const w = widthOf(track), { motion, still } = shown, lines = [];
     const cut = (run) => { const n = run.determined === Infinity ? run.time.length : Math.max(run.time.findIndex((t) => t > run.determined), 1); return [run.east.slice(0, n), run.north.slice(0, n)]; };
     if (still && !still.lost) lines.push([...cut(still), colour.muted, "7 4", still]);
     if (motion && !motion.lost) lines.push([...cut(motion), colour.a, "", motion]);
     const words = shown.unknown.length ? [`${notKnown()}.`] : [];
     if (motion.why) words.push(stopped(motion));
     if (lines.every((l) => l[0].length < 2)) return notice(words);
+    const drawn = lines.filter((l) => l[0].length > 1);
+    if (drawn.some((l) => l[4].determined !== Infinity)) words.push("Cross: not determined from here on.");
+    const told = written(words, 4, 16, w - 8), above = 18 * told.length, h = Math.round(Math.max(0.5 * w, 300)) + above, m = [56, 28 + above, 14, 44];
     let across = padded(lines.flatMap((l) => l[0]), 0.1), up = padded(lines.flatMap((l) => l[1]), 0.04);
     const wide = w - m[0] - m[2], tall = h - m[1] - m[3], per = Math.max((across[1] - across[0]) / wide, (up[1] - up[0]) / tall);
     const about = ([low, high], half) => [0.5 * (low + high) - half, 0.5 * (low + high) + half];
     across = about(across, 0.5 * per * wide);
     up = about(up, 0.5 * per * tall);
-    const f = frame(w, h, across, up, ["east, m", "north, m"], m), inside = [], drawn = lines.filter((l) => l[0].length > 1);
+    const f = frame(w, h, across, up, ["east, m", "north, m"], m), inside = [];
     for (const [east, north, own, dash, run] of drawn) {
       inside.push(`<path d="${f.path(east, north)}" fill="none" stroke="${own}" stroke-width="1.8"${dash ? ` stroke-dasharray="${dash}"` : ""}/>`);
       if (run.determined !== Infinity) inside.push(`<path d="M${(f.px(east[east.length - 1]) - 5).toFixed(1)} ${(f.py(north[north.length - 1]) - 5).toFixed(1)}l10 10m0-10l-10 10" stroke="${own}" stroke-width="2"><title>not determined from here on</title></path>`);
     }
     inside.push(`<circle cx="${f.px(0).toFixed(1)}" cy="${f.py(0).toFixed(1)}" r="4" fill="${colour.a}"><title>start</title></circle>`);
-    if (drawn.some((l) => l[4].determined !== Infinity)) words.push("Cross: not determined from here on.");
-    inside.push(...written(words, m[0] + 10, m[1] + 20, wide - 20));
-    return whole(w, h, "Track of the zigzag", ["blue now, dashed grey as in the study", ...words].join(". "), [...f.out, clip(w, h, m, inside, `${prefix}-track`)]);
+    return whole(w, h, "Track of the zigzag", ["blue now, dashed grey as in the study", ...words].join(". "), [...told, ...f.out, clip(w, h, m, inside, `${prefix}-track`)]);
   };
   const picture = make("div", { onclick: (e) => { const at = e.target.dataset && e.target.dataset.at; if (at !== undefined) { const i = Number(at), edit = editOf(state.index); if (within(current(), edit, i)) toggle(i); } } });
   const track = make("div");
