@@ -138,9 +138,28 @@ def _bare(cell: str) -> str:
     return cell[1:-1].strip() if cell[:1] + cell[-1:] in ("[]", "()", "<>") else cell
 
 
+_SHARE = re.compile(r"(?i)(?:[x*×·]\s*)?(?:1e|10\s*(?:\^|\*\*)\s*)\(?(?P<power>[+-]?\d{1,2})\)?|(?P<percent>%)")
+
+
+def share(unit: str) -> float | None:
+    """What a pure number is counted in, 0.001 of ``1e-3``, ``10^-3`` and ``10⁻³``, 0.01 of ``%``; None of anything else."""
+    plain = _bare(unit.strip()).translate(_RAISED)
+    m = _SHARE.fullmatch(re.sub(r"^10(?=[+-])", "10^", plain))
+    if m is None:
+        return None
+    return 0.01 if m["percent"] else 10.0 ** int(m["power"])
+
+
+_RAISED = str.maketrans("⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹−", "-+0123456789-")
+
+
 def is_unit_row(cells: Sequence[str]) -> bool:
-    """Whether every cell is a unit or blank, and at least one is a unit."""
-    return any(cells) and all(not c or is_unit(_bare(c)) or c in ("[]", "()") for c in cells)
+    """Whether every cell is a unit, a share such as 1e-3, or blank, and at least one is a unit; with shares, one in letters."""
+    bare = [_bare(c) for c in cells]
+    if not all(not c or is_unit(c) or share(c) is not None for c in bare):
+        return False
+    shares = any(share(c) is not None and not is_unit(c) for c in bare)
+    return any(cells) and (not shares or any(c[:1].isalpha() and is_unit(c) for c in bare))
 
 
 def is_name_row(cells: Sequence[str], marks: Marks) -> bool:

@@ -152,6 +152,8 @@ def _table(raw: RawTable, columns: Sequence[Assigned], settings: Settings) -> tu
         own = one.column.values * (-1.0 if said.negative else 1.0)
         if said.area:
             own = own * (said.area * (said.length or 1.0) / length ** (3 if said.length else 2))
+        if said.pure:
+            own = own * abs(one.factor)
         values = np.where(np.isnan(one.values), np.nan, own)[rows]
         heads.append(_head(said))
         cells.append(["" if np.isnan(x) else repr(x + 0.0) for x in values.tolist()])

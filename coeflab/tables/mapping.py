@@ -16,6 +16,7 @@ from coeflab.core.units import factor
 from coeflab.core.wording import Verbatim, listed
 from coeflab.tables.campaign import Campaign, TableDeclaration
 from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map, unturned
+from coeflab.tables.dialect import share
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.to_frd import BLANK, Columns, force_table, speed_of_rows
@@ -178,7 +179,12 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
         stated = column.unit.strip(" -1")
         if stated and _factor(stated, said.dimension):
             raise fault(raw, f"[{column.unit}] in the file", f"a pure number for {said}", column)
-        return Assigned(column, said, sign)
+        counted = share(column.unit)
+        if counted is None and any(ch.isdigit() for ch in stated):
+            raise fault(
+                raw, f"[{column.unit}] in the file", f"[-], [%] or a power of ten such as [1e-3] for {said}", column
+            )
+        return Assigned(column, said, sign * (counted or 1.0))
     own = _factor(column.unit, said.dimension)
     unit = said.unit or column.unit
     if not unit or (unit == "-" and not said.unit):

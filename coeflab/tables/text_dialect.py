@@ -15,7 +15,7 @@ from statistics import median
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import CSV_LINE, TABLE_COLUMNS
 from coeflab.core.options import bounded, one_of
-from coeflab.tables.dialect import BLANKS, ERRORS, SAID, SNIFFED, Head, Marks, Row, numeric, read_head
+from coeflab.tables.dialect import BLANKS, ERRORS, SAID, SNIFFED, Head, Marks, Row, is_unit_row, numeric, read_head
 
 DELIMITERS = {"tab": "\t", "semicolon": ";", "pipe": "|", "comma": ",", "blanks": " ", "none": ""}
 MARKS = {"blank": " ", "point": ".", "comma": ",", "apostrophe": "'", "none": ""}
@@ -392,6 +392,8 @@ def sniff(path: Path, options: Options) -> TextDialect:
     usual = median(counts[run[0] : run[1]]) / 2
     fits = [n > 0 and n >= usual for n in counts]
     begin = next(i for i in range(run[1]) if i == run[0] or (fits[i] and all(fits[i : i + 2])))
+    if options.units == 0 and begin + 1 < run[1] and is_unit_row(rows[begin][1]):
+        begin, run = begin + 1, (begin + 1, *run[1:])  # 1e-3 and the like over the data, read as numbers
     body = [c for _, c in rows[run[0] : run[1]]]
     filled = max(k + 1 for c in body for k, cell in enumerate(c) if cell)
     head, remarks = _head(lines, rows[begin][0], (delimiter, marks, width, filled), options, path)
