@@ -97,7 +97,7 @@ def _comparable(table: Table) -> Table:
             reasons.setdefault(row[-1], []).append(row[0])
     if not rows:
         for line in (table.title, *(f"  {', '.join(names)}: {why}" for why, names in reasons.items()), *table.notes):
-            show.text(line)
+            show.sentence(line)
         show.text()
         return replace(table, rows=())
     notes = (*(f"Not comparable, {why}: {', '.join(names)}." for why, names in reasons.items()), *table.notes)

@@ -30,7 +30,7 @@ def command(
     signal.signal(signal.SIGINT, signal.default_int_handler)
     with GalleryServer(folder, port) as server:
         try:
-            show.text(f"Gallery of {folder} on {server.address}; Ctrl-C ends it.")
+            show.text(f"Gallery on {server.address}; Ctrl-C ends it.")
             if open_:
                 Thread(target=show.in_browser, args=(server.address,), daemon=True).start()
             server.serve_forever()

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 import typer
@@ -125,9 +125,14 @@ PROSE, NARROWEST, ENDLESS = 80, 40, 1_000_000
 
 
 def _terminal() -> int:
+    import os
     import shutil
 
-    return max(shutil.get_terminal_size().columns, NARROWEST)
+    columns = shutil.get_terminal_size().columns
+    if not os.environ.get("COLUMNS", "").isdigit():
+        with suppress(OSError, ValueError):  # of this output, wherever the interpreter's first one leads
+            columns = os.get_terminal_size(sys.stdout.fileno()).columns
+    return max(columns, NARROWEST)
 
 
 def _prose(most: int) -> int:

@@ -126,7 +126,7 @@ def _sweep(study: Study, s: Sweep, budget: Budget | None) -> dict[str, Any]:
     for label in s.labels:
         seen[label] += 1
         keys.append(label if seen[label] == 1 else f"{label} ({seen[label]})")
-    among = next(f for f in study.fits if f.campaign == s.campaign and s in f.sweeps).coefficients
+    among = next(f for f in study.fits if any(own is s for own in f.sweeps)).coefficients
     found = among[s.symbol]
     studies: list[tuple[str, float, str]] = []
     if budget is not None:

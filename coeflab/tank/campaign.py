@@ -375,12 +375,11 @@ def _campaign_text(
 ) -> str:  # fmt: skip
     finished = sum(r.counts for r in runs)
     stated = [*tank.by_symmetry, *(f"{t}.csv from {_SOURCES[t]}.csv by fourfold symmetry" for t in turned)]
-    files = "; ".join(f"{name} sha256 {sha256_of(path)}" for name, path in inputs.items())
+    files = "; ".join(f"{name} sha256 {sha256_of(path)[:16]}..." for name, path in inputs.items())
     at = tank.conditions
     how = (
-        f"{version}, run by coeflab {VERSION}. Means over the plateau of every force and moment, se from batch means "
-        "(iteration noise only). Halves of the body are doubled. Meshes, cases and states: runs.csv."
-        + (f" {files}." if files else "")
+        f"{version}, run by coeflab {VERSION}. Means over plateaus, se from batch means "
+        "(iteration noise only). Half bodies are doubled. Runs: runs.csv." + (f" {files}." if files else "")
     )
     if made:
         how = f"As the table gives it: {made}, read by coeflab {VERSION}." + (f" {files}." if files else "")

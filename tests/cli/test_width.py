@@ -58,7 +58,10 @@ def test_no_line_of_a_help_text_is_longer_than_the_terminal(forks: Forks, folder
 
 
 @pytest.mark.parametrize("columns", [60, 100])
-def test_a_narrow_and_a_wide_terminal(forks: Forks, folder: Path, columns: int) -> None:
+def test_a_narrow_and_a_wide_terminal(
+    forks: Forks, folder: Path, columns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("COLUMNS", raising=False)
     text = seen(forks, arguments_of("compare HUUV HUUV"), folder, columns)[1]
     assert too_long(text, columns) == []
     assert max(map(len, text.split("\n"))) > columns - 25

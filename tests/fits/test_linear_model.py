@@ -104,7 +104,7 @@ def test_open_directions_are_said_in_words_and_carry_no_number():
     assert np.isnan(fit.coefficients).tolist() == [False, True, True, False]
     assert np.isnan(fit.half_width[1:3]).all()
     words = " ".join(in_words(fit, ("c", "a", "b", "d")))
-    assert "a, b are determined only together" in words
+    assert "a, b are determined only in combination" in words
     np.testing.assert_allclose(fit.residuals, 0.0, atol=1e-12)
 
 
@@ -112,7 +112,7 @@ def test_a_polynomial_of_higher_degree_than_its_abscissae_is_open():
     x = np.repeat([-1.0, 0.0, 1.0], 4)
     fit = fit_linear(np.vander(x, 4, increasing=True), x)
     assert fit.rank == 3
-    assert "b, d are determined only together" in " ".join(in_words(fit, tuple("abcd")))
+    assert "b, d are determined only in combination" in " ".join(in_words(fit, tuple("abcd")))
 
 
 def test_near_collinearity_is_said():

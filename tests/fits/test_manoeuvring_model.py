@@ -339,7 +339,7 @@ def test_a_value_that_only_an_equation_gives_says_so_and_has_no_window() -> None
     assert "from the equations alone" in c.estimator
     said = model(alone, "M").statements
     assert "Mw comes from the equations alone: its motion does not occur in the rows of M." in said
-    assert any(s.startswith("Not tested") and s.endswith("open: Mw = -Nv.") for s in said)
+    assert any(s.startswith("Not tested") and s.endswith("a coefficient: Mw = -Nv.") for s in said)
     for value, verb in ((0.0128, "do not contradict"), (0.02, "reject")):
         both = model(fitted(table, terms="Nv Mw", constraints=f"Mw = -Nv, Mw = {value}"), "N").statements
         assert any(s.startswith(f"The data {verb} Mw = -Nv with Mw = {value}") for s in both)

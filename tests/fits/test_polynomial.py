@@ -150,7 +150,7 @@ def test_what_the_abscissae_leave_open_has_no_number():
     assert status == {
         "Y0": Status.FORM_ASSUMED, "Yv": Status.TOO_FEW_POINTS, "Yvv": Status.FORM_ASSUMED, "Yvvv": Status.TOO_FEW_POINTS,
     }  # fmt: skip
-    assert any("Yv', Yvvv' are determined only together" in s for s in found.models[0].statements)
+    assert any("Yv', Yvvv' are determined only in combination" in s for s in found.models[0].statements)
     assert np.isnan(found.coefficients.covariance[1]).all()
 
 

@@ -150,7 +150,7 @@ def test_a_model_without_density_is_read_in_every_format(tmp_path: Path) -> None
         path = tmp_path / "model.txt"
         path.write_text(text, encoding="utf-8")
         notes = [c for c in read_model_file(path).findings if c.severity is Severity.NOTE]
-        assert ["stands in" in c.statistic for c in notes] == [True]
+        assert ["is assumed" in c.statistic for c in notes] == [True]
         assert read_model_file(path, 1020.0).parameters.conditions.density == 1020.0
 
 

@@ -118,7 +118,7 @@ def test_what_is_held_stays() -> None:
     motion = rigid_body.simulate(held, coasting(5.0, [1.0, 0.2, 0, 0, 0, 0.1]))
     np.testing.assert_array_equal(motion.velocity[:, 2:5], 0.0)
     np.testing.assert_allclose(motion.angles[:, :2], 0.0, atol=1e-12)
-    assert "w, p, q held" in " ".join(motion.statements)
+    assert "w, p, q fixed" in " ".join(motion.statements)
 
 
 def test_flags_follow_the_ranges_of_the_file() -> None:

@@ -122,7 +122,7 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     (said,) = in_words(study)
     start = "On a straight course with controls fixed unstable at high speed (no restoring moment) by its value alone: synthetic"
     assert said.startswith(start)
-    assert ", at 1.50 m/s not determined, since BG is unknown; stable by its value alone: synthetic (G_h" in said
+    assert ", at 1.50 m/s not determined, as BG is not known; stable by its value alone: synthetic (G_h" in said
     assert "BG is not known" in in_words(study, with_values=False)[0]
     (known,) = in_words(with_files(made({**STABLE, "Mw": 6e-2})))
     assert known.startswith(start)

@@ -162,4 +162,4 @@ def test_from_the_files_of_a_user(write_campaign: Callable[..., Path], tmp_path:
     start = "import sys; from coeflab.cli import main; main()"
     command = [sys.executable, "-c", start, "run", folder / "plan.toml", "--out", tmp_path / "out"]
     printed = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert printed.stdout.startswith(f"{TITLE}\n")
+    assert printed.stdout.startswith(TITLE)

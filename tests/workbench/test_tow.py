@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.cli.tow import _fates, _say_next
+from coeflab.cli import show
+from coeflab.cli.tow import _fates
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, write_all
 from coeflab.report.tables import tow as tables
@@ -109,7 +110,7 @@ def test_what_u95_leaves_out_and_what_symmetry_should_make_zero_is_said(whole: t
 
 
 def test_long_lines_are_folded(capsys: pytest.CaptureFixture[str]) -> None:
-    _say_next("coeflab tow " + "a_body_with_a_long_name " * 4 + "--continue")
+    show.command_line("Next", "coeflab tow " + "a_body_with_a_long_name " * 4 + "--continue")
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 2
     assert max(map(len, lines)) <= 80
