@@ -493,3 +493,27 @@ def test_any_text_is_a_column_or_a_clear_refusal(text: str) -> None:
     except InputError:
         return
     assert read_column_map(str(said)) == said
+
+
+@pytest.mark.parametrize(
+    ("unit", "size"), [("1e-3", 1e-3), ("10^-3", 1e-3), ("10⁻³", 1e-3), ("x 1e-3", 1e-3), ("%", 1e-2), ("-", 1.0)]
+)
+def test_primes_are_counted_in_what_the_row_of_units_says(write_campaign, unit: str, size: float) -> None:
+    """A factor of 1000 that nobody saw: the row ``- | deg | 1e-3`` was read as data."""
+    rows = [(-4.0, -1.5, 0.8), (0.0, 0.0, 0.0), (4.0, 1.5, -0.8)]
+    text = f"Case;Drift;CY;CN\n-;deg;{unit};{unit}\n" + "".join(f"D{b:g};{b};{y};{n}\n" for b, y, n in rows)
+    columns = '\n[columns]\nCase = "label"\nDrift = "beta"\nCY = "Y\'"\nCN = "N\'"\n'
+    by_table = SECTIONS["campaign"] + '\nimporter = "table"'
+    folder = write_campaign(text, campaign=by_table, source=SECTIONS["source"] + "\n" + columns)
+    (table,) = read_tables(PlannedTable(folder, ()))
+    force = 0.5 * RHO * SPEED**2 * LENGTH**2
+    np.testing.assert_allclose(table.forces["Y"], [size * force * y for _, y, _ in rows], rtol=1e-12, atol=1e-12)
+
+
+def test_a_unit_of_primes_that_cannot_be_read_is_refused(write_campaign) -> None:
+    text = "Drift [deg];CY [E3x];CN [-]\n-4;1;1\n0;0;0\n4;-1;-1\n"
+    columns = '\n[columns]\nDrift = "beta"\nCY = "Y\'"\nCN = "N\'"\n'
+    by_table = SECTIONS["campaign"] + '\nimporter = "table"'
+    folder = write_campaign(text, campaign=by_table, source=SECTIONS["source"] + "\n" + columns)
+    with pytest.raises(InputError, match="1e-3"):
+        read_tables(PlannedTable(folder, ()))
