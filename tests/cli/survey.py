@@ -8,6 +8,7 @@ import re
 import struct
 import subprocess
 import sys
+import tempfile
 import termios
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -153,8 +154,8 @@ if __name__ == "__main__":
 
     forks = Forks()
     only = sys.argv[1:]
-    folder = Path(os.environ.get("SURVEY", "/tmp/terminal/survey"))
-    folder.mkdir(exist_ok=True, parents=True)
+    folder = Path(tempfile.mkdtemp(prefix="survey"))
+    print(f"Texts: {folder}")  # noqa: T201
     try:
         for line in (*QUICK, *SLOW):
             if line and all(word in line for word in only):
