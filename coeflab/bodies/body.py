@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.source import MeshSource
+from coeflab.bodies.outline import Outline
 from coeflab.bodies.pieces import Control, ControlKeys, Piece
 from coeflab.bodies.shape import Shape
 from coeflab.core import declarations as takes
@@ -133,6 +134,8 @@ class Body:
         The closed pieces that the shape is made of, where its reader knows them.
     controls : tuple of Control
         Which of them turn.
+    outline : Outline, optional
+        What semi-empirical methods see of it, where its reader knows.
     """
 
     name: str
@@ -149,6 +152,7 @@ class Body:
     mesh: MeshSource | None = None
     pieces: tuple[Piece, ...] = ()
     controls: tuple[Control, ...] = ()
+    outline: Outline | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))

@@ -31,6 +31,7 @@ class Status(StrEnum):
     SINGLE_ESTIMATOR = "single_estimator"
     NOT_DETERMINED = "not_determined"
     STATED = "stated"
+    ESTIMATE = "estimate"
     FORM_ASSUMED = "form_assumed"
     FORM_REJECTED = "form_rejected"
 
@@ -47,6 +48,7 @@ class Status(StrEnum):
             "is given. Run more angles, some on the other side.",
             Status.NOT_DETERMINED: "The data, or the derivatives that a change of reference point needs, leave it open.",
             Status.STATED: "Taken from the literature with the uncertainty stated there.",
+            Status.ESTIMATE: "From the shape by semi-empirical methods. Replace it with a computation or a measurement.",
             Status.FORM_ASSUMED: "U95 holds the scatter and what the residuals show that the form leaves out. A misfit of "
             "the size of the noise does not show.",
             Status.FORM_REJECTED: "The residuals show that the form is wrong, and another would move the value by more than "
@@ -107,7 +109,7 @@ class Coefficient:
     parts : Parts
     status : Status
     origin : str
-        ``fit``, ``literature`` or ``none``.
+        ``fit``, ``literature``, ``estimate`` or ``none``.
     unit : str
         ``1`` when primed, else SI.
     table, campaign, body : str or None
@@ -139,12 +141,14 @@ class Coefficient:
         Means(
             "ok: fitted with U95; single_estimator: fitted, its model-form error unknown; form_assumed (since 1.2): U95 holds "
             "the scatter and what the residuals show that the form leaves out; form_rejected (since 1.4): the residuals show "
-            "that the form is wrong, no U95; stated: from the literature; no_table, too_few_points, not_determined: no value"
+            "that the form is wrong, no U95; stated: from the literature; estimate (since 1.5): from the shape by semi-empirical methods; no_table, too_few_points, not_determined: no value"
         ),
     ]
     body: str = ""
     parts: Annotated[Parts, Means("what makes up U95")] = Parts()
-    origin: Annotated[str, Choice(("fit", "literature", "none")), Means("where the value comes from")] = "none"
+    origin: Annotated[str, Choice(("fit", "literature", "estimate", "none")), Means("where the value comes from")] = (
+        "none"
+    )
     unit: Annotated[str, Choice(("1",)), Means("1: nondimensional by the prime system of `scaling`")] = "1"
     table: Annotated[str | None, Means("file of the table that it was fitted to")] = None
     campaign: Annotated[str | None, Means("campaign of that table")] = None
