@@ -1,56 +1,55 @@
 """The outline of any shape; of a mesh by its sections across x.
 
-Every section is opened by a disc of half its largest inscribed radius (Serra, Image Analysis and Mathematical Morphology,
-1982): what is left is hull, what is cut off and thin is an appendage. Sections that overlap their neighbours are one piece.
-A round section with a large hole is a ring wing. Where hulls and foils hold too little of the volume, or are not slender,
-the whole body is bluff. What is neither is said in ``left_out``.
+Cores of sections that overlap their neighbours are hulls, what stands out of them and is thin are foils, round walls are
+ring wings. Where these hold too little of the volume, or no hull is slender, the whole body is bluff. What is neither is
+said in ``left_out``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from coeflab.bodies.cuts import (
+    SKIN,
+    SPECK,
+    Bit,
+    Cuts,
+    Wall,
+    centre_of,
+    clusters_of,
+    cuts_of,
+    grown,
+    merged,
+    middle_at,
+    overlap,
+    reach,
+    tracks_of,
+    width,
+)  # fmt: skip
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.solids import mesh_outline, polygons
 from coeflab.bodies.outline import Bluff, Foil, Outline, RingWing, Sections
 from coeflab.bodies.outlining import SLENDER, of_parts, of_revolution, with_controls
 from coeflab.bodies.pieces import HULL, Control
 from coeflab.bodies.shape import Parts, Revolution, Shape
-from coeflab.bodies.strips import contours
-from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 
 KEPT = 8
 STATIONS, FINE = 96, 64  # along the body; along each group of appendages
 INSIDE = 1e-5  # of the length: where the end faces are cut
-OPENING, SKIN, ROUND = 0.5, 0.02, 96  # of the inscribed radius; segments of a circle
-COMPACT, MAIN, SHARE = (
-    0.6,
-    0.25,
-    0.7,
-)  # area over convex hull; inscribed radius over the largest; volume that is recognised
-BLUNT, SHORT, ENDS = (
-    0.5,
-    3.0,
-    0.05,
-)  # thinner ends are no part of it; both end faces over the largest section, with a length under so many diameters: a box
+MAIN, SHARE = 0.25, 0.7  # inscribed radius of a hull over the largest; volume that is recognised
+ENDS = 0.05  # of the largest section: thinner ends do not count as length
+BLUNT, SHORT = 0.5, 3.0  # both end faces over the largest section, with a length under so many diameters: a box
 SMALL, THICK = 0.1, 0.5  # span over the hull's radius; thickness over chord: more is bluff
-HOLLOW, RINGLIKE, WALL = 0.25, 0.05, 0.4  # hole over the disc; deviation from a circle; wall over radius
-FACETS, SPECK = 0.03, 1e-3  # of the hole's radius and of the disc: what facets of a ring leave within it
 LEVELS, FEWEST = 12, 3
 MOST_HULLS, MOST_CLUSTERS = 4, 40  # more is a frame
-BENT, LOOSE = (
-    0.25,
-    0.35,
-)  # half the surface over the planform; area of the straight trapezoid over the planform, less one
-
-Polygon = Any
+BENT = 0.25  # half the surface over the planform, less one: it is not flat
+LOOSE = 0.35  # area of the straight trapezoid over the planform, less one
 
 
 @lru_cache(KEPT)
@@ -70,193 +69,7 @@ def outline_of(shape: Shape, controls: tuple[Control, ...] = ()) -> Outline:
     return of_mesh(shape, controls)
 
 
-@dataclass(slots=True)
-class _Bit:
-    """A connected piece of one section: of a hull (``core``) or of what stands out of it."""
-
-    x: float
-    polygon: Polygon
-    inscribed: float = 0.0
-    core: bool = False
-    step: int = 0
-    next: _Bit | None = None
-    owner: int = -1
-
-    @property
-    def points(self) -> Array:
-        """(n, 2) all its corners."""
-        return np.concatenate(polygons(self.polygon))
-
-
-@dataclass(slots=True)
-class _Wall:
-    """A round section of a ring wing."""
-
-    x: float
-    centre: Array
-    radius: float
-    thickness: float
-
-
-@dataclass(slots=True)
-class _Cuts:
-    """All sections of a mesh at some stations, from the foremost to the aftmost."""
-
-    x: Array
-    cores: list[list[_Bit]] = field(default_factory=list)
-    rest: list[list[_Bit]] = field(default_factory=list)
-    walls: list[_Wall] = field(default_factory=list)
-    wholes: list[Polygon] = field(default_factory=list)
-
-
-def _section(loops: Sequence[Array], size: float) -> Polygon:
-    from manifold3d import CrossSection, FillRule
-
-    return CrossSection([np.ascontiguousarray(loop) for loop in loops], FillRule.Positive).simplify(1e-4 * size)
-
-
-def _grown(polygon: Polygon, by: float) -> Polygon:
-    """All points within a distance; with a negative one, all that have the polygon about them so far."""
-    return polygon.offset(by, circular_segments=ROUND)
-
-
-def _inscribed(polygon: Polygon) -> float:
-    """Radius of the largest disc within, to 2 %."""
-    low_y, low_z, high_y, high_z = polygon.bounds()
-    low, high = 0.0, min(high_y - low_y, high_z - low_z) / 2.0
-    if not polygon.offset(-0.98 * high).is_empty():
-        return float(high)
-    while high - low > 0.02 * high and high > 0.0:
-        middle = (low + high) / 2.0
-        low, high = (low, middle) if polygon.offset(-middle).is_empty() else (middle, high)
-        if high < 1e-6 * max(high_y - low_y, high_z - low_z):
-            break
-    return float(low)
-
-
-def _wall(x: float, polygon: Polygon) -> tuple[_Wall | None, Polygon]:
-    """The ring that a section shows, and the section without it."""
-    from manifold3d import CrossSection
-
-    rings = polygons(polygon)
-    outer = max(rings, key=lambda ring: float(np.ptp(ring, axis=0).prod()))
-    holes = [ring for ring in rings if _area(ring) < 0.0]
-    low, high = outer.min(axis=0), outer.max(axis=0)
-    centre, radius = (low + high) / 2.0, float((high - low).mean() / 2.0)
-    disc = np.pi * radius**2
-    if not holes or -sum(map(_area, holes)) < HOLLOW * disc or abs(_area(outer) / disc - 1.0) > RINGLIKE:
-        return None, polygon
-    if np.abs((high - low) / (2.0 * radius) - 1.0).max() > RINGLIKE:
-        return None, polygon
-    reach = max(float(np.linalg.norm(hole - centre, axis=1).max()) for hole in holes)
-    if radius - reach > WALL * radius:
-        return None, polygon
-    inner = CrossSection.circle((1.0 - FACETS) * reach, ROUND).translate((float(centre[0]), float(centre[1])))
-    kept = [p for p in (polygon ^ inner).decompose() if p.area() > SPECK * disc]
-    return _Wall(x, centre, (radius + reach) / 2.0, radius - reach), CrossSection.compose(kept)
-
-
-def _area(ring: Array) -> float:
-    y, z = ring.T
-    return float((y * np.roll(z, -1) - np.roll(y, -1) * z).sum() / 2.0)
-
-
-def _cuts(mesh: TriangleMesh, x: Array) -> _Cuts:
-    """Sections at falling stations, each as hulls and what stands out of them."""
-    size = float(mesh.extents[1:].max())
-    out = _Cuts(x)
-    try:
-        sections = contours(mesh.vertices, mesh.faces, x)
-    except ValueError:
-        raise InputError("a mesh that is open", "a closed surface, whose sections are closed contours") from None
-    for k, (at, loops) in enumerate(zip(x, sections, strict=True)):
-        out.cores.append([])
-        out.rest.append([])
-        section = _section(loops, size)
-        out.wholes.append(section)
-        for whole in section.decompose():
-            if whole.area() < 1e-8 * size**2:
-                continue
-            wall, left = _wall(float(at), whole)
-            out.walls += [] if wall is None else [wall]
-            for one in [whole] if wall is None else left.decompose():
-                if one.area() < 1e-8 * size**2:
-                    continue
-                inscribed = _inscribed(one)
-                cores = _grown(_grown(one, -OPENING * inscribed), OPENING * inscribed)
-                if cores.area() < COMPACT * sum(c.hull().area() for c in cores.decompose()):
-                    out.rest[-1].append(_Bit(float(at), one, inscribed, step=k))
-                    continue
-                out.cores[-1] += [_Bit(float(at), c, inscribed, True, k) for c in cores.decompose()]
-                rest = (one - _grown(cores, SKIN * inscribed)).decompose()
-                out.rest[-1] += [_Bit(float(at), r, inscribed, step=k) for r in rest if r.area() > 1e-6 * one.area()]
-    return out
-
-
-def _overlap(a: _Bit, b: _Bit) -> float:
-    (ay, az, by, bz), (cy, cz, dy, dz) = a.polygon.bounds(), b.polygon.bounds()
-    if ay > dy or cy > by or az > dz or cz > bz:
-        return 0.0
-    return float((a.polygon ^ b.polygon).area())
-
-
-def _tracks(cuts: _Cuts) -> list[list[_Bit]]:
-    """Hulls: cores of consecutive stations that overlap each other most."""
-    tracks: list[list[_Bit]] = []
-    before: list[_Bit] = []
-    for here in cuts.cores:
-        pairs = sorted(((_overlap(a, b), i, j) for i, a in enumerate(before) for j, b in enumerate(here)), reverse=True)
-        taken: set[int] = set()
-        for share, i, j in pairs:
-            if share > 0.0 and before[i].next is None and j not in taken:
-                before[i].next = here[j]
-                here[j].owner = before[i].owner
-                tracks[before[i].owner].append(here[j])
-                taken.add(j)
-        for bit in here:
-            if bit.owner < 0:
-                bit.owner = len(tracks)
-                tracks.append([bit])
-        before = here
-    return tracks
-
-
-def _clusters(rest: list[list[_Bit]]) -> list[list[_Bit]]:
-    """Appendages: bits of consecutive stations that overlap, in the order of their stations."""
-    found: list[list[_Bit]] = []
-    before: list[_Bit] = []
-    for here in rest:
-        for bit in here:
-            joined = sorted({other.owner for other in before if _overlap(bit, other) > 0.0})
-            if not joined:
-                joined = [len(found)]
-                found.append([])
-            first = joined[0]
-            for other in joined[1:]:
-                for moved in found[other]:
-                    moved.owner = first
-                found[first] += found[other]
-                found[other] = []
-            bit.owner = first
-            found[first].append(bit)
-        before = here
-    return [cluster for cluster in found if cluster]
-
-
-def _merged(cluster: list[_Bit]) -> list[_Bit]:
-    """One bit for each station, in their order."""
-    by_step: dict[int, _Bit] = {}
-    for bit in sorted(cluster, key=lambda bit: bit.step):
-        had = by_step.get(bit.step)
-        by_step[bit.step] = (
-            bit
-            if had is None
-            else _Bit(bit.x, had.polygon + bit.polygon, max(had.inscribed, bit.inscribed), step=bit.step)
-        )
-    return list(by_step.values())
-
-
-def _ends(track: list[_Bit], cuts: _Cuts) -> tuple[float, float]:
+def _ends(track: list[Bit], cuts: Cuts) -> tuple[float, float]:
     """Where a hull begins and ends: at the mesh's ends, else halfway to the next station."""
     first, last, x = track[0].step, track[-1].step, cuts.x
     fore = x[0] if first == 0 else (x[first] + x[first - 1]) / 2.0
@@ -264,19 +77,19 @@ def _ends(track: list[_Bit], cuts: _Cuts) -> tuple[float, float]:
     return float(fore), float(aft)
 
 
-def _hull(name: str, track: list[_Bit], cuts: _Cuts, gone: set[int]) -> Sections:
+def _hull(name: str, track: list[Bit], cuts: Cuts, gone: set[int]) -> Sections:
     """Sections of a hull, with the corners that the opening rounded, without its appendages (``gone``, ids of bits)."""
     rows = []
     for bit in track:
         polygon = bit.polygon
         for other in cuts.rest[bit.step]:
-            grown = _grown(other.polygon, 1.5 * SKIN * bit.inscribed)
-            if id(other) not in gone and (grown ^ bit.polygon).area() > 0.0:
-                polygon = polygon + (grown ^ cuts.wholes[bit.step])
+            around = grown(other.polygon, 1.5 * SKIN * bit.inscribed)
+            if id(other) not in gone and (around ^ bit.polygon).area() > 0.0:
+                polygon = polygon + (around ^ cuts.wholes[bit.step])
         rings = polygons(polygon)
         girth = sum(float(np.linalg.norm(np.roll(r, -1, axis=0) - r, axis=1).sum()) for r in rings[:1])
         points = np.concatenate(rings)
-        rows.append((polygon.area(), *np.ptp(points, axis=0), girth, *_centre(polygon)))
+        rows.append((polygon.area(), *np.ptp(points, axis=0), girth, *centre_of(polygon)))
     table = np.array(rows)
     x = np.array([bit.x for bit in track])
     fore, aft = _ends(track, cuts)
@@ -289,54 +102,6 @@ def _hull(name: str, track: list[_Bit], cuts: _Cuts, gone: set[int]) -> Sections
     straight = np.ptp(table[:, 4:6][area > 0.1 * area.max()], axis=0).max()
     is_round = bool(np.median(like / breadth.max()) < 0.02 and straight < 0.02 * breadth.max())
     return Sections(name, x, area, breadth, depth, table[:, 3], table[:, 4:6], is_round)
-
-
-def _centre(polygon: Polygon) -> Array:
-    total, moment = 0.0, np.zeros(2)
-    for ring in polygons(polygon):
-        after = np.roll(ring, -1, axis=0)
-        cross = ring[:, 0] * after[:, 1] - after[:, 0] * ring[:, 1]
-        total += float(cross.sum()) / 2.0
-        moment += ((ring + after) * cross[:, None]).sum(axis=0) / 6.0
-    return moment / total
-
-
-def _reach(polygon: Polygon, origin: Array, way: Array) -> float:
-    """How far a section reaches from a point along a direction, 0 where it does not meet the ray."""
-    across, most = np.array([-way[1], way[0]]), 0.0
-    for ring in polygons(polygon):
-        offset = ring - origin
-        s, t = offset @ way, offset @ across
-        s1, t1 = np.roll(s, -1), np.roll(t, -1)
-        hit = (t <= 0.0) != (t1 <= 0.0)
-        at = s[hit] + (s1 - s)[hit] * t[hit] / (t - t1)[hit]
-        most = max(most, float(at.max(initial=0.0)))
-    return most
-
-
-def _crossed(polygon: Polygon, origin: Array, way: Array, level: float) -> Array:
-    """Where the line across a direction, at a distance along it, crosses the edge of a section: distances aside."""
-    across, found = np.array([-way[1], way[0]]), []
-    for ring in polygons(polygon):
-        offset = ring - origin
-        s, t = offset @ way - level, offset @ across
-        s1, t1 = np.roll(s, -1), np.roll(t, -1)
-        hit = (s <= 0.0) != (s1 <= 0.0)
-        found.append(t[hit] + (t1 - t)[hit] * s[hit] / (s - s1)[hit])
-    return np.concatenate(found)
-
-
-def _widths(polygon: Polygon, origin: Array, way: Array, level: float) -> float:
-    """How wide a section is at a distance along a direction."""
-    found = _crossed(polygon, origin, way, level)
-    return float(np.ptp(found)) if len(found) else 0.0
-
-
-def _middle(polygon: Polygon, origin: Array, way: Array, level: float) -> Array:
-    """The middle of a section at a distance along a direction."""
-    found = _crossed(polygon, origin, way, level)
-    aside = (found.min() + found.max()) / 2.0 if len(found) else 0.0
-    return np.asarray(origin + level * way + aside * np.array([-way[1], way[0]]))
 
 
 @dataclass(slots=True)
@@ -362,13 +127,13 @@ def _words(way: Array) -> str:
     )
 
 
-def _way(bits: list[_Bit], stand: Array) -> tuple[Array, Array]:
+def _way(bits: list[Bit], stand: Array) -> tuple[Array, Array]:
     """From where a cluster begins towards where it ends, and the point that its distances count from.
 
     The direction runs through the middles of its sections at a quarter and three quarters of their height.
     """
     areas = np.array([bit.polygon.area() for bit in bits])
-    middle = np.average([_centre(bit.polygon) for bit in bits], axis=0, weights=areas) - stand
+    middle = np.average([centre_of(bit.polygon) for bit in bits], axis=0, weights=areas) - stand
     way = (
         middle
         + stand
@@ -381,28 +146,28 @@ def _way(bits: list[_Bit], stand: Array) -> tuple[Array, Array]:
         total = np.zeros(2)
         for bit in bits:
             s = (bit.points - stand) @ way
-            ends = [_middle(bit.polygon, stand, way, float(s.min() + share * np.ptp(s))) for share in (0.25, 0.75)]
+            ends = [middle_at(bit.polygon, stand, way, float(s.min() + share * np.ptp(s))) for share in (0.25, 0.75)]
             total += ends[1] - ends[0]
         way = total if np.any(total) else way
     way = way / np.linalg.norm(way)
     return way, stand + middle - (middle @ way) * way
 
 
-def _stands_out(bit: _Bit, cores: list[_Bit]) -> bool:
+def _stands_out(bit: Bit, cores: list[Bit]) -> bool:
     """It reaches further from its hull than it is wide at its foot; a corner that the opening rounded does not."""
     skin = SKIN * bit.inscribed
-    core = max(cores, key=lambda c: float((_grown(bit.polygon, 3.0 * skin) ^ c.polygon).area()), default=None)
-    foot = 0.0 if core is None else float((_grown(bit.polygon, 3.0 * skin) ^ core.polygon).area()) / (2.0 * skin)
+    core = max(cores, key=lambda c: float((grown(bit.polygon, 3.0 * skin) ^ c.polygon).area()), default=None)
+    foot = 0.0 if core is None else float((grown(bit.polygon, 3.0 * skin) ^ core.polygon).area()) / (2.0 * skin)
     if core is None or foot == 0.0:
         return True
     low, high = 0.0, float(np.ptp(bit.points, axis=0).max()) + 2.0 * skin
     while high - low > 0.1 * high:
         middle = (low + high) / 2.0
-        low, high = (low, middle) if (bit.polygon - _grown(core.polygon, middle)).is_empty() else (middle, high)
+        low, high = (low, middle) if (bit.polygon - grown(core.polygon, middle)).is_empty() else (middle, high)
     return low > foot
 
 
-def _appendage(bits: list[_Bit], hull: Sections, track: list[_Bit]) -> _Appendage:
+def _appendage(bits: list[Bit], hull: Sections, track: list[Bit]) -> _Appendage:
     """A cluster as a foil, or as something bluff where it is thick."""
     x = np.array([bit.x for bit in bits])
     at = float(np.clip((x[0] + x[-1]) / 2.0, hull.x[-1], hull.x[0]))
@@ -416,7 +181,7 @@ def _appendage(bits: list[_Bit], hull: Sections, track: list[_Bit]) -> _Appendag
         s = (bit.points - origin) @ way
         low[i], high[i] = float(s.min()), float(s.max())
         core = by_step.get(bit.x)
-        if core is not None and low[i] - (within := _reach(core.polygon, origin, way)) < 0.2 * bit.inscribed:
+        if core is not None and low[i] - (within := reach(core.polygon, origin, way)) < 0.2 * bit.inscribed:
             low[i] = min(within, high[i])
     volume = float(-np.trapezoid(areas, x)) if len(x) > 1 else 0.0
     whole = np.ptp(points, axis=0)
@@ -440,7 +205,7 @@ def _appendage(bits: list[_Bit], hull: Sections, track: list[_Bit]) -> _Appendag
     return _Appendage(foil, bluff, volume, bent)
 
 
-def _foil(name: str, x: Array, low: Array, high: Array, bits: list[_Bit], origin: Array, way: Array) -> Foil | None:
+def _foil(name: str, x: Array, low: Array, high: Array, bits: list[Bit], origin: Array, way: Array) -> Foil | None:
     """Straight edges through the planform between the foremost and the aftmost station at each level."""
     tip, foot = float(high.max()), float(low.mean())
     clean = max(foot, min(float(low.max()), foot + 0.5 * (tip - foot)))
@@ -462,7 +227,7 @@ def _foil(name: str, x: Array, low: Array, high: Array, bits: list[_Bit], origin
         return None
     level = (foot + tip) / 2.0
     chord = float(fore(level) - aft(level))
-    thickness = max(_widths(bit.polygon, origin, way, level) for bit in bits) / chord if chord > 0.0 else np.inf
+    thickness = max(width(bit.polygon, origin, way, level) for bit in bits) / chord if chord > 0.0 else np.inf
     root, end = (
         np.array([float(fore(at)) - c / 4.0, *(origin + at * way)]) for at, c in ((foot, root_chord), (tip, tip_chord))
     )
@@ -493,8 +258,8 @@ def of_mesh(mesh: TriangleMesh, controls: tuple[Control, ...] = ()) -> Outline:
         An open mesh.
     """
     fore, aft = float(mesh.vertices[:, 0].max()), float(mesh.vertices[:, 0].min())
-    cuts = _cuts(mesh, _spaced(fore, aft, STATIONS))
-    tracks = _tracks(cuts)
+    cuts = cuts_of(mesh, _spaced(fore, aft, STATIONS))
+    tracks = tracks_of(cuts)
     largest = max((bit.inscribed for track in tracks for bit in track), default=0.0)
     main = [t for t in tracks if len(t) > 2 and max(bit.inscribed for bit in t) >= MAIN * largest]
     slender = [t for t in main if _is_slender(t)]
@@ -511,7 +276,7 @@ def of_mesh(mesh: TriangleMesh, controls: tuple[Control, ...] = ()) -> Outline:
     for bits in cuts.rest:
         for bit in bits:
             bit.owner = -1
-    clusters = [(c, _merged(c)) for c in _clusters(cuts.rest)]
+    clusters = [(c, merged(c)) for c in clusters_of(cuts.rest)]
     clusters = [(c, merged) for c, merged in clusters if _counts(merged, slender, _of(cuts.cores, slender))]
     if len(clusters) > MOST_CLUSTERS:
         return _all_bluff(mesh, f"{len(clusters)} parts stand out of it, as of a frame")
@@ -527,7 +292,7 @@ def of_mesh(mesh: TriangleMesh, controls: tuple[Control, ...] = ()) -> Outline:
     return Outline(hulls, turned, rings, bluff, mesh.integrals.area, mesh.volume, (*left, *more))
 
 
-def _of(cores: list[list[_Bit]], tracks: list[list[_Bit]]) -> list[list[_Bit]]:
+def _of(cores: list[list[Bit]], tracks: list[list[Bit]]) -> list[list[Bit]]:
     """The cores of these hulls only."""
     known = {id(bit) for track in tracks for bit in track}
     return [[bit for bit in here if id(bit) in known] for here in cores]
@@ -539,7 +304,7 @@ def _spaced(fore: float, aft: float, count: int) -> Array:
     return np.asarray(middle + half * np.cos(np.pi * np.arange(count + 1) / count))
 
 
-def _is_slender(track: list[_Bit]) -> bool:
+def _is_slender(track: list[Bit]) -> bool:
     """Long, and no box: a short one with both ends blunt."""
     area = np.array([bit.polygon.area() for bit in track])
     full = np.flatnonzero(area > ENDS * area.max())[[0, -1]]
@@ -559,26 +324,26 @@ def _all_bluff(mesh: TriangleMesh, why: str) -> Outline:
     )
 
 
-def _nearest(track: list[_Bit], x: float) -> _Bit | None:
+def _nearest(track: list[Bit], x: float) -> Bit | None:
     """The bit of a hull at a place, if it reaches there."""
     spacing = max((a.x - b.x for a, b in pairwise(track)), default=0.0)
     found = min(track, key=lambda bit: abs(bit.x - x))
     return found if abs(found.x - x) <= spacing else None
 
 
-def _own_track(cluster: list[_Bit], tracks: list[list[_Bit]]) -> list[_Bit]:
+def _own_track(cluster: list[Bit], tracks: list[list[Bit]]) -> list[Bit]:
     """The hull that a cluster stands on: the nearest over its stations."""
     points = np.concatenate([bit.points for bit in cluster])
     middle = (cluster[0].x + cluster[-1].x) / 2.0
 
-    def distance(track: list[_Bit]) -> float:
+    def distance(track: list[Bit]) -> float:
         bit = min(track, key=lambda b: abs(b.x - middle))
-        return float(np.linalg.norm(points - _centre(bit.polygon), axis=1).min()) - bit.inscribed
+        return float(np.linalg.norm(points - centre_of(bit.polygon), axis=1).min()) - bit.inscribed
 
     return min(tracks, key=distance)
 
 
-def _counts(cluster: list[_Bit], tracks: list[list[_Bit]], cores: list[list[_Bit]]) -> bool:
+def _counts(cluster: list[Bit], tracks: list[list[Bit]], cores: list[list[Bit]]) -> bool:
     """Large enough, and it stands out of its hull where it is largest."""
     largest = max(cluster, key=lambda bit: float(bit.polygon.area()))
     track = _own_track(cluster, tracks)
@@ -589,7 +354,7 @@ def _counts(cluster: list[_Bit], tracks: list[list[_Bit]], cores: list[list[_Bit
 
 
 def _appendages(
-    mesh: TriangleMesh, cuts: _Cuts, rough: list[list[_Bit]], tracks: list[list[_Bit]], hulls: tuple[Sections, ...]
+    mesh: TriangleMesh, cuts: Cuts, rough: list[list[Bit]], tracks: list[list[Bit]], hulls: tuple[Sections, ...]
 ) -> tuple[list[Foil], tuple[Bluff, ...], float, list[str]]:
     """Each cluster by finer sections of its own."""
     foils: list[Foil] = []
@@ -597,30 +362,30 @@ def _appendages(
     left: list[str] = []
     volume = 0.0
     for fore, aft in _ranges(cuts.x, [(c[0].step, c[-1].step) for c in rough]):
-        fine = _cuts(mesh, np.linspace(fore, aft, FINE + 1) * 1.0)
+        fine = cuts_of(mesh, np.linspace(fore, aft, FINE + 1) * 1.0)
         for step, here in enumerate(fine.cores):
             for bit in here:
                 of_hull = [
                     n
                     for t in tracks
-                    if (n := _nearest(t, bit.x)) is not None and _overlap(bit, n) > 0.5 * bit.polygon.area()
+                    if (n := _nearest(t, bit.x)) is not None and overlap(bit, n) > 0.5 * bit.polygon.area()
                 ]
                 if not of_hull or bit.inscribed < 0.5 * min(n.inscribed for n in of_hull):
                     fine.rest[step].append(bit)
                     bit.core = False
         kept = [[bit for bit in here if bit.core] for here in fine.cores]
         cores = [bit for here in kept for bit in here]
-        for cluster in map(_merged, _clusters(fine.rest)):
+        for cluster in map(merged, clusters_of(fine.rest)):
             if len(cluster) < FEWEST or not _counts(cluster, tracks, kept):
                 continue
             if _joins(cluster, tracks):
-                y, z = _centre(cluster[len(cluster) // 2].polygon)
+                y, z = centre_of(cluster[len(cluster) // 2].polygon)
                 ends = f"x = {cluster[0].x:.3g} to {cluster[-1].x:.3g} m at y = {y:.3g}, z = {z:.3g} m"
                 left.append(f"what joins two hulls, {ends}")
                 volume += float(-np.trapezoid([b.polygon.area() for b in cluster], [b.x for b in cluster]))
                 continue
             track = _own_track(cluster, tracks)
-            near = [bit for bit in cores if (n := _nearest(track, bit.x)) is not None and _overlap(bit, n) > 0.0]
+            near = [bit for bit in cores if (n := _nearest(track, bit.x)) is not None and overlap(bit, n) > 0.0]
             found = _appendage(cluster, hulls[tracks.index(track)], near)
             if found.volume < SPECK * SPECK * mesh.volume or (
                 found.foil is None and found.volume < SPECK * mesh.volume
@@ -637,12 +402,12 @@ def _appendages(
     return _numbered(foils), tuple(_numbered(bluff)), volume, left
 
 
-def _joins(cluster: list[_Bit], tracks: list[list[_Bit]]) -> bool:
+def _joins(cluster: list[Bit], tracks: list[list[Bit]]) -> bool:
     """At some station it meets two hulls."""
     for bit in cluster:
-        grown = _grown(bit.polygon, 3.0 * SKIN * bit.inscribed)
+        around = grown(bit.polygon, 3.0 * SKIN * bit.inscribed)
         near = [n for t in tracks if (n := _nearest(t, bit.x)) is not None]
-        if sum((grown ^ n.polygon).area() > 0.0 for n in near) > 1:
+        if sum((around ^ n.polygon).area() > 0.0 for n in near) > 1:
             return True
     return False
 
@@ -659,9 +424,9 @@ def _ranges(x: Array, steps: list[tuple[int, int]]) -> list[tuple[float, float]]
     return [(float(x[a]), float(x[b])) for a, b in out]
 
 
-def _rings(mesh: TriangleMesh, cuts: _Cuts) -> tuple[tuple[RingWing, ...], float]:
+def _rings(mesh: TriangleMesh, cuts: Cuts) -> tuple[tuple[RingWing, ...], float]:
     """Ring wings, each by finer sections of its own, and their volume."""
-    groups: list[list[_Wall]] = []
+    groups: list[list[Wall]] = []
     for wall in cuts.walls:
         for group in groups:
             last = group[-1]
@@ -678,7 +443,7 @@ def _rings(mesh: TriangleMesh, cuts: _Cuts) -> tuple[tuple[RingWing, ...], float
         at = [int(np.abs(cuts.x - wall.x).argmin()) for wall in group]
         (fore, aft), *_ = _ranges(cuts.x, [(at[0], at[-1])])
         step = (fore - aft) / FINE
-        fine = [w for w in _cuts(mesh, np.linspace(fore, aft, FINE + 1)).walls if abs(w.radius - group[0].radius) < 0.4 * w.radius
+        fine = [w for w in cuts_of(mesh, np.linspace(fore, aft, FINE + 1)).walls if abs(w.radius - group[0].radius) < 0.4 * w.radius
                 and np.linalg.norm(w.centre - group[0].centre) < 0.4 * w.radius]  # fmt: skip
         if len(fine) < 3:
             continue
