@@ -152,7 +152,9 @@ def estimated(body: Body, water: Water) -> Estimates:
     outline = body.outline
     if outline is None:
         advice = "Give its body.toml a shape: a mesh, a hull form with fins, or parts."
-        raise InputError(f"{body.name} without an outline", "a body whose reader knows its hull, fins and parts", advice=advice)
+        raise InputError(
+            f"{body.name} without an outline", "a body whose reader knows its hull, fins and parts", advice=advice
+        )
     found: list[Contribution] = []
     for name in METHODS.names():
         with METHODS.guarded(name):
@@ -181,9 +183,11 @@ def combined(body: Body, outline: Outline, contributions: tuple[Contribution, ..
     """
     scaling = body.scaling or _overall(body, outline)
     point = body.reference_point
-    functionals = _functionals(scaling.length, water.speed, tuple(dict.fromkeys(f.control for f in outline.foils if f.control)))
+    functionals = _functionals(
+        scaling.length, water.speed, tuple(dict.fromkeys(f.control for f in outline.foils if f.control))
+    )
     symbols = tuple(f.symbol for f in functionals)
-    units = np.array([scaling.unit(s, water.density, water.speed) for s in symbols])
+    units = np.array([scaling.unit(s[0], water.density, water.speed) for s in symbols])
     rows = [_derived(functionals, shifted(c.forces, point), units) for c in contributions]
     kinds: dict[str, dict[str, list[int]]] = {}
     for i, c in enumerate(contributions):
@@ -317,7 +321,10 @@ def _functionals(length: float, speed: float, controls: tuple[str, ...]) -> tupl
 
 def _coupled(length: float, speed: float, slide: str, turn: str, components: list[str]) -> list[Functional]:
     """v|r| and |v|r of the side, vr of X, by least squares over drift and rate together; of the other plane alike."""
-    a, b = (g.ravel() for g in np.meshgrid([*(-x for x in GRID), *GRID], [*(-2.0 * x for x in GRID), *(2.0 * x for x in GRID)]))
+    a, b = (
+        g.ravel()
+        for g in np.meshgrid([*(-x for x in GRID), *GRID], [*(-2.0 * x for x in GRID), *(2.0 * x for x in GRID)])
+    )
     none = np.zeros_like(a)
     nu = np.vstack([
         _motions(length, speed, **{slide: x, turn: y}) for x, y in ((a, b), (a, none), (none, b), (none, none))
@@ -366,7 +373,9 @@ def _overall(body: Body, outline: Outline) -> Scaling:
         Nothing of any length.
     """
     ends = [x for h in outline.hulls for x in (h.x[0], h.x[-1])]
-    ends += [p.centre[0] + s * float((np.abs(p.rotation) @ p.half_extents)[0]) for p in outline.bluff for s in (1.0, -1.0)]
+    ends += [
+        p.centre[0] + s * float((np.abs(p.rotation) @ p.half_extents)[0]) for p in outline.bluff for s in (1.0, -1.0)
+    ]
     ends += [x for f in outline.foils for x in (f.root[0] + 0.25 * f.root_chord, f.root[0] - 0.75 * f.root_chord)]
     if not ends or max(ends) <= min(ends):
         raise InputError(f"{body.name} without a length", "a [prime] length in body.toml", column="prime.length")

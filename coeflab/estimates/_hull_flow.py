@@ -16,7 +16,10 @@ from coeflab.bodies.outline import Foil, Outline, Sections
 from coeflab.core.types import Array, brief, locked
 from coeflab.law.transforms import moved
 
-FLAT, STERN = 9.0 / 7.0, 1.9  # shape factors: one-seventh power law; between that and 2.4 at separation, adverse pressure
+FLAT, STERN = (
+    9.0 / 7.0,
+    1.9,
+)  # shape factors: one-seventh power law; between that and 2.4 at separation, adverse pressure
 FALLING = 0.99  # of the largest section: from there aft the pressure rises
 LOWEST_REYNOLDS = 1e3  # the line is not defined at 100
 SAME = 1e-3  # of a span
@@ -68,7 +71,7 @@ class HullFlow:
 
     @property
     def axis(self) -> Array:
-        """y and z of the centre of volume, m."""
+        """Centre of volume across x, (y, z), m."""
         return np.asarray(integral(self.hull.area * self.hull.centre.T, self.hull.x) / self.volume)
 
     @property
@@ -214,12 +217,13 @@ class FinGroup:
         """
         r, z = self.radius, height
         hull = abs(z - r**2 / z)
-        return 1.0 - abs(_past_foils(np.array([complex(z)]), r, self.reach, len(self.foils))[0]) / hull
+        past = _past_foils(np.array([complex(z)]), r, self.reach, len(self.foils))
+        return float(1.0 - abs(past[0]) / hull)
 
     def seen_around(self, radius: float) -> float:
         """The same of a vortex sheet about the hull at a radius, of strength as the sine of the angle."""
         angle = (np.arange(32) + 0.5) * np.pi / 32.0 - np.pi / 2.0
-        z = radius * np.exp(1j * np.concatenate([angle, angle + np.pi]))
+        z = np.asarray(radius * np.exp(1j * np.concatenate([angle, angle + np.pi])), dtype=np.complex128)
         weight = np.abs(z.real)
         hull = np.abs((z - self.radius**2 / z).real)
         foils = np.abs(_past_foils(z, self.radius, self.reach, len(self.foils)))

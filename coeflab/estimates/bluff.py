@@ -82,7 +82,9 @@ def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
         for shielded in (False, True):
             for crossed in (True, False):
                 areas = face_drag(part) * part.areas * (hidden if shielded else 1.0)
-                method = f"bluff, {'shielded' if shielded else 'in the open'}, {'each axis' if crossed else 'whole speed'}"
+                method = (
+                    f"bluff, {'shielded' if shielded else 'in the open'}, {'each axis' if crossed else 'whole speed'}"
+                )
                 force = BluffForce(_points(part), areas, crossed, water.density)
                 out.append(Contribution(part.name, "bluff drag", method, force, SHARE, "hoerner1965", "chapter 3"))
         ideal = partial(_ideal, added_mass(part, water.density))

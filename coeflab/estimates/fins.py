@@ -220,7 +220,9 @@ def _of_foil(foil: Foil, group: FinGroup, pressure: float, water: Water) -> list
         cross = cross_flow_drag(foil.tip_chord / foil.root_chord, tips) / group.aspect * foil.area * pressure
         force = FoilForce(centre, axis, normal, 0.0, 0.0, 0.0, 0.0, whole, 0.0, cross, "", water.density)
         out.append(
-            Contribution(foil.name, "fin cross-flow", f"fins, {tips}", force, DRAG_SHARE, "whicker1958", "C_Dc", outside)
+            Contribution(
+                foil.name, "fin cross-flow", f"fins, {tips}", force, DRAG_SHARE, "whicker1958", "C_Dc", outside
+            )
         )
     return out
 

@@ -24,7 +24,7 @@ def roughness_allowance(reynolds: float, relative: float) -> float:
     """
     if relative <= 0.0:
         return 0.0
-    return max(0.0, 0.044 * (relative ** (1.0 / 3.0) - 10.0 * reynolds ** (-1.0 / 3.0)) + 0.000125)
+    return float(max(0.0, 0.044 * (relative ** (1.0 / 3.0) - 10.0 * reynolds ** (-1.0 / 3.0)) + 0.000125))
 
 
 def section_drag(friction: float, thickness: float) -> float:

@@ -30,7 +30,7 @@ SLENDER, RANGE = 3.0, "length over diameter {:.2g} is below 3"
 
 
 def hopkins_station(hull_x: Array, area: Array) -> float:
-    """x where the flow ceases to be potential: x0/l = 0.378 + 0.527 x1/l from the nose, x1 where dS/dx is most negative.
+    """Where the flow ceases to be potential: x0/l = 0.378 + 0.527 x1/l from the nose, x1 where dS/dx is most negative.
 
     Parameters
     ----------

@@ -77,7 +77,9 @@ def contributions(outline: Outline, water: Water) -> tuple[Contribution, ...]:
         lift = RingForce(ring.centre, sway, heave, 0.0, water.density)
         drag = RingForce(ring.centre, 0.0, 0.0, PLATE * area, water.density)
         out += [
-            Contribution(ring.name, "ring lift", "ring_wing", lift, SHARE, "weissinger1955", "approximation for l below 5"),
+            Contribution(
+                ring.name, "ring lift", "ring_wing", lift, SHARE, "weissinger1955", "approximation for l below 5"
+            ),
             Contribution(ring.name, "ring cross-flow", "ring_wing", drag, DRAG_SHARE, "hoerner1965", "plates, 1.17"),
         ]
     return tuple(out)
