@@ -434,9 +434,9 @@ def collected(tow: Tow, fitted: bool = True) -> Collected:
     InputError
         A history that cannot be read; a table that an outside solver gives.
     """
-    runs, stated = _runs(tow)
+    runs, stated, kind = _runs(tow)
     inputs = {"body.toml": tow.tank.body, "tank.toml": tow.folder / TANK}
-    files = campaign_files(tow.tank, tow.body, runs, tow.installed.version or tow.tank.solver, inputs, stated)
+    files = campaign_files(tow.tank, tow.body, runs, tow.installed.version or tow.tank.solver, inputs, stated, kind)
     folder = tow.folder / CAMPAIGN
     write_all(folder, files)
     for stale in sorted(folder.glob("*.csv")) if folder.is_dir() else ():
@@ -467,14 +467,16 @@ def filled(tow: Tow) -> int:
     return sum(r.state is not JobState.WAITING for r in _runs(tow)[0])
 
 
-def _runs(tow: Tow) -> tuple[tuple[TowedRun, ...], str]:
-    """Every condition as it came out, and what is stated of forces that no run of ours gave."""
+def _runs(tow: Tow) -> tuple[tuple[TowedRun, ...], str, str]:
+    """Every condition as it came out, what is stated of forces that no run of ours gave, and the kind of the source."""
     solver, jobs = tow.solver, tow.of
     if solver.table is not None:
         with SOLVERS.guarded(tow.tank.solver):
             table: RawTable = solver.table(tow.tank, tow.body, tow.folder)
         made = table.stated.get("source.how_obtained")
-        return rows_of(tow.tank, table), f"{made.value if made is not None else tow.tank.solver} ({table.path.name})"
+        kind = table.stated.get("source.kind")
+        said = f"{made.value if made is not None else tow.tank.solver} ({table.path.name})"
+        return rows_of(tow.tank, table), said, "cfd" if kind is None else str(kind.value)
     states = {name: progress(job) for name, job in jobs.items()}
     out = []
     for condition in tow.tank.matrix:
@@ -485,7 +487,7 @@ def _runs(tow: Tow) -> tuple[tuple[TowedRun, ...], str]:
         remarks = [r for name in job.needs if name in states for r in states[name].remarks]
         now = states[condition.name]
         out.append(towed_run(condition, now, jobs, job, _history(tow, job, now), remarks))
-    return tuple(out), ""
+    return tuple(out), "", "cfd"
 
 
 def _history(tow: Tow, job: Job, now: Progressed) -> Run | None:

@@ -31,14 +31,27 @@ def cut_hull(share: float) -> Sections:
     """The same, cut off where its area has fallen to a share of the largest: a blunt base."""
     whole = hull()
     keep = (whole.x > -LENGTH / 2.0) | (whole.area >= share * whole.area.max())
-    return Sections("hull", *(getattr(whole, n)[keep] for n in ("x", "area", "breadth", "depth", "girth", "centre")), True)
+    return Sections(
+        "hull", *(getattr(whole, n)[keep] for n in ("x", "area", "breadth", "depth", "girth", "centre")), True
+    )
 
 
 def foil(name: str, way: tuple[float, float], x: float, root: float, tip: float, chord: float, control: str = "",
          sign: float = 1.0, flap: float = 1.0) -> Foil:  # fmt: skip
     """A rectangular foil that stands on the axis."""
     w = np.array(way)
-    return Foil(name, np.array([x, *(root * w)]), np.array([x, *(tip * w)]), chord, chord, 0.15, np.zeros(2), control, flap, sign)
+    return Foil(
+        name,
+        np.array([x, *(root * w)]),
+        np.array([x, *(tip * w)]),
+        chord,
+        chord,
+        0.15,
+        np.zeros(2),
+        control,
+        flap,
+        sign,
+    )
 
 
 def tail() -> tuple[Foil, ...]:

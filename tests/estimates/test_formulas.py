@@ -76,7 +76,10 @@ def test_foils_on_a_body_between_none_and_half_a_plane() -> None:
 
 def test_carry_over_equals_added_mass_of_the_section() -> None:
     # Bryson: a finned circle moves pi rho (s^2 - r^2 + r^4/s^2); less the circle, over the pair with its mirror image.
-    pair, single = fin_groups(outline(foil("a", UP, -3.5, 0.1, 0.25, 0.2), foil("b", (0.0, 1.0), -3.5, 0.1, 0.25, 0.2)))[0], fin_groups(outline(SAIL))[0]
+    pair, single = (
+        fin_groups(outline(foil("a", UP, -3.5, 0.1, 0.25, 0.2), foil("b", (0.0, 1.0), -3.5, 0.1, 0.25, 0.2)))[0],
+        fin_groups(outline(SAIL))[0],
+    )
     r, s = 0.1, 0.25
     assert pair.carried == pytest.approx((s**2 - 2 * r**2 + r**4 / s**2) / (s - r) ** 2, rel=1e-12)
     r, s = 0.25, 0.45
@@ -121,7 +124,9 @@ def test_munk_moment_once() -> None:
     nu = np.array([[3.0, 0.03, 0.0, 0.0, 0.0, 0.0]])
     force = ideal[0].forces(nu, {})[0]
     unit = 0.5 * WATER.density * LENGTH**3 * 3.0
-    assert (force[5] + LENGTH / 2.0 * force[1]) / 0.03 / unit == pytest.approx(spheroid_munk_slope(LENGTH, 2 * RADIUS), rel=2e-3)
+    assert (force[5] + LENGTH / 2.0 * force[1]) / 0.03 / unit == pytest.approx(
+        spheroid_munk_slope(LENGTH, 2 * RADIUS), rel=2e-3
+    )
     assert force[1] == pytest.approx(0.0, abs=1e-9)
 
 

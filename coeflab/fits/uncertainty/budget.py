@@ -177,6 +177,7 @@ ALWAYS_OPEN = {
     "experiment": ("rig interference and blockage",),
     "literature": ("whatever the source left out",),
     "synthetic": (),
+    "estimate": ("scatter of the methods of estimates",),
 }
 REMAINS = {
     STUDIES["turbulence"]: ("turbulence model", "turbulence models not tried"),
@@ -414,7 +415,7 @@ def undeclared(wanted: Sequence[str], tables: Sequence[ForceTable], inputs: Sequ
     """Inputs that may act and were not assessed, by name; none where the tables are synthetic and declare none."""
     if _true_by_construction(tables):
         return []
-    computed = all(t.source.kind == "cfd" for t in tables)
+    computed = all(t.source.kind in ("cfd", "estimate") for t in tables)
     known = {p.name.split(" ")[0] for p in inputs}
     named = [n for n in wanted if not (computed and n in NOT_OF_A_COMPUTATION)]
     return [n.replace("_", " ") for n in named if n not in known]
