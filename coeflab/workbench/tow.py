@@ -18,6 +18,8 @@ from coeflab.core.files import write_all, write_atomically
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import ANGULAR, LINEAR
 from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import Plan, PlannedTow, Study
@@ -514,12 +516,32 @@ def _study(tow: Tow, campaign: Path) -> Study:
     """
     tank = tow.tank
     planned = PlannedTow(tank.title, tow.body.body.name, tank.name, added=campaign)
-    return run(
+    study = run(
         Plan(
             name=tank.name, title=tank.title, tables=(table_at(campaign, DEFAULT_FITS),), scaling=tank.scaling,
             conditions=tank.conditions, body=tank.body, wanted=SIX, tows=(planned,),
         )
     )  # fmt: skip
+    if tow.solver.known is None:
+        return study
+    with SOLVERS.guarded(tank.solver):
+        among = tow.solver.known(tank, tow.body)
+    return replace(study, fits=tuple(_with_scatter(f, among) for f in study.fits))
+
+
+def _with_scatter(fit: FitResult, among: CoefficientSet) -> FitResult:
+    """A fit to forces of a method, with the method's own U95 and covariance of the coefficients that it states."""
+    own = [c.symbol for c in fit.coefficients.coefficients]
+    at = [(i, among.symbols.index(s)) for i, s in enumerate(own) if s in among]
+    changed = tuple(
+        replace(c, u95=among[c.symbol].u95, parts=among[c.symbol].parts) if c.value is not None and c.symbol in among else c
+        for c in fit.coefficients.coefficients
+    )
+    spread = np.array(fit.coefficients.covariance)
+    if at:
+        mine, theirs = (np.array(k) for k in zip(*at, strict=True))
+        spread[np.ix_(mine, mine)] = among.covariance[np.ix_(theirs, theirs)]
+    return replace(fit, coefficients=replace(fit.coefficients, coefficients=changed, covariance=spread))
 
 
 def _has_a_sweep(campaign: Path) -> bool:

@@ -12,7 +12,8 @@ from coeflab.core import declarations as takes
 from coeflab.core.declarations import Declaration
 from coeflab.core.errors import InputError
 from coeflab.core.version import VERSION
-from coeflab.estimates import Water, estimated
+from coeflab.estimates import Estimates, Water, estimated
+from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import COMPONENTS, MOMENTS
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tank.solvers import Installation
@@ -46,6 +47,30 @@ def installed() -> Installation:
     return Installation(f"estimates of coeflab {VERSION}")
 
 
+def known(tank: Tank, body: TowedBody) -> CoefficientSet:
+    """The estimated coefficients with their U95, primed by the tank's length, about its point.
+
+    Parameters
+    ----------
+    tank : Tank
+    body : TowedBody
+
+    Raises
+    ------
+    InputError
+        As `table`.
+    """
+    return _estimated(tank, body).coefficients
+
+
+def _estimated(tank: Tank, body: TowedBody) -> Estimates:
+    at = tank.conditions
+    if at.viscosity is None:
+        raise InputError("no viscosity", "the kinematic viscosity, m^2/s", column="conditions.viscosity")
+    seen = replace(body.body, reference_point=tank.reference_point, scaling=tank.scaling)
+    return estimated(seen, Water(at.density, at.viscosity, at.speed, float(tank.options.get("roughness", 0.0))))
+
+
 def table(tank: Tank, body: TowedBody, folder: Path) -> RawTable:
     """The estimated forces of every condition, in SI, whole body, FRD, about the reference point.
 
@@ -61,15 +86,10 @@ def table(tank: Tank, body: TowedBody, folder: Path) -> RawTable:
     InputError
         The body has no outline, or the tank no viscosity.
     """
-    at = tank.conditions
-    if at.viscosity is None:
-        raise InputError("no viscosity", "the kinematic viscosity, m^2/s", column="conditions.viscosity")
-    seen = replace(body.body, reference_point=tank.reference_point)
-    water = Water(at.density, at.viscosity, at.speed, float(tank.options.get("roughness", 0.0)))
     nu = np.array([[*c.velocity, *c.rates] for c in tank.matrix], dtype=float)
     names = dict.fromkeys(name for c in tank.matrix for name in c.controls)
     angles = {name: np.array([c.controls.get(name, 0.0) for c in tank.matrix]) for name in names}
-    forces = estimated(seen, water).forces(nu, angles)
+    forces = _estimated(tank, body).forces(nu, angles)
     columns = tuple(
         RawColumn(c, "N*m" if c in MOMENTS else "N", forces[:, i], means=c) for i, c in enumerate(COMPONENTS)
     )
