@@ -6,6 +6,7 @@ What a plan names, read: tables about one reference point, bodies.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from coeflab.core.wording import Verbatim
 from coeflab.fits import FITS, CompletingFit
 from coeflab.fits.joint.rows import joint_name, one_length
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.uncertainty.budget import Budget, budgets_of, with_budget
+from coeflab.fits.uncertainty.budget import Budget, as_estimates, budgets_of, with_budget
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
@@ -213,6 +214,8 @@ def _fitted(
     _refuse_starved(fit)
     found = budgets_of(fit, {t.name: t for t in tables})
     fit, more = with_model_budgets(with_budget(fit, found), tables, scaling, once)
+    if all(t.source.kind == "estimate" for t in tables):
+        return as_estimates(fit), tuple(replace(b, u95=None) for b in (*found, *more))
     return fit, (*found, *more)
 
 
