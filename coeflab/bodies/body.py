@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.source import MeshSource
 from coeflab.bodies.outline import Outline
-from coeflab.bodies.pieces import Control, ControlKeys, Piece
+from coeflab.bodies.pieces import Control, ControlKeys, Piece, Thruster, ThrusterKeys
 from coeflab.bodies.shape import Shape
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum, DatumKeys
@@ -136,6 +136,7 @@ class Body:
         Which of them turn.
     outline : Outline, optional
         What semi-empirical methods see of it, where its reader knows.
+    thrusters : tuple of Thruster
     """
 
     name: str
@@ -153,6 +154,7 @@ class Body:
     pieces: tuple[Piece, ...] = ()
     controls: tuple[Control, ...] = ()
     outline: Outline | None = None
+    thrusters: tuple[Thruster, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))
@@ -534,10 +536,13 @@ class ShapedBodyFile(BodyFile):
         Acceleration derivatives from elsewhere, to be shown beside computed ones.
     control : array of tables
         Parts that turn.
+    thruster : array of tables
+        Thrusters, for manoeuvres and exports.
     """
 
     measured: tuple[MeasuredKeys, ...] = ()
     control: tuple[ControlKeys, ...] = ()
+    thruster: tuple[ThrusterKeys, ...] = ()
 
     def check(self) -> None:
         """Primed values have a length."""
@@ -566,4 +571,5 @@ class ShapedBodyFile(BodyFile):
             measured=tuple(m for s in self.measured for m in s.made),
             pieces=pieces,
             controls=tuple(controls),
+            thrusters=tuple(t.made for t in self.thruster),
         )

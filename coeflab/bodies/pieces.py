@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
-from typing import Annotated
+from pathlib import Path
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,12 +125,16 @@ class Control:
         A point on the hinge, m, FRD, from the datum.
     axis : (3,) array
         Along the hinge, a unit vector, FRD; a positive angle turns right-handed about it.
+    limit, rate : float, optional
+        Largest angle either way, rad, and how fast it turns, rad/s, where they are stated.
     """
 
     name: str
     parts: tuple[str, ...]
     hinge: Array
     axis: Array
+    limit: float | None = None
+    rate: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "hinge", locked(self.hinge))
@@ -157,12 +162,18 @@ class ControlKeys(takes.Declaration):
     axis : (3,) tuple
         Along the hinge, [x, y, z], FRD; a positive angle turns right-handed about it: [0, 0, 1] for a rudder, positive with
         its trailing edge to port, [0, 1, 0] for stern planes, positive with their trailing edges down.
+    limit : float
+        Largest angle either way; a vehicle is moved with none beyond it.
+    rate : float
+        Of the angle; at once unless given.
     """
 
     name: takes.Text
     parts: takes.Texts
     hinge: takes.Point
     axis: Direction
+    limit: Annotated[takes.Angle, takes.ABOVE_ZERO] | None = None
+    rate: Annotated[takes.Rate, takes.ABOVE_ZERO] | None = None
 
     def check(self) -> None:
         """Something turns, about a direction."""
@@ -185,4 +196,90 @@ class ControlKeys(takes.Declaration):
                 found = f"no part {shown(name)} of the body"
                 raise InputError(found, f"one of {', '.join(known) or 'none: it is in one piece'}", column="parts")
         axis = np.asarray(self.axis) / np.linalg.norm(self.axis)
-        return Control(self.name, self.parts, self.hinge, axis)
+        return Control(self.name, self.parts, self.hinge, axis, self.limit, self.rate)
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Thruster:
+    """A thruster as its body.toml states it.
+
+    Attributes
+    ----------
+    name : str
+    place : (3,) array
+        m, FRD, from the datum.
+    axis : (3,) array
+        Of positive thrust, a unit vector, FRD.
+    curve : (n, 2) array
+        Commands, rising, and thrusts, N; straight lines between.
+    command, unit : str
+        What is commanded, and its unit.
+    """
+
+    name: str
+    place: Array
+    axis: Array
+    curve: Array
+    command: str
+    unit: str
+
+    def __post_init__(self) -> None:
+        for name in ("place", "axis", "curve"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+
+CURVE = takes.numbers(2, "none", "a point [command, thrust in N]")
+FEWEST = 2
+
+
+def _curve(value: Any, file: Path) -> Array:
+    if not isinstance(value, list) or len(value) < FEWEST:
+        raise InputError(shown(value), "two points [command, thrust in N] or more")
+    points = np.array([CURVE.read(point, file) for point in value])
+    if np.any(np.diff(points[:, 0]) <= 0.0) or np.any(np.diff(points[:, 1]) < 0.0):
+        raise InputError(shown(value), "rising commands, and thrusts that do not fall")
+    return points
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ThrusterKeys(takes.Declaration):
+    """A thruster.
+
+    Attributes
+    ----------
+    name : str
+        What commands call it.
+    place : (3,) array
+        [x, y, z], m, FRD, from the datum.
+    axis : (3,) tuple
+        Of positive thrust, [x, y, z], FRD: [1, 0, 0] drives ahead.
+    curve : (n, 2) array
+        Points [command, thrust in N], straight lines between; as measured or as the maker states them.
+    command, unit : str
+        What is commanded, and its unit; ``speed`` in ``rpm`` unless given.
+    """
+
+    name: takes.Text
+    place: takes.Point
+    axis: Direction
+    curve: Annotated[
+        Array,
+        takes.Takes(
+            "points [command, thrust in N]", _curve,
+            {"type": "array", "items": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}, "minItems": 2},
+        ),
+    ]  # fmt: skip
+    command: takes.Text = "speed"
+    unit: takes.Text = "rpm"
+
+    def check(self) -> None:
+        """It pushes somewhere."""
+        if not np.linalg.norm(self.axis) > 0.0:
+            raise InputError("an axis without a direction", "[x, y, z], one of them not zero", column="axis")
+
+    @property
+    def made(self) -> Thruster:
+        """With an axis of length one."""
+        axis = np.asarray(self.axis) / np.linalg.norm(self.axis)
+        return Thruster(self.name, self.place, axis, self.curve, self.command, self.unit)
