@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.source import MeshSource
 from coeflab.bodies.outline import Outline
-from coeflab.bodies.pieces import Control, ControlKeys, Piece, Thruster, ThrusterKeys
+from coeflab.bodies.pieces import Control, ControlKeys, Piece
 from coeflab.bodies.shape import Shape
+from coeflab.bodies.thrusters import Thruster, ThrusterKeys
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum, DatumKeys
 from coeflab.core.errors import InputError, shown
@@ -128,6 +129,7 @@ class Body:
         The length that primes are made with, where the file names one.
     measured : tuple of Measured
         Acceleration derivatives from elsewhere, to be shown beside computed ones.
+    thrusters : tuple of Thruster
     mesh : MeshSource, optional
         Where the shape's parts stand for a mesh: that mesh.
     pieces : tuple of Piece
@@ -136,7 +138,6 @@ class Body:
         Which of them turn.
     outline : Outline, optional
         What semi-empirical methods see of it, where its reader knows.
-    thrusters : tuple of Thruster
     """
 
     name: str
@@ -150,11 +151,11 @@ class Body:
     shape: Shape | None = None
     scaling: Scaling | None = None
     measured: tuple[Measured, ...] = ()
+    thrusters: tuple[Thruster, ...] = ()
     mesh: MeshSource | None = None
     pieces: tuple[Piece, ...] = ()
     controls: tuple[Control, ...] = ()
     outline: Outline | None = None
-    thrusters: tuple[Thruster, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))
@@ -569,7 +570,7 @@ class ShapedBodyFile(BodyFile):
             self.made(path, shape, (computed,)),
             scaling=self.prime and self.prime.scaling,
             measured=tuple(m for s in self.measured for m in s.made),
+            thrusters=tuple(t.made for t in self.thruster),
             pieces=pieces,
             controls=tuple(controls),
-            thrusters=tuple(t.made for t in self.thruster),
         )

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.body import Body, Configuration
-from coeflab.bodies.pieces import Control, Thruster
+from coeflab.bodies.pieces import Control
 from coeflab.bodies.shape import Parts, Revolution
+from coeflab.bodies.thrusters import Thruster
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, brief, locked
 from coeflab.core.wording import listed
