@@ -107,7 +107,8 @@ def summarise(study: Study) -> None:
         return
     show.sentence(tables.sentence(study))
     show.text()
-    show.table(tables.estimates_table(parameters, shape.carried, shape.estimates.shares))
+    parts = shape.estimates.shares if show.whole() else None
+    show.table(tables.estimates_table(parameters, shape.carried, parts, few=not show.whole()))
     show.table(tables.manoeuvre_table(study.manoeuvres, shape.carried))
     show.table(tables.particulars_table(shape))
     for line in shape.missing:

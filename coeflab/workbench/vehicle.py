@@ -41,9 +41,12 @@ NOTHING = Stated()
 Progress = Callable[[str], None]
 LEVEL = ("u", "v", "r")  # a first manoeuvre stays in the horizontal plane, whatever trim and weight are
 TURN, LIMIT = "turning_circle", float(np.radians(15.0))
-MEMBERS, SEED = 200, 1
+MEMBERS, SEED = 100, 1
 REMAINING = 0.2  # of the speed, of a coast-down
-TURNS, LENGTHS = 1.25, 60.0  # of the turn whose uncertainty is computed; lengths that it may take
+TURNS, LONGER = (
+    1.25,
+    2.5,
+)  # of the turn whose uncertainty is computed; time that it may take over that of the file's own
 
 
 @one_thread()
@@ -184,11 +187,14 @@ def _carried(
     """The uncertainty of the estimates through the first manoeuvre."""
     planned = _steered(parameters)
     name, options = planned[0] if planned else ("stop", {"astern": 0.0, "remaining": REMAINING})
-    if not any(s.manoeuvre.name == name for s in moves):
+    own = next((s for s in moves if s.manoeuvre.name == name), None)
+    if own is None:
         return (), ()
     progress(f"uncertainty of the {name.replace('_', ' ')}")
-    longest = LENGTHS * parameters.scaling.length / parameters.conditions.speed
-    options = {**options, "longest": longest} | ({"turns": TURNS} if name == TURN else {})
+    longest = max(LONGER * float(own.trajectory.time[-1]), 1.0)
+    options = {**options, "longest": longest / (2.0 if name == TURN else 1.0)} | (
+        {"turns": TURNS} if name == TURN else {}
+    )
     try:
         return (uncertainty(parameters, Question(name, options, MEMBERS, SEED, free=LEVEL)),), ()
     except InputError as why:

@@ -10,7 +10,7 @@ import numpy as np
 from coeflab.core.table import ABSENT, Severity, Table, number, percent, with_u95
 from coeflab.core.wording import listed
 from coeflab.law.coefficient import Coefficient
-from coeflab.law.symbols import derivative, primed
+from coeflab.law.symbols import CONTROLS, derivative, primed
 from coeflab.motion.manoeuvre import Simulation
 from coeflab.motion.uncertainty.uncertainty import Carried, Importance, Spread
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure, Section
@@ -29,7 +29,7 @@ FIRST = (
     "stopping time",
 )  # figures that a manoeuvre is known by, the first that is there
 OFF = "thrust off at time zero"  # what a coast-down says of itself
-LEAST, MOST_PARTS, LONGEST = 0.005, 3, 160
+LEAST, TENTH, MOST_PARTS, LONGEST = 0.005, 0.1, 3, 160
 ESTIMATED = (
     "Estimates from the shape alone by semi-empirical methods, U95 from the scatter that each source states and from the spread "
     "between methods. A computation or a measurement replaces each: coeflab merge."
@@ -81,7 +81,10 @@ def _three(values: np.ndarray) -> str:
 
 
 def estimates_table(
-    parameters: ParameterFile, carried: Sequence[Carried] = (), parts: Mapping[str, Mapping[str, float]] | None = None
+    parameters: ParameterFile,
+    carried: Sequence[Carried] = (),
+    parts: Mapping[str, Mapping[str, float]] | None = None,
+    few: bool = False,
 ) -> Table:
     """Every number of a file with its U95, whether it is an estimate, what it is made of, its share in the first figure.
 
@@ -92,16 +95,22 @@ def estimates_table(
         The first manoeuvre's.
     parts : mapping of symbol to mapping of part to value, optional
         Of estimates.
+    few : bool
+        First-order slopes of the two planes, resistance and controls, and what has a tenth of the variance.
     """
     main = main_spread(carried)
     shares = dict(main[1].known) if main is not None else {}
     order = {primed(s): i for i, s in enumerate(SIX)}
     valued = [c for c in parameters.coefficients if c.value is not None]
+    if few:
+        wanted = {*order, *(primed(s) for s in ("X0", "Xuu", "Xu|u|"))}
+        shown = [c for c in valued if c.symbol in wanted or shares.get(c.symbol, 0.0) >= TENTH or _controls(c)]
+        rest, valued = len(valued) - len(shown), shown
     rows = tuple(
         (
             c.symbol, *with_u95(c.value, c.u95), percent(c.u95, c.value), _status(c),
             *((f"{100.0 * shares[c.symbol]:.0f} %" if c.symbol in shares else "",) if main is not None else ()),
-            _made_of(c, parts or {}),
+            *((_made_of(c, parts),) if parts is not None else ()),
         )
         for c in sorted(valued, key=lambda c: (order.get(c.symbol, len(order)), len(derivative(c.symbol).factors)))
     )  # fmt: skip
@@ -112,10 +121,16 @@ def estimates_table(
         "U95",
         "status",
         *((f"of {main[0].figure.name}",) if main is not None else ()),
-        "made of",
+        *(("made of",) if parts is not None else ()),
     )
-    left = frozenset({0, 4, len(heads) - 1})
-    return Table(f"{parameters.name}: numbers and estimates", heads, rows, (), left, ("made of",))
+    left = frozenset({0, 4, *((len(heads) - 1,) if parts is not None else ())})
+    notes = (f"{rest} more; --wide shows all.",) if few and rest else ()
+    return Table(f"{parameters.name}: numbers and estimates", heads, rows, notes, left, ("made of",))
+
+
+def _controls(c: Coefficient) -> bool:
+    factors = derivative(c.symbol).factors
+    return len(factors) == 1 and factors[0] in CONTROLS and c.symbol[0] in "YZMN"
 
 
 def _status(c: Coefficient) -> str:
@@ -123,10 +138,14 @@ def _status(c: Coefficient) -> str:
 
 
 def _made_of(c: Coefficient, parts: Mapping[str, Mapping[str, float]]) -> str:
-    own = parts.get(c.symbol.removesuffix("'"), {})
-    if c.status != "estimate" or not own or not c.value:
-        return c.estimator if c.status == "estimate" else ""
-    largest = sorted(own.items(), key=lambda p: -abs(p[1]))
+    """The kinds of contributions with their shares, the largest first."""
+    if c.status != "estimate" or not c.value:
+        return ""
+    kinds: dict[str, float] = {}
+    for name, value in parts.get(c.symbol.removesuffix("'"), {}).items():
+        kind = name.rpartition(", ")[2]
+        kinds[kind] = kinds.get(kind, 0.0) + value
+    largest = sorted(kinds.items(), key=lambda p: -abs(p[1]))
     said = [f"{name} {v / c.value:.0%}" for name, v in largest if abs(v) >= 0.01 * abs(c.value)]
     return ", ".join(said[:MOST_PARTS]) + (f" and {len(said) - MOST_PARTS} more" if len(said) > MOST_PARTS else "")
 
@@ -164,7 +183,7 @@ def manoeuvre_table(moves: Sequence[Simulation], carried: Sequence[Carried]) -> 
             factor, unit = shown_unit(f.unit)
             s = bounds.get((name, f.name))
             ends = f"{(s.low or 0.0) * factor:.3g} to {(s.high or 0.0) * factor:.3g}" if s is not None else ABSENT
-            value = ABSENT if f.value is None else number(f.value * factor, 3)
+            value = f.status if f.value is None else number(f.value * factor, 3)
             if f.name != "lateral deviation":
                 rows.append((called, f.name, value, unit, ends))
     notes = ("In the horizontal plane: heave, roll and pitch are held. Every number is an estimate.",)
