@@ -261,7 +261,7 @@ def lacking(body: Body, parameters: ParameterFile, assumed: Sequence[str], turns
     elif "dr" in named and "dr" not in steered:
         out.append("no effect of dr: none of its parts is a foil that an estimate knows")
     if "dr" in named and not any(c.limit for c in body.controls if c.name == "dr"):
-        out.append("no limit of dr: write limit and rate into its [[control]]")
+        out.append("no limit and rate of dr: write both into its [[control]]; until then 15 deg are ordered, at once")
     if strange := sorted(named - set(CONTROLS)):
         out.append(
             f"{listed([shown(n) for n in strange])}: no angle that a manoeuvre orders; those are {', '.join(CONTROLS)}"

@@ -150,9 +150,9 @@ def first_manoeuvres(
 
 def _steered(parameters: ParameterFile) -> tuple[tuple[str, dict[str, Any]], ...]:
     """Manoeuvres by what steers; none where nothing does."""
-    limit = next((s.limit for s in parameters.surfaces if s.control == "dr"), None)
+    limit = next((s.limit for s in parameters.surfaces if s.control == "dr"), LIMIT)
     acts = any(c.value and c.symbol.removesuffix("'") in ("Ndr", "Ydr") for c in parameters.coefficients)
-    if acts and limit is not None:
+    if acts:
         angle = min(LIMIT, limit)
         return (TURN, {"rudder": angle}), ("zigzag", {"rudder": min(angle, float(np.radians(10.0)))})
     pair = _pair(parameters)
