@@ -36,7 +36,7 @@ ESTIMATED = (
 )
 SHARES = (
     "Shares of the variance that would go if that one number were known, over draws of all of them. The largest is the number that "
-    "is worth the next computation or test."
+    "is worth the next computation or test. Estimates of one method go together, so that the shares may add up to more than one."
 )
 
 
