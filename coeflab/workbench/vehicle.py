@@ -238,6 +238,18 @@ def asked(
 ) -> tuple[Plan, Stated]:  # fmt: skip
     """What a person asks for of a body, as a plan and what is stated of the mass; numbers in SI or with their unit.
 
+    Parameters
+    ----------
+    body : Body
+    mass, cg, inertia, speed, density, length : str
+        As typed; empty: not stated. ``cg`` and ``inertia`` are three numbers with commas between.
+    method : str
+        Of added mass.
+    to : sequence of str
+        Targets of exports.
+    accept_loss : bool
+        Of these.
+
     Raises
     ------
     InputError

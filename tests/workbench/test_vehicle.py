@@ -255,7 +255,8 @@ def test_a_fit_replaces_estimates_one_by_one(steered: Study) -> None:
     assert matrix[j, j] == pytest.approx((SHARE * 0.006 / 2.0) ** 2)
     assert matrix[i, j] == 0.0
     nv, before = made.parameters.coefficient("Nv"), base.coefficient("Nv")
-    assert nv is not None and before is not None
+    assert nv is not None
+    assert before is not None
     assert nv.potential == before.potential != 0.0
     assert nv.value_si == pytest.approx(before.value_si * -0.014 / -0.012)
     with pytest.raises(InputError, match="none of an estimate"):
