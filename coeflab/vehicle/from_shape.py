@@ -155,8 +155,8 @@ def _buoyed(mass: float, displaced: float, density: float) -> str:
     if abs(over) <= TRIMMED * displaced:
         return said + "neutrally buoyant within 0.5 %"
     if over > 0.0:
-        return said + f"{over:.3g} kg too heavy ({over / displaced:.1%}), it sinks"
-    return said + f"{-over:.3g} kg of ballast to neutral ({-over / displaced:.1%})"
+        return said + f"{over:.3g} kg too heavy ({100.0 * over / displaced:.1f} %), it sinks"
+    return said + f"{-over:.3g} kg of ballast to neutral ({-100.0 * over / displaced:.1f} %)"
 
 
 def spread_of(body: Body, configuration: Configuration) -> Array:

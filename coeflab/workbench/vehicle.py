@@ -207,6 +207,12 @@ def replaced(
 ) -> tuple[Merged, tuple[Simulation, ...], tuple[Carried, ...]]:
     """The base with the numbers of another file, its first manoeuvres, and what the estimates left in it do to them.
 
+    Parameters
+    ----------
+    base, other : ParameterFile
+    name : str
+        Of the merged file; the base's unless given.
+
     Raises
     ------
     InputError, ScalingMismatchError
@@ -220,6 +226,15 @@ def replaced(
 
 def subject(name: str, unit: str = "", axes: str = "", repair: bool = False) -> Body:
     """The body that a person names; of a bare mesh the reference point is its centre of buoyancy.
+
+    Parameters
+    ----------
+    name : str
+        A mesh file, a body.toml, its folder or a shipped body.
+    unit, axes : str
+        Of a mesh file.
+    repair : bool
+        Mend a mesh file that is not sound.
 
     Raises
     ------
@@ -325,7 +340,15 @@ def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> Pa
 
 @one_thread()
 def replaced_files(made: Merged, moves: Sequence[Simulation], carried: Sequence[Carried]) -> dict[str, bytes]:
-    """The merged parameter file with its tables, and a report of it, by name."""
+    """The merged parameter file with its tables, and a report of it, by name.
+
+    Parameters
+    ----------
+    made : Merged
+    moves : sequence of Simulation
+    carried : sequence of Carried
+        Of `replaced`.
+    """
     p = made.parameters
     moved_so = Section("manoeuvres", "First manoeuvres", tables=(manoeuvre_table(moves, carried),))
     page = Document(p.name, f"Estimates of {p.body} and what replaced them", (replaced_section(made, carried), moved_so), p.name,

@@ -173,7 +173,7 @@ def test_shares_of_the_turn_name_the_estimates(steered: Study) -> None:
     assert main[0].low < main[0].figure.value < main[0].high
     found = {row[0]: row for row in estimates_table(made, steered.shape.carried, steered.shape.estimates.shares).rows}
     assert found["Nv'"][4] == "estimate"
-    assert found["Nv'"][-1] == "toy force 100%"
+    assert found["Nv'"][-1] == "toy force 100 %"
     figure = shares_figure(made, steered.shape.carried, "shares")
     assert figure is not None
     assert "Nr' estimate" in figure.description

@@ -146,7 +146,7 @@ def _made_of(c: Coefficient, parts: Mapping[str, Mapping[str, float]]) -> str:
         kind = name.rpartition(", ")[2]
         kinds[kind] = kinds.get(kind, 0.0) + value
     largest = sorted(kinds.items(), key=lambda p: -abs(p[1]))
-    said = [f"{name} {v / c.value:.0%}" for name, v in largest if abs(v) >= 0.01 * abs(c.value)]
+    said = [f"{name} {100.0 * v / c.value:.0f} %" for name, v in largest if abs(v) >= 0.01 * abs(c.value)]
     return ", ".join(said[:MOST_PARTS]) + (f" and {len(said) - MOST_PARTS} more" if len(said) > MOST_PARTS else "")
 
 
@@ -200,14 +200,14 @@ def sentence(study: Study) -> str:
     shape, parameters = _shape(study), next(iter(study.parameter_files.values()))
     found = estimates_of(parameters)
     shares = sorted(abs(c.u95 / c.value) for c in found if c.u95 and c.value)
-    wide = f", median U95 {shares[len(shares) // 2]:.0%}" if shares else ""
+    wide = f", median U95 {100.0 * shares[len(shares) // 2]:.0f} %" if shares else ""
     c = shape.weighed.configuration
     displaced = shape.conditions.density * (c.volume or 0.0)
     mass = f"{c.mass.mass:.3g} kg in {displaced:.3g} kg of displacement" if c.mass else f"displaces {displaced:.3g} kg"
     turn = interval_in_words(shape.carried)
-    first = f"{study.plan.title or study.plan.name}: {mass}; {len(found)} estimates from the shape{wide}"
-    whole = f"{first}; {turn}." if turn else f"{first}."
-    return whole if len(whole) <= LONGEST else f"{first[: LONGEST - 1]}."
+    rest = f"{mass}; {len(found)} estimates from the shape{wide}{f'; {turn}' if turn else ''}."
+    named = (f"{name}: {rest}" for name in (study.plan.title, study.plan.name, "Vehicle") if name)
+    return next((s for s in named if len(s) <= LONGEST), rest[:LONGEST])
 
 
 def _shape(study: Study) -> FromShape:
@@ -284,7 +284,7 @@ def estimates_sections(study: Study) -> tuple[Section, ...]:
 def _methods(shape: FromShape) -> Table:
     rows = tuple(
         dict.fromkeys(
-            (c.part, c.kind, c.method, f"{c.share:.0%}", f"{c.citation}{f', {c.place}' if c.place else ''}")
+            (c.part, c.kind, c.method, f"{100.0 * c.share:.0f} %", f"{c.citation}{f', {c.place}' if c.place else ''}")
             for c in shape.estimates.contributions
         )
     )
@@ -331,7 +331,7 @@ def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:
         text.append(
             f"{interval_in_words(carried)[:1].upper()}{interval_in_words(carried)[1:].removesuffix(', estimate')}. Estimates still in "
             f"it: {listed([s for s, v in main[1].known if s in estimated]) or 'none that shows'}"
-            f"{f', together about {min(sum(part), 1.0):.0%} of its variance' if part else ''}."
+            f"{f', together about {100.0 * min(sum(part), 1.0):.0f} % of its variance' if part else ''}."
         )
         text.append(SHARES)
     return Section("coefficients", "Estimates and what replaced them", tuple(text),
