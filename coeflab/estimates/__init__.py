@@ -117,7 +117,7 @@ class EstimateMethod(Plugin, Protocol):
 METHODS = Registry("coeflab.estimates", "method of estimates", EstimateMethod, __name__)  # type: ignore[type-abstract]
 
 
-def estimated(body: Body, water: Water) -> Estimates:
+def estimated(body: Body, water: Water) -> Estimates:  # noqa: ARG001
     """Estimate all that the methods can of a body.
 
     Raises
