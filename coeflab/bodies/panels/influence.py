@@ -10,6 +10,7 @@ Flat triangular panels on a closed surface, and what makes a surface unfit for t
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -209,42 +210,158 @@ def exact_integrals(targets: Array, corners: Array, normals: Array) -> tuple[Arr
     return angle, inverse
 
 
-def influence(panels: Panels) -> tuple[NDArray[np.float32], Array]:
+Seen = tuple[Array, float]
+
+
+def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.float32], list[Array]]:
     """Solid angle of every panel from every centroid, and the single-layer potential of the normals.
+
+    An image behind a wall is the panel itself, seen from the target's mirror point: distances and heights over planes do
+    not change when both sides are mirrored.
 
     Parameters
     ----------
     panels : Panels
         About their middle and of unit size: squares of distances are taken from products of coordinates.
+    images : sequence of ((n, 3) array, float)
+        Mirror points of the centroids behind each wall, and the factor of what is seen from there.
 
     Returns
     -------
     angles : (n, n) array
-        Row: target; 0 on the diagonal. Worked out in double precision, kept in single.
-    layer : (n, 3) array
-        Integral of n / r over the surface, from each centroid.
+        Row: target; without the panel itself on the diagonal. Worked out in double precision, kept in single.
+    layers : list of (n, 3) arrays
+        Integral of n / r over the surface: from each centroid, and from each of the images without its factor.
     """
     count = panels.count
-    angles, layer = np.empty((count, count), dtype=np.float32), np.empty((count, 3))
+    seen: list[Seen] = [(panels.centre, 1.0), *images]
+    angles, layers = np.empty((count, count), dtype=np.float32), [np.empty((count, 3)) for _ in seen]
     far = _Far.of(panels)
     reach = (REACH * panels.size) ** 2
     step = max(1, BLOCK // count)
 
     def rows(start: int) -> None:
-        targets = panels.centre[start : start + step]
-        solid, inverse, square = far.seen_from(targets)
-        i, j = np.nonzero(square < reach)
-        for part in range(0, len(i), NEAR_BLOCK):
-            a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
-            solid[a, b], inverse[a, b] = exact_integrals(targets[a], panels.corners[b], panels.normal[b])
-        own = np.arange(len(targets))
-        solid[own, start + own] = 0.0
-        angles[start : start + step] = solid
-        layer[start : start + step] = inverse @ panels.normal
+        for k, (points, factor) in enumerate(seen):
+            targets = points[start : start + step]
+            solid, inverse, square = far.seen_from(targets)
+            i, j = np.nonzero(square < reach)
+            for part in range(0, len(i), NEAR_BLOCK):
+                a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
+                solid[a, b], inverse[a, b] = exact_integrals(targets[a], panels.corners[b], panels.normal[b])
+            if k == 0:
+                own = np.arange(len(targets))
+                solid[own, start + own] = 0.0
+                angles[start : start + step] = solid
+            else:
+                angles[start : start + step] += factor * solid
+            layers[k][start : start + step] = inverse @ panels.normal
 
     with ThreadPoolExecutor(os.cpu_count()) as threads:
         list(threads.map(rows, range(0, count, step)))
-    return angles, layer
+    return angles, layers
+
+
+def seen_by(targets: Array, panels: Panels) -> tuple[Array, Array]:
+    """Solid angle of every panel, (m, n), and the integral of n / r, (m, 3), from points that are no centroids of theirs."""
+    out, layer = np.empty((len(targets), panels.count)), np.empty((len(targets), 3))
+    far = _Far.of(panels)
+    step = max(1, BLOCK // panels.count)
+    for start in range(0, len(targets), step):
+        some = targets[start : start + step]
+        solid, inverse, square = far.seen_from(some)
+        i, j = np.nonzero(square < (REACH * panels.size) ** 2)
+        if len(i):
+            solid[i, j], inverse[i, j] = exact_integrals(some[i], panels.corners[j], panels.normal[j])
+        out[start : start + step], layer[start : start + step] = solid, inverse @ panels.normal
+    return out, layer
+
+
+def velocities(targets: Array, directions: Array, panels: Panels) -> Array:
+    """Derivative of the solid angle of every panel along a direction at each target, (m, n).
+
+    Near panels as vortex rings along their sides (Katz & Plotkin, Low-Speed Aerodynamics, 2001, 10.4.5); beyond `REACH`
+    three dipoles at the middles of the sides, which is exact to the second degree.
+
+    Parameters
+    ----------
+    targets, directions : (m, 3) arrays
+    panels : Panels
+    """
+    out = np.empty((len(targets), panels.count))
+    middles = (panels.corners + np.roll(panels.corners, -1, axis=1)) / 2.0
+    square = np.sum(panels.centre**2, axis=1)
+    step = max(1, BLOCK // panels.count)
+    for start in range(0, len(targets), step):
+        x, n = targets[start : start + step], directions[start : start + step]
+        facing = n @ panels.normal.T
+        total = np.zeros((len(x), panels.count))
+        for k in range(3):
+            y = middles[:, k]
+            away = np.maximum(np.sum(x**2, axis=1)[:, None] - 2.0 * x @ y.T + np.sum(y**2, axis=1), 1e-30)
+            along = n @ y.T - np.sum(n * x, axis=1)[:, None]
+            height = np.sum(panels.normal * y, axis=1) - x @ panels.normal.T
+            total += (3.0 * along * height / away - facing) / (away * np.sqrt(away))
+        total *= panels.area / 3.0
+        near = np.sum(x**2, axis=1)[:, None] - 2.0 * x @ panels.centre.T + square < (REACH * panels.size) ** 2
+        i, j = np.nonzero(near)
+        for part in range(0, len(i), NEAR_BLOCK):
+            a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
+            total[a, b] = np.einsum("ni,ni->n", _ring(x[a], panels.corners[b]), n[a])
+        out[start : start + step] = total
+    return out
+
+
+def _ring(targets: Array, corners: Array) -> Array:
+    """Gradient of the solid angle of triangle k at target k, (n, 3)."""
+    to = corners - targets[:, None]
+    r = np.linalg.norm(to, axis=2)
+    total = np.zeros_like(targets)
+    for k in range(3):
+        a, b, ra, rb = to[:, k - 1], to[:, k], r[:, k - 1], r[:, k]
+        below = ra * rb * (ra * rb + np.einsum("ni,ni->n", a, b))
+        total += np.cross(a, b) * ((ra + rb) / np.maximum(below, 1e-30))[:, None]
+    return total
+
+
+def layer_slopes(targets: Array, directions: Array, panels: Panels) -> Array:
+    """Derivative along a direction at each target of the integral of n / r over the panels, (m, 3).
+
+    The gradient of the integral of 1 / r of a flat panel: its solid angle along the normal, and along its plane the
+    logarithms of its sides, each along its outward normal (Hess & Smith 1967).
+    """
+    out = np.empty((len(targets), 3))
+    square = np.sum(panels.centre**2, axis=1)
+    middles = (panels.corners + np.roll(panels.corners, -1, axis=1)) / 2.0
+    step = max(1, BLOCK // panels.count)
+    for start in range(0, len(targets), step):
+        x, n = targets[start : start + step], directions[start : start + step]
+        total = np.zeros((len(x), panels.count))
+        for k in range(3):
+            y = middles[:, k]
+            away = np.maximum(np.sum(x**2, axis=1)[:, None] - 2.0 * x @ y.T + np.sum(y**2, axis=1), 1e-30)
+            total += (n @ y.T - np.sum(n * x, axis=1)[:, None]) / (away * np.sqrt(away))
+        total *= panels.area / 3.0
+        i, j = np.nonzero(np.sum(x**2, axis=1)[:, None] - 2.0 * x @ panels.centre.T + square < (REACH * panels.size) ** 2)
+        for part in range(0, len(i), NEAR_BLOCK):
+            a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
+            total[a, b] = np.einsum("ni,ni->n", _pull(x[a], panels.corners[b], panels.normal[b]), n[a])
+        out[start : start + step] = total @ panels.normal
+    return out
+
+
+def _pull(targets: Array, corners: Array, normals: Array) -> Array:
+    """Gradient of the integral of 1 / r of triangle k at target k, (n, 3)."""
+    angle, _ = exact_integrals(targets, corners, normals)
+    to = corners - targets[:, None]
+    r = np.linalg.norm(to, axis=2)
+    total = angle[:, None] * normals
+    for k in range(3):
+        side = to[:, k] - to[:, k - 1]
+        length = np.linalg.norm(side, axis=1)
+        gap = np.maximum(r[:, k - 1] + r[:, k] - length, 1e-14 * length)
+        share = np.log((r[:, k - 1] + r[:, k] + length) / gap) / length
+        total -= np.cross(side, normals) * share[:, None]
+    return total
 
 
 @brief
