@@ -102,28 +102,36 @@ def unfit_share(corners: Array) -> float:
     return float(area[giant | (longest**2 > NEEDLE**2 * 4.0 / np.sqrt(3.0) * area)].sum() / whole)
 
 
-def sharpness(vertices: Array, faces: Faces) -> float:
-    """Length of the edges at which the surface turns by more than 45 degrees, over the root of its area.
-
-    4.9 for a cube, 1.4 for a flat-ended cylinder six diameters long, 0 for a smooth body. Edges of more or fewer than two
-    faces are left out.
-    """
+def _sharp_edges(vertices: Array, faces: Faces) -> tuple[Faces, Faces, NDArray[np.bool_], Faces]:
+    """Half-edges of the edges of two faces, whether the surface turns there by more than 45 degrees, and those of one face."""
     corner = vertices[faces]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    twice = np.linalg.norm(normal, axis=1)
-    unit = normal / np.maximum(twice, np.finfo(float).tiny)[:, None]
+    unit = normal / np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)[:, None]
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     key = np.minimum(start, end) * np.int64(len(vertices)) + np.maximum(start, end)
     order = np.argsort(key, kind="stable")
     _, first, members = np.unique(key[order], return_index=True, return_counts=True)
     one, other = order[first[members == 2]], order[first[members == 2] + 1]
     turned = np.einsum("ij,ij->i", unit[one // 3], unit[other // 3]) < SHARP
+    return one, other, turned, order[first[members == 1]]
+
+
+def sharpness(vertices: Array, faces: Faces) -> float:
+    """Length of the edges at which the surface turns by more than 45 degrees, over the root of its area.
+
+    4.9 for a cube, 1.4 for a flat-ended cylinder six diameters long, 0 for a smooth body. Edges of more or fewer than two
+    faces are left out.
+    """
+    one, _, turned, _ = _sharp_edges(vertices, faces)
+    corner = vertices[faces]
+    twice = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     length = np.linalg.norm(vertices[start[one]] - vertices[end[one]], axis=1)
     return float(length[turned].sum() / np.sqrt(twice.sum() / 2.0))
 
 
-def thin_share(panels: Panels) -> float:
-    """Share of the area where the body is thinner than the panel on it is large.
+def thickness(panels: Panels) -> Array:
+    """How thick the body is at each panel, (n,), m; infinite where that is more than the panel is large.
 
     There a panel looks away from another within its own size behind it; the potential jumps from one to the other and
     constant panels cannot follow.
@@ -138,8 +146,15 @@ def thin_share(panels: Panels) -> float:
     other = np.concatenate(near).astype(np.int64)
     opposed = np.einsum("ij,ij->i", panels.normal[panel], panels.normal[other]) < -0.5
     depth = np.einsum("ij,ij->i", panels.centre[panel] - panels.centre[other], panels.normal[panel])
-    thin = np.unique(panel[opposed & (depth > 0.0) & (depth < reach[panel])])
-    return float(panels.area[thin].sum() / panels.area.sum())
+    thin = opposed & (depth > 0.0) & (depth < reach[panel])
+    out = np.full(panels.count, np.inf)
+    np.minimum.at(out, panel[thin], depth[thin])
+    return out
+
+
+def thin_share(panels: Panels) -> float:
+    """Share of the area where the body is thinner than the panel on it is large."""
+    return float(panels.area[np.isfinite(thickness(panels))].sum() / panels.area.sum())
 
 
 def split_in_four(corners: Array) -> Array:
@@ -155,17 +170,71 @@ def bisected(corners: Array, count: int) -> Array:
     Neighbours need not share vertices; constant panels do not ask for it.
     """
     while len(corners) < count:
-        sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-        longest = sides.max(axis=1)
+        longest = _longest(corners)
         need = min(count - len(corners), len(corners))
-        chosen = longest >= max(np.sort(longest)[-need], 0.6 * longest.max())
-        kept, cut = corners[~chosen], corners[chosen]
-        first = sides[chosen].argmax(axis=1)
-        rows = np.arange(len(cut))
-        a, b, c = (cut[rows, (first + k) % 3] for k in range(3))
-        middle = (a + b) / 2.0
-        corners = np.concatenate([kept, np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+        corners = halved(corners, longest >= max(np.sort(longest)[-need], 0.6 * longest.max()))
     return corners
+
+
+def _longest(corners: Array) -> Array:
+    return np.asarray(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1))
+
+
+def halved(corners: Array, chosen: NDArray[np.bool_]) -> Array:
+    """Chosen triangles cut through the middle of their longest sides, behind the others."""
+    kept, cut = corners[~chosen], corners[chosen]
+    first = np.linalg.norm(np.roll(cut, -1, axis=1) - cut, axis=2).argmax(axis=1)
+    rows = np.arange(len(cut))
+    a, b, c = (cut[rows, (first + k) % 3] for k in range(3))
+    middle = (a + b) / 2.0
+    return np.concatenate([kept, np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+
+
+FINEST, WIDENING = 0.25, 0.5
+
+
+def graded(corners: Array, count: int, lines: Array | None = None, thin: bool = True) -> Array:
+    """At most about ``count`` triangles on the same facets, smaller where the body is thin and along lines.
+
+    The size that is wanted at a panel is the thickness of the body there, and near a line a quarter of the general size
+    plus half the distance. Panels furthest above their wanted size are halved first.
+
+    Parameters
+    ----------
+    corners : (n, 3, 3) array
+    count : int
+    lines : (k, 3) array, optional
+        Points along sharp edges, rims or a wall's nearest line, m.
+    thin : bool
+        Look for thin parts; of sheets, which have no thickness, there are none.
+    """
+    from scipy.spatial import cKDTree
+
+    tree = None if lines is None or not len(lines) else cKDTree(lines)
+    general = side_of(float(panels_of(corners).area.sum()), count)
+    while len(corners) < count:
+        panels = panels_of(corners)
+        wanted = np.full(panels.count, 2.0 * general)
+        if tree is not None:
+            wanted = np.minimum(wanted, FINEST * general + WIDENING * tree.query(panels.centre)[0])
+        if thin:
+            wanted = np.minimum(wanted, np.maximum(thickness(panels), FINEST * general))
+        above = _longest(corners) / wanted
+        room = min(count - len(corners), panels.count)
+        corners = halved(corners, above >= max(np.sort(above)[-room], 0.7 * above.max()))
+    return corners
+
+
+def sharp_points(vertices: Array, faces: Faces, step: float) -> Array:
+    """Points along the edges at which a surface turns by more than 45 degrees, or ends, (k, 3), at most ``step`` apart, m."""
+    one, _, turned, rim = _sharp_edges(vertices, faces)
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    edge = np.concatenate([one[turned], rim])
+    a, b = vertices[start[edge]], vertices[end[edge]]
+    number = np.maximum(np.ceil(np.linalg.norm(b - a, axis=1) / step).astype(int), 1)
+    which = np.repeat(np.arange(len(a)), number + 1)
+    share = (np.arange(len(which)) - np.repeat(np.cumsum(number + 1) - number - 1, number + 1)) / number[which]
+    return np.asarray(a[which] + share[:, None] * (b - a)[which])
 
 
 REACH = 5.0
@@ -341,7 +410,9 @@ def layer_slopes(targets: Array, directions: Array, panels: Panels) -> Array:
             away = np.maximum(np.sum(x**2, axis=1)[:, None] - 2.0 * x @ y.T + np.sum(y**2, axis=1), 1e-30)
             total += (n @ y.T - np.sum(n * x, axis=1)[:, None]) / (away * np.sqrt(away))
         total *= panels.area / 3.0
-        i, j = np.nonzero(np.sum(x**2, axis=1)[:, None] - 2.0 * x @ panels.centre.T + square < (REACH * panels.size) ** 2)
+        i, j = np.nonzero(
+            np.sum(x**2, axis=1)[:, None] - 2.0 * x @ panels.centre.T + square < (REACH * panels.size) ** 2
+        )
         for part in range(0, len(i), NEAR_BLOCK):
             a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
             total[a, b] = np.einsum("ni,ni->n", _pull(x[a], panels.corners[b], panels.normal[b]), n[a])
