@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coeflab.bodies.added_mass.panel import STRONGEST, volume_gap
+from coeflab.bodies.panels.refinement import STRONGEST, volume_gap
 from coeflab.bodies.body import Body
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
