@@ -103,7 +103,8 @@ def suboff(name: str, with_ring: bool) -> Body:
     body = read_body(Path(shipped("geometry")) / name / "body.toml")
     if body.outline is None:
         raise InputError(f"{name} without an outline", "a body whose reader knows its hull and fins")
-    return replace(body, outline=replace(body.outline, rings=(ring_wing(),) if with_ring else ()))
+    found = replace(body.outline, rings=(ring_wing(),) if with_ring else ())
+    return replace(body, outlined=lambda: found)
 
 
 def rows() -> tuple[Row, ...]:
