@@ -506,7 +506,7 @@ def test_lines_over_a_german_table_are_offered_and_seven_lines_are_asked(
         4.3,
         "LPP",
     )
-    assert table.forces["Y"].tolist() == [-23.75, -11.75, 0.25, 12.25, 24.25]
+    assert table.forces["Y"].tolist() == [-24.25, -12.25, 0.25, 12.25, 24.25]
 
 
 def test_lines_over_a_table_are_offered_as_arguments_and_never_taken(tmp_path: Path) -> None:
