@@ -178,6 +178,7 @@ def findings(found: Sequence[Check], *, notes: bool = False) -> None:
 
     counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
     groups: dict[tuple[Severity, str, str, str], list[Check]] = {}
+    notes = notes or show.whole()
     for severity in (Severity.FAIL, Severity.WARN, *((Severity.NOTE,) if notes else ())):
         for c in found:
             if c.severity is severity:
@@ -192,7 +193,8 @@ def findings(found: Sequence[Check], *, notes: bool = False) -> None:
         show.marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {meant}".rstrip())
         for c in same:
             show.text(f"        {c.subject}: {c.statistic}")
-    show.text("Checks: " + ", ".join(f"{n} {name}" for name, n in counts.items()) + ".")
+    hint = {Severity.NOTE.value: " (--wide shows them)"} if counts[Severity.NOTE.value] and not notes else {}
+    show.text("Checks: " + ", ".join(f"{n} {name}{hint.get(name, '')}" for name, n in counts.items()) + ".")
 
 
 def _short(comment: str) -> str:
