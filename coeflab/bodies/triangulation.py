@@ -105,15 +105,16 @@ def _parts_mirror(shape: Parts, axis: int, middle: Array) -> bool:
             and abs(other[1] - volume) <= WITHIN * max(volume, other[1])
             and np.allclose(other[2], turn * (centre - middle) + middle, atol=WITHIN * size)
             and np.allclose(other[3], np.outer(turn, turn) * spread, atol=WITHIN * size**2)
+            and np.allclose(other[4], turn * skew, atol=WITHIN * size)
             for other in figures
         )
-        for kind, volume, centre, spread in figures
+        for kind, volume, centre, spread, skew in figures
     )
 
 
-def _figure(part: Part) -> tuple[str, float, Array, Array]:
-    spread = part.rotation @ np.diag(part.form.spread) @ part.rotation.T
-    return type(part.form).__name__, part.form.volume, part.centre, spread
+def _figure(part: Part) -> tuple[str, float, Array, Array, Array]:
+    """Kind, volume, centre, second moments, and how far a form without middle leans out of its centre of volume."""
+    return type(part.form).__name__, part.form.volume, part.centre, part.second_moments, part.middle - part.centre
 
 
 def must_vanish(shape: Shape, point: Array) -> NDArray[np.bool_]:
