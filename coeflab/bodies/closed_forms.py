@@ -242,6 +242,8 @@ def strip_added_mass(integrals: MeridianIntegrals, density: float, correction: E
 
 
 AXIAL_SHARE = 0.1
+BOX_RATIOS = (1.0, 1.5, 2.0, 3.0, 5.0, 10.0)
+CYLINDER_RATIOS = (0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0)
 PLATE_ASPECTS = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.25, 8.0, 10.0)
 PLATE_COEFFICIENTS = (0.5790, 0.6419, 0.6898, 0.7569, 0.8009, 0.8318, 0.8719, 0.8967, 0.9168, 0.9347, 0.9476)
 
