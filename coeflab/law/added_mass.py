@@ -110,7 +110,7 @@ class NearWall(NamedTuple):
     matrix: Annotated[Square6, Means("as that of `added_mass`", "kg, kg m, kg m^2")]
 
 
-@stored("body method density matrix others? walls? statements?")
+@stored("body method density matrix others? walls?? statements?")
 @dataclass(frozen=True, slots=True, eq=False)
 class AddedMass:
     """M_A, positive, FRD, about the file's reference point; acceleration derivatives are its negatives.
@@ -154,7 +154,7 @@ class AddedMass:
     rough: bool = False
     density: Annotated[Positive, Means("density of the water that the matrix holds for", "kg/m^3")] = np.nan
     others: Annotated[tuple[OtherMethod, ...], Means("the same by other methods, to be compared with")] = ()
-    walls: Annotated[tuple[NearWall, ...], Means("the same near walls, by distance")] = ()
+    walls: Annotated[tuple[NearWall, ...], Means("the same near walls, by distance", since="1.5")] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", locked(self.matrix))
