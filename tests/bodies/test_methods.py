@@ -162,11 +162,13 @@ def test_statements_name_what_is_estimated(tmp_path: Path) -> None:
     said = " ".join(primitives.added_mass(body(tmp_path, parts), RHO).statements)
     for words in (
         "slat: aspect 20",
-        "puck: shorter than its diameter",
-        "equal volume and proportions",
+        "flat ends by our panel method",
+        "tabulated at 36 proportions",
         "doublet lattice",
     ):
         assert words in said
+    ends = " ".join(primitives.added_mass(body(tmp_path, parts), RHO, {"cylinder_ends": "huuv"}).statements)
+    assert "puck: shorter than its diameter" in ends
 
 
 def test_methods_that_do_not_apply() -> None:
