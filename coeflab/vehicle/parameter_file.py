@@ -52,7 +52,7 @@ VERSIONS = {
     "1.3": "Buoyancy, gravity, thrusters and the limits of control surfaces.",
     "1.4": "The measured points behind the law, how far the law is from them, and the range in which it holds; the status "
     "form_rejected.",
-    "1.5": "The status and the origin estimate: numbers from the shape alone, by semi-empirical methods.",
+    "1.5": "The status and the origin estimate: numbers from the shape alone, by semi-empirical methods; added mass near walls.",
 }
 NARROWER = 1e-3  # of a range: less is what a campaign is run at
 _MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)
@@ -117,7 +117,7 @@ def as_of(version: str, noun: Any, content: Any) -> Any:
     """The JSON content of a noun without the fields that came after a version."""
     if known := stored_fields(noun.__class__):
         kept = [f.name for f in known if not is_later(f.since, version)]
-        return {name: as_of(version, getattr(noun, name), content[name]) for name in kept}
+        return {name: as_of(version, getattr(noun, name), content[name]) for name in kept if name in content}
     if isinstance(noun, tuple):
         return [as_of(version, v, c) for v, c in zip(noun, content, strict=True)]
     return content
