@@ -224,7 +224,9 @@ def _require_solid(body: Body, method: str) -> None:
     """Refuse sheets of a mesh for methods that would leave them out."""
     shape = body.require_shape()
     if isinstance(shape, TriangleMesh) and len(shape.sheets) and method != "panel":
-        raise InputError("a mesh with sheets of no thickness", "a closed surface", advice="The method panel takes sheets.")
+        raise InputError(
+            "a mesh with sheets of no thickness", "a closed surface", advice="The method panel takes sheets."
+        )
 
 
 def _original(body: Body) -> Body | None:
