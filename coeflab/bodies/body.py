@@ -5,8 +5,9 @@ What every body.toml says beside the shape: names, datum, source, lengths, confi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache, partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from coeflab.bodies.mesh.source import MeshSource
 from coeflab.bodies.outline import Outline
 from coeflab.bodies.pieces import Control, ControlKeys, Piece
+from coeflab.bodies.recognition import outline_of
 from coeflab.bodies.shape import Shape
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum, DatumKeys
@@ -134,8 +136,8 @@ class Body:
         The closed pieces that the shape is made of, where its reader knows them.
     controls : tuple of Control
         Which of them turn.
-    outline : Outline, optional
-        What semi-empirical methods see of it, where its reader knows.
+    outlined : callable, optional
+        Makes the outline where the reader knows more of it than the shape.
     """
 
     name: str
@@ -152,7 +154,7 @@ class Body:
     mesh: MeshSource | None = None
     pieces: tuple[Piece, ...] = ()
     controls: tuple[Control, ...] = ()
-    outline: Outline | None = None
+    outlined: Callable[[], Outline] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))
@@ -166,6 +168,13 @@ class Body:
     def _repr_html_(self) -> str:
         """Outlines and particulars, for notebooks."""
         return html_by("body", self)
+
+    @property
+    def outline(self) -> Outline | None:
+        """What semi-empirical methods see of it, made when first asked for; None of a body without a shape."""
+        if self.outlined is not None:
+            return self.outlined()
+        return None if self.shape is None else outline_of(self.shape, self.controls)
 
     def configuration(self, name: str) -> Configuration | None:
         """The configuration of that name, if the body has it."""
@@ -546,8 +555,25 @@ class ShapedBodyFile(BodyFile):
             expected = "[prime] with length and length_name"
             raise InputError("primed values without a length", expected, column="measured")
 
-    def shaped(self, path: Path, shape: Shape, computed: Configuration, pieces: tuple[Piece, ...] = ()) -> Body:
+    def shaped(
+        self,
+        path: Path,
+        shape: Shape,
+        computed: Configuration,
+        pieces: tuple[Piece, ...] = (),
+        outlined: Callable[[tuple[Control, ...]], Outline] | None = None,
+    ) -> Body:
         """The body with its shape, its pieces, what turns and what was measured.
+
+        Parameters
+        ----------
+        path : Path
+        shape : Shape
+        computed : Configuration
+            From the shape.
+        pieces : tuple of Piece
+        outlined : callable, optional
+            ``outlined(controls)``: the outline, where the reader knows more of it than the shape.
 
         Raises
         ------
@@ -566,4 +592,5 @@ class ShapedBodyFile(BodyFile):
             measured=tuple(m for s in self.measured for m in s.made),
             pieces=pieces,
             controls=tuple(controls),
+            outlined=None if outlined is None else cache(partial(outlined, tuple(controls))),
         )

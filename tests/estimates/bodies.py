@@ -83,7 +83,7 @@ def plain() -> Body:
 
 
 def body_of(seen: Outline, point: tuple[float, float, float] = (-LENGTH / 2.0, 0.0, 0.0)) -> Body:
-    return replace(plain(), outline=seen, reference_point=np.array(point))
+    return replace(plain(), outlined=lambda: seen, reference_point=np.array(point))
 
 
 def estimates_of(seen: Outline, point: tuple[float, float, float] = (-LENGTH / 2.0, 0.0, 0.0)) -> Estimates:

@@ -182,7 +182,7 @@ def test_a_roughened_hull_drags_more() -> None:
 
 def test_what_cannot_be_estimated_is_said() -> None:
     with pytest.raises(InputError, match="without an outline"):
-        estimated(replace(plain(), outline=None), WATER)
+        estimated(plain(), WATER)
     with pytest.raises(InputError, match="no hull, fin or bluff part"):
         estimates_of(outline(hulls=()))
     with pytest.raises(InputError, match="viscosity"):
