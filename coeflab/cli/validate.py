@@ -19,7 +19,10 @@ EXAMPLE = "coeflab validate suboff"
 
 def command(
     name: str = typer.Argument(
-        ..., metavar="NAME", help="suboff, huuv, flyingfish, thauv, tank or estimates.", autocompletion=complete.validations
+        ...,
+        metavar="NAME",
+        help="suboff, huuv, flyingfish, thauv, tank or estimates.",
+        autocompletion=complete.validations,
     ),
     out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/NAME."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),

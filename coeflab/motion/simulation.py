@@ -10,7 +10,7 @@ from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.options import of_a_file
 from coeflab.law.symbols import MOTIONS
-from coeflab.motion.approach import at_once, undetermined_at_once, unlimited
+from coeflab.motion.approach import at_once, decisive, undetermined_at_once, unlimited
 from coeflab.motion.manoeuvre import PlannedManoeuvre, Simulation
 from coeflab.motion.manoeuvres import MANOEUVRES
 from coeflab.motion.simulators import SIMULATORS
@@ -129,7 +129,7 @@ def simulate(
     until, why = determined_until(trajectory, body)
     figures = plugin.figures(trajectory, body, options)
     works = tuple(dict.fromkeys((*plugin.citations, *mover.citations)))
-    nothing = undetermined_at_once(body, plan)
+    nothing = undetermined_at_once(body, plan, figures)
     return Simulation(body, plan, trajectory, figures, (*statements, *([why] if why else [])), until, works, nothing)
 
 
@@ -139,10 +139,10 @@ def determined_until(trajectory: Trajectory, vehicle: Vehicle) -> tuple[float, s
     for rate in ("r", "q"):
         lacking = unlimited(vehicle, rate, speed) if rate in vehicle.free and speed > 0.0 else ""
         if lacking:
-            beyond = [
-                trajectory.time[f] for n, f in trajectory.outside.items() if not n.endswith(UNCOVERED) and f.any()
-            ]
-            if beyond:
-                first = float(min(times[0] for times in beyond))
+            left = decisive((name for name, f in trajectory.outside.items() if f.any()), rate)
+            if any(name.endswith(UNCOVERED) for name in left):
+                return 0.0, f"not determined: no data on {rate}'; {lacking}"
+            if left:
+                first = float(min(trajectory.time[trajectory.outside[name]][0] for name in left))
                 return first, f"stopped at {first:.4g} s: {lacking}"
     return inf, ""

@@ -196,7 +196,9 @@ def campaign_files(
         declared.append(_declared(name, group, notes, origin, hashlib.sha256(files[f"{name}.csv"]).hexdigest()))
     if not declared:
         return {}
-    files[FILE] = _campaign_text(tank, body, runs, version, inputs or {}, declared, tuple(turned), stated, kind).encode()
+    files[FILE] = _campaign_text(
+        tank, body, runs, version, inputs or {}, declared, tuple(turned), stated, kind
+    ).encode()
     files[RUNS] = _runs_text(runs)
     for r in runs:
         if r.history is not None and len(r.history.history):

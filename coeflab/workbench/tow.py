@@ -535,7 +535,9 @@ def _with_scatter(fit: FitResult, among: CoefficientSet) -> FitResult:
     own = [c.symbol for c in fit.coefficients.coefficients]
     at = [(i, among.symbols.index(s)) for i, s in enumerate(own) if s in among]
     changed = tuple(
-        replace(c, u95=among[c.symbol].u95, parts=among[c.symbol].parts) if c.value is not None and c.symbol in among else c
+        replace(c, u95=among[c.symbol].u95, parts=among[c.symbol].parts)
+        if c.value is not None and c.symbol in among
+        else c
         for c in fit.coefficients.coefficients
     )
     spread = np.array(fit.coefficients.covariance)

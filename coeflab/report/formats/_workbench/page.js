@@ -256,7 +256,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     return whole(w, h, "Track of the zigzag", sentences.join(" "), [`<rect x="0.5" y="0.5" width="${w - 1}" height="${h - 1}" fill="none" stroke="${colour.rule}"/>`, ...lines]);
   };
   const notKnown = () => `U95 of ${shown.unknown.map(plain).join(", ")} includes zero: the slope is not known, and the zigzag is that of its value only`;
-  const stopped = (run) => (run.determined > 0 ? `Stopped at ${short(run.determined, 4)} s: ${run.why}.` : `Not determined: the first orders leave the data. ${run.why[0].toUpperCase()}${run.why.slice(1)}.`);
+  const stopped = (run) => (run.determined > 0 ? `Stopped at ${short(run.determined, 4)} s: ${run.why}.` : `Not determined: ${run.why.startsWith("no data") ? "" : "the first orders leave the data; "}${run.why}.`);
   // As the report draws a track: east to the right, north up, one scale; the dot is the start.
   const trackFigure = () => {
     const w = widthOf(track), { motion, still } = shown, lines = [];
