@@ -29,6 +29,7 @@ FIRST = (
     "stopping time",
 )  # figures that a manoeuvre is known by, the first that is there
 OFF = "thrust off at time zero"  # what a coast-down says of itself
+ROUNDING, FINEST = 1e-6, 1e-9
 LEAST, TENTH, MOST_PARTS, LONGEST = 0.005, 0.1, 3, 160
 ESTIMATED = (
     "Estimates from the shape alone by semi-empirical methods, U95 from the scatter that each source states and from the spread "
@@ -76,8 +77,8 @@ def particulars_table(shape: FromShape) -> Table:
 
 
 def _three(values: np.ndarray) -> str:
-    size = float(np.max(np.abs(values)))
-    return ", ".join("0" if abs(float(v)) < 1e-6 * size else number(float(v), 4) for v in values)
+    size = max(float(np.max(np.abs(values))), ROUNDING)
+    return ", ".join("0" if abs(float(v)) < ROUNDING * size + FINEST else number(float(v), 4) for v in values)
 
 
 def estimates_table(
