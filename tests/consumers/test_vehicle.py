@@ -25,7 +25,7 @@ def estimated() -> ParameterFile:
     body = read_body(shipped("geometry") / "finned_spheroid" / "body.toml")
     found = from_shape(Plan("finned", "Finned spheroid", (), method="strip:lamb"), body)
     assert [m.manoeuvre.name for m in found.manoeuvres] == ["turning_circle", "zigzag"]
-    return next(iter(found.parameter_files.values()))
+    return next(iter(found.parameter_files.values())).model_copy(update={"name": "file"})
 
 
 def written(estimated: ParameterFile, target: str, folder: Path, suffix: str) -> Path:
