@@ -328,12 +328,15 @@ def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:
     text = [ESTIMATED]
     if main is not None:
         estimated = {c.symbol for c in made.estimates}
-        part = [v for s, v in main[1].known if s in estimated]
-        text.append(
-            f"{interval_in_words(carried)[:1].upper()}{interval_in_words(carried)[1:].removesuffix(', estimate')}. Estimates still in "
-            f"it: {listed([s for s, v in main[1].known if s in estimated]) or 'none that shows'}"
-            f"{f', together about {100.0 * min(sum(part), 1.0):.0f} % of its variance' if part else ''}."
+        own = [(symbol, v) for symbol, v in main[1].known if symbol in estimated]
+        words = interval_in_words(carried).removesuffix(", estimate")
+        which = (
+            f"Of the estimates still in it {listed([symbol for symbol, _ in own])} contribute, the largest "
+            f"{100.0 * max(v for _, v in own):.0f} % of its variance."
+            if own
+            else "No estimate still in it contributes."
         )
+        text.append(f"{words[:1].upper()}{words[1:]}. {which}")
         text.append(SHARES)
     return Section("coefficients", "Estimates and what replaced them", tuple(text),
                    (merged_table(made), estimates_table(made.parameters, carried)), (figure,) if figure else ())  # fmt: skip
