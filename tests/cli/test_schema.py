@@ -63,7 +63,8 @@ def test_a_schema_refuses_what_reading_refuses(kind: str, old: str, new: str) ->
 
 
 @pytest.mark.parametrize(
-    ("value", "fits"), [(0, True), (0.0, True), (0.3, False), (20, False), ("20", False), ("20 deg", True), (" .3rad", True)]
+    ("value", "fits"),
+    [(0, True), (0.0, True), (0.3, False), (20, False), ("20", False), ("20 deg", True), (" .3rad", True)],
 )
 def test_an_angle_has_its_unit_in_schema_and_reader_alike(value: object, fits: bool) -> None:
     angle = number_in("angle")

@@ -303,9 +303,9 @@ def summary(study: Study) -> Table:
         for made in study.exports
     )
     rows += tuple((r.parameters, r.target, "refused", ABSENT, ABSENT, "none") for r in study.refused)
-    headers = ("parameter file", "target", "loss", "worst of largest", "accelerations", "files")
+    headers = ("parameter file", "target", "loss", "largest difference in %", "accelerations", "files")
     notes = (
-        "worst of largest: largest difference of a force component or an acceleration over its largest value, both over the states that the loss of "
+        "Largest difference in %: of a force component or an acceleration over its largest value, both over the states that the loss of "
         f"each export names: what campaigns cover, and primes to {ASSUMED:g} either way of a motion that none covers",
     )
     return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4, 5}))
