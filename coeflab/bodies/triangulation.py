@@ -219,12 +219,22 @@ class Triangulation:
 
     def _caution(self, found: AddedMass) -> str:
         """What must be said first: none is good, or the parts that it is of were not held against their mesh."""
-        parts = None if "panel" in self.on_mesh or found.method in self.on_mesh else self._parts
+        parts = self._unchecked(found)
         if parts is not None and parts.rough:
             return CAUTION_PARTS.format(found.method, "; ".join(parts.rough))
         if found.rough:
             return CAUTION.format(found.method)
         return "" if parts is None else UNCHECKED.format(found.method)
+
+    def _unchecked(self, found: AddedMass) -> Parts | None:
+        """The parts that stand for a mesh, where nothing was computed of that mesh."""
+        return None if "panel" in self.on_mesh or found.method in self.on_mesh else self._parts
+
+    @property
+    def none_recommended(self) -> bool:
+        """Whether every result is of parts that are poor stand-ins for a mesh: the first by the rule is no advice then."""
+        parts = self._unchecked(self.recommended)
+        return parts is not None and bool(parts.rough)
 
     def _symmetric(self, found: AddedMass) -> AddedMass:
         """Without the small entries that symmetry makes vanish and a mesh does not quite."""
@@ -266,7 +276,7 @@ class Triangulation:
         high = np.max(np.where(speaks, stack, -np.inf), axis=0)
         low = np.min(np.where(speaks, stack, np.inf), axis=0)
         known = (speaks.sum(axis=0) > 1) & (size > 0.0)
-        if self._parts is not None and "panel" not in self.on_mesh and self.recommended.method not in self.on_mesh:
+        if self._unchecked(self.recommended) is not None:
             known = np.zeros_like(known)
         return np.where(known, np.where(known, high - low, 0.0) / np.where(size > 0.0, size, 1.0), np.nan)
 

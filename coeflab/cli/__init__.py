@@ -31,6 +31,8 @@ ORDER = [
     "compare",
     "added-mass",
     "simplify",
+    "vehicle",
+    "merge",
     "export",
     "simulate",
     "trim",

@@ -97,6 +97,12 @@ def summarise(study: Study) -> None:
     from coeflab.report.answer import answer
     from coeflab.report.tables import models as model_tables
 
+    if study.shape is not None:
+        from coeflab.cli.vehicle import summarise as of_shape
+
+        of_shape(study)
+        findings(study.checks)
+        return
     answered(answer(study, drawn=False))
     models = tuple(m for f in study.fits for m in f.models)
     if show.whole():

@@ -107,7 +107,7 @@ def set_lines(table: Table, width: int) -> tuple[Line, ...]:
     chosen = list(range(len(table.headers)))
     below: list[str] = []
     for i in list(chosen):
-        if _room(table, chosen, SPARED) > width and _says_one(table, i):
+        if _room(table, chosen, SPARED) > width and says_one(table, i):
             chosen.remove(i)
             said = table.rows[0][i]
             below += [f"All rows: {table.headers[i]} {said}"] if said not in ("", ABSENT) else []
@@ -132,7 +132,7 @@ def set_lines(table: Table, width: int) -> tuple[Line, ...]:
 MORE = "more"
 
 
-def _says_one(table: Table, i: int) -> bool:
+def says_one(table: Table, i: int) -> bool:
     """Whether a column of text says the same in each of several rows."""
     return bool(
         i in table.left and table.headers[i] and len(table.rows) > 1 and len({row[i] for row in table.rows}) == 1

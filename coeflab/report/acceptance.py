@@ -168,6 +168,8 @@ class Acceptance:
         Axes, signs and units of its own, beside those that hold for every report.
     parameter_files : tuple of ParameterFile
         The system, as far as the format holds it; their notes say what it does not hold.
+    shown : tuple of Table
+        What a terminal prints whole, in the place of the rows that fail.
     """
 
     name: str
@@ -179,6 +181,7 @@ class Acceptance:
     figures: tuple[tuple[str, Drawing], ...] = ()
     conventions: tuple[str, ...] = ()
     parameter_files: tuple[ParameterFile, ...] = ()
+    shown: tuple[Table, ...] = ()
 
     def __repr__(self) -> str:
         good = sum(r.holds for r in self.numbers)

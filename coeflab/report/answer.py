@@ -23,6 +23,7 @@ from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, s
 from coeflab.report.figures.model import model_figures
 from coeflab.report.figures.svg import size_of
 from coeflab.report.sections.campaign import anchor
+from coeflab.report.sections.estimates import answer_of_shape
 from coeflab.report.tables.models import quality
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
@@ -73,6 +74,8 @@ def answer(found: Study | Acceptance, *, drawn: bool = True) -> Answer:
         Of a study its wanted coefficients beside the published columns of their body: from its re-analysed tables, else from
         an own tow of that body. A difference has a verdict only where the authors' own evaluation of the same data is known.
     """
+    if isinstance(found, Study) and found.shape is not None:
+        return answer_of_shape(found, drawn=drawn)
     made = _of_study(found) if isinstance(found, Study) else _of_publication(found)
     return _drawn(found, made) if drawn else made
 

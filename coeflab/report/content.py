@@ -37,6 +37,7 @@ from coeflab.report.sections.campaign import anchor, budget_sections, campaign_s
 from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.data_quality import quality_sections
+from coeflab.report.sections.estimates import estimates_sections, verdict_of_shape
 from coeflab.report.sections.parameter_file import export_sections, in_words, manoeuvre_sections, stability_sections
 from coeflab.report.tables import formats as format_tables
 from coeflab.report.tables import models as model_tables
@@ -218,7 +219,7 @@ def _document(study: Study, full: bool) -> Document:
         verdict(study),
         *_comparison(study),
         *tow_sections(study),
-        coefficients_section(study),
+        *(estimates_sections(study) or (coefficients_section(study),)),
         *_models(study),
         *_laws(study),
         *moving,
@@ -314,6 +315,8 @@ def _re_analysis(study: Study) -> list[str]:
 
 def verdict(study: Study) -> Section:
     """What comes out, in short paragraphs: the verdict, what was found, stability, what is missing, the checks."""
+    if study.shape is not None:
+        return verdict_of_shape(study)
     text = [*_re_analysis(study), _harvest(study)]
     others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
     if others:

@@ -301,7 +301,7 @@ class TowKeys(takes.Declaration):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanFile(takes.Declaration):
-    """A plan.toml: a study of tables, and what is made of it.
+    """A plan.toml: a study of tables, or of a body alone by estimates, and what is made of it.
 
     Attributes
     ----------
@@ -345,13 +345,13 @@ class PlanFile(takes.Declaration):
     manoeuvre: tuple[ManoeuvreKeys, ...] = ()
 
     def check(self) -> None:
-        """A table at least; parameter files and targets once each."""
-        if not self.table and self.joint is None:
+        """A table or a body at least; parameter files and targets once each."""
+        if not self.table and self.joint is None and self.body is None:
             raise InputError(
                 "no [[table]]",
-                "at least one",
+                "at least one, or a [body] to estimate from",
                 column="table",
-                advice='Add [[table]] with campaign = "path/to/campaign".',
+                advice='Add [[table]] with campaign = "path/to/campaign", or [body] with path = "path/to/body.toml".',
             )
         names = [f.name.casefold() for f in self.parameter_file]
         for i, f in enumerate(self.parameter_file):

@@ -53,6 +53,7 @@ VERSIONS = {
     "1.3": "Buoyancy, gravity, thrusters and the limits of control surfaces.",
     "1.4": "The measured points behind the law, how far the law is from them, and the range in which it holds; the status "
     "form_rejected.",
+    "1.5": "The status and the origin estimate: numbers from the shape alone, by semi-empirical methods.",
 }
 NARROWER = 1e-3  # of a range: less is what a campaign is run at
 _MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)

@@ -13,11 +13,13 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from coeflab.bodies.body import Body, ShapedBodyFile
+from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import lofted, surface_of, united
 from coeflab.bodies.mesh.particulars import computed
-from coeflab.bodies.pieces import HULL, Piece, part_pieces
+from coeflab.bodies.outline import Foil, Outline
+from coeflab.bodies.outlining import Radius, Trapezoid, of_parts, radius_towards, with_controls
+from coeflab.bodies.pieces import HULL, Control, Piece, part_pieces
 from coeflab.bodies.shape import Ellipsoid, Part, Parts, within_reach
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
@@ -123,6 +125,16 @@ class FinKeys(takes.Declaration):
         """Mean, m."""
         return (self.root_chord + self.tip_chord) / 2.0
 
+    def foils(self, radius: Radius | None) -> tuple[Foil, ...]:
+        """What of it stands out of a hull of a radius at x, one foil or two; alone without a hull."""
+        ends = (self.trailing_edge, self.trailing_edge if self.tip_trailing_edge is None else self.tip_trailing_edge)
+        flat = Trapezoid(self.root, self.tip, (self.root_chord, self.tip_chord), ends)
+        way = np.array([np.cos(self.roll), np.sin(self.roll)])
+        ways = {self.name: way, f"{self.name}_image": -way} if self.mirrored else {self.name: way}
+        thickness = int(self.section[-2:]) / 100.0
+        found = (flat.foil(name, one, np.zeros(2), thickness, radius) for name, one in ways.items())
+        return tuple(foil for foil in found if foil is not None)
+
     @property
     def piece(self) -> Piece:
         """The closed piece."""
@@ -179,15 +191,37 @@ class File(ShapedBodyFile):
                 raise InputError(f"two parts called {shown(name)}", "one name for each part", column=f"fin[{i}].name")
 
     @property
+    def spheroid(self) -> Parts | None:
+        """The hull."""
+        if self.hull is None:
+            return None
+        half = self.hull.diameter / 2.0
+        form = Ellipsoid(self.hull.length / 2.0, half, half)
+        return Parts((Part(HULL, form, np.array([self.hull.middle, 0.0, 0.0]), np.eye(3)),))
+
+    @property
     def pieces(self) -> tuple[Piece, ...]:
         """Hull and fins."""
         fins = tuple(fin.piece for fin in self.fin)
-        if self.hull is None:
-            return fins
-        half = self.hull.diameter / 2.0
-        form = Ellipsoid(self.hull.length / 2.0, half, half)
-        hull = Parts((Part(HULL, form, np.array([self.hull.middle, 0.0, 0.0]), np.eye(3)),))
-        return (*part_pieces(hull, (surface_of(form),)), *fins)
+        hull = self.spheroid
+        return fins if hull is None else (*part_pieces(hull, (surface_of(hull.parts[0].form),)), *fins)
+
+    def outlined(self, whole: Configuration, controls: tuple[Control, ...]) -> Outline:
+        """What semi-empirical methods see of it.
+
+        Parameters
+        ----------
+        whole : Configuration
+            With volume and wetted surface.
+        controls : tuple of Control
+        """
+        hulls = () if self.spheroid is None else of_parts(self.spheroid).hulls
+        foils: list[Foil] = []
+        for fin in self.fin:
+            way = np.array([np.cos(fin.roll), np.sin(fin.roll)])
+            foils += fin.foils(radius_towards(hulls[0], way) if hulls else None)
+        turned, left = with_controls(foils, controls)
+        return Outline(hulls, turned, (), (), whole.wetted_surface or 0.0, whole.volume or 0.0, left)
 
 
 def mesh(pieces: tuple[Piece, ...], panels: int = PANELS) -> TriangleMesh:
@@ -208,4 +242,5 @@ def read(path: Path) -> Body:
     """
     file = takes.declared(File, read_toml(path))
     shape = mesh(file.pieces)
-    return file.shaped(path, shape, computed(shape, ()), file.pieces)
+    whole = computed(shape, ())
+    return file.shaped(path, shape, whole, file.pieces, partial(file.outlined, whole))

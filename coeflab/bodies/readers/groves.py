@@ -24,7 +24,9 @@ from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
 from coeflab.bodies.closed_forms import graded_nodes
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import lofted, meshed, united
-from coeflab.bodies.pieces import Piece, hull_piece
+from coeflab.bodies.outline import Foil, Outline
+from coeflab.bodies.outlining import Trapezoid, radius_towards, round_hull, with_controls
+from coeflab.bodies.pieces import Control, Piece, hull_piece
 from coeflab.bodies.shape import Revolution
 from coeflab.core.declarations import Declaration, Flag, declared
 from coeflab.core.errors import InputError
@@ -368,6 +370,45 @@ def pieces(with_sail: bool, with_planes: bool) -> tuple[Piece, ...]:
     return tuple(found)
 
 
+def outline(with_sail: bool, with_planes: bool, controls: tuple[Control, ...] = ()) -> Outline:
+    """Hull, sail and planes as semi-empirical methods see them.
+
+    The sail is a straight foil from the hull's parallel middle body to its top; its tip chord leaves out as much of the
+    area as the cap cuts off.
+
+    Parameters
+    ----------
+    with_sail, with_planes : bool
+    controls : tuple of Control
+    """
+    hull = round_hull(meridian())
+    foils: list[Foil] = []
+    if with_sail:
+        nose, tail = SAIL_JOINTS[0], SAIL_JOINTS[4]
+        x, weight = (np.concatenate(v) for v in zip(
+            *(graded_nodes(*ends, APPENDAGE_NODES, APPENDAGE_GRADING) for ends in pairwise(SAIL_JOINTS)), strict=True))  # fmt: skip
+        chord, top = tail - nose, SIDE_TOP + HALF_THICKNESS / 2.0
+        area = float(weight @ (SIDE_TOP + sail_half_thickness(x)[0] / 2.0 - LARGEST_RADIUS))
+        tip_chord = 2.0 * area / (top - LARGEST_RADIUS) - chord
+        quarter = -FOOT * (nose + chord / 4.0)
+        root, tip = (np.array([quarter, 0.0, -FOOT * height]) for height in (LARGEST_RADIUS, top))
+        thickness = 2.0 * HALF_THICKNESS / chord
+        foils.append(Foil("sail", root, tip, FOOT * chord, FOOT * tip_chord, thickness, np.zeros(2)))
+    if with_planes:
+        chords, spread = (
+            [FOOT * float(_chord(np.array(y))) for y in (PLANE_FOOT, TIP)],
+            2.0 * float(_half(_eased(200)).max()),
+        )
+        flat = Trapezoid(FOOT * PLANE_FOOT, FOOT * TIP, (chords[0], chords[1]), (-FOOT * TRAILING_EDGE,) * 2)
+        for turn, name in enumerate(PLANES):
+            way = np.array([(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)][turn])
+            found = flat.foil(f"plane_{name}", way, np.zeros(2), spread, radius_towards(hull, way))
+            foils += [] if found is None else [found]
+    turned, left = with_controls(foils, controls)
+    whole = appended(with_sail, with_planes)
+    return Outline((hull,), turned, (), (), whole.wetted_surface or 0.0, whole.volume or 0.0, left)
+
+
 def _sail(panels: int) -> TriangleMesh:
     return _solid(sail_sections(*_shared(TOWED_SAIL, panels, lambda n: 2 * n[0] * (2 * n[1] + n[2] + 1))), 0.0)
 
@@ -435,4 +476,5 @@ def read(path: Path) -> Body:
     file = declared(File, read_toml(path))
     with_sail, with_planes = file.hull.sail, file.hull.planes
     shape = mesh(with_sail, with_planes) if with_sail or with_planes else meridian()
-    return file.shaped(path, shape, appended(with_sail, with_planes), pieces(with_sail, with_planes))
+    seen = partial(outline, with_sail, with_planes)
+    return file.shaped(path, shape, appended(with_sail, with_planes), pieces(with_sail, with_planes), seen)

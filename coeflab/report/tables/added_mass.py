@@ -93,7 +93,8 @@ def derivatives(found: Triangulation) -> Table:
 
 def remarks(found: Triangulation) -> tuple[str, ...]:
     """Which method is recommended and why, how far it can be trusted, and what each assumed."""
-    notes = [f"{MARK} recommended: {found.recommended.method}, by the rule: {found.rule}"]
+    by_rule = f"{found.recommended.method}, by the rule: {found.rule}"
+    notes = [f"none recommended; first is {by_rule}" if found.none_recommended else f"{MARK} recommended: {by_rule}"]
     notes += [found.caution] if found.caution else []
     notes += _verdicts(found)
     notes += [f"{r.method}: {'; '.join(r.statements)}" for r in found.results if r.statements]
@@ -114,7 +115,8 @@ def _apart(spread: float, stood_in: bool) -> str:
 
 
 def _marked(result: AddedMass, found: Triangulation) -> str:
-    return f"{MARK} {result.method}" if result.method == found.recommended.method else result.method
+    chosen = result.method == found.recommended.method and not found.none_recommended
+    return f"{MARK} {result.method}" if chosen else result.method
 
 
 def _verdicts(found: Triangulation) -> list[str]:
@@ -142,7 +144,7 @@ def primes(found: Triangulation) -> Table:
     by = found.body.scaling
     if by is None:
         return Table("Primes", (), ())
-    rows, notes = [], [f"primed by {by} and 1/2 rho; {MARK} recommended"]
+    rows, notes = [], [f"primed by {by} and 1/2 rho" + ("" if found.none_recommended else f"; {MARK} recommended")]
     measured = {m.symbol: m for m in found.body.measured}
     for symbol in dict.fromkeys((*SHOWN, *measured)):
         values = [r.primed(symbol, by, found.density) if _settled(r, symbol) else 0.0 for r in found.results]
