@@ -22,6 +22,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import CoeflabError, InputError, shown
+from coeflab.core.files import named
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile
 from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, Words, stored_fields
@@ -57,6 +58,7 @@ VERSIONS = {
 NARROWER = 1e-3  # of a range: less is what a campaign is run at
 _MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)
 SCHEMA_VERSION = next(reversed(VERSIONS))
+SHIPPED = "*.parameters.json"
 
 
 def is_later(version: str, other: str) -> bool:
@@ -341,11 +343,17 @@ def refusals_told(place: str) -> Iterator[None]:
 def read_parameter_file(path: Path) -> ParameterFile:
     """Read and validate a parameter file.
 
+    Parameters
+    ----------
+    path : Path
+        Of the file, or the name of a shipped one: ``remus100``.
+
     Raises
     ------
     InputError
         Not JSON (with line and column), or the first thing that breaks the schema.
     """
+    path = named(path, SHIPPED)
     text = read_text(path, JSON_BYTES)
     content = parse_json(text, path, "a parameter file in JSON")
     if not isinstance(content, dict):
