@@ -29,7 +29,9 @@ def limit(form: Form, panels: int) -> tuple[np.ndarray, np.ndarray]:
         corners = mesh.vertices[mesh.faces]
         found.append(np.diag(panel_added_mass(corners, np.zeros(3), compiles()).matrix))
         counts.append(len(corners))
-    steps = [a + (a - b) / ((m / n) ** (ORDER / 2.0) - 1.0) for (a, b), (m, n) in zip(pairwise(found), pairwise(counts))]
+    steps = [
+        a + (a - b) / ((m / n) ** (ORDER / 2.0) - 1.0) for (a, b), (m, n) in zip(pairwise(found), pairwise(counts))
+    ]
     return steps[0], steps[1]
 
 
@@ -56,7 +58,9 @@ def main() -> None:
     panels = int(sys.argv[1]) if len(sys.argv) > 1 else 6_000
     print("# cylinder of diameter 1: length: axial, lateral, turning")
     print(f"# a quarter of the panels: within {cylinders(panels):.2%}")
-    print("# box: longest over middle, middle over shortest: along and about the longest, the middle and the shortest side")
+    print(
+        "# box: longest over middle, middle over shortest: along and about the longest, the middle and the shortest side"
+    )
     print(f"# a quarter of the panels: within {boxes(panels):.2%}")
 
 

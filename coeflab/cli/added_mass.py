@@ -46,6 +46,9 @@ def command(
         help="bottom, surface_zero or surface_infinite (frequency): the panel method against the distance from it.",
     ),
     distance: str = typer.Option("", "--distance", metavar="M,M,..", help="From the reference point to the wall, m."),
+    error: str = typer.Option(
+        "", "--error", metavar="SHARE", help="Raise the panels until their error estimate is below it: 2%, 0.02."
+    ),
     density: float = typer.Option(1000.0, "--density", metavar="DENSITY", help="Of the water, kg/m^3."),
     json: bool = typer.Option(False, "--json", help="Print {method: 6 x 6 in SI}; remarks go to standard error."),
 ) -> None:
@@ -63,9 +66,10 @@ def command(
     with show.narrated():
         given = mesh_body(body, unit, axes, repair, fill, sheets)
         if wall or distance:
-            _near(given, density, method, wall, distance, further(ctx.args), json)
+            more = further(ctx.args) | ({"error": _share(error)} if error else {})
+            _near(given, density, method, wall, distance, more, json)
             return
-        found = added_masses(given, density, method, further(ctx.args))
+        found = added_masses(given, density, method, further(ctx.args), error=_share(error) if error else "")
     if json:
         for line in (*(f"{c.name}: {c.title}" for c in found.body.configurations), *tables.remarks(found)):
             show.error(line)
@@ -80,6 +84,14 @@ def command(
     show.table(tables.primes(found))
     for citation in found.citations:
         show.text(f"  {work(citation)}")
+
+
+def _share(text: str) -> str:
+    """As per cent, which the option takes; 0.02 is 2 %."""
+    try:
+        return text if text.rstrip().endswith("%") else f"{100.0 * float(text):.10g}%"
+    except ValueError:
+        return text
 
 
 def _near(

@@ -71,6 +71,7 @@ def added_masses(
     given: Mapping[str, Any] | None = None,
     *,
     reproducible: bool = False,
+    error: str = "",
 ) -> Triangulation:
     """Run one method, or all that apply.
 
@@ -88,6 +89,8 @@ def added_masses(
         Options of the one method.
     reproducible : bool
         Take the options of each plugin that give the same numbers with and without optional packages.
+    error : str
+        Target of the panel method's error, such as ``2%``; empty for its panels as they are.
 
     Raises
     ------
@@ -116,6 +119,7 @@ def added_masses(
             raise InputError(f'the unknown preset "{preset}" of {plugin_name}', f"one of {', '.join(known) or 'none'}")
         options = dict(plugin.reproducible if reproducible else {})
         options |= {**(known[preset] if preset else {}), **(given or {})}
+        options |= {"error": error} if error and plugin_name == "panel" else {}
         subjects = [body]
         if original is not None and plugin.takes_surface:
             subjects = [original, body] if method == "all" else [original]
