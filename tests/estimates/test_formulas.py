@@ -284,4 +284,4 @@ def test_shares_are_those_that_the_page_prints() -> None:
     }  # fmt: skip
     for kind, share in shares.items():
         row = next(line for line in page.splitlines() if line.startswith(f"| {kind} |"))
-        assert f"| {100 * share:.0f} %" in row, kind
+        assert f"| {100 * share:.4g} %" in row, kind
