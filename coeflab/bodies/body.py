@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.source import MeshSource
 from coeflab.bodies.outline import Outline
 from coeflab.bodies.pieces import Control, ControlKeys, Piece
@@ -530,10 +531,14 @@ class ShapedBodyFile(BodyFile):
         InputError
             A control of a part that is none of the pieces, by file, line and key.
         """
-        controls = []
+        controls: list[Control] = []
+        own = {piece.name for piece in pieces}
+        foils: tuple[str, ...] = ()
+        if isinstance(shape, TriangleMesh) and any(set(one.parts) - own for one in self.control):
+            foils = tuple(foil.name for foil in outline_of(shape).foils)
         for i, one in enumerate(self.control):
             try:
-                controls.append(one.made(pieces))
+                controls.append(one.made(pieces, foils))
             except InputError as why:
                 raise read_toml(path).fail(f"control[{i}].{why.column}", why.found, why.expected) from None
         return replace(

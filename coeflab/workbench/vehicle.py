@@ -41,6 +41,7 @@ NOTHING = Stated()
 Progress = Callable[[str], None]
 LEVEL = ("u", "v", "r")  # a first manoeuvre stays in the horizontal plane, whatever trim and weight are
 TURN, LIMIT = "turning_circle", float(np.radians(15.0))
+ROUNDING = 1e-9  # of the length: what lies on an axis but for its last digits
 MEMBERS, SEED = 100, 1
 REMAINING = 0.2  # of the speed, of a coast-down
 TURNS, LONGER = (
@@ -244,7 +245,10 @@ def subject(name: str, unit: str = "", axes: str = "", repair: bool = False) -> 
     body = mesh_body(name, unit, axes, repair)
     middle = body.configurations[0].centre_of_buoyancy
     bare = body.datum.id.startswith("origin of ") and not body.lengths
-    return replace(body, reference_point=middle) if bare and middle is not None else body
+    if not bare or middle is None:
+        return body
+    size = body.require_shape().length
+    return replace(body, reference_point=np.where(np.abs(middle) > ROUNDING * size, middle, 0.0))
 
 
 def asked(

@@ -29,6 +29,7 @@ FIRST = (
     "stopping time",
 )  # figures that a manoeuvre is known by, the first that is there
 OFF = "thrust off at time zero"  # what a coast-down says of itself
+ROUNDING, FINEST = 1e-6, 1e-9
 LEAST, TENTH, MOST_PARTS, LONGEST = 0.005, 0.1, 3, 160
 ESTIMATED = (
     "Estimates from the shape alone by semi-empirical methods, U95 from the scatter that each source states and from the spread "
@@ -76,8 +77,8 @@ def particulars_table(shape: FromShape) -> Table:
 
 
 def _three(values: np.ndarray) -> str:
-    size = float(np.max(np.abs(values)))
-    return ", ".join("0" if abs(float(v)) < 1e-6 * size else number(float(v), 4) for v in values)
+    size = max(float(np.max(np.abs(values))), ROUNDING)
+    return ", ".join("0" if abs(float(v)) < ROUNDING * size + FINEST else number(float(v), 4) for v in values)
 
 
 def estimates_table(
@@ -327,12 +328,15 @@ def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:
     text = [ESTIMATED]
     if main is not None:
         estimated = {c.symbol for c in made.estimates}
-        part = [v for s, v in main[1].known if s in estimated]
-        text.append(
-            f"{interval_in_words(carried)[:1].upper()}{interval_in_words(carried)[1:].removesuffix(', estimate')}. Estimates still in "
-            f"it: {listed([s for s, v in main[1].known if s in estimated]) or 'none that shows'}"
-            f"{f', together about {100.0 * min(sum(part), 1.0):.0f} % of its variance' if part else ''}."
+        own = [(symbol, v) for symbol, v in main[1].known if symbol in estimated]
+        words = interval_in_words(carried).removesuffix(", estimate")
+        which = (
+            f"Of the estimates still in it {listed([symbol for symbol, _ in own])} contribute, the largest "
+            f"{100.0 * max(v for _, v in own):.0f} % of its variance."
+            if own
+            else "No estimate still in it contributes."
         )
+        text.append(f"{words[:1].upper()}{words[1:]}. {which}")
         text.append(SHARES)
     return Section("coefficients", "Estimates and what replaced them", tuple(text),
                    (merged_table(made), estimates_table(made.parameters, carried)), (figure,) if figure else ())  # fmt: skip
