@@ -167,7 +167,11 @@ def test_boxes_have_drag_in_every_motion_and_more_when_they_are_apart() -> None:
 def test_alternatives_count_by_their_mean_and_widen_u95(cross: Estimates) -> None:
     lifts = [c for c in cross.contributions if c.kind == "hull lift"]
     assert len(lifts) == 3
+    yv = cross.coefficients.scaling.unit("Yv", WATER.density, WATER.speed)
+    nu = np.array([[WATER.speed, 1e-6, 0, 0, 0, 0]])
+    slopes = [c.forces(nu, {})[0, 1] / 1e-6 / yv for c in lifts]
     parts = cross.coefficients["Yv"].parts
+    assert parts.model_form == pytest.approx((max(slopes) - min(slopes)) / np.sqrt(3.0), rel=1e-4)
     assert parts.model_form
     assert parts.input
     assert cross.coefficients["Yv"].u95 == pytest.approx(np.hypot(parts.model_form, parts.input), rel=1e-9)

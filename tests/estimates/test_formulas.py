@@ -2,13 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass, low_aspect_lift_slope, spheroid_munk_slope
-from coeflab.bodies.hull_flow import fin_groups, foil_on_body, friction_line, hull_flow
+from coeflab.bodies.hull_flow import FLAT, STERN, fin_groups, foil_on_body, friction_line, hull_flow
+from coeflab.core.errors import InputError
 from coeflab.estimates import bluff, crossflow, fins, form_drag, friction, hull_lift, propeller, ring_wing
-from tests.estimates.bodies import LENGTH, RADIUS, SAIL, UP, WATER, box, cut_hull, foil, hull, outline, tail
+from tests.estimates.bodies import (
+    LENGTH,
+    RADIUS,
+    RING,
+    SAIL,
+    STARBOARD,
+    UP,
+    WATER,
+    box,
+    cut_hull,
+    foil,
+    hull,
+    outline,
+    tail,
+)
 
 
 def test_ittc_1957_line_as_tabled() -> None:
@@ -181,7 +199,89 @@ def test_faces_of_bluff_parts_by_hoerner() -> None:
 
 
 def test_open_water_of_a_b_propeller_as_published() -> None:
-    # B4-55, P/D 1: K_T and 10 K_Q at rest and near no thrust, by the polynomials of Bernitsas, Ray & Kinley.
-    thrust, torque = propeller.open_water(np.array([0.0, 0.5, 1.0]), 1.0, 0.55, 4)
-    assert thrust[0] > thrust[1] > thrust[2]
-    assert torque[0] > torque[1] > torque[2] > 0.0
+    # Fossen's remus100.py prints wageningen(0, 1, 0.718, 3) and wageningen(0.6632, 1, 0.718, 3).
+    thrust, torque = propeller.open_water(np.array([0.0, 0.6632]), 1.0, 0.718, 3)
+    assert thrust.tolist() == pytest.approx([0.4566, 0.1798], abs=5e-5)
+    assert torque.tolist() == pytest.approx([0.0700, 0.0312], abs=5e-5)
+    assert (len(propeller.THRUST), len(propeller.TORQUE)) == (39, 47)
+    with pytest.raises(InputError, match="P/D"):
+        propeller.open_water(np.zeros(1), 2.0, 0.7, 3)
+    assert propeller.contributions(outline(), WATER) == ()
+
+
+def test_shape_factors_of_the_boundary_layer() -> None:
+    assert pytest.approx(1.2857, abs=1e-4) == FLAT  # one-seventh power law
+    assert pytest.approx((1.4 + 2.4) / 2.0) == STERN  # flat plates as measured, separation (Schlichting)
+
+
+def test_cross_flow_of_a_hull_by_hand() -> None:
+    # Sway alone: 1/2 rho c_dc eta d l pi/4 v^2 of an ellipse; friction 1/2 rho C_F S u v, S of a slender spheroid.
+    sway, drift = np.array([[0.0, 0.5, 0.0, 0, 0, 0]]), np.array([[3.0, 0.01, 0.0, 0, 0, 0]])
+    eta = crossflow.of_finite_length(LENGTH / (2 * RADIUS))
+    plan = np.pi / 4.0 * LENGTH * 2 * RADIUS
+    made = {c.method: c.forces for c in crossflow.contributions(outline(), WATER)}
+    for c_dc in (1.2, 0.7):
+        force = made[f"crossflow, c_dc {c_dc:g}"](sway, {})[0, 1]
+        assert force == pytest.approx(-0.5 * WATER.density * c_dc * eta * plan * 0.25, rel=1e-3)
+    friction_ = made["crossflow"](drift, {})[0, 1]
+    girth = 2 * np.pi * RADIUS * LENGTH * np.pi / 4.0
+    line = friction_line(WATER.speed * LENGTH / WATER.viscosity)
+    assert friction_ == pytest.approx(-0.5 * WATER.density * line * girth * 3.0 * 0.01, rel=1e-3)
+
+
+def test_induced_drag_of_a_fin_by_hand() -> None:
+    # C_D = C_L^2 / (0.9 pi a): X = 1/2 rho S C alpha^2 u^2 (1 - C / (0.9 pi a)), C = 3.6 pi / (sqrt 8 + 1.8) at a = 2.
+    halves = (foil("right", STARBOARD, 0.0, 0.0, 0.5, 0.5), foil("left", (-1.0, 0.0), 0.0, 0.0, 0.5, 0.5))
+    lifts = [c for c in fins.contributions(outline(*halves, hulls=()), WATER) if c.kind == "fin lift"]
+    nu = np.array([[3.0, 0.0, 0.3, 0.0, 0.0, 0.0]])
+    slope = 3.6 * np.pi / (np.sqrt(8.0) + 1.8)
+    along = sum(c.forces(nu, {})[0, 0] for c in lifts)
+    assert along == pytest.approx(
+        0.5 * WATER.density * 0.5 * slope * 0.09 * (1.0 - slope / (0.9 * np.pi * 2.0)), rel=1e-6
+    )
+
+
+def test_tip_vortex_by_hand() -> None:
+    # NACA 1307: height r + pi/4 (s - r); strength lift over (h - r^2/h); behind: psi_hull - psi_foils.
+    wash = next(c for c in fins.contributions(outline(SAIL, *tail()), WATER) if c.kind == "sidewash")
+    sail, pair = (
+        next(g for g in fin_groups(outline(SAIL, *tail())) if f in [x.name for x in g.foils]) for f in ("sail", "upper")
+    )
+    flow = hull_flow(hull(), WATER.density, WATER.viscosity, WATER.speed)
+    share = [flow.pressure_share(g.quarter, g.radius, 0.0, g.reach - g.radius) for g in (sail, pair)]
+    height = 0.25 + np.pi / 4.0 * 0.2
+    tip = 0.25 + 0.1**2 / 0.25
+    past = np.sqrt((height + 0.01 / height) ** 2 - tip**2)
+    lift = sail.slope * SAIL.area * sail.carried * share[0] / (height - 0.25**2 / height)
+    area = lift * (height - 0.01 / height - past) * pair.finite * share[1]
+    force = wash.forces(np.array([[3.0, 0.01, 0.0, 0.0, 0.0, 0.0]]), {})[0, 1]
+    assert force == pytest.approx(0.5 * WATER.density * 3.0 * 0.01 * area, rel=1e-9)
+
+
+def test_rings_and_parts_across_the_flow_by_hoerner() -> None:
+    ring = next(
+        c for c in ring_wing.contributions(outline(hulls=(), rings=(RING,)), WATER) if c.kind == "ring cross-flow"
+    )
+    force = ring.forces(np.array([[0.0, 0.5, 0.0, 0.0, 0.0, 0.0]]), {})[0, 1]
+    assert force == pytest.approx(-0.5 * WATER.density * 1.17 * RING.diameter * RING.chord * 0.25, rel=1e-9)
+    for kind, wanted in (
+        ("box", [1.05] * 3),
+        ("cylinder", [0.82, 1.20, 1.20]),
+        ("plate", [1.17] * 3),
+        ("ellipsoid", [0.47] * 3),
+    ):
+        assert bluff.face_drag(replace(box(), kind=kind)).tolist() == pytest.approx(wanted)
+
+
+def test_shares_are_those_that_the_page_prints() -> None:
+    page = Path("docs/estimates.md").read_text()
+    shares = {
+        "ideal fluid": hull_lift.IDEAL_SHARE, "hull lift, 2": hull_lift.SHED_SHARE, "fin lift": fins.LIFT_SHARE,
+        "control": fins.CONTROL_SHARE, "sidewash": fins.WASH_SHARE, "fin cross-flow, 1 and 2": fins.DRAG_SHARE,
+        "ring lift": ring_wing.SHARE, "ring cross-flow": ring_wing.DRAG_SHARE, "bluff drag, 1 to 4": bluff.SHARE,
+        "ideal fluid, bluff": bluff.IDEAL_SHARE, "cross-flow friction": crossflow.FRICTION_SHARE,
+        "cross-flow drag, 1": crossflow.DRAG_SHARE, "friction": friction.HULL_SHARE, "form drag, 1 and 2": form_drag.SHARE,
+    }  # fmt: skip
+    for kind, share in shares.items():
+        row = next(line for line in page.splitlines() if line.startswith(f"| {kind} |"))
+        assert f"| {100 * share:.4g} %" in row, kind
