@@ -15,6 +15,7 @@ from coeflab.bodies.mesh.meshing import dense_meridian, surface_of
 from coeflab.bodies.outline import Bluff, Foil, Outline, Sections
 from coeflab.bodies.pieces import HULL, Control
 from coeflab.bodies.shape import CLASSES, Cylinder, Ellipsoid, Part, Parts, Plate, Revolution, shadow
+from coeflab.core.table import Table, number
 from coeflab.core.types import Array
 
 STATIONS, SHARES, STEPS = 121, 33, 257
@@ -200,7 +201,7 @@ def of_parts(shape: Parts, controls: tuple[Control, ...] = ()) -> Outline:
     turned, left = with_controls(foils, controls)
     wetted = sum(surface_of(part.form) for part in shape.parts)
     if len(shape.parts) > 1:
-        left = (*left, "where parts overlap, volume and surface count twice")
+        left = (*left, "overlaps of parts: their volume and surface count twice")
     return Outline(hulls, turned, (), tuple(bluff), wetted, shape.volume, left)
 
 
@@ -286,3 +287,59 @@ def _bluff(part: Part) -> Bluff:
     areas = np.array([shadow(part.form, axis) for axis in part.rotation])
     extents = part.form.half_extents(np.eye(3))
     return Bluff(part.name, CLASSES[type(part.form)], part.centre, part.rotation, extents, areas)
+
+
+def outline_table(outline: Outline) -> Table:
+    """Hulls, foils, ring wings and bluff parts with their sizes and places.
+
+    Parameters
+    ----------
+    outline : Outline
+    """
+    rows = []
+    for hull in outline.hulls:
+        size = f"length {hull.length:.4g}, {float(hull.breadth.max()):.3g} x {float(hull.depth.max()):.3g}"
+        rows.append(
+            (
+                hull.name,
+                "hull",
+                number(float(-np.trapezoid(hull.girth, hull.x)), 3),
+                size,
+                number(float(hull.x[0]), 4),
+                "",
+            )
+        )
+    for foil in outline.foils:
+        size = f"span {foil.span:.3g}, chords {foil.root_chord:.3g} to {foil.tip_chord:.3g}, t/c {foil.thickness:.2g}"
+        rows.append((foil.name, "foil", number(foil.area, 3), size, number(float(foil.root[0]), 4), foil.control))
+    for ring in outline.rings:
+        size = f"diameter {ring.diameter:.3g}, chord {ring.chord:.3g}, t/c {ring.thickness:.2g}"
+        rows.append(
+            (
+                ring.name,
+                "ring",
+                number(np.pi * ring.diameter * ring.chord, 3),
+                size,
+                number(float(ring.centre[0]), 4),
+                "",
+            )
+        )
+    for part in outline.bluff:
+        size = "half sizes " + " x ".join(f"{v:.3g}" for v in part.half_extents)
+        rows.append(
+            (
+                part.name,
+                f"bluff {part.kind}",
+                number(float(part.areas.max()), 3),
+                size,
+                number(float(part.centre[0]), 4),
+                "",
+            )
+        )
+    notes = [
+        "area: of a hull and a ring wetted, outside; of a foil one side; of a bluff part the largest it projects",
+        "x: nose of a hull, quarter chord of a foil's root and of a ring, centre of a bluff part",
+        *(f"left out: {line}" for line in outline.left_out),
+    ]
+    headers = ("part", "seen as", "m^2", "m", "x m", "turned by")
+    return Table("What estimates see", headers, tuple(rows), tuple(notes), frozenset({0, 1, 3, 5}))
