@@ -176,7 +176,7 @@ class MassModel:
             (
                 p.name,
                 p.made_of,
-                with_u95(p.mass, p.u95)[0],
+                number(p.mass, 4) if p.u95 is None else with_u95(p.mass, p.u95)[0],
                 "" if p.u95 is None else number(p.u95, 2),
                 *map(_place, p.centre),
             )
