@@ -15,7 +15,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+<<<<<<< HEAD
 from coeflab.bodies.mass_model import MassKeys, MassModel, WaterKeys, modelled
+=======
+from coeflab.bodies.mesh.mesh import TriangleMesh
+>>>>>>> main
 from coeflab.bodies.mesh.source import MeshSource
 from coeflab.bodies.outline import Outline
 from coeflab.bodies.pieces import Control, ControlKeys, Piece
@@ -540,10 +544,14 @@ class ShapedBodyFile(BodyFile):
         InputError
             A control of a part that is none of the pieces, by file, line and key.
         """
-        controls = []
+        controls: list[Control] = []
+        own = {piece.name for piece in pieces}
+        foils: tuple[str, ...] = ()
+        if isinstance(shape, TriangleMesh) and any(set(one.parts) - own for one in self.control):
+            foils = tuple(foil.name for foil in outline_of(shape).foils)
         for i, one in enumerate(self.control):
             try:
-                controls.append(one.made(pieces))
+                controls.append(one.made(pieces, foils))
             except InputError as why:
                 raise read_toml(path).fail(f"control[{i}].{why.column}", why.found, why.expected) from None
         model = self._weighed(path, computed, pieces)

@@ -181,15 +181,21 @@ class ControlKeys(takes.Declaration):
         if not np.linalg.norm(self.axis) > 0.0:
             raise InputError("an axis without a direction", "[x, y, z], one of them not zero", column="axis")
 
-    def made(self, pieces: tuple[Piece, ...]) -> Control:
+    def made(self, pieces: tuple[Piece, ...], foils: tuple[str, ...] = ()) -> Control:
         """The control of a body of these pieces.
+
+        Parameters
+        ----------
+        pieces : tuple of Piece
+        foils : tuple of str
+            Names of foils that were found on a mesh in one piece; estimates turn them, a tow does not.
 
         Raises
         ------
         InputError
             A part that the body does not have.
         """
-        known = [piece.name for piece in pieces]
+        known = [*(piece.name for piece in pieces), *foils]
         for name in self.parts:
             if name not in known:
                 found = f"no part {shown(name)} of the body"

@@ -33,6 +33,8 @@ ORDER = [
     "simplify",
     "draw",
     "mass",
+    "vehicle",
+    "merge",
     "export",
     "simulate",
     "trim",

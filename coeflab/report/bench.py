@@ -23,7 +23,7 @@ from coeflab.fits.statistics.many_rows import EACH_ROW
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import transfer_matrix
 from coeflab.law.symbols import ANGULAR, CONTROLS, MOTIONS, primed
-from coeflab.motion.approach import has_rotary_limit
+from coeflab.motion.approach import has_rotary_limit, unlimited_in_words
 from coeflab.motion.dynamics import FIRST, SECOND
 from coeflab.motion.manoeuvre import Manoeuvre, orders_of
 from coeflab.motion.manoeuvres import zigzag
@@ -307,5 +307,5 @@ def _limit(vehicle: Vehicle, rate: str, speed: float) -> dict[str, Any]:
         "at": at,
         "scale": [speed / vehicle.length if MOTIONS[i] in ANGULAR else speed for i in at],
         "inverse": held.inverse_inertia().tolist(),
-        "words": f"straight motion is unstable, and no nonlinear term in {rate} of {components[0]} or {components[1]} limits the turn",
+        "words": unlimited_in_words(rate, components),
     }

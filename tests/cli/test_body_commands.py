@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.conftest import Coeflab
+from tests.cli.conftest import Run
 
 
-def test_draw_writes_three_views_and_says_what_estimates_see(coeflab: Coeflab, tmp_path: Path) -> None:
+def test_draw_writes_three_views_and_says_what_estimates_see(coeflab: Run, tmp_path: Path) -> None:
     out = coeflab("draw", "myring_auv", "--out", str(tmp_path))
     assert out.returncode == 0, out.stderr
     assert max(map(len, out.stdout.splitlines())) <= 80
@@ -26,7 +26,7 @@ def test_draw_writes_three_views_and_says_what_estimates_see(coeflab: Coeflab, t
     assert (tmp_path / "myring_auv.svg").read_text() == "mine"
 
 
-def test_mass_as_table_and_json(coeflab: Coeflab) -> None:
+def test_mass_as_table_and_json(coeflab: Run) -> None:
     out = coeflab("mass", "myring_auv")
     assert out.returncode == 0, out.stderr
     assert "neutral" in out.stdout
@@ -39,7 +39,7 @@ def test_mass_as_table_and_json(coeflab: Coeflab) -> None:
     assert found["trim"]["roll"] == pytest.approx(0.0, abs=1e-6)
 
 
-def test_bodies_without_shape_or_masses(coeflab: Coeflab, tmp_path: Path) -> None:
+def test_bodies_without_shape_or_masses(coeflab: Run, tmp_path: Path) -> None:
     out = coeflab("mass", "suboff_bare_hull")
     assert out.returncode == 2
     assert "[[mass]]" in out.stderr

@@ -88,12 +88,15 @@ def test_a_ducted_quadrotor_is_never_exact(coeflab: Run, tmp_path: Path) -> None
 
     path = tmp_path / "q" / "body.toml"
     path.write_text(re.sub(r"\[mesh\](\n.+)+\n", "", path.read_text()))
-    alone = coeflab("added-mass", "q").stdout
+    alone = coeflab("added-mass", "q", "--wide").stdout
     assert (
         "NONE OF THE METHODS SHOWN IS GOOD FOR THIS BODY: panel is a rough guide, as parts are poor stand-ins"
         in flat(alone)
     )
-    assert {line.split()[-1] for line in alone.splitlines() if line.split()[:1] in (["Xudot"], ["Yvdot"])} == {"-"}
+    rows = [line.split() for line in alone.splitlines() if line.split()[:1] in (["SI"], ["Xudot"], ["Yvdot"])]
+    assert [row[-1] for row in rows] == ["spread", "-", "-"]
+    assert "none recommended; first is panel, by the rule" in alone
+    assert "* " not in alone
     overlay = (tmp_path / "q" / "overlay.svg").read_text()
     assert "hull: other, misfit 0.45" in overlay
     assert "poor stand-in" in overlay

@@ -13,7 +13,7 @@ from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Table, coefficient, number
 from coeflab.law.added_mass import AddedMass
-from coeflab.law.symbols import COMPONENTS
+from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.study.study import Study
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -91,9 +91,28 @@ def derivatives(found: Triangulation) -> Table:
     return Table("Acceleration derivatives", headers, tuple(rows), (note, *remarks(found)))
 
 
+def near_walls(found: tuple[AddedMass, ...]) -> Table:
+    """Diagonal entries against the distance from a wall, with the numerical error, over those far from it."""
+    far, *near = found
+    rows = [("none", *(number(float(v)) for v in np.diag(far.matrix)), *[ABSENT] * 6)]
+    for w, n in zip(far.walls, near, strict=True):
+        own, free = np.diag(n.matrix), np.diag(far.matrix)
+        ratios = [f"{a / b:.3f}" if b > 0.0 else ABSENT for a, b in zip(own, free, strict=True)]
+        rows.append((f"{w.distance:g} m", *(number(float(v)) for v in own), *ratios))
+    names = [f"{c}{m}dot" for c, m in zip(COMPONENTS, MOTIONS, strict=True)]
+    notes = (
+        "distance from the reference point to the wall; kg and kg m^2, signs of added mass; ratios: over the value far from walls",
+        *(n.statements[0] for n in near),
+        *(s for s in far.statements if "error estimate" in s),
+    )
+    headers = ("distance", *names, *(f"{n} ratio" for n in names))
+    return Table(f"{far.body}: added mass near a wall", headers, tuple(rows), notes)
+
+
 def remarks(found: Triangulation) -> tuple[str, ...]:
     """Which method is recommended and why, how far it can be trusted, and what each assumed."""
-    notes = [f"{MARK} recommended: {found.recommended.method}, by the rule: {found.rule}"]
+    by_rule = f"{found.recommended.method}, by the rule: {found.rule}"
+    notes = [f"none recommended; first is {by_rule}" if found.none_recommended else f"{MARK} recommended: {by_rule}"]
     notes += [found.caution] if found.caution else []
     notes += _verdicts(found)
     notes += [f"{r.method}: {'; '.join(r.statements)}" for r in found.results if r.statements]
@@ -114,7 +133,8 @@ def _apart(spread: float, stood_in: bool) -> str:
 
 
 def _marked(result: AddedMass, found: Triangulation) -> str:
-    return f"{MARK} {result.method}" if result.method == found.recommended.method else result.method
+    chosen = result.method == found.recommended.method and not found.none_recommended
+    return f"{MARK} {result.method}" if chosen else result.method
 
 
 def _verdicts(found: Triangulation) -> list[str]:
@@ -142,7 +162,7 @@ def primes(found: Triangulation) -> Table:
     by = found.body.scaling
     if by is None:
         return Table("Primes", (), ())
-    rows, notes = [], [f"primed by {by} and 1/2 rho; {MARK} recommended"]
+    rows, notes = [], [f"primed by {by} and 1/2 rho" + ("" if found.none_recommended else f"; {MARK} recommended")]
     measured = {m.symbol: m for m in found.body.measured}
     for symbol in dict.fromkeys((*SHOWN, *measured)):
         values = [r.primed(symbol, by, found.density) if _settled(r, symbol) else 0.0 for r in found.results]

@@ -23,7 +23,7 @@ from coeflab.core.limits import SHEET_BYTES, SHEET_CELLS, SHEET_UNPACKED, TABLE_
 from coeflab.core.options import bounded, parse_options, text
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
-from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numeric, raw_columns, read_head
+from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numbered, numeric, raw_columns, read_head
 from coeflab.tables.raw_table import RawTable
 
 summary = "spreadsheets (xlsx, xls, ods): a sheet with its header row, formulas by their saved values"
@@ -391,7 +391,9 @@ def _body(rows: list[list[Value]], options: Options, path: Path) -> tuple[int, H
         if len(rows) < 2000
         else fits[0]
     )
-    if options.units == 0 and begin + 1 < len(rows) and is_unit_row([_text(v) for v in rows[begin]]):
+    below = [[_text(v) for v in row] for row in rows[begin + 1 : begin + 500] or rows[begin:]]
+    numbers = numbered(below, PLAIN)
+    if options.units == 0 and begin + 1 < len(rows) and is_unit_row([_text(v) for v in rows[begin]], numbers):
         begin += 1  # 1e-3 and the like over the data, read as numbers
     width = len(rows[0])
     above: list[Row] = []
@@ -404,7 +406,7 @@ def _body(rows: list[list[Value]], options: Options, path: Path) -> tuple[int, H
             raise InputError(
                 f"nothing in row {wanted}", f"names over the data, which begin in row {begin + 1}", file=path
             )
-    return begin, read_head(above, width, PLAIN, options.header, options.units)
+    return begin, read_head(above, width, PLAIN, numbers, options.header, options.units)
 
 
 def _kept(rows: list[list[Value]], begin: int, head: Head, options: Options, path: Path) -> tuple[list[int], list[str]]:
