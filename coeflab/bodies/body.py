@@ -15,11 +15,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-<<<<<<< HEAD
 from coeflab.bodies.mass_model import MassKeys, MassModel, WaterKeys, modelled
-=======
 from coeflab.bodies.mesh.mesh import TriangleMesh
->>>>>>> main
 from coeflab.bodies.mesh.source import MeshSource
 from coeflab.bodies.outline import Outline
 from coeflab.bodies.pieces import Control, ControlKeys, Piece
