@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.bodies.mass_model import MassKeys, MassModel, WaterKeys, modelled
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.source import MeshSource
 from coeflab.bodies.outline import Outline
@@ -136,6 +137,8 @@ class Body:
         The closed pieces that the shape is made of, where its reader knows them.
     controls : tuple of Control
         Which of them turn.
+    mass_model : MassModel, optional
+        Where its file gives parts with masses.
     outlined : callable, optional
         Makes the outline where the reader knows more of it than the shape.
     """
@@ -155,6 +158,7 @@ class Body:
     mesh: MeshSource | None = None
     pieces: tuple[Piece, ...] = ()
     controls: tuple[Control, ...] = ()
+    mass_model: MassModel | None = None
     outlined: Callable[[], Outline] | None = None
 
     def __post_init__(self) -> None:
@@ -493,11 +497,17 @@ class ShapedBodyFile(BodyFile):
         Parts that turn.
     thruster : array of tables
         Thrusters, for manoeuvres and exports.
+    mass : array of tables
+        Parts with masses: they give the mass of the configuration that is computed from the shape.
+    water : table
+        What they float in.
     """
 
     measured: tuple[MeasuredKeys, ...] = ()
     control: tuple[ControlKeys, ...] = ()
     thruster: tuple[ThrusterKeys, ...] = ()
+    mass: tuple[MassKeys, ...] = ()
+    water: WaterKeys | None = None
 
     def check(self) -> None:
         """Primed values have a length."""
@@ -541,8 +551,12 @@ class ShapedBodyFile(BodyFile):
                 controls.append(one.made(pieces, foils))
             except InputError as why:
                 raise read_toml(path).fail(f"control[{i}].{why.column}", why.found, why.expected) from None
+        model = self._weighed(path, computed, pieces)
+        if model is not None:
+            computed = replace(computed, mass=model.properties(self.body.reference_point))
         return replace(
             self.made(path, shape, (computed,)),
+            mass_model=model,
             scaling=self.prime and self.prime.scaling,
             measured=tuple(m for s in self.measured for m in s.made),
             thrusters=tuple(t.made for t in self.thruster),
@@ -550,3 +564,16 @@ class ShapedBodyFile(BodyFile):
             controls=tuple(controls),
             outlined=None if outlined is None else cache(partial(outlined, tuple(controls))),
         )
+
+    def _weighed(self, path: Path, computed: Configuration, pieces: tuple[Piece, ...]) -> MassModel | None:
+        if not self.mass:
+            return None
+        toml = read_toml(path)
+        if computed.volume is None or computed.centre_of_buoyancy is None:
+            raise toml.fail("mass", "masses of a body that displaces nothing", "a shape with a volume")
+        try:
+            return modelled(
+                self.mass, pieces, (self.water or WaterKeys()).density, computed.volume, computed.centre_of_buoyancy
+            )
+        except InputError as why:
+            raise toml.fail(why.column or "mass", why.found, why.expected, why.advice) from None

@@ -11,16 +11,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from coeflab.bodies.forms import CLASSES, Cylinder, Ellipsoid, Finned, Plate, Tube, Turned, shadow
 from coeflab.bodies.mesh.meshing import dense_meridian, surface_of
-from coeflab.bodies.outline import Bluff, Foil, Outline, Sections
+from coeflab.bodies.outline import Bluff, Foil, Outline, RingWing, Sections
 from coeflab.bodies.pieces import HULL, Control
-from coeflab.bodies.shape import CLASSES, Cylinder, Ellipsoid, Part, Parts, Plate, Revolution, shadow
+from coeflab.bodies.shape import Part, Parts, Revolution
+from coeflab.core.table import Table, number
 from coeflab.core.types import Array
 
 STATIONS, SHARES, STEPS = 121, 33, 257
 SLENDER = 1.5  # length over breadth and depth: from here a part along x is a hull
 ALONG = np.cos(np.radians(15.0))  # a part's axis along x within
 REACH = 1.25  # of the hull's radius: an appendage that begins within stands on it
+LIKE = {"bar": "box", "tube": "cylinder", "revolution": "ellipsoid", "finned": "mesh"}  # kinds of bluff parts
 WING = 1.5  # span over chord of a plate that stands on nothing and is a foil all the same
 
 Radius = Callable[[Array], Array]
@@ -179,7 +182,9 @@ def of_revolution(shape: Revolution) -> Outline:
 
 
 def of_parts(shape: Parts, controls: tuple[Control, ...] = ()) -> Outline:
-    """Hulls are cylinders and ellipsoids along x; foils are plates along x that stand on them; the rest is bluff.
+    """Hulls are cylinders, ellipsoids and bodies of revolution along x; foils are plates along x that stand on them, and fins.
+
+    Tubes along x are ring wings; the rest is bluff.
 
     Parameters
     ----------
@@ -189,29 +194,46 @@ def of_parts(shape: Parts, controls: tuple[Control, ...] = ()) -> Outline:
     hulls = tuple(found for part in shape.parts if (found := _hull(part)) is not None)
     names = {hull.name for hull in hulls}
     foils: list[Foil] = []
-    bluff = []
+    rings, bluff = [], []
     for part in shape.parts:
         if part.name in names:
             continue
-        own = _plate(part, part.form, hulls) if isinstance(part.form, Plate) else ()
+        form = part.form
+        own = (
+            _plate(part, form, hulls)
+            if isinstance(form, Plate)
+            else _fins(part, form)
+            if isinstance(form, Finned)
+            else ()
+        )
         foils += own
-        if not own:
+        if isinstance(form, Tube) and abs(part.rotation[0, 0]) >= ALONG:
+            rings.append(_ring(part, form))
+        elif not own:
             bluff.append(_bluff(part))
     turned, left = with_controls(foils, controls)
     wetted = sum(surface_of(part.form) for part in shape.parts)
     if len(shape.parts) > 1:
-        left = (*left, "where parts overlap, volume and surface count twice")
-    return Outline(hulls, turned, (), tuple(bluff), wetted, shape.volume, left)
+        left = (*left, "overlaps of parts: their volume and surface count twice")
+    return Outline(hulls, turned, tuple(rings), tuple(bluff), wetted, shape.volume, left)
 
 
 def _hull(part: Part) -> Sections | None:
     """The part as sections, if it is long and lies along x."""
     form, turn = part.form, part.rotation
     half = form.half_extents(turn)
-    if not isinstance(form, Cylinder | Ellipsoid) or half[0] < SLENDER * max(half[1:]):
+    if not isinstance(form, Cylinder | Ellipsoid | Turned) or half[0] < SLENDER * max(half[1:]):
         return None
     lean = np.zeros(2)
-    if isinstance(form, Cylinder):
+    if isinstance(form, Turned):
+        if abs(turn[0, 0]) < ALONG:
+            return None
+        places, radii = np.sign(turn[0, 0]) * np.array(form.stations), np.array(form.radii)
+        order = np.argsort(places)
+        x = stations(places.max(), places.min())
+        across, lean = np.eye(2), turn[1:, 0] / turn[0, 0]
+        cut = np.interp(x, places[order], radii[order])
+    elif isinstance(form, Cylinder):
         if abs(turn[0, 0]) < ALONG:
             return None
         across, lean = np.eye(2) * form.radius**2, turn[1:, 0] / turn[0, 0]
@@ -282,7 +304,94 @@ def _plate(part: Part, form: Plate, hulls: tuple[Sections, ...]) -> tuple[Foil, 
     )
 
 
+def _fins(part: Part, form: Finned) -> tuple[Foil, ...]:
+    """Fins alike about an axis along x; none where it lies otherwise."""
+    if abs(part.rotation[0, 0]) < ALONG:
+        return ()
+    end = float(part.centre[0]) - form.chord / 2.0
+    flat = Trapezoid(form.radius / 2.0, form.semi_span, (form.chord, form.chord), (end, end))
+    found = []
+    for k in range(form.count):
+        way = (1.0, 1.0, -1.0, -1.0)[k if form.count == 4 else 2 * k] * part.rotation[
+            1:, 1 + k % 2 if form.count == 4 else 1
+        ]
+        way = way / np.linalg.norm(way)
+        foil = flat.foil(
+            f"{part.name}_{k + 1}",
+            way,
+            part.centre[1:],
+            form.thickness / form.chord,
+            lambda x: np.full_like(x, form.radius),
+        )
+        found += [] if foil is None else [foil]
+    return tuple(found)
+
+
+def _ring(part: Part, form: Tube) -> RingWing:
+    """A tube along x."""
+    centre = part.centre + np.array([form.length / 4.0, 0.0, 0.0])
+    thickness = (form.radius - form.inner_radius) / form.length
+    return RingWing(part.name, centre, form.radius + form.inner_radius, form.length, thickness)
+
+
 def _bluff(part: Part) -> Bluff:
     areas = np.array([shadow(part.form, axis) for axis in part.rotation])
     extents = part.form.half_extents(np.eye(3))
-    return Bluff(part.name, CLASSES[type(part.form)], part.centre, part.rotation, extents, areas)
+    kind = CLASSES[type(part.form)]
+    return Bluff(part.name, LIKE.get(kind, kind), part.centre, part.rotation, extents, areas)
+
+
+def outline_table(outline: Outline) -> Table:
+    """Hulls, foils, ring wings and bluff parts with their sizes and places.
+
+    Parameters
+    ----------
+    outline : Outline
+    """
+    rows = []
+    for hull in outline.hulls:
+        size = f"length {hull.length:.4g}, {float(hull.breadth.max()):.3g} x {float(hull.depth.max()):.3g}"
+        rows.append(
+            (
+                hull.name,
+                "hull",
+                number(float(-np.trapezoid(hull.girth, hull.x)), 3),
+                size,
+                number(float(hull.x[0]), 4),
+                "",
+            )
+        )
+    for foil in outline.foils:
+        size = f"span {foil.span:.3g}, chords {foil.root_chord:.3g} to {foil.tip_chord:.3g}, t/c {foil.thickness:.2g}"
+        rows.append((foil.name, "foil", number(foil.area, 3), size, number(float(foil.root[0]), 4), foil.control))
+    for ring in outline.rings:
+        size = f"diameter {ring.diameter:.3g}, chord {ring.chord:.3g}, t/c {ring.thickness:.2g}"
+        rows.append(
+            (
+                ring.name,
+                "ring",
+                number(np.pi * ring.diameter * ring.chord, 3),
+                size,
+                number(float(ring.centre[0]), 4),
+                "",
+            )
+        )
+    for part in outline.bluff:
+        size = "half sizes " + " x ".join(f"{v:.3g}" for v in part.half_extents)
+        rows.append(
+            (
+                part.name,
+                f"bluff {part.kind}",
+                number(float(part.areas.max()), 3),
+                size,
+                number(float(part.centre[0]), 4),
+                "",
+            )
+        )
+    notes = [
+        "area: of a hull and a ring wetted, outside; of a foil one side; of a bluff part the largest it projects",
+        "x: nose of a hull, quarter chord of a foil's root and of a ring, centre of a bluff part",
+        *(f"left out: {line}" for line in outline.left_out),
+    ]
+    headers = ("part", "seen as", "m^2", "m", "x m", "turned by")
+    return Table("What estimates see", headers, tuple(rows), tuple(notes), frozenset({0, 1, 3, 5}))

@@ -31,6 +31,8 @@ ORDER = [
     "compare",
     "added-mass",
     "simplify",
+    "draw",
+    "mass",
     "vehicle",
     "merge",
     "export",

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from coeflab.bodies.forms import Bar, Box, Cylinder, Ellipsoid, Finned, Plate, Tube, Turned
 from coeflab.bodies.outline import Foil, Outline
 from coeflab.bodies.outlining import of_parts
 from coeflab.bodies.profiles import FOOT
-from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate
+from coeflab.bodies.shape import Part, Parts
 from coeflab.core.files import shipped
 from coeflab.workbench import read_body
 
@@ -111,3 +112,24 @@ def test_plate_through_a_hull_is_two_foils_and_what_lies_across_is_bluff() -> No
     ]  # fmt: skip
     assert [(b.name, b.kind) for b in found.bluff] == [("mast", "cylinder"), ("box", "box")]
     assert found.bluff[0].areas == pytest.approx([0.012, 0.012, np.pi * 0.02**2])
+
+
+def test_forms_of_simplified_meshes() -> None:
+    """A profile along x is a hull, a tube a ring wing, fins alike are foils, a bar is a bluff box."""
+    pose = np.eye(3)
+    found = of_parts(
+        Parts((
+            Part("hull", Turned((-1.0, -0.5, 0.5, 1.0), (0.0, 0.2, 0.2, 0.1)), np.zeros(3), pose),
+            Part("fins", Finned(0.15, 0.4, 0.2, 0.02, 4), np.array([-0.7, 0.0, 0.0]), pose),
+            Part("tube", Tube(0.4, 0.38, 0.2), np.array([-0.8, 0.0, 0.0]), pose),
+            Part("bar", Bar(0.1, 0.05, 0.9), np.array([0.0, 0.0, 0.6]), pose),
+        ))
+    )  # fmt: skip
+    (hull,), (ring,), (bar,) = found.hulls, found.rings, found.bluff
+    assert hull.x[[0, -1]] == pytest.approx([1.0, -1.0])
+    assert hull.breadth[0] == pytest.approx(0.2)
+    assert (ring.diameter, ring.chord, float(ring.centre[0])) == pytest.approx((0.78, 0.2, -0.75))
+    assert [f.name for f in found.foils] == ["fins_1", "fins_2", "fins_3", "fins_4"]
+    assert [f.area for f in found.foils] == pytest.approx([0.05] * 4)
+    assert np.sum([f.tip for f in found.foils], axis=0)[1:] == pytest.approx([0.0, 0.0])
+    assert bar.kind == "box"
