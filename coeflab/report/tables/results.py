@@ -274,7 +274,7 @@ def estimators(sweep: Sweep) -> Table:
 def sensitivity(sweep: Sweep) -> Table:
     """The recommended value had the sweep ended sooner."""
     rows = tuple((_window(sweep, s.cap), *with_u95(s.value, s.u95), percent(s.u95, s.value)) for s in sweep.sensitivity)
-    headers = ("largest setting", "value", "U95", "U95")
+    headers = ("largest setting", "value", "U95", "U95 %")
     return Table(f"{primed(sweep.symbol)} by largest setting", headers, rows, (), frozenset({0}))
 
 
