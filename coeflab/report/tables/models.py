@@ -196,7 +196,18 @@ def coefficients(found: Comparison) -> Table:
         )
         for r in found.rows
     )  # fmt: skip
-    headers = ("", "first", "U95 of first", "second", "U95 of second", "difference", "combined", "ratio", "verdict", "why")
+    headers = (
+        "",
+        "first",
+        "U95 of first",
+        "second",
+        "U95 of second",
+        "difference",
+        "combined",
+        "ratio",
+        "verdict",
+        "why",
+    )
     title = f"{found.b} against {found.a}"
     return Table(
         title, headers, rows, () if found.models else found.statements, frozenset({0, 8, 9}), ("ratio", "combined")

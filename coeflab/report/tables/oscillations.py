@@ -81,7 +81,18 @@ def _runs(o: Oscillation) -> Table:
     more = ("2nd", "3rd")[: max(len(o.runs[0].sizes) - 1, 0)]
     mean = "w'" if o.motion in ("heave", "pitch") else "v'"
     rate = primed(f"{o.symbol}dot")
-    headers = ("run", f"{o.variable}'", "omega'", "cycles", f"mean {mean}", symbol, f"U95 of {symbol}", rate, f"U95 of {rate}", *more)
+    headers = (
+        "run",
+        f"{o.variable}'",
+        "omega'",
+        "cycles",
+        f"mean {mean}",
+        symbol,
+        f"U95 of {symbol}",
+        rate,
+        f"U95 of {rate}",
+        *more,
+    )
     notes = (
         "Equivalent linear coefficients of each run; U95 by the scatter of its cycles (Student). 2nd, 3rd: harmonics of the "
         "force over its fundamental. omega' = omega L/U.",
