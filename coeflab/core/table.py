@@ -217,6 +217,12 @@ def coefficient(value: float | None) -> str:
     return f"{value:.2e}" if 0 < abs(value) < 5e-5 else f"{value:.6f}"
 
 
+def as_printed(value: float | None) -> str:
+    """A published coefficient: as `coefficient`, without zeros behind its fourth decimal, which no source prints."""
+    shown = coefficient(value)
+    return shown if "e" in shown or shown == ABSENT else shown[:-2] + shown[-2:].rstrip("0")
+
+
 def with_u95(value: float | None, u95: float | None) -> tuple[str, str]:
     """A value and its 95 % half-width for people: U95 with two significant digits, the value to the same last place.
 

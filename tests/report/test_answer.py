@@ -240,16 +240,16 @@ def test_without_published_values_the_forest_is_over_ours():
 
 
 def test_senses_in_the_sketch():
-    """Bow to the right in both views: r turns it down, q up; y and z point down."""
+    """Right-handed: r turns x to y and p turns y to z, both drawn downwards; q turns z to x, up to the axis ahead."""
     svg = axes_figure().svg
-    for text in ("from above", "from starboard"):
+    for text in ("from above", "from starboard", "from astern"):
         assert text in svg
     place = {said: float(y) for y, said in re.findall(r'<text [^>]*?y="([\d.]+)"[^>]*>(?:<tspan[^>]*>)?(\w)', svg)}
-    ahead = place["x"]
-    assert place["r"] > ahead
-    assert place["y"] > ahead
-    assert place["z"] > ahead
-    assert place["q"] < ahead + 1.0
+    assert set("xyzpqr") <= set(place)
+    tips = re.findall(r'<path d="M [\d.]+ ([\d.]+) \nL [^"]*z\n"[^>]*fill: var\(--fig-a', svg)
+    r, q, p = map(float, tips)
+    assert min(r, p) > place["x"] + 20.0
+    assert q < place["x"] + 15.0
 
 
 def test_every_document_has_its_answer():

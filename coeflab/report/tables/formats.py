@@ -85,7 +85,7 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
         for f in found
         if f.beyond
     ]
-    headers = ("", "table", "points", "worst", "rms", "where", "allowed", "")
+    headers = ("force", "table", "points", "largest", "rms", "where", "allowed", "verdict")
     return Table(
         f"{whose} against the measured points", headers, rows, tuple(notes), frozenset({0, 1, 5, 7}), ("where", "rms")
     )

@@ -146,7 +146,7 @@ const benchOf = (data) => {
     const driven = damping.find(([, size]) => size >= 0), open = bounded ? damping.find(([, size, half]) => Math.abs(size) <= half) : null;
     const bare = index.symbols.filter((_, i) => !Number.isFinite(cells[i][i]));
     if (!bounded) out.why = `no U95: ${bare.length ? bare.join(", ") : index.symbols.join(", ")} ${bare.length === 1 ? "has" : "have"} none`;
-    else if (open) out.why = `no U95: the interval of ${open[0]} contains zero`;
+    else if (open) out.why = `no U95: U95 of ${open[0]} includes zero`;
     else {
       let variance = 0;
       g.forEach((x, i) => g.forEach((y, j) => { variance += x * cells[i][j] * y; }));
