@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from coeflab.tables.force_table import ForceTable
     from coeflab.tables.proposals import Proposal
     from coeflab.tables.questions import Group, Question, Understood
-    from coeflab.tables.raw_table import RawColumn, RawTable
+    from coeflab.tables.raw_table import RawColumn, RawTable, SeveralError
     from coeflab.tables.settings import Setting
 
 
@@ -120,6 +120,7 @@ def command(
     from coeflab.tables.imported import checked, contents
     from coeflab.tables.mapping import assigned
     from coeflab.tables.questions import understood
+    from coeflab.tables.raw_table import SeveralError
     from coeflab.tables.reading import importer_of, read_raw
     from coeflab.tables.settings import assumed, doubtful_setting, stated_settings
 
@@ -128,15 +129,21 @@ def command(
         raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
     said = _said(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
     importer = importer_of(file, said.importer)
-    try:
-        with show.narrated(), show.progress(False) as say:
-            raw = read_raw(file, importer, said.options, say)
-    except NoConditionError as unsaid:
-        if name or runs or not sys.stdin.isatty():
-            raise
-        said.options["names"] = _asked_pattern(unsaid)
-        with show.narrated(), show.progress(False) as say:
-            raw = read_raw(file, importer, said.options, say)
+    sheets: tuple[str, ...] = ()
+    while True:
+        try:
+            with show.narrated(), show.progress(False) as say:
+                raw = read_raw(file, importer, said.options, say)
+            break
+        except SeveralError as several:
+            if not several.choices or not sys.stdin.isatty():
+                raise several if not several.choices else _each(several, path, out) from None
+            sheets = several.choices
+            said.options["sheet"] = _asked_sheet(sheets)
+        except NoConditionError as unsaid:
+            if name or runs or not sys.stdin.isatty():
+                raise
+            said.options["names"] = _asked_pattern(unsaid)
     said.columns |= _mapped(map_, raw)
     settings = assumed(out) | stated_settings(raw) | said.settings
     found = understood(raw, said.columns, settings, yes)
@@ -153,6 +160,39 @@ def command(
     table = checked(made, raw, columns)
     write_all(out, made)
     _written(out, table, settings)
+    others = [s for s in sheets if s != said.options.get("sheet")]
+    _listed(
+        "The other sheets, with the answers of this one",
+        [_of_sheet(path, s, out, out / "mapping.toml") for s in others],
+    )
+
+
+def _of_sheet(path: str, sheet: str, out: Path, mapping: Path | None = None) -> str:
+    """The command that imports one sheet into a folder of its own."""
+    from coeflab.core.wording import identifier
+
+    words = ["coeflab", "import", path, "--option", f"sheet={sheet}", *(["--mapping", str(mapping)] if mapping else [])]
+    return shlex.join([*words, "--out", f"{out}_{identifier(sheet)}"])
+
+
+def _each(several: SeveralError, path: str, out: Path) -> SeveralError:
+    """The error of a file with several tables, with a command for each; fits take several campaigns together."""
+    commands = "; ".join(_of_sheet(path, sheet, out) for sheet in several.choices)
+    made = type(several)(several.found, several.expected, file=several.file, advice=f"One each: {commands}.")
+    made.choices = several.choices
+    return made
+
+
+def _asked_sheet(sheets: Sequence[str]) -> str:
+    """The sheet that is meant, by its name or number."""
+    show.sentence("Sheets with rows of numbers: " + ", ".join(f"{i} {s}" for i, s in enumerate(sheets, start=1)) + ".")
+    while True:
+        typed = str(typer.prompt("  sheet")).strip()
+        if typed in sheets:
+            return typed
+        if typed.isdecimal() and 0 < int(typed[:4]) <= len(sheets):
+            return sheets[int(typed[:4]) - 1]
+        show.error(f"  {typed}: no such sheet")
 
 
 def _asked_pattern(open_: NoConditionError) -> str:

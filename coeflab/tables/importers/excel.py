@@ -24,7 +24,8 @@ from coeflab.core.options import bounded, parse_options, text
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numbered, numeric, raw_columns, read_head
-from coeflab.tables.raw_table import RawTable
+from coeflab.tables.raw_table import RawTable, SeveralError
+from coeflab.tables.words_above import words_above
 
 summary = "spreadsheets (xlsx, xls, ods): a sheet with its header row, formulas by their saved values"
 citations = ()
@@ -366,10 +367,12 @@ def _chosen(sheets: Mapping[str, list[list[Value]]], options: Options, path: Pat
         raise InputError(f"no sheet {shown(options.sheet)}", f"one of {known}", file=path)
     full = [name for name, rows in sheets.items() if sum(_filled(row) > 0 for row in rows) > 1]
     if len(full) != 1:
-        raise InputError(
+        several = SeveralError(
             f"{len(full) or 'no'} sheets with rows of numbers", "one, or the option sheet", file=path,
             advice=f"The sheets are {known}. Say which with --option sheet=NAME, or sheet = under [importer].",
         )  # fmt: skip
+        several.choices = tuple(full)
+        raise several
     return full[0]
 
 
@@ -497,6 +500,9 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         if words:
             texts[k] = words
     columns, remarks = raw_columns(head, values, texts, met)
+    above = [
+        (i + 1, [_text(v) for v in rows[i]]) for i in range(min(begin, 200)) if i + 1 not in (head.line, head.unit_line)
+    ]
     dialect = {
         "file": kind,
         "sheet": name,
@@ -505,5 +511,6 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         "units": head.units_stand.replace("line", "row"),
     }
     return RawTable(
-        path, columns, head.line, np.array(lines), files=(path,), dialect=dialect, remarks=(*left, *errors, *remarks)
+        path, columns, head.line, np.array(lines), files=(path,), dialect=dialect, remarks=(*left, *errors, *remarks),
+        stated=words_above(above, PLAIN),
     )  # fmt: skip
