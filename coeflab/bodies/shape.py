@@ -1,161 +1,40 @@
-"""What a body looks like: parts of simple form, each with its pose, or a body of revolution.
-
-Areas that simple forms project.
-"""
+"""What a body looks like: parts of simple form, each with its pose, or a body of revolution."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from coeflab.bodies.closed_forms import MeridianIntegrals, graded_nodes, meridian_integrals
+from coeflab.bodies.forms import (
+    CLASSES,
+    Bar,
+    Box,
+    Cylinder,
+    Ellipsoid,
+    Faceted,
+    Finned,
+    Form,
+    Plate,
+    Tube,
+    Turned,
+    shadow,
+    within_reach,
+)
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core.errors import InputError, shown
-from coeflab.core.limits import LONGEST_PART, SHORTEST_PART
 from coeflab.core.types import Array, brief, locked
+from coeflab.law.symbols import MOTIONS
 
+__all__ = [
+    "APART", "CLASSES", "THIN", "Agreement", "Bar", "Box", "Cylinder", "Ellipsoid", "Faceted", "Finned", "Form", "Part", "Parts", "Plate",
+    "Revolution", "Shape", "StandIn", "Tube", "Turned", "as_revolution", "shadow", "within_reach",
+]  # fmt: skip
 STATIONS = 64  # graded to both ends, where radii change most
 POOR, OTHER = 0.1, "other"
+APART = 0.15  # of an entry of the mesh's added mass: further from it the parts are no stand-in
 THIN = 0.05  # of the shorter side: up to here the panel method leaves a body to the formulas of plates
-
-
-def within_reach(form: str, **dimensions: float) -> None:
-    """Refuse dimensions of a form that no body has, m.
-
-    Raises
-    ------
-    InputError
-    """
-    for name, value in dimensions.items():
-        if not SHORTEST_PART <= value <= LONGEST_PART:
-            found = f"{name.replace('_', ' ')} = {value:g} m of a {form}"
-            expected = f"a length above zero, from {SHORTEST_PART:g} to {LONGEST_PART:g} m"
-            raise InputError(found, expected, column=name, advice="Is the unit right?" if value > LONGEST_PART else "")
-
-
-@dataclass(frozen=True, slots=True)
-class Cylinder:
-    """A circular cylinder with flat ends, its axis along its own x; m."""
-
-    radius: float
-    length: float
-
-    def __post_init__(self) -> None:
-        within_reach("cylinder", radius=self.radius, length=self.length)
-
-    @property
-    def volume(self) -> float:
-        """m^3."""
-        return float(np.pi * self.radius**2 * self.length)
-
-    @property
-    def spread(self) -> Array:
-        """(3,) second moments of the volume along its own axes, over the volume, m^2."""
-        return np.array([self.length**2 / 12.0, self.radius**2 / 4.0, self.radius**2 / 4.0])
-
-    def half_extents(self, rotation: Array) -> Array:
-        """Half the size along the outer axes, m."""
-        along = rotation[:, 0]
-        across = np.sqrt(np.clip(1.0 - along**2, 0.0, None))
-        return np.asarray(np.abs(along) * self.length / 2.0 + across * self.radius)
-
-
-@dataclass(frozen=True, slots=True)
-class Plate:
-    """A thin rectangular plate: chord along its own x, span along its own y, normal along its own z; m."""
-
-    chord: float
-    span: float
-
-    def __post_init__(self) -> None:
-        within_reach("plate", chord=self.chord, span=self.span)
-
-    @property
-    def aspect(self) -> float:
-        """Longer over shorter side."""
-        return max(self.chord, self.span) / min(self.chord, self.span)
-
-    @property
-    def volume(self) -> float:
-        """Nothing is displaced."""
-        return 0.0
-
-    @property
-    def spread(self) -> Array:
-        """(3,) second moments of the volume along its own axes, over the volume, m^2."""
-        return np.array([self.chord**2, self.span**2, 0.0]) / 12.0
-
-    def half_extents(self, rotation: Array) -> Array:
-        """Half the size along the outer axes, m."""
-        return np.asarray(np.abs(rotation) @ np.array([self.chord, self.span, 0.0]) / 2.0)
-
-
-@dataclass(frozen=True, slots=True)
-class Ellipsoid:
-    """An ellipsoid of semi-axes along its own x, y, z, m; spheroids and spheres have equal ones."""
-
-    x: float
-    y: float
-    z: float
-
-    def __post_init__(self) -> None:
-        within_reach("ellipsoid", semi_axis_x=self.x, semi_axis_y=self.y, semi_axis_z=self.z)
-
-    @property
-    def axes(self) -> Array:
-        """(3,) semi-axes, m."""
-        return np.array([self.x, self.y, self.z])
-
-    @property
-    def volume(self) -> float:
-        """m^3."""
-        return float(4.0 * np.pi / 3.0 * self.x * self.y * self.z)
-
-    @property
-    def spread(self) -> Array:
-        """(3,) second moments of the volume along its own axes, over the volume, m^2."""
-        return np.asarray(self.axes**2 / 5.0)
-
-    def half_extents(self, rotation: Array) -> Array:
-        """Half the size along the outer axes, m."""
-        return np.asarray(np.sqrt(rotation**2 @ self.axes**2))
-
-
-@dataclass(frozen=True, slots=True)
-class Box:
-    """A rectangular box: length, width, height along its own x, y, z; m."""
-
-    length: float
-    width: float
-    height: float
-
-    def __post_init__(self) -> None:
-        within_reach("box", length=self.length, width=self.width, height=self.height)
-
-    @property
-    def sides(self) -> Array:
-        """(3,) length, width and height, m."""
-        return np.array([self.length, self.width, self.height])
-
-    @property
-    def volume(self) -> float:
-        """m^3."""
-        return self.length * self.width * self.height
-
-    @property
-    def spread(self) -> Array:
-        """(3,) second moments of the volume along its own axes, over the volume, m^2."""
-        return np.asarray(self.sides**2 / 12.0)
-
-    def half_extents(self, rotation: Array) -> Array:
-        """Half the size along the outer axes, m."""
-        return np.asarray(np.abs(rotation) @ self.sides / 2.0)
-
-
-Form = Cylinder | Plate | Ellipsoid | Box
-CLASSES = {Cylinder: "cylinder", Plate: "plate", Ellipsoid: "ellipsoid", Box: "box"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,7 +129,7 @@ class Part:
     Attributes
     ----------
     name : str
-    form : Cylinder, Plate, Ellipsoid or Box
+    form : Form
     centre : (3,) array
         m, FRD, from the datum.
     rotation : (3, 3) array
@@ -278,13 +157,62 @@ class Part:
                 "the fit of this form", column="fit", advice="Delete the fit of a part whose form you change.",
             )  # fmt: skip
 
+    @property
+    def second_moments(self) -> Array:
+        """(3, 3) of the volume about its centre along the body's axes, over the volume, m^2."""
+        own = self.form.spread
+        return np.asarray(self.rotation @ (own if own.ndim == 2 else np.diag(own)) @ self.rotation.T)
+
+    @property
+    def middle(self) -> Array:
+        """(3,) half way between its ends along x, y and z, m, FRD, from the datum."""
+        if isinstance(self.form, Faceted):
+            placed = self.form.mesh.vertices @ self.rotation.T
+            return np.asarray(self.centre + (placed.min(axis=0) + placed.max(axis=0)) / 2.0)
+        offset = self.form.middle if isinstance(self.form, Turned) else 0.0
+        return np.asarray(self.centre + self.rotation[:, 0] * offset)
+
+
+@dataclass(frozen=True, slots=True)
+class Agreement:
+    """Added mass of parts against the panel method on the mesh that they stand for.
+
+    Attributes
+    ----------
+    entries : tuple of six, float or None
+        Of u, v, w, p, q, r: parts over mesh, less one. None where the mesh moves no water, or less than its error.
+    error : float
+        Estimate for the mesh's entries, the largest of them, over the entry.
+    """
+
+    entries: tuple[float | None, ...]
+    error: float
+
+    def __post_init__(self) -> None:
+        if len(self.entries) != len(MOTIONS):
+            raise InputError(f"{len(self.entries)} motions", f"{len(MOTIONS)}: {', '.join(MOTIONS)}")
+
+    @property
+    def apart(self) -> tuple[str, ...]:
+        """Motions in which they differ by more than 15 %, in words."""
+        found = zip(MOTIONS, self.entries, strict=True)
+        return tuple(f"{m} {100.0 * e:+.0f} %" for m, e in found if e is not None and abs(e) > APART)
+
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
 class Parts:
-    """A body as simple parts; where they overlap the overlap counts twice."""
+    """A body as simple parts; where they overlap the overlap counts twice.
+
+    Attributes
+    ----------
+    parts : tuple of Part
+    agreement : Agreement, optional
+        Where they stand for a mesh: how far their added mass is from its.
+    """
 
     parts: tuple[Part, ...]
+    agreement: Agreement | None = None
 
     def __post_init__(self) -> None:
         names = [p.name for p in self.parts]
@@ -301,8 +229,10 @@ class Parts:
 
     @property
     def rough(self) -> tuple[str, ...]:
-        """Which parts are only a rough guide to their pieces of a mesh, and why."""
-        return tuple(f"{p.name}: {', '.join(p.fit.rough)}" for p in self.parts if p.fit is not None and p.fit.rough)
+        """Which parts are only a rough guide to their pieces of a mesh, and why; what they move together otherwise."""
+        out = tuple(f"{p.name}: {', '.join(p.fit.rough)}" for p in self.parts if p.fit is not None and p.fit.rough)
+        apart = () if self.agreement is None else self.agreement.apart
+        return (*out, f"added mass off the mesh's: {', '.join(apart)}") if apart else out
 
     @property
     def volume(self) -> float:
@@ -321,8 +251,8 @@ class Parts:
         """Along x, over all parts that displace water, m; 0 where none does."""
         solid = [p for p in self.parts if p.form.volume > 0.0]
         half = [float(p.form.half_extents(p.rotation)[0]) for p in solid]
-        fore = max((p.centre[0] + h for p, h in zip(solid, half, strict=True)), default=0.0)
-        aft = min((p.centre[0] - h for p, h in zip(solid, half, strict=True)), default=0.0)
+        fore = max((p.middle[0] + h for p, h in zip(solid, half, strict=True)), default=0.0)
+        aft = min((p.middle[0] - h for p, h in zip(solid, half, strict=True)), default=0.0)
         return float(fore - aft)
 
     @property
@@ -331,7 +261,7 @@ class Parts:
         middle = self.centre_of_volume
         total = np.zeros(3)
         for p in self.parts:
-            total += p.form.volume * (p.rotation**2 @ p.form.spread + (p.centre - middle) ** 2)
+            total += p.form.volume * (np.diag(p.second_moments) + (p.centre - middle) ** 2)
         return float(np.sqrt(total[1] / total[2]))
 
 
@@ -398,10 +328,16 @@ def as_revolution(shape: Shape) -> Revolution | None:
         return None
     part = shape.parts[0]
     form = part.form
-    if isinstance(form, Box | Plate) or not np.isclose(abs(part.rotation[0, 0]), 1.0, rtol=1e-12):
+    if isinstance(form, Box | Plate | Tube | Finned | Faceted) or not np.isclose(
+        abs(part.rotation[0, 0]), 1.0, rtol=1e-12
+    ):
         return None
     if isinstance(form, Ellipsoid) and form.y != form.z:
         return None
+    if isinstance(form, Turned):
+        x, weight, radius, slope = form.nodes
+        ahead = float(np.sign(part.rotation[0, 0]))
+        return Revolution(part.centre[0] + ahead * x, weight, radius, ahead * slope, part.centre[1:], form.length)
     half = form.x if isinstance(form, Ellipsoid) else form.length / 2.0
     offset, weight = graded_nodes(-half, half, STATIONS)
     if isinstance(form, Ellipsoid):
@@ -410,16 +346,3 @@ def as_revolution(shape: Shape) -> Revolution | None:
     else:
         radius, slope = np.full(STATIONS, form.radius), np.zeros(STATIONS)
     return Revolution(part.centre[0] + offset, weight, radius, slope, part.centre[1:], 2.0 * half)
-
-
-def shadow(form: Form, direction: NDArray[np.float64]) -> float:
-    """Area projected along a unit direction given in the form's own axes, m^2; exact."""
-    x, y, z = (abs(float(d)) for d in direction)
-    if isinstance(form, Cylinder):
-        return float(np.pi * form.radius**2 * x + 2.0 * form.radius * form.length * np.hypot(y, z))
-    if isinstance(form, Plate):
-        return form.chord * form.span * z
-    if isinstance(form, Box):
-        return form.width * form.height * x + form.length * form.height * y + form.length * form.width * z
-    a, b, c = form.axes
-    return float(np.pi * np.sqrt((b * c * x) ** 2 + (a * c * y) ** 2 + (a * b * z) ** 2))

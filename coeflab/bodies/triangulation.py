@@ -80,6 +80,8 @@ def mirrors(shape: Shape) -> tuple[bool, bool, bool]:
     """
     if isinstance(shape, Revolution):
         return _fore_aft(shape), True, True
+    if isinstance(shape, TriangleMesh) and not len(shape.faces):
+        return False, False, False
     if isinstance(shape, TriangleMesh):
         x, y, z = asymmetries(shape.vertices, shape.faces) < WITHIN
         return bool(x), bool(y), bool(z)
@@ -105,15 +107,16 @@ def _parts_mirror(shape: Parts, axis: int, middle: Array) -> bool:
             and abs(other[1] - volume) <= WITHIN * max(volume, other[1])
             and np.allclose(other[2], turn * (centre - middle) + middle, atol=WITHIN * size)
             and np.allclose(other[3], np.outer(turn, turn) * spread, atol=WITHIN * size**2)
+            and np.allclose(other[4], turn * skew, atol=WITHIN * size)
             for other in figures
         )
-        for kind, volume, centre, spread in figures
+        for kind, volume, centre, spread, skew in figures
     )
 
 
-def _figure(part: Part) -> tuple[str, float, Array, Array]:
-    spread = part.rotation @ np.diag(part.form.spread) @ part.rotation.T
-    return type(part.form).__name__, part.form.volume, part.centre, spread
+def _figure(part: Part) -> tuple[str, float, Array, Array, Array]:
+    """Kind, volume, centre, second moments, and how far a form without middle leans out of its centre of volume."""
+    return type(part.form).__name__, part.form.volume, part.centre, part.second_moments, part.middle - part.centre
 
 
 def must_vanish(shape: Shape, point: Array) -> NDArray[np.bool_]:
@@ -127,7 +130,7 @@ def must_vanish(shape: Shape, point: Array) -> NDArray[np.bool_]:
 
 EXACT = "Lamb's exact form for one ellipsoid, or ellipsoids too far apart to interact"
 ELSE = (
-    "the panel method; else closed forms with corrected ends, for parts that include plates or do not touch and for a mesh like one plate; else strips with Lamb's end correction; else the ellipsoid of equal volume and proportions; rough guides come last: strips of a short body, an ellipsoid whose projected areas or second moments "
+    "the panel method; else closed forms with corrected ends, for parts and for a mesh like one plate; else strips with Lamb's end correction; else the ellipsoid of equal volume and proportions; rough guides come last: strips of a short body, an ellipsoid whose projected areas or second moments "
     "of volume are off by over 10 %, a mesh as one plate"
 )
 RULE = f"{EXACT}; else {ELSE}"

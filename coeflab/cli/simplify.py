@@ -1,4 +1,4 @@
-"""``coeflab simplify``: a mesh as cylinders, plates, ellipsoids and boxes."""
+"""``coeflab simplify``: a mesh as simple forms, and their added mass against the mesh's."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ def command(
     force: bool = typer.Option(False, "--force", help="Replace files that differ."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
-    """Write a mesh as cylinders, plates, ellipsoids and boxes.
+    """Write a mesh as simple forms, what fits none as a mesh, and compare their added mass with the mesh's.
 
-    A body.toml of these parts, the mesh itself, and an overlay as SVG and GLB. Cuts off the boxes, then separates shells, then cuts appendages from a round hull; with --split convex it cuts
-    further what no form fits.
+    A body.toml of these parts, the mesh itself, and an overlay as SVG and GLB. Cuts off the boxes, then separates shells, appendages of a round hull, and
+    bodies along their seams. Exit code 1 where a projected area is off by more than 20 %.
     """
     from coeflab.bodies.simplify.simplified import MESH
     from coeflab.bodies.simplify.simplify import parse_box, read_boxes, simplify
@@ -58,17 +58,20 @@ def command(
     from coeflab.core.wording import Verbatim
     from coeflab.report.figures.body import body_figure
     from coeflab.report.figures.body_scene import body_scene
+    from coeflab.workbench.hulls import against_mesh
 
     if split not in ("", "convex"):
         raise InputError(shown(split), "convex, or no --split", column="--split")
     named = tuple(parse_box(text) for text in box) + (read_boxes(boxes) if boxes is not None else ())
-    found = simplify(mesh_body(mesh, unit, axes, repair), named, parts, split == "convex")
+    with show.narrated():
+        found = against_mesh(simplify(mesh_body(mesh, unit, axes, repair), named, parts, split == "convex"))
     name = found.body.name
     folder = out if out is not None else Path(name)
     figure = body_figure(Verbatim(name), found.shape, found.mesh, "overlay")
     files = {
         "body.toml": found.part_file(),
         MESH: found.mesh_file(),
+        **found.mesh_parts(),
         "overlay.svg": figure.svg.encode(),
         "overlay.glb": body_scene(name, found.shape, found.mesh),
     }
@@ -79,7 +82,11 @@ def command(
     changed = write_all(folder, files)
     if json:
         show.json_object(found.as_json())
-        return
+        raise typer.Exit(1 if found.failures else 0)
+    show.text(found.advice)
+    if found.failures:
+        show.text(f"FAILED: areas off by more than 20 %: {'; '.join(found.failures)}.")
+    show.table(found.agreement_table())
     show.table(found.part_table())
     show.table(found.total_table())
     for file, new in changed.items():
@@ -90,3 +97,5 @@ def command(
         )
     show.text("Look at overlay.svg and correct body.toml.")
     show.command_line("Next", f"coeflab added-mass {shlex.quote(str(folder))}")
+    if found.failures:
+        raise typer.Exit(1)

@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
+from coeflab.bodies.hull_flow import HullFlow, hull_flow, integral
 from coeflab.bodies.outline import Outline
 from coeflab.core.types import Array
 from coeflab.estimates import Contribution, Water
-from coeflab.estimates._hull_flow import HullFlow, hull_flow, integral
 
 summary = "cross-flow of hulls by strips: friction and drag, of sway, heave, yaw, pitch and their products"
 citations = ("allen1951", "roshko1961", "hoerner1965")

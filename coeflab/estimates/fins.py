@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.bodies.hull_flow import FinGroup, HullFlow, carrier, fin_groups, hull_flow
 from coeflab.bodies.outline import Foil, Outline, Sections
 from coeflab.core.types import Array, brief, locked
 from coeflab.estimates import Contribution, Water
-from coeflab.estimates._hull_flow import FinGroup, HullFlow, carrier, fin_groups, hull_flow
 
 summary = "fins and sails of low aspect on a hull, control surfaces, loss behind other foils and in the boundary layer"
 citations = ("whicker1958", "pitts1957", "glauert1926")

@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
+from coeflab.bodies.hull_flow import hull_flow
 from coeflab.bodies.outline import Outline
 from coeflab.core.types import Array
 from coeflab.estimates import Contribution, Water
-from coeflab.estimates._hull_flow import hull_flow
 
 summary = "form drag of hulls over their friction by Hoerner and by Gillmer & Johnson, drag of blunt bases by Hoerner"
 citations = ("hoerner1965", "gillmer1982")

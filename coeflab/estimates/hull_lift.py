@@ -14,10 +14,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.bodies.hull_flow import HullFlow, carrier, fin_groups, hull_flow, integral
 from coeflab.bodies.outline import Outline
 from coeflab.core.types import Array, brief, locked
 from coeflab.estimates import Contribution, Water
-from coeflab.estimates._hull_flow import HullFlow, carrier, fin_groups, hull_flow, integral
 from coeflab.law.rigid_body import ideal_force
 
 summary = "hulls at an angle and in a turn: Munk moment, and shed momentum by Allen & Perkins, Hopkins, displacement"

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.bodies.hull_flow import carrier, fin_groups, hull_flow
 from coeflab.bodies.outline import Outline, RingWing
 from coeflab.core.types import Array, brief, locked
 from coeflab.estimates import Contribution, Water
-from coeflab.estimates._hull_flow import carrier, fin_groups, hull_flow
 
 summary = "ring wings and ducts: lift by Weissinger in the wake of hull and fins, cross-flow drag"
 citations = ("weissinger1955", "fletcher1957", "hoerner1965")

@@ -11,7 +11,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.options import named_numbers
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
-from coeflab.law.symbols import ANGULAR, CONTROLS, MOTIONS
+from coeflab.law.symbols import ANGLE_NAMES, ANGULAR, CONTROLS, MOTIONS
 from coeflab.motion.dynamics import linearised, modes
 from coeflab.motion.manoeuvre import UPRIGHT, Figure, Manoeuvre, Phase
 from coeflab.motion.trajectory import UNCOVERED, Trajectory, covered_ranges, outside, outside_in_words
@@ -290,13 +290,18 @@ def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking:
     names = [name for name, flags in trajectory.outside.items() if np.any(flags & before)]
     if not names:
         return figure
-    bare = [name.removesuffix(f": {UNCOVERED}") for name in names if name.endswith(UNCOVERED)]
-    left = [name for name in names if not name.endswith(UNCOVERED)]
+    bare = [in_field_terms(name.removesuffix(f": {UNCOVERED}")) for name in names if name.endswith(UNCOVERED)]
+    left = [in_field_terms(name) for name in names if not name.endswith(UNCOVERED)]
     said = (f"beyond the data in {', '.join(left)}" if left else "", f"no data on {', '.join(bare)}" if bare else "")
     beyond = "; ".join(filter(None, said))
     if lacking and decisive(names, rate):
         return replace(figure, value=None, status=NOT_DETERMINED, why=f"{beyond}; {lacking}")
     return replace(figure, status="extrapolated", why=beyond)
+
+
+def in_field_terms(name: str) -> str:
+    """A variable as people call it: dr is the rudder angle."""
+    return ANGLE_NAMES.get(name, name)
 
 
 def undetermined(figure: Figure, lacking: str) -> Figure:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import inf
 from typing import Any
 
+import numpy as np
+
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.options import of_a_file
@@ -17,6 +19,11 @@ from coeflab.motion.simulators import SIMULATORS
 from coeflab.motion.trajectory import UNCOVERED, Trajectory
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.vehicle.parameter_file import ParameterFile
+
+SWING, SWINGS = (
+    float(np.radians(5.0)),
+    6,
+)  # rad/s from one extreme of the roll rate to the next; that many are an oscillation
 
 
 def manoeuvres_of(
@@ -127,10 +134,29 @@ def simulate(
         dict.fromkeys((*body.statements, *plan.statements, *at_once(body, plan.phases), *trajectory.statements))
     )
     until, why = determined_until(trajectory, body)
+    rolling = rolls(trajectory) if "p" in body.free else ""
     figures = plugin.figures(trajectory, body, options)
     works = tuple(dict.fromkeys((*plugin.citations, *mover.citations)))
     nothing = undetermined_at_once(body, plan, figures)
-    return Simulation(body, plan, trajectory, figures, (*statements, *([why] if why else [])), until, works, nothing)
+    return Simulation(
+        body, plan, trajectory, figures, (*statements, *filter(None, (rolling, why))), until, works, nothing
+    )
+
+
+def rolls(trajectory: Trajectory) -> str:
+    """That the roll rate oscillates, in words; empty below six swings of `SWING` from one extreme to the next."""
+    rate, t = trajectory.velocity[:, 3], trajectory.time
+    at = np.flatnonzero(np.diff(np.sign(np.diff(rate)))) + 1
+    swings = np.abs(np.diff(rate[at]))
+    large = swings > SWING
+    if np.count_nonzero(large) < SWINGS:
+        return ""
+    period = 2.0 * float(np.mean(np.diff(t[at])[large]))
+    return (
+        f"roll rate oscillates: {np.count_nonzero(large)} swings of more than {np.degrees(SWING):g} deg/s, the largest "
+        f"{np.degrees(np.max(swings)):.2g} deg/s, period about {period:.2g} s, roll up to "
+        f"{np.degrees(np.max(np.abs(trajectory.angles[:, 0]))):.2g} deg"
+    )
 
 
 def determined_until(trajectory: Trajectory, vehicle: Vehicle) -> tuple[float, str]:

@@ -394,8 +394,8 @@ def _laws(study: Study) -> tuple[Section, ...]:
     if not each:
         return ()
     text = (
-        "The force law of every parameter file at the measured points that it was fitted to. It may miss a point by three times the "
-        "scatter of repeated runs plus 5 % of the largest force; more, where the law is said to hold, is a failure.",
+        "The force law of every parameter file compared with the measured points that it was fitted to. Allowed is a difference of three "
+        "times the scatter of repeated runs plus 5 % of the largest force; a larger one inside the range of the law is a failure.",
     )
     return (Section("law-at-points", "The law at the measured points", text, each),)
 
@@ -403,12 +403,12 @@ def _laws(study: Study) -> tuple[Section, ...]:
 def _comparison(study: Study) -> tuple[Section, ...]:
     if not study.comparisons:
         return ()
-    text = ["Published values are primed by our length before they are compared."]
+    text = ["Published values are made dimensionless with our length before they are compared."]
     for r in study.references:
         if r.other_scaling is not None:
             text.append(
-                f'"{r.name}" has two readings, as the length of its primes is not certain: {r.scaling}, as printed, and '
-                f"{r.other_scaling}, which rescales every value."
+                f'"{r.name}" has two readings, since the length behind its primes is not certain: {r.scaling} (values as printed), or '
+                f"{r.other_scaling} (every value rescaled)."
             )
     shown = filled(without(tables.side_by_side(study), "random", "form"), without(tables.verdicts(study), "combined"))
     apart = filled(tables.differences(study))
@@ -438,9 +438,11 @@ def _checks(study: Study) -> Section:
 
 
 def _provenance(study: Study) -> Section:
-    text = ["The files below are known by the sha256 of their bytes. Equal inputs give this report byte for byte."]
+    text = ["The files below are identified by the sha256 of their bytes. Equal inputs give this report byte for byte."]
     settings = dict.fromkeys(
-        f"{f.fit}: {', '.join(f'{k} {v}' for k, v in sorted(f.settings.items()))}." for f in study.fits if f.settings
+        f"Settings of {f.fit}: {', '.join(f'{k} = {v}' for k, v in sorted(f.settings.items()))}."
+        for f in study.fits
+        if f.settings
     )
     text += settings
     return Section("provenance", "Provenance", tuple(text), filled(tables.provenance(study)))

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
-from coeflab.core.files import located
+from coeflab.core.files import located, named
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.formats.export import PlannedExport
@@ -405,6 +405,7 @@ def read_plan(path: Path) -> Plan:
     InputError
         Everything that is wrong, by file, line and key.
     """
+    path = named(path, "plan.toml")
     file = takes.declared(PlanFile, read_toml(path))
     study = file.study
     tows = tuple(_tow(t, path, [own.campaign for own in file.table]) for t in file.tow)

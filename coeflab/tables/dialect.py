@@ -16,7 +16,7 @@ from coeflab.core.errors import shown
 from coeflab.core.types import Array
 from coeflab.core.units import parse_header
 from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, MOTIONS
-from coeflab.tables.column_map import WIND
+from coeflab.tables.column_map import WIND, share
 from coeflab.tables.raw_table import RawColumn
 
 SNIFFED = 1 << 16
@@ -139,21 +139,6 @@ def _underscored(texts: Sequence[str]) -> list[tuple[str, str]]:
 
 def _bare(cell: str) -> str:
     return cell[1:-1].strip() if cell[:1] + cell[-1:] in ("[]", "()", "<>") else cell
-
-
-_SHARE = re.compile(r"(?i)(?:[x*×·]\s*)?(?:1e|10\s*(?:\^|\*\*)\s*)\(?(?P<power>[+-]?\d{1,2})\)?|(?P<percent>%)")
-
-
-def share(unit: str) -> float | None:
-    """What a pure number is counted in, 0.001 of ``1e-3``, ``10^-3`` and ``10⁻³``, 0.01 of ``%``; None of anything else."""
-    plain = _bare(unit.strip()).translate(_RAISED)
-    m = _SHARE.fullmatch(re.sub(r"^10(?=[+-])", "10^", plain))
-    if m is None:
-        return None
-    return 0.01 if m["percent"] else 10.0 ** int(m["power"])
-
-
-_RAISED = str.maketrans("⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹−", "-+0123456789-")
 
 
 def numbered(rows: Sequence[Sequence[str]], marks: Marks) -> frozenset[int]:

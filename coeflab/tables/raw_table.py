@@ -26,10 +26,13 @@ class Stated:
         As campaign.toml would hold it: SI numbers, or a text.
     place : str
         File and line, such as ``constant/transportProperties:21``.
+    offered : bool
+        Words over a table say it, which may be about something else: to be confirmed.
     """
 
     value: str | float | bool | tuple[float, ...]
     place: str
+    offered: bool = False
 
 
 @brief

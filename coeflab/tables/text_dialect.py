@@ -6,8 +6,8 @@ import codecs
 import csv
 import math
 import re
-from collections.abc import Mapping, Set
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Set
+from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
 from statistics import median
@@ -28,6 +28,8 @@ from coeflab.tables.dialect import (
     numeric,
     read_head,
 )
+from coeflab.tables.raw_table import Stated
+from coeflab.tables.words_above import words_above
 
 DELIMITERS = {"tab": "\t", "semicolon": ";", "pipe": "|", "comma": ",", "blanks": " ", "none": ""}
 MARKS = {"blank": " ", "point": ".", "comma": ",", "apostrophe": "'", "none": ""}
@@ -101,6 +103,7 @@ class TextDialect:
     decimals: int  # digits behind the mark in the last column, -1 where they differ
     said: Mapping[str, str]
     remarks: tuple[str, ...] = ()
+    stated: Mapping[str, Stated] = field(default_factory=dict)
 
 
 def _said_delimiter(delimiter: str) -> str:
@@ -443,8 +446,16 @@ def sniff(path: Path, options: Options) -> TextDialect:
     }
     return TextDialect(
         encoding, delimiter, marks, comments, head, rows[begin][0], width, numbers, words, ends_of.pop() if len(ends_of) == 1 else -1,
-        said, tuple(remarks),
+        said, tuple(remarks), words_above(_above(lines[: rows[begin][0] - 1], head, delimiter, comments), marks),
     )  # fmt: skip
+
+
+def _above(lines: list[str], head: Head, delimiter: str, comments: tuple[str, ...]) -> Iterator[Row]:
+    """Lines over a table that are none of its head, as sentences or as cells."""
+    for n, line in enumerate(lines, start=1):
+        bare = line.strip().lstrip("".join(comments)).strip()
+        if bare and n not in (head.line, head.unit_line):
+            yield n, [bare] if {"=", ":"} & set(bare) else split_line(bare, delimiter)
 
 
 def _single_column(lines: list[str], kept: list[tuple[int, str]], found: Found, options: Options, path: Path) -> Found:

@@ -33,7 +33,7 @@ from coeflab.vehicle.stated_numbers import (
 )
 
 NOT_EVEN = (
-    "Symmetry makes X even in drift; no law can follow a measured X that is not. Exports and motions keep the range of "
+    "By symmetry the law of X is even in drift; the measured X is not. Exports and motions keep the range of "
     "the other components."
 )
 CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth
@@ -349,7 +349,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
         elif f.beyond:
             severity = Severity.WARN
             comment = (
-                f"The law misses {', '.join(f.beyond)} by up to {100.0 * f.worst_beyond / largest:.2g} %; its stated range leaves them out. "
+                f"At {', '.join(f.beyond)}, outside the range of the law, it differs by up to {100.0 * f.worst_beyond / largest:.2g} %. "
             ) + (NOT_EVEN if f.component == "X" else "Exports and motions use the smaller range.")
         out.append(Check("law at points", f"{f.component} {f.table}", severity, said, rule, comment))
     return tuple(out)

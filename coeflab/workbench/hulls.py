@@ -7,18 +7,24 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from coeflab.bodies.added_mass import ADDED_MASS
 from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed
 from coeflab.bodies.readers import read_body
-from coeflab.bodies.shape import Parts
+from coeflab.bodies.shape import Agreement, Parts
+from coeflab.bodies.simplify.simplified import Simplification
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
-from coeflab.law.added_mass import AddedMass
+from coeflab.law.added_mass import AddedMass, NearWall
 from coeflab.vehicle.assemble import PlannedParameterFile
 
 DENSEST = 1e5
+SHARE = 3  # digits
+SILENT = 1e-3  # of the largest of its kind: a motion that moves no water
 FILE = "body.toml"
 
 
@@ -115,6 +121,7 @@ def added_masses(
             subjects = [original, body] if method == "all" else [original]
         for subject in subjects:
             try:
+                _require_solid(subject, plugin_name)
                 found = plugin.added_mass(subject, density, options)
             except InputError as why:
                 if method != "all":
@@ -136,6 +143,90 @@ def added_masses(
         parts, *printed = body.configurations
         body = replace(body, configurations=(parts, original.configurations[0], *printed))
     return Triangulation(body, density, tuple(results), refused, tuple(cited), original, tuple(on_mesh))
+
+
+@one_thread()
+def against_mesh(found: Simplification, density: float = 1000.0) -> Simplification:
+    """The added mass of the parts beside the panel method on the mesh, in six motions.
+
+    Parameters
+    ----------
+    found : Simplification
+    density : float
+        kg/m^3.
+
+    Returns
+    -------
+    Simplification
+        With both and their agreement; as it is, with the reason, where the panel method refuses the mesh.
+    """
+    if found.left_as_mesh:
+        return found
+    try:
+        mesh = ADDED_MASS.load("panel").added_mass(replace(found.body, shape=found.mesh), density, None)
+        parts = ADDED_MASS.load("primitives").added_mass(found.body, density, None)
+    except InputError as why:
+        return replace(found, uncompared=f"found {why.found}; expected {why.expected}")
+    own, error = np.diag(mesh.matrix), np.diag(mesh.error) if mesh.error is not None else np.zeros(6)
+    largest = np.repeat(own.reshape(2, 3).max(axis=1), 3)
+    heard = own > np.maximum(error, SILENT * largest)
+    ratios = np.round(np.diag(parts.matrix) / np.where(heard, own, 1.0) - 1.0, SHARE)
+    entries = tuple(float(r) + 0.0 if h else None for r, h in zip(ratios, heard, strict=True))
+    worst = float(np.max(error[heard] / own[heard], initial=0.0))
+    shape = replace(found.shape, agreement=Agreement(entries, round(worst, SHARE)))
+    return replace(found, shape=shape, body=replace(found.body, shape=shape), compared=(parts, mesh))
+
+
+@one_thread()
+def near_walls(
+    body: Body, density: float, wall: str, distances: Sequence[float], given: Mapping[str, Any] | None = None
+) -> tuple[AddedMass, ...]:
+    """Added mass by the panel method far from walls and at distances from one.
+
+    Parameters
+    ----------
+    body : Body
+    density : float
+        kg/m^3.
+    wall : str
+        ``bottom``, ``surface_zero`` or ``surface_infinite``.
+    distances : sequence of float
+        From the reference point to the wall, m.
+    given : mapping, optional
+        Further options of the panel method.
+
+    Returns
+    -------
+    tuple of AddedMass
+        Far from walls, with all others as its ``walls``; then one for each distance, rising.
+
+    Raises
+    ------
+    InputError
+        A density not above zero, no distance or one within the body, and what the method refuses.
+    """
+    if not 0.0 < density <= DENSEST:
+        raise InputError(
+            f"a density of {density:g} kg/m^3", f"a value above zero, at most {DENSEST:g}", column="density"
+        )
+    if not distances:
+        raise InputError("no distance", "distances from the reference point to the wall, m", column="--distance")
+    method = ADDED_MASS.load("panel")
+    subject = _original(body) or body
+    options, rising = dict(given or {}), sorted(set(distances))
+    near = [method.added_mass(subject, density, {**options, "wall": wall, "distance": d}) for d in rising]
+    far = method.added_mass(subject, density, options)
+    walls = tuple(NearWall(wall, d, n.matrix) for d, n in zip(rising, near, strict=True))
+    return replace(far, walls=walls), *near
+
+
+def _require_solid(body: Body, method: str) -> None:
+    """Refuse sheets of a mesh for methods that would leave them out."""
+    shape = body.require_shape()
+    if isinstance(shape, TriangleMesh) and len(shape.sheets) and method != "panel":
+        raise InputError(
+            "a mesh with sheets of no thickness", "a closed surface", advice="The method panel takes sheets."
+        )
 
 
 def _original(body: Body) -> Body | None:

@@ -213,8 +213,8 @@ def read(body: Path | None, matrix: Path | None, solver: str = "", runner: str =
     file = body if body is not None else declared_body(matrix) if matrix is not None else None
     if file is None:
         raise InputError("no body", "a folder with a body.toml, or a shipped name", column="BODY")
-    file = (file / "body.toml" if file.is_dir() else file).resolve()
-    own = read_body(file)
+    file = file / "body.toml" if file.is_dir() else file
+    own, file = read_body(file), file.resolve()
     point = own.reference_point
     if matrix is not None:
         said = declared(TankFile, read_toml(matrix)).tank.reference_point

@@ -7,7 +7,7 @@ import pytest
 
 from coeflab.bodies.outline import Foil, Outline
 from coeflab.bodies.outlining import of_parts
-from coeflab.bodies.readers.groves import FOOT
+from coeflab.bodies.profiles import FOOT
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Part, Parts, Plate
 from coeflab.core.files import shipped
 from coeflab.workbench import read_body

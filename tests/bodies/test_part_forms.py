@@ -142,12 +142,12 @@ def naca(thickness: float) -> np.ndarray:
     return np.vstack([np.column_stack([x, -half]), np.column_stack([x, half])[-2:0:-1]])
 
 
-def test_a_thin_disc_is_a_cylinder_and_a_thin_ring_is_nothing() -> None:
+def test_a_thin_disc_is_a_cylinder_and_a_thin_ring_is_a_ring() -> None:
     disc = likeness(rod(1.0, 0.05, 128))
     assert (disc.form, disc.sizes) == ("cylinder", pytest.approx((1.0, 0.05), rel=1e-3))
     ring = likeness(rod(1.0, 0.05) - rod(0.7, 0.1))
-    assert (ring.kind, ring.form) == ("other", "plate")
-    assert "within its outline" in ring.reason
+    assert ring.kind == "tube"
+    assert ring.sizes == pytest.approx((1.0, 0.7, 0.05), rel=5e-3)
 
 
 def test_a_hull_of_revolution_with_parallel_middle_body_keeps_length_and_volume() -> None:
@@ -165,11 +165,31 @@ def test_a_hull_of_revolution_with_parallel_middle_body_keeps_length_and_volume(
     assert 4.0 * np.pi / 3.0 * np.prod(found.sizes) == pytest.approx(hull.volume(), rel=1e-9)
 
 
+def test_a_cone_is_a_revolution() -> None:
+    found = likeness(Manifold.cylinder(3.0, 1.0, 0.0, 64))
+    assert found.kind == "revolution"
+    assert found.made.radii == pytest.approx((0.0, 1.0), abs=2e-3)
+    assert found.made.volume == pytest.approx(np.pi, rel=5e-3)
+
+
+def test_a_long_box_is_a_bar_along_its_own_x() -> None:
+    found = likeness(Manifold.cube((0.05, 0.04, 1.0), True))
+    assert (found.kind, found.sizes) == ("bar", pytest.approx((1.0, 0.05, 0.04), rel=1e-6))
+    assert np.abs(found.rotation[:, 0]) == pytest.approx([0.0, 0.0, 1.0], abs=1e-9)
+    assert np.linalg.det(found.rotation) == pytest.approx(1.0)
+
+
 def test_what_resembles_nothing_says_so() -> None:
-    cone = Manifold.cylinder(3.0, 1.0, 0.0, 64)
-    ring = rod(1.0, 1.0) - rod(0.8, 1.2)
-    for solid in (cone, ring):
-        found = likeness(solid)
-        assert not found.clear
-        assert found.kind == "other"
-        assert "bounds 0.1 and 80%" in found.reason
+    bent = (rod(1.0, 0.5) - rod(0.7, 0.6)) ^ Manifold.cube((4.0, 4.0, 4.0), True).translate((0.0, 2.0, 0.0))
+    found = likeness(bent)
+    assert not found.clear
+    assert found.kind == "mesh"
+    assert "bounds 0.1 and 80%" in found.reason
+
+
+def test_a_frame_is_no_plate() -> None:
+    """All of it lies within the plate's outline, but it fills little of its hull."""
+    frame = Manifold.cube((1.0, 0.6, 0.02), True) - Manifold.cube((0.8, 0.4, 0.1), True)
+    found = likeness(frame)
+    assert found.kind == "mesh"
+    assert "of its convex hull, under 50%" in found.reason

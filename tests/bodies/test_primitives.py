@@ -195,7 +195,10 @@ def test_a_thick_plate_is_rough_and_a_thin_one_is_not() -> None:
             ('"cylinder"', '"box"'),
             r'part\[0\].fit": found the fit of a box for part "hull", a cylinder.*Delete the fit',
         ),
-        (('"cylinder"', '"good"'), r'fit.class": found "good"; expected one of cylinder, plate, ellipsoid, box, other'),
+        (
+            ('"cylinder"', '"good"'),
+            r'fit.class": found "good"; expected one of cylinder, plate, ellipsoid, box, bar, tube',
+        ),
         (("shared = 0.95", "shared = 1.2"), r'fit.shared": found 1.2; expected a share from 0 to 1'),
         (("misfit = 0.02", "misfit = -1"), r'fit.misfit": found -1; expected a number of at least zero'),
         (("misfit = 0.02, ", ""), r'fit.misfit": found neither misfit nor thickness'),

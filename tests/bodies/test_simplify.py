@@ -152,20 +152,36 @@ def test_other_forms_and_an_ellipsoid_hull() -> None:
     assert found.parts[1].part.form == Box(0.4, 0.2, 0.2)
 
 
-def test_what_is_like_nothing_is_said() -> None:
-    duct = rod(1.0, 1.0) - rod(0.8, 1.2)
-    found = simplify(body(duct))
-    assert "other, as no form is good; a" in found.parts[0].remarks[0]
-    assert found.part_table().rows[0][1].startswith("other (")
-    fit = found.parts[0].part.fit
-    assert fit.kind == "other"
-    assert fit.misfit == pytest.approx(found.parts[0].likeness.misfit, abs=5e-5)
-    assert fit.areas == pytest.approx(tuple(found.parts[0].projected_errors), abs=5e-5)
-    assert found.shape.rough[0].startswith("hull: class other (misfit 0.66")
-    said = found.as_json()["parts"][0]
-    assert (said["class"], said["stand_in"]) == ("other", True)
-    assert f"LOOK AT hull: {', '.join(said['look_at'])}" in found.part_table().notes
-    assert abs(found.parts[0].volume_error) < 1e-3
+def test_a_duct_is_a_tube() -> None:
+    found = simplify(body(rod(1.0, 1.0) - rod(0.8, 1.2)))
+    assert found.parts[0].part.form.radius == pytest.approx(1.0, rel=1e-3)
+    assert found.parts[0].part.form.inner_radius == pytest.approx(0.8, rel=5e-3)
+    assert not found.shape.rough
+    assert 'form = "ring"' in found.part_file().decode()
+
+
+def half_ring() -> Manifold:
+    """Bent without a seam: like no form, and never an ellipsoid in disguise."""
+    return (rod(1.0, 0.5) - rod(0.7, 0.6)) ^ Manifold.cube((4.0, 4.0, 4.0), True).translate((0.0, 2.0, 0.0))
+
+
+def test_what_is_like_nothing_stays_a_mesh(tmp_path: Path) -> None:
+    found = simplify(body(half_ring()))
+    assert found.left_as_mesh
+    assert "no form is good, so it stays a mesh" in found.parts[0].remarks[0]
+    assert found.part_table().rows[0][1] == "mesh"
+    part = found.parts[0].part
+    assert part.fit.kind == "mesh"
+    assert found.shape.volume == pytest.approx(found.mesh.volume, rel=1e-12)
+    assert found.failures == ()
+    assert (found.as_json()["recommended"], found.as_json()["status"]) == ("mesh", "ok")
+    (tmp_path / "body.toml").write_bytes(found.part_file())
+    (tmp_path / "mesh.ply").write_bytes(found.mesh_file())
+    for name, content in found.mesh_parts().items():
+        (tmp_path / name).write_bytes(content)
+    again = read(tmp_path / "body.toml")
+    assert again.require_shape().centre_of_volume == pytest.approx(found.mesh.centre_of_volume, abs=1e-12)
+    assert [f.name for f in again.files] == [f"b_simplified/{n}" for n in ("body.toml", "hull.ply", "mesh.ply")]
 
 
 @pytest.mark.slow
@@ -183,24 +199,30 @@ def test_two_fins_on_one_side_are_numbered() -> None:
 
 @pytest.mark.slow
 def test_what_is_like_nothing_is_cut_on_request(monkeypatch: pytest.MonkeyPatch) -> None:
-    bracket = Manifold.cube((1.0, 0.3, 0.1)) + Manifold.cube((0.1, 0.3, 0.8))
-    made = body(bracket, rod(0.05, 2.0).translate((0.0, 0.0, 3.0)))
-    assert {p.likeness.kind for p in simplify(made).parts} == {"other", "cylinder"}
+    made = body(half_ring(), rod(0.05, 2.0).translate((0.0, 0.0, 3.0)))
+    assert [p.likeness.kind for p in simplify(made).parts] == ["mesh", "cylinder"]
     found = simplify(made, convex=True)
-    assert [p.likeness.kind for p in found.parts].count("box") == 2
-    assert len(found.parts) == 3
-    assert "cut into 2 nearly convex pieces" in found.statements[0]
+    assert len(found.parts) > 3
+    assert "nearly convex pieces" in found.statements[0]
     assert sum(p.volume for p in found.parts) + found.unassigned == pytest.approx(found.mesh.volume, rel=1e-9)
-    whole = NamedBox("bracket", (-1.0, -1.0, -1.0), (2.0, 2.0, 1.0))
+    whole = NamedBox("half", (-2.0, -2.0, -2.0), (2.0, 2.0, 2.0))
     assert len(simplify(made, (whole,), convex=True).parts) == 2
     monkeypatch.setitem(sys.modules, "vhacdx", None)
     with pytest.raises(InputError, match=r'without the package vhacdx; expected vhacdx. Install "coeflab\[convex\]"'):
         simplify(made, convex=True)
 
 
+def test_a_bracket_is_parted_where_its_faces_meet_inward() -> None:
+    bracket = Manifold.cube((1.0, 0.3, 0.1)) + Manifold.cube((0.1, 0.3, 0.8))
+    found = simplify(body(bracket))
+    assert [p.likeness.kind for p in found.parts] == ["box", "box"]
+    assert found.shape.volume == pytest.approx(bracket.volume(), rel=1e-3)
+    assert "parted along" in found.statements[0]
+
+
 def test_a_body_given_by_equations_is_meshed_first() -> None:
     found = simplify(read_body(shipped("geometry") / "remus100" / "body.toml"))
-    assert [p.likeness.kind for p in found.parts] == ["ellipsoid"]
+    assert [p.likeness.kind for p in found.parts] == ["revolution"]
     assert found.parts[0].length_error == pytest.approx(0.0, abs=1e-4)
     assert found.statements[0].startswith("meshed from its equations with ")
 

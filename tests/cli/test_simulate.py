@@ -73,7 +73,7 @@ def test_what_a_file_determines_nothing_of_is_said_once(coeflab: Run, tmp_path: 
     done = coeflab(command, path, "--manoeuvre", "zigzag", "--rudder", "20 deg", *FREE, "--out", "zigzag")
     assert (done.returncode, done.stderr) == (1, "")
     assert (
-        "dr = -20.00 deg is outside the data, -15.00 to 15.00 deg. Unstable, and no nonlinear term such as Yr|r|"
+        "rudder angle = -20.00 deg is outside the data, -15.00 to 15.00 deg. Unstable, and no nonlinear term such as Yr|r|"
         in flat(done.stdout)
     )
     assert "not determined" not in flat(done.stdout)

@@ -79,7 +79,9 @@ def box(name: str = "box", centre: tuple[float, float, float] = (0.0, 0.0, 0.0),
 def plain() -> Body:
     """A shipped body, for its names and source; datum at the nose, reference point amidships."""
     body = read_body(Path(shipped("geometry")) / "suboff_bare_hull" / "body.toml")
-    return replace(body, name="made", reference_point=np.array([-LENGTH / 2.0, 0.0, 0.0]), scaling=None, shape=None)
+    return replace(
+        body, name="made", reference_point=np.array([-LENGTH / 2.0, 0.0, 0.0]), scaling=None, shape=None, outlined=None
+    )
 
 
 def body_of(seen: Outline, point: tuple[float, float, float] = (-LENGTH / 2.0, 0.0, 0.0)) -> Body:

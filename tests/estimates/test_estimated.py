@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -182,7 +180,7 @@ def test_a_roughened_hull_drags_more() -> None:
 
 def test_what_cannot_be_estimated_is_said() -> None:
     with pytest.raises(InputError, match="without an outline"):
-        estimated(replace(plain(), outlined=None), WATER)
+        estimated(plain(), WATER)
     with pytest.raises(InputError, match="no hull, fin or bluff part"):
         estimates_of(outline(hulls=()))
     with pytest.raises(InputError, match="viscosity"):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from coeflab.bodies.closed_forms import ellipsoid_added_mass, low_aspect_lift_slope, spheroid_munk_slope
+from coeflab.bodies.hull_flow import fin_groups, foil_on_body, friction_line, hull_flow
 from coeflab.estimates import bluff, crossflow, fins, form_drag, friction, hull_lift, propeller, ring_wing
-from coeflab.estimates._hull_flow import fin_groups, foil_on_body, friction_line, hull_flow
 from tests.estimates.bodies import LENGTH, RADIUS, SAIL, UP, WATER, box, cut_hull, foil, hull, outline, tail
 
 

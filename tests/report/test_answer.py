@@ -269,13 +269,13 @@ def test_a_publication_has_its_tables_in_the_place_of_rows():
     made = answer(found(2.5))
     assert (
         made.sentence
-        == "Boat: 1 of 3 numbers outside what is allowed; 2 of them validate: predicted, or printed and recomputed."
+        == "Boat: 1 of 3 numbers outside the tolerance; 2 of them are validation: predicted, or printed and recomputed."
     )
     assert made.rows == ()
     assert answer_table(made).rows == (("Turns", "2 of 3", "500 %", "fail"),)
     assert [c.severity.value for c in made.chips] == ["fail", "pass", "note", "note"]
     assert made.slope.anchor == "answer-figure"
-    assert answer(found(2.05)).sentence.startswith("Boat: all 3 numbers within what is allowed;")
+    assert answer(found(2.05)).sentence.startswith("Boat: all 3 numbers within the tolerance;")
 
 
 def test_long_names_are_cut_on_a_terminal_only():

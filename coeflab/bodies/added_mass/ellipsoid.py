@@ -105,8 +105,7 @@ def _spread(shape: Shape) -> Array:
 def _of_parts(shape: Parts) -> Array:
     total, middle = np.zeros((3, 3)), shape.centre_of_volume
     for p in shape.parts:
-        own = p.rotation @ np.diag(p.form.spread) @ p.rotation.T
-        total += p.form.volume * (own + np.outer(p.centre - middle, p.centre - middle))
+        total += p.form.volume * (p.second_moments + np.outer(p.centre - middle, p.centre - middle))
     return total / shape.volume
 
 

@@ -18,7 +18,21 @@ import numpy as np
 from coeflab.bodies.mesh.decimation import decimated, is_closed
 from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
 from coeflab.bodies.mesh.solids import solid, surface
-from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, Revolution, Shape
+from coeflab.bodies.shape import (
+    Box,
+    Cylinder,
+    Ellipsoid,
+    Faceted,
+    Finned,
+    Form,
+    Part,
+    Parts,
+    Plate,
+    Revolution,
+    Shape,
+    Tube,
+    Turned,
+)
 from coeflab.core.errors import InputError, shown
 from coeflab.core.types import Array, Faces
 
@@ -337,17 +351,44 @@ def surface_of(form: Form) -> float:
         p = 1.6075
         x, y, z = form.axes**p
         return float(4.0 * np.pi * ((x * y + y * z + z * x) / 3.0) ** (1.0 / p))
+    if isinstance(form, Faceted):
+        return form.mesh.integrals.area
+    if isinstance(form, Tube):
+        wall = 2.0 * np.pi * (form.radius**2 - form.inner_radius**2)
+        return float(wall + 2.0 * np.pi * (form.radius + form.inner_radius) * form.length)
+    if isinstance(form, Turned):
+        ends = np.pi * (form.radii[0] ** 2 + form.radii[-1] ** 2)
+        return float(form.quadrature.wetted_surface + ends)
+    if isinstance(form, Finned):
+        return 2.0 * form.count * form.chord * (form.semi_span - form.root)
     sides = form.sides if isinstance(form, Box) else np.zeros(3)
     return float(2.0 * (sides[0] * sides[1] + sides[1] * sides[2] + sides[2] * sides[0]))
 
 
 def _placed(part: Part, panels: int) -> TriangleMesh:
-    vertices, faces = _own(part.form, panels)
+    vertices, faces = form_surface(part.form, panels)
     return TriangleMesh(vertices @ part.rotation.T + part.centre, faces, part.form.volume)
 
 
-def _own(form: Form, panels: int) -> tuple[Array, Faces]:
-    """Vertices and faces along the form's own axes."""
+def form_surface(form: Form, panels: int) -> tuple[Array, Faces]:
+    """Vertices and faces along the form's own axes, about so many; fins reach a little into the hull they stand on.
+
+    Raises
+    ------
+    InputError
+        A plate; a mesh that cannot be decimated.
+    """
+    if isinstance(form, Faceted):
+        found = meshed(form.mesh, panels)
+        return found.vertices, found.faces
+    if isinstance(form, Tube):
+        return _tube(form, panels)
+    if isinstance(form, Turned):
+        x = np.unique(np.concatenate([np.linspace(form.stations[0], form.stations[-1], DENSE), form.stations]))
+        x, radius, around = rings(x, np.interp(x, form.stations, form.radii), panels)
+        return revolved(x, radius, around)
+    if isinstance(form, Finned):
+        return _fins(form, panels)
     if isinstance(form, Box):
         return box_surface(form.sides, panels)
     if isinstance(form, Cylinder):
@@ -357,6 +398,41 @@ def _own(form: Form, panels: int) -> tuple[Array, Faces]:
     if isinstance(form, Ellipsoid):
         return _ellipsoid(form.axes, panels)
     raise InputError("a plate", "a form that displaces water")
+
+
+def _tube(form: Tube, panels: int) -> tuple[Array, Faces]:
+    """A quadrilateral turned about x, divided along the wall's length and thickness into squares as far as panels go."""
+    wall, middle = form.radius - form.inner_radius, (form.radius + form.inner_radius) / 2.0
+    size = np.sqrt(2.0 * 4.0 * np.pi * middle * (form.length + wall) / panels)
+    around = _even(2.0 * np.pi * middle / size, 4, FEWEST_AROUND)
+    along, thick = _even(form.length / size, 2, 2), _even(wall / size, 1, 1)
+    half = form.length / 2.0
+    rise, out = np.linspace(-half, half, along + 1), np.linspace(form.inner_radius, form.radius, thick + 1)
+    outer = [(x, form.radius) for x in rise[:-1]] + [(half, r) for r in out[:0:-1]]
+    inner = [(x, form.inner_radius) for x in rise[:0:-1]] + [(-half, r) for r in out[:-1]]
+    profile = np.array(outer + inner)
+    angle = 2.0 * np.pi * np.arange(around) / around
+    ringed = np.empty((len(profile), around, 3))
+    ringed[:, :, 0] = profile[:, :1]
+    ringed[:, :, 1], ringed[:, :, 2] = np.outer(profile[:, 1], np.cos(angle)), np.outer(profile[:, 1], np.sin(angle))
+    i, k = np.meshgrid(np.arange(len(profile)), np.arange(around), indexing="ij")
+    after, ahead = (i + 1) % len(profile), (k + 1) % around
+    corners = np.stack([around * i + k, around * i + ahead, around * after + ahead, around * after + k], axis=-1)
+    return ringed.reshape(-1, 3), _split(corners.reshape(-1, 4), ((i + k) % 2).ravel())
+
+
+INSIDE = 0.97  # of a root's distance from the axis: so that fins and hull are one body when united
+
+
+def _fins(form: Finned, panels: int) -> tuple[Array, Faces]:
+    """A box for each fin."""
+    low = INSIDE * form.root
+    vertices, faces = box_surface(np.array([form.chord, form.semi_span - low, form.thickness]), panels // form.count)
+    vertices = vertices + np.array([0.0, (form.semi_span + low) / 2.0, 0.0])
+    quarter = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+    turns = [np.linalg.matrix_power(quarter, k * (4 // form.count)) for k in range(form.count)]
+    starts = len(vertices) * np.arange(form.count)
+    return np.concatenate([vertices @ t.T for t in turns]), np.concatenate([faces + n for n in starts])
 
 
 def _ellipsoid(axes: Array, panels: int) -> tuple[Array, Faces]:

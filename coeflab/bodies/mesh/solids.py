@@ -136,9 +136,13 @@ def hull_of(points: Array) -> Solid:
 
 
 def form_solid(form: str, sizes: tuple[float, ...], rotation: Array, centre: Array) -> Solid:
-    """A cylinder (radius, length), ellipsoid (semi-axes) or box (sides) in its place."""
+    """A cylinder (radius, length), tube (outer and inner radius, length), ellipsoid (semi-axes) or box (sides) in its place."""
     from manifold3d import Manifold
 
+    if form == "tube":
+        outer, inner, length = sizes
+        bore = form_solid("cylinder", (inner, 2.0 * length), rotation, centre)
+        return form_solid("cylinder", (outer, length), rotation, centre) - bore
     if form == "cylinder":
         radius, length = sizes
         made = Manifold.cylinder(length, radius, radius, ROUND, True).rotate((0.0, 90.0, 0.0))

@@ -1,25 +1,43 @@
-"""Bodies as named cylinders, plates, spheroids, ellipsoids, spheres and boxes, each with its pose."""
+"""Bodies as named simple forms, each with its pose, and as meshes where no form is good."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
 from coeflab.bodies.mesh.meshing import surface_of
-from coeflab.bodies.mesh.source import MeshKeys
+from coeflab.bodies.mesh.source import MeshKeys, MeshSource
 from coeflab.bodies.pieces import part_pieces
-from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, StandIn
+from coeflab.bodies.shape import (
+    Agreement,
+    Bar,
+    Box,
+    Cylinder,
+    Ellipsoid,
+    Faceted,
+    Finned,
+    Form,
+    Part,
+    Parts,
+    Plate,
+    StandIn,
+    Tube,
+    Turned,
+)
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
+from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
+from coeflab.core.types import Array
+from coeflab.law.symbols import MOTIONS
 from coeflab.law.transforms import rotation
 
-summary = "named cylinders, plates, spheroids, ellipsoids, spheres and boxes from a body.toml, each with its pose"
+summary = "named cylinders, revolutions, tubes, bars, boxes, plates, fins, ellipsoids and meshes from a body.toml"
 citations = ("fossen2011",)
 
 SIZES = {
@@ -29,13 +47,36 @@ SIZES = {
     "ellipsoid": ("semi_axis_x", "semi_axis_y", "semi_axis_z"),
     "sphere": ("radius",),
     "box": ("length", "width", "height"),
+    "bar": ("length", "width", "height"),
+    "tube": ("radius", "inner_radius", "length"),
+    "ring": ("radius", "inner_radius", "length"),
+    "revolution": ("stations", "radii"),
+    "finned": ("radius", "semi_span", "chord", "thickness", "count"),
+    "mesh": ("path",),
 }
+FORMS: dict[str, Any] = {
+    "cylinder": Cylinder, "plate": Plate, "ellipsoid": Ellipsoid, "box": Box, "bar": Bar, "tube": Tube, "ring": Tube,
+}  # fmt: skip
+FINS = {"two": 2, "four": 4}
 TURN = takes.Within(
     lambda turn: (
         "[roll, pitch, yaw] of at most 360 deg each, a whole turn" if max(map(abs, turn)) > 2.0 * np.pi else ""
     ),
 )
 Size = Annotated[takes.Length, takes.ABOVE_ZERO]
+LENGTH = takes.number_in("length")
+
+
+def _lengths(value: Any, file: Path) -> tuple[float, ...]:
+    if not isinstance(value, list) or len(value) < 2:
+        raise InputError(shown(value), "a list of lengths, two at least")
+    return tuple(LENGTH.read(v, file) for v in value)
+
+
+Lengths = Annotated[
+    tuple[float, ...],
+    takes.Takes("a list of lengths", _lengths, {"type": "array", "items": dict(LENGTH.schema), "minItems": 2}),
+]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,16 +129,26 @@ class PartKeys(takes.Declaration):
         One for each part.
     form : str
         A cylinder has radius and length; a plate chord and span; a spheroid length and diameter; an ellipsoid semi_axis_x,
-        semi_axis_y and semi_axis_z; a sphere radius; a box length, width and height.
+        semi_axis_y and semi_axis_z; a sphere radius; a box and a long bar length, width and height; a tube and a ring
+        radius, inner_radius and length; a revolution stations and radii; fins on a round hull (finned) its radius,
+        semi_span, chord, thickness and count, two or four; a mesh path.
     centre : (3,) array
         [x, y, z], m, FRD, from the datum.
     rotation : (3,) tuple
-        [roll, pitch, yaw]. Along its own axes a cylinder and a spheroid lie along x; a plate has its chord along x, its span
-        along y and its normal along z.
+        [roll, pitch, yaw]. Along its own axes a cylinder, a spheroid, a tube, a revolution, a bar and the hull of fins lie
+        along x; a plate has its chord along x, its span along y and its normal along z; two fins lie along y.
     fit : table
         Where the part stands for a piece of a mesh: how well.
     radius, length, chord, span, diameter, semi_axis_x, semi_axis_y, semi_axis_z, width, height : float
         Size of the form.
+    inner_radius, semi_span, thickness : float
+        Size of the form; the semi_span of fins reaches from the hull's axis to a tip.
+    count : str
+        Of fins: two or four.
+    stations, radii : list of float
+        Of a revolution: places along its own x, rising, from the centre, and radii there; straight between them.
+    path : str
+        Of a mesh: a file beside the body.toml, m, along the part's own axes from the centre.
     """
 
     name: takes.Text
@@ -117,6 +168,13 @@ class PartKeys(takes.Declaration):
     semi_axis_z: Size | None = None
     width: Size | None = None
     height: Size | None = None
+    inner_radius: Size | None = None
+    semi_span: Size | None = None
+    thickness: Size | None = None
+    count: Annotated[str, takes.one_of(*FINS)] | None = None
+    stations: Lengths | None = None
+    radii: Lengths | None = None
+    path: takes.Text | None = None
 
     def check(self) -> None:
         """The sizes of the form, and no other."""
@@ -125,30 +183,68 @@ class PartKeys(takes.Declaration):
             if given != wanted:
                 found = "an unknown key" if given else "nothing"
                 raise InputError(found, f"the sizes of a {self.form}, {', '.join(SIZES[self.form])}", column=name)
-        _ = self.made
+        if self.path is None:
+            _ = self.made()
 
-    @property
-    def made(self) -> Part:
-        """The part."""
+    def made(self, folder: Path | None = None) -> Part:
+        """The part; a mesh is read from the folder."""
         try:
-            form = _made(self.form, [getattr(self, key) for key in SIZES[self.form]])
+            form, middle = self._form(folder)
         except InputError as why:
+            if self.path is not None:
+                raise
             raise InputError(why.found, why.expected, column="form", advice=why.advice) from None
-        return Part(self.name, form, self.centre, rotation(*self.rotation), None if self.fit is None else self.fit.made)
+        turn = rotation(*self.rotation)
+        centre = self.centre + turn @ middle
+        return Part(self.name, form, centre, turn, None if self.fit is None else self.fit.made)
+
+    def _form(self, folder: Path | None) -> tuple[Form, Array]:
+        """The form, and where its centre of volume lies from its origin along its own axes, m."""
+        if self.stations is not None and self.radii is not None:
+            turned, along = Turned.about_its_centre(np.array(self.stations), np.array(self.radii))
+            return turned, np.array([along, 0.0, 0.0])
+        if self.path is not None and folder is not None:
+            surface, _ = MeshSource(folder / self.path, 1.0, np.eye(3), np.zeros(3)).read()
+            return Faceted.about_its_centre(surface)
+        if self.count is not None:
+            radius, semi_span, chord, thickness = (float(getattr(self, key)) for key in SIZES["finned"][:-1])
+            return Finned(radius, semi_span, chord, thickness, FINS[self.count]), np.zeros(3)
+        return _made(self.form, [getattr(self, key) for key in SIZES[self.form]]), np.zeros(3)
 
 
 def _made(kind: str, values: list[float]) -> Form:
-    if kind == "cylinder":
-        return Cylinder(*values)
-    if kind == "plate":
-        return Plate(*values)
-    if kind == "box":
-        return Box(*values)
+    if kind in FORMS:
+        made: Form = FORMS[kind](*values)
+        return made
     if kind == "sphere":
         return Ellipsoid(values[0], values[0], values[0])
-    if kind == "spheroid":
-        return Ellipsoid(values[0] / 2.0, values[1] / 2.0, values[1] / 2.0)
-    return Ellipsoid(*values)
+    return Ellipsoid(values[0] / 2.0, values[1] / 2.0, values[1] / 2.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AgreementKeys(takes.Declaration):
+    """Added mass of the parts over that of the mesh by the panel method, less one, motion by motion.
+
+    Attributes
+    ----------
+    u, v, w, p, q, r : float
+        A motion that moves no water is left out.
+    error : float
+        Estimate for the mesh's entries, the largest over its entry.
+    """
+
+    u: takes.Pure | None = None
+    v: takes.Pure | None = None
+    w: takes.Pure | None = None
+    p: takes.Pure | None = None
+    q: takes.Pure | None = None
+    r: takes.Pure | None = None
+    error: takes.Pure
+
+    @property
+    def made(self) -> Agreement:
+        """The same as the parts hold it."""
+        return Agreement(tuple(getattr(self, motion) for motion in MOTIONS), self.error)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -161,33 +257,36 @@ class File(ShapedBodyFile):
         Simple forms with their poses, one at least.
     mesh : table
         What the parts stand for. Panel method and strips take it in their place.
+    against_mesh : table
+        How far the added mass of the parts is from the mesh's.
     """
 
     reader: ClassVar[str] = "primitives"
     part: tuple[PartKeys, ...] = ()
     mesh: MeshKeys | None = None
+    against_mesh: AgreementKeys | None = None
 
     def check(self) -> None:
         """Parts of different names."""
         ShapedBodyFile.check(self)
         if not self.part:
             raise InputError("no [[part]]", f"at least one part, with form {', '.join(SIZES)}", column="part")
-        try:
-            _ = self.shape
-        except InputError as why:
-            raise InputError(why.found, why.expected, column="part") from None
+        names = [p.name for p in self.part]
+        twice = sorted({n for n in names if names.count(n) > 1})
+        if twice:
+            raise InputError(f"two parts called {shown(twice[0])}", "one name for each part", column="part")
 
-    @property
-    def shape(self) -> Parts:
+    def shape(self, folder: Path) -> Parts:
         """All of them."""
-        return Parts(tuple(p.made for p in self.part))
+        agreement = None if self.against_mesh is None else self.against_mesh.made
+        return Parts(tuple(p.made(folder) for p in self.part), agreement)
 
 
 def read(path: Path) -> Body:
     """Read a body.toml of parts.
 
     Lengths are in metres unless a unit is written. ``rotation`` is [roll, pitch, yaw]; an angle has its unit. Along
-    its own axes a cylinder and a spheroid lie along x, a plate has its chord along x, its span along y and its normal
+    its own axes what is round or long lies along x, a plate has its chord along x, its span along y and its normal
     along z.
 
     Raises
@@ -197,7 +296,7 @@ def read(path: Path) -> Body:
     """
     toml = read_toml(path)
     file = takes.declared(File, toml)
-    shape = file.shape
+    shape = file.shape(path.parent)
     computed = Configuration(
         name="by_parts",
         title="sum of the parts; overlaps count twice",
@@ -206,7 +305,10 @@ def read(path: Path) -> Body:
         centre_of_buoyancy=shape.centre_of_volume,
         mass=None,
     )
+    meshes = [path.parent / p.path for p in file.part if p.path is not None]
     body = file.shaped(path, shape, computed, part_pieces(shape, (surface_of(p.form) for p in shape.parts)))
+    own = (InputFile(f"{body.name}/{m.name}", sha256_of(m)) for m in dict.fromkeys(meshes))
+    body = replace(body, files=(*body.files, *own))
     if file.mesh is None:
         return body
     source = file.mesh.source(path.parent)
@@ -215,4 +317,5 @@ def read(path: Path) -> Body:
             "mesh.path", f"no file {shown(source.file.name)}", "the mesh that the parts replace",
             "Put it back, or delete [mesh]: results are then as rough as the parts.",
         )  # fmt: skip
-    return replace(body, mesh=source, files=(*body.files, source.input_file(body.name)))
+    files = dict.fromkeys((*body.files, source.input_file(body.name)))
+    return replace(body, mesh=source, files=tuple(files))

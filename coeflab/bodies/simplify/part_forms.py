@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -21,13 +22,19 @@ from coeflab.bodies.mesh.solids import (
     form_solid,
     mesh_outline,
     oriented_box,
+    revolved,
     smallest_rectangle,
     surface,
 )
+from coeflab.bodies.shape import Bar, Box, Cylinder, Ellipsoid, Form, Plate, Tube, Turned, shadow
+from coeflab.bodies.simplify.segmentation import round_hull
 from coeflab.core.types import Array, brief
 from coeflab.law.transforms import about_axis, relabelled
 
 ALIKE = 0.02
+MAKES: dict[str, Any] = {
+    "cylinder": Cylinder, "tube": Tube, "plate": Plate, "ellipsoid": Ellipsoid, "box": Box, "bar": Bar,
+}  # fmt: skip
 
 
 @brief
@@ -86,7 +93,7 @@ class Fit:
     Attributes
     ----------
     form : str
-        ``cylinder`` (radius, length), ``ellipsoid`` (semi-axes) or ``box`` (sides).
+        ``cylinder`` (radius, length), ``tube`` (radius, inner radius, length), ``ellipsoid`` (semi-axes) or ``box`` (sides).
     sizes : tuple of float
         m.
     rotation : (3, 3) array
@@ -103,6 +110,8 @@ class Fit:
         if self.form == "cylinder":
             radius, length = self.sizes
             return np.array([length, 2.0 * radius, 2.0 * radius])
+        if self.form == "tube":
+            return np.array([self.sizes[2], 2.0 * self.sizes[0], 2.0 * self.sizes[0]])
         return np.array(self.sizes) * (2.0 if self.form == "ellipsoid" else 1.0)
 
     @property
@@ -111,6 +120,8 @@ class Fit:
         x, y, z = self.extents
         if self.form == "cylinder":
             return np.array([np.pi / 4.0 * y * z, x * z, x * y])
+        if self.form == "tube":
+            return np.array([shadow(Tube(*self.sizes), axis) for axis in np.eye(3)])
         return np.array([y * z, x * z, x * y]) * (np.pi / 4.0 if self.form == "ellipsoid" else 1.0)
 
     def misfit(self, of: Piece) -> float:
@@ -226,6 +237,8 @@ def _fitted(of: Surface, turn: Array) -> PlateFit:
         outline = mesh_outline(*of, axes[:, :2].T)
         at = centre @ axes[:, :2]
         span = _span(outline, at)
+        if not span > 0.0:  # nothing there: a body bent about its own centre
+            continue
         chord = area / span
         share = float((outline ^ _rectangle(at, chord, span)).area()) / area
         if share > most + PREFERRED:
@@ -257,9 +270,67 @@ def _attitudes(second: Array, turn: Array, vertices: Array) -> list[Array]:
     return [np.column_stack([v, [-v[1], v[0]]]) for v in (ahead, np.linalg.eigh(second)[1][:, 1], along)]
 
 
+def tubes(of: Piece, frames: list[Array]) -> Iterator[Fit]:
+    """About every axis of the frames: of the piece's volume, and of its extents along and across the axis."""
+    for frame in frames:
+        for axis in frame.T:
+            turn = about_axis(axis)
+            length, *across = of.extents(turn)
+            outer = float(np.mean(across)) / 2.0
+            inner = outer**2 - of.volume / (np.pi * length)
+            if inner > (HOLE * outer) ** 2:
+                yield Fit("tube", (outer, float(np.sqrt(inner)), float(length)), turn)
+
+
+def turned_form(of: Surface, piece: Piece) -> tuple[Turned, Array, Array] | None:
+    """The body of revolution with a piece's volume, its rotation and its centre; None where the piece is not round.
+
+    The radius at each station is that in which most of 72 rays from the axis meet the surface (`round_hull`), with as few
+    stations as keep every other within 0.2 % of the largest radius.
+    """
+    spread = np.sqrt(np.linalg.eigvalsh(piece.spread))
+    if min(spread[1] / spread[0], spread[2] / spread[1]) > OVAL:
+        return None
+    hull = round_hull(*of)
+    if hull is None or hull.roundness < ROUND:
+        return None
+    along = (piece.vertices - hull.point) @ hull.rotation[:, 0]
+    x = np.concatenate([[along.min()], hull.x, [along.max()]])
+    radius = np.concatenate([hull.radius[:1], hull.radius, hull.radius[-1:]])
+    kept = np.concatenate([[True], np.diff(x) > APART * np.ptp(x)])
+    x, radius = _few(x[kept], radius[kept], CLOSE * float(radius.max()))
+    rough, _ = Turned.about_its_centre(x, radius)
+    scale = float(np.sqrt(piece.volume / rough.volume))
+    if abs(scale - 1.0) > SAME:
+        return None
+    turn = about_axis(hull.rotation[:, 0])
+    if turn[:, 0] @ hull.rotation[:, 0] < 0.0:
+        x, radius = -x[::-1], radius[::-1]
+    turned, middle = Turned.about_its_centre(x, radius * scale)
+    return turned, turn, hull.point + turn[:, 0] * middle
+
+
+def _few(x: Array, y: Array, within: float) -> tuple[Array, Array]:
+    """The points that keep all others within a distance in y of the straight lines between them (Douglas & Peucker 1973)."""
+    kept, stack = {0, len(x) - 1}, [(0, len(x) - 1)]
+    while stack:
+        low, high = stack.pop()
+        if high - low < 2:
+            continue
+        off = np.abs(y[low : high + 1] - np.interp(x[low : high + 1], x[[low, high]], y[[low, high]]))
+        worst = low + int(np.argmax(off))
+        if off[worst - low] > within:
+            kept.add(worst)
+            stack += [(low, worst), (worst, high)]
+    chosen = sorted(kept)
+    return x[chosen], y[chosen]
+
+
+HOLE, OVAL, ROUND, APART, CLOSE, SAME = 0.2, 1.1, 0.9, 1e-4, 2e-3, 0.03
+PLAIN, BAR = 0.02, 5.0
 THIN = 0.2
 MISFIT, SHARED = 0.1, 0.8
-ROUND_PLATE, PLATE_SHARED = 0.02, 0.6
+ROUND_PLATE, PLATE_SHARED, FULL = 0.02, 0.6, 0.5
 BETTER = 1e-4
 
 
@@ -271,15 +342,16 @@ class Likeness:
     Attributes
     ----------
     form : str
-        ``cylinder`` (radius, length), ``plate`` (chord, span), ``ellipsoid`` (semi-axes) or ``box`` (sides).
+        ``cylinder`` (radius, length), ``tube`` (radius, inner radius, length), ``plate`` (chord, span), ``ellipsoid``
+        (semi-axes), ``box`` or ``bar`` (sides), or ``revolution``.
     sizes : tuple of float
-        m.
+        m; of a revolution its stations, then its radii.
     rotation : (3, 3) array
         From the form's axes to the outer ones.
     centre : (3,) array
         m.
     clear : bool
-        False where no form is good, and the one of least misfit stands in.
+        False where no form is good: the one of least misfit is named, and the piece stays a mesh.
     reason : str
         The test that held, or why none did, in words and numbers.
     shared : float
@@ -299,8 +371,17 @@ class Likeness:
 
     @property
     def kind(self) -> str:
-        """The form, or ``other``."""
-        return self.form if self.clear else "other"
+        """The form, or ``mesh``."""
+        return self.form if self.clear else "mesh"
+
+    @property
+    def made(self) -> Form:
+        """The form itself."""
+        if self.form == "revolution":
+            half = len(self.sizes) // 2
+            return Turned(self.sizes[:half], self.sizes[half:])
+        found: Form = MAKES[self.form](*self.sizes)
+        return found
 
 
 def likeness(of: Solid) -> Likeness:
@@ -308,16 +389,27 @@ def likeness(of: Solid) -> Likeness:
 
     Notes
     -----
+    A tube where the piece has a hole and a tube of its extents and volume has a misfit of at most 0.1.
     A plate where the mean thickness, volume over area projected along the normal, is under 0.2 of the shorter of mean
     chord and span, whatever its sections and taper, if 0.6 of the volume lies within the plate's outline (a triangle's
-    0.69 does, a ring's does not); a disc that a cylinder fits with a misfit under 0.02 is a cylinder.
+    0.69 does, a ring's does not) and it fills half of its convex hull (a frame does not); a disc that a cylinder fits with a misfit under 0.02 is a cylinder.
     Else the cylinder, ellipsoid or box of the piece's volume with the least misfit: error of the length, plus errors of
     the three projected areas over their sum (`Fit.misfit`). Their axes are the principal ones and those of the oriented
-    box. A misfit over 0.1, or a form that shares less than 0.8 of the volume with the piece, is no likeness.
+    box. A misfit over 0.1, or a form that shares less than 0.8 of the volume with the piece, is no likeness. Where the misfit is
+    over 0.02 and the piece is round, the body of revolution that follows its sections is taken if its misfit is less than half.
+    A box more than five times as long as wide is a bar.
     """
     piece = Piece.of(surface(of))
     principal = np.linalg.eigh(piece.spread)[1]
     frames = [principal, oriented_box(piece.vertices, principal)[0]]
+    if of.genus() > 0:
+        hollow = list(tubes(piece, frames))
+        if hollow:
+            tube, misfit = _least(piece, hollow)
+            inside = (of ^ form_solid("tube", tube.sizes, tube.rotation, piece.centre)).volume() / piece.volume
+            if misfit <= MISFIT and inside >= SHARED:
+                why = f"misfit tube {misfit:.3f}; shares {inside:.0%} of the volume"
+                return Likeness("tube", tube.sizes, tube.rotation, piece.centre, True, why, inside, misfit)
     best = [_least(piece, list(fits(piece, frames))) for fits in (cylinders, ellipsoids, boxes)]
     flat = _thin(of, piece, principal[:, ::-1])
     if flat is not None and best[0][1] > ROUND_PLATE:
@@ -325,18 +417,54 @@ def likeness(of: Solid) -> Likeness:
         sides = (flat.chord, flat.span, float(piece.extents(flat.rotation)[2]) * 2.0)
         within = (of ^ form_solid("box", sides, flat.rotation, flat.centre)).volume() / piece.volume
         reason = f"mean thickness {thickness:.3f} of the shorter of mean chord and span, under {THIN:g}"
+        full = piece.volume / of.hull().volume()
         if within < PLATE_SHARED:
             reason += f"; only {within:.0%} of the volume within its outline, under {PLATE_SHARED:.0%}"
-        return Likeness("plate", sides[:2], flat.rotation, flat.centre, within >= PLATE_SHARED, reason, within)
+        if full < FULL:
+            reason += f"; fills only {full:.0%} of its convex hull, under {FULL:.0%}"
+        clear = within >= PLATE_SHARED and full >= FULL
+        return Likeness("plate", sides[:2], flat.rotation, flat.centre, clear, reason, within)
     fit, misfit = min(best, key=lambda scored: round(scored[1] / BETTER))
     shared = (of ^ form_solid(fit.form, fit.sizes, fit.rotation, piece.centre)).volume() / piece.volume
     clear = misfit <= MISFIT and shared >= SHARED
     reason = (
         "misfit " + ", ".join(f"{f.form} {value:.3f}" for f, value in best) + f"; shares {shared:.0%} of the volume"
     )
+    if not clear or misfit > PLAIN:
+        turned = _turned(of, piece, reason)
+        if turned is not None and turned.misfit is not None and turned.misfit < (misfit / 2.0 if clear else np.inf):
+            return turned
     if not clear:
         reason += f"; bounds {MISFIT:g} and {SHARED:.0%}"
-    return Likeness(fit.form, fit.sizes, fit.rotation, piece.centre, clear, reason, shared, misfit)
+    longest, next_one = sorted(fit.extents)[:0:-1]
+    form = "bar" if fit.form == "box" and longest > BAR * next_one else fit.form
+    if form == "bar":
+        fit = Fit("box", tuple(np.sort(fit.sizes)[::-1]), relabelled_by_length(fit))
+    return Likeness(form, fit.sizes, fit.rotation, piece.centre, clear, reason, shared, misfit)
+
+
+def relabelled_by_length(fit: Fit) -> Array:
+    """The axes of a box in the order of its sides, the longest first, right-handed, the first two ahead, starboard or up."""
+    first, second = fit.rotation[:, np.argsort(-np.array(fit.sizes), kind="stable")[:2]].T
+    x = about_axis(first)[:, 0]
+    y = second * np.sign(second[int(np.argmax(np.abs(second) > np.abs(second).max() - 1e-6))])
+    return np.column_stack([x, y, np.cross(x, y)])
+
+
+def _turned(of: Solid, piece: Piece, reason: str) -> Likeness | None:
+    """The body of revolution that a piece is, where it is one."""
+    found = turned_form(surface(of), piece)
+    if found is None:
+        return None
+    form, turn, centre = found
+    areas = piece.projected(turn)
+    own = np.array([shadow(form, axis) for axis in np.eye(3)])
+    misfit = float(np.abs(own - areas).sum() / areas.sum())
+    shared = (of ^ revolved(np.array(form.stations), np.array(form.radii), turn, centre)).volume() / piece.volume
+    if misfit > MISFIT or shared < SHARED:
+        return None
+    reason = f"revolution {misfit:.3f}, shares {shared:.0%} of the volume; {reason}"
+    return Likeness("revolution", (*form.stations, *form.radii), turn, centre, True, reason, min(shared, 1.0), misfit)
 
 
 def _thin(of: Solid, piece: Piece, turn: Array) -> PlateFit | None:
@@ -344,6 +472,8 @@ def _thin(of: Solid, piece: Piece, turn: Array) -> PlateFit | None:
     if piece.volume / float(piece.projected(turn)[2]) ** 1.5 >= THIN:
         return None
     flat = plate_fit(surface(of), turn)
+    if not flat.span > 0.0:
+        return None
     return flat if piece.volume / (flat.chord * flat.span * min(flat.chord, flat.span)) < THIN else None
 
 

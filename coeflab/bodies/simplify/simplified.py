@@ -15,14 +15,36 @@ import numpy as np
 
 from coeflab.bodies.body import Body
 from coeflab.bodies.mesh.mesh import TriangleMesh
-from coeflab.bodies.mesh.solids import simplified, solid, surface
+from coeflab.bodies.mesh.solids import Surface, simplified, solid, surface
 from coeflab.bodies.mesh.source import ply
-from coeflab.bodies.shape import Box, Cylinder, Form, Part, Parts, Plate, StandIn, shadow
+from coeflab.bodies.shape import (
+    APART,
+    CLASSES,
+    Box,
+    Cylinder,
+    Faceted,
+    Finned,
+    Form,
+    Part,
+    Parts,
+    Plate,
+    StandIn,
+    Tube,
+    Turned,
+    shadow,
+)
 from coeflab.bodies.simplify.part_forms import MISFIT, SHARED, Likeness
 from coeflab.core.table import ABSENT, Table, number
 from coeflab.core.types import Array, brief
+from coeflab.law.added_mass import AddedMass
+from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.law.transforms import angles
 
+COUNTS = {2: "two", 4: "four"}
+AGREEMENT = (
+    "Added mass of the parts over that of the mesh by the panel method, less one, motion by motion; error: of the mesh's, "
+    "an estimate. Delete this table where you correct a part."
+)
 FIGURES, WIDTH = 12, 118  # digits that outlast rounding, and a line of an editor
 
 
@@ -58,15 +80,27 @@ def part_file(
         lines.append(f"length_name = {_text(body.scaling.length_name)}")
     if mesh:
         lines += ["", "[mesh]", f"path = {_text(mesh)}", 'unit = "m"', 'axes = "FRD"']
+    if shape.agreement is not None:
+        lines += ["", *_comments((AGREEMENT,)), "[against_mesh]"]
+        found = zip(MOTIONS, shape.agreement.entries, strict=True)
+        lines += [f"{motion} = {_number(value)}" for motion, value in found if value is not None]
+        lines.append(f"error = {_number(shape.agreement.error)}")
     for part in shape.parts:
         lines += ["", *_comments(remarks.get(part.name, ())), *_part(part)]
     return ("\n".join(lines) + "\n").encode()
 
 
 def _part(part: Part) -> list[str]:
-    kind, sizes = written(part.form)
+    form = part.form
+    kind, sizes = written(form)
     lines = ["[[part]]", f"name = {_text(part.name)}", f"form = {_text(kind)}"]
     lines += [f"{key} = {_number(value)}" for key, value in sizes.items()]
+    if isinstance(form, Turned):
+        lines += [f"stations = {_numbers(np.array(form.stations))}", f"radii = {_numbers(np.array(form.radii))}"]
+    if isinstance(form, Finned):
+        lines.append(f'count = "{COUNTS[form.count]}"')
+    if isinstance(form, Faceted):
+        lines.append(f"path = {_text(mesh_name(part))}")
     lines.append(f"centre = {_numbers(part.centre)}")
     turned = [float(np.round(np.degrees(a), 9)) + 0.0 for a in angles(part.rotation)]
     if any(turned):
@@ -83,6 +117,11 @@ def _fit(fit: StandIn) -> str:
     return f'{{class = "{fit.kind}", {said}, areas = {_numbers(np.array(fit.areas))}}}'
 
 
+def mesh_name(part: Part) -> str:
+    """The file that holds the surface of a mesh part."""
+    return f"{part.name}.ply"
+
+
 def written(form: Form) -> tuple[str, dict[str, float]]:
     """The name and the keys under which a body.toml gives a form."""
     if isinstance(form, Cylinder):
@@ -90,7 +129,15 @@ def written(form: Form) -> tuple[str, dict[str, float]]:
     if isinstance(form, Plate):
         return "plate", {"chord": form.chord, "span": form.span}
     if isinstance(form, Box):
-        return "box", {"length": form.length, "width": form.width, "height": form.height}
+        return CLASSES[type(form)], {"length": form.length, "width": form.width, "height": form.height}
+    if isinstance(form, Tube):
+        kind = "tube" if form.length > 2.0 * form.radius else "ring"
+        return kind, {"radius": form.radius, "inner_radius": form.inner_radius, "length": form.length}
+    if isinstance(form, Finned):
+        sizes = {"radius": form.radius, "semi_span": form.semi_span, "chord": form.chord}
+        return "finned", sizes | {"thickness": form.thickness}
+    if isinstance(form, Turned | Faceted):
+        return CLASSES[type(form)], {}
     if form.x == form.y == form.z:
         return "sphere", {"radius": form.x}
     if form.y == form.z:
@@ -120,7 +167,8 @@ def _numbers(values: np.ndarray) -> str:
 
 
 TOLD = np.radians(0.05)
-POOR, POOR_VOLUME, DECIMALS = 0.05, 0.02, 6
+POOR, POOR_VOLUME, FAILED, DECIMALS = 0.05, 0.02, 0.2, 6
+UNITS = ("kg",) * 3 + ("kg m^2",) * 3
 MESH, KEPT_FACES = "mesh.ply", 200_000
 RULES = (
     "A thin body (mean thickness under 0.2 of the shorter of mean chord and span) is a plate of the area that it "
@@ -128,7 +176,9 @@ RULES = (
     "Any other is the cylinder, spheroid, ellipsoid or box with the least misfit: error of the length, plus errors of the three "
     "projected areas over their sum. Each keeps volume and length (a cylinder that fits better so: volume and area across), "
     "those of three sizes the largest projected area too.",
-    f"Where the least misfit is over {MISFIT:g}, or the form shares under {SHARED:.0%} of the volume, the class is other.",
+    "A round one with a misfit over 0.02 is the revolution that follows its sections where that fits better; one with a hole is "
+    "a tube or ring; a box over five times as long as wide is a bar.",
+    f"Where the least misfit is over {MISFIT:g}, or the form shares under {SHARED:.0%} of the volume, the piece stays a mesh.",
     "An attachment is cut off where it meets the hull's surface; its form keeps the attachment's centre.",
 )
 
@@ -153,6 +203,8 @@ class SimplifiedPart:
         Whether it was cut from a hull.
     turned : float
         Angle by which the pose was tidied, rad.
+    surface : (vertices, faces)
+        Of the piece.
     """
 
     part: Part
@@ -162,6 +214,7 @@ class SimplifiedPart:
     extents: Array
     cut: bool
     turned: float
+    surface: Surface
 
     @property
     def volume_error(self) -> float:
@@ -181,6 +234,9 @@ class SimplifiedPart:
 
     def with_fit(self) -> SimplifiedPart:
         """The same with the quality of the fit in the part."""
+        if isinstance(self.part.form, Faceted):
+            fit = StandIn(CLASSES[Faceted], 1.0, 0.0, (0.0, 0.0, 0.0), 0.0, misfit=0.0)
+            return replace(self, part=replace(self.part, fit=fit))
         like, (x, y, z) = self.likeness, (_written(e) for e in self.projected_errors)
         form = self.part.form
         thickness = None
@@ -200,12 +256,10 @@ class SimplifiedPart:
     def remarks(self) -> tuple[str, ...]:
         """What it was found to be, in words."""
         like = self.likeness
-        held = "equal area" if like.form == "plate" else "equal volume"
-        kind = like.form if like.clear else f"other, as no form is good; a {like.form} of {held} is used"
-        kind = kind.replace("a ellipsoid", "an ellipsoid")
+        kind = like.form if like.clear else "no form is good, so it stays a mesh"
         out = [f"{'attachment' if self.cut else 'body'} of {self.volume:.5g} m^3: {kind} ({like.reason})"]
         if not like.clear:
-            out.append("look at it in the overlay; --box around each of its bodies, or --split convex, divides it")
+            out.append("--box around each of its bodies, or --split convex, divides it")
         if self.turned > TOLD:
             out.append(f"pose tidied: turned by {np.degrees(self.turned):.1f} deg to right angles")
         return tuple(out)
@@ -228,6 +282,10 @@ class Simplification:
         Volume of slivers that belong to no part, m^3.
     statements : tuple of str
         What was done to the mesh first.
+    compared : (AddedMass, AddedMass), optional
+        Of the parts and of the mesh, where both were computed.
+    uncompared : str
+        Why not.
     """
 
     body: Body
@@ -236,6 +294,68 @@ class Simplification:
     parts: tuple[SimplifiedPart, ...]
     unassigned: float
     statements: tuple[str, ...]
+    compared: tuple[AddedMass, AddedMass] | None = None
+    uncompared: str = ""
+
+    @property
+    def left_as_mesh(self) -> bool:
+        """Whether nothing was found but the mesh itself."""
+        return len(self.parts) == 1 and isinstance(self.parts[0].part.form, Faceted)
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """Projected areas that are off by more than 20 %, in words; what the edges of plates project is left out."""
+        out = [
+            f"{p.part.name}: {name} {100.0 * error:+.0f} %"
+            for p in self.parts
+            if p.part.fit is not None
+            for name, error in p.part.fit.counting.items()
+            if name.startswith("A") and abs(error) > FAILED
+        ]
+        errors = self._projected() - sum(self._counting(p) for p in self.parts)
+        whole = errors / self.mesh.integrals.projected
+        return (
+            *out,
+            *(f"whole body: A {a} {100.0 * e:+.0f} %" for a, e in zip("xyz", whole, strict=True) if abs(e) > FAILED),
+        )
+
+    @staticmethod
+    def _counting(p: SimplifiedPart) -> Array:
+        """(3,) areas that a piece projects along x, y and z; of a plate without its edges."""
+        own, (vertices, faces) = p.part.form, p.surface
+        corner = vertices[faces]
+        area = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) / 2.0
+        if isinstance(own, Plate):
+            normal = p.part.rotation[:, 2]
+            return np.asarray(np.abs(normal) * np.abs(area @ normal).sum() / 2.0)
+        return np.asarray(np.abs(area).sum(axis=0) / 2.0)
+
+    def agreement_table(self) -> Table:
+        """Added mass of the parts beside the mesh's in six motions; no rows where nothing was compared."""
+        if self.compared is None:
+            return Table("Parts against mesh", (), ())
+        parts, mesh = (np.diag(found.matrix) for found in self.compared)
+        error = np.nan_to_num(np.diag(self.compared[1].error)) if self.compared[1].error is not None else np.zeros(6)
+        entries = (None,) * 6 if self.shape.agreement is None else self.shape.agreement.entries
+        rows = [
+            (f"{c}{m}dot", unit, number(-a, 4), number(-b, 4), f"{e / b:.1%}" if b > e else ABSENT, ABSENT if d is None else _percent(d))
+            for c, m, unit, a, b, e, d in zip(COMPONENTS, MOTIONS, UNITS, parts, mesh, error, entries, strict=True)
+        ]  # fmt: skip
+        headers = ("", "unit", "parts", "mesh", "error of mesh", "parts over mesh, less one")
+        return Table("Parts against mesh", headers, tuple(rows), (self.advice, *self.compared[1].statements[:1]))
+
+    @property
+    def advice(self) -> str:
+        """Which of them to use, in words."""
+        if self.left_as_mesh:
+            return "No form is good: the body stays a mesh, and its added mass is the panel method's."
+        agreement = self.shape.agreement
+        if agreement is None:
+            return f"Parts were not compared with the mesh: {self.uncompared}"
+        if agreement.apart:
+            return f"USE THE MESH: parts are off by more than {APART:.0%}: {', '.join(agreement.apart)}."
+        worst = max((abs(e) for e in agreement.entries if e is not None), default=0.0)
+        return f"Parts agree with the mesh within {worst:.1%} in every motion; {APART:.0%} is the bound."
 
     def part_table(self) -> Table:
         """Sizes and errors part by part."""
@@ -243,9 +363,12 @@ class Simplification:
         for p in self.parts:
             kind, sizes = written(p.part.form)
             size = ", ".join(f"{key.replace('_', ' ')} {value:g}" for key, value in sizes.items())
-            clear = kind if p.likeness.clear else f"other ({kind})"
+            if isinstance(p.part.form, Turned):
+                size = f"length {p.part.form.length:g}, radius {max(p.part.form.radii):g}"
+            if isinstance(p.part.form, Faceted):
+                size = f"{len(p.part.form.mesh.faces)} faces"
             errors = [_percent(e) for e in (p.volume_error, *p.projected_errors, p.length_error)]
-            rows.append((p.part.name, clear, size, number(p.volume, 5), number(p.part.form.volume, 5), *errors))
+            rows.append((p.part.name, kind, size, number(p.volume, 5), number(p.part.form.volume, 5), *errors))
         notes = [
             "errors: form over mesh, less one; A: projected areas along the part's own axes; length: the largest extent, of a plate in span"
         ]
@@ -312,6 +435,14 @@ class Simplification:
             "centre_of_volume": self.shape.centre_of_volume.tolist(),
             "mesh_projected_areas": self.mesh.integrals.projected.tolist(),
             "projected_areas": self._projected().tolist(),
+            "against_mesh": None
+            if self.shape.agreement is None
+            else dict(zip(MOTIONS, self.shape.agreement.entries, strict=True)),
+            "mesh_error": None if self.shape.agreement is None else self.shape.agreement.error,
+            "recommended": "mesh" if self.left_as_mesh or self.shape.rough else "parts",
+            "advice": self.advice,
+            "failures": list(self.failures),
+            "status": "failed" if self.failures else "ok",
             "rules": list(RULES),
             "statements": list(self.statements),
         }
@@ -323,7 +454,7 @@ class Simplification:
             "the overlay, and correct here what is wrong.",
             "Lengths in m, FRD, from the datum. Along its own axes a cylinder or spheroid lies along x; a plate has its "
             "chord along x, its span along y, its normal along z. rotation = [roll, pitch, yaw].",
-            "fit: how well the form matches its piece of the mesh; class other matches none. volume, areas (projected along "
+            "fit: how well the form matches its piece of the mesh; class mesh is the piece itself. volume, areas (projected along "
             "the part's own axes) and length: form over piece, less one. Delete the fit of a part that you correct; "
             "what has none counts as you describe it.",
             "mesh: what the parts replace. Panel method and strips use the mesh itself; delete this table where the parts are to be another body.",
@@ -331,6 +462,11 @@ class Simplification:
             *self.statements,
         )
         return part_file(self.body, self.shape, opening, {p.part.name: p.remarks for p in self.parts}, MESH)
+
+    def mesh_parts(self) -> dict[str, bytes]:
+        """The surfaces of parts that stay meshes, by file, m, along the body's axes from the centre of each."""
+        forms = {mesh_name(p): p.form for p in self.shape.parts if isinstance(p.form, Faceted)}
+        return {name: ply(form.mesh.vertices, form.mesh.faces) for name, form in forms.items()}
 
     def mesh_file(self) -> bytes:
         """The mesh for which the parts stand, as PLY; above 200,000 faces decimated to that many."""

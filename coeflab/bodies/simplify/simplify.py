@@ -5,10 +5,10 @@ Boxes that a person draws around parts of a body.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -16,9 +16,9 @@ from coeflab.bodies.body import Body, Configuration
 from coeflab.bodies.mesh import solids
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate
+from coeflab.bodies.shape import THIN, Faceted, Part, Parts
 from coeflab.bodies.simplify.part_forms import Likeness, Piece, likeness
-from coeflab.bodies.simplify.segmentation import convex_pieces, segments, without_overlap
+from coeflab.bodies.simplify.segmentation import convex_pieces, patches, segments, without_overlap
 from coeflab.bodies.simplify.simplified import KEPT_FACES, Simplification, SimplifiedPart
 from coeflab.core.declarations import Declaration, Text, declared, numbers
 from coeflab.core.errors import InputError, shown
@@ -141,10 +141,10 @@ SNAP, SNAP_CUT = np.radians(0.3), np.radians(2.0)
 SNAP_OFFSET = 5e-4
 ROUNDING = 1e-9
 RESOLUTION = 1e-5
-FORMS: dict[str, Any] = {"cylinder": Cylinder, "plate": Plate, "ellipsoid": Ellipsoid, "box": Box}
-PLURAL = {"cylinder": "cylinders", "plate": "plates", "ellipsoid": "ellipsoids", "box": "boxes", "other": "others"}
+PLURAL = {"box": "boxes", "revolution": "bodies of revolution", "mesh": "meshes"}
 SECTORS = ("starboard", "starboard_bottom", "bottom", "port_bottom", "port", "port_top", "top", "starboard_top")
 SLIVERS, REMNANT, HAIR, CHIPS = 2e-4, 0.2, 1e-6, 0.01
+MOST_PARTED, MANY, WHOLLY = 20_000, 60, 0.97
 
 
 @brief
@@ -155,6 +155,7 @@ class _Piece:
     solid: solids.Solid
     name: str
     cut: bool
+    shell: int = -1  # which one it was cut from; none where a box drew it
 
 
 @one_thread()
@@ -189,16 +190,21 @@ def simplify(
     if mesh is not shape:
         statements.insert(0, f"meshed from its equations with {len(mesh.faces)} faces")
     _refuse_idle_boxes(boxes, mesh)
-    found, unassigned, shared = _pieces(whole, boxes)
+    found, unassigned, shared, shells = _pieces(whole, boxes)
     if shared > SLIVERS * mesh.volume:
         statements.append(f"shells overlap by {shared:.4g} m^3, which goes to the larger one")
     likes = [likeness(p.solid) for p in found]
+    found, likes, lost, said = _parted(found, likes, () if boxes else shells)
+    unassigned += lost
+    statements += said
     if convex:
         found, likes, lost, said = _convex(found, likes)
         unassigned += lost
         statements += said
     unassigned = unassigned if abs(unassigned) > ROUNDING * mesh.volume else 0.0
-    if all(like.form == "plate" for like in likes):
+    largest = max(range(len(found)), key=lambda k: found[k].solid.volume())
+    likes[largest] = _no_thick_plate(likes[largest], found[largest].solid.volume())
+    if all(like.kind == "plate" for like in likes):
         raise InputError(
             "nothing but plates", "at least one part that displaces water",
             advice="Describe them in a body.toml of reader primitives; of one alone coeflab added-mass takes the mesh itself.",
@@ -212,6 +218,16 @@ def simplify(
     parts = _named([_part(p, like, length) for p, like in zip(found, likes, strict=True)])
     made = Parts(tuple(p.part for p in parts))
     return Simplification(_body(body, made), made, mesh, parts, unassigned, tuple(statements))
+
+
+def _no_thick_plate(like: Likeness, volume: float) -> Likeness:
+    """What a body is like: it is no plate, whose volume and edges do not count, unless it is really thin."""
+    if like.kind != "plate":
+        return like
+    thickness = volume / (like.sizes[0] * like.sizes[1] * min(like.sizes))
+    if thickness <= THIN:
+        return like
+    return replace(like, clear=False, reason=f"{like.reason}; the body itself is a plate only up to {THIN:g}")
 
 
 def _whole(mesh: TriangleMesh) -> tuple[solids.Solid, list[str]]:
@@ -269,8 +285,8 @@ def _remnant_of(part: solids.Solid, boxes: Sequence[NamedBox], boxed: Sequence[_
     return None
 
 
-def _pieces(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece], float, float]:
-    """Bodies, named boxes first; the volume of the slivers; and the volume that shells shared."""
+def _pieces(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece], float, float, list[solids.Solid]]:
+    """Bodies, named boxes first; the volume of the slivers; the volume that shells shared; the shells."""
     least = SLIVERS * whole.volume()
     out, rest = _boxed(whole, boxes)
     shells = solids.pieces(rest)
@@ -282,21 +298,95 @@ def _pieces(whole: solids.Solid, boxes: Sequence[NamedBox]) -> tuple[list[_Piece
     alone = [p for s in without_overlap(shells) for p in solids.pieces(s)]
     shared = sum(s.volume() for s in shells) - sum(p.volume() for p in alone)
     unassigned = 0.0
-    for shell in alone:
+    for k, shell in enumerate(alone):
         if shell.volume() <= least:
             unassigned += shell.volume()
             continue
         cut = segments(shell, least / shell.volume())
         for part, attached in zip(cut.bodies, cut.cut, strict=True):
-            k = _remnant_of(part, boxes, out) if attached else None
-            if k is None:
-                out.append(_Piece(part, "", attached))
+            box = _remnant_of(part, boxes, out) if attached else None
+            if box is None:
+                out.append(_Piece(part, "", attached, k))
             else:
-                out[k] = replace(out[k], solid=out[k].solid + part)
+                out[box] = replace(out[box], solid=out[box].solid + part)
         unassigned += cut.unassigned
     if not out:
         raise InputError("nothing but slivers", "at least one body")
-    return out, unassigned, shared
+    return out, unassigned, shared, alone
+
+
+def _parted(
+    found: list[_Piece], likes: list[Likeness], shells: Sequence[solids.Solid]
+) -> tuple[list[_Piece], list[Likeness], float, list[str]]:
+    """Shells parted along their seams where that gives more forms, and all of them forms; what is like nothing parted along
+    its seams, or along faces that meet inward, where all of it is forms then. With the volume that became slivers.
+    """
+    out, forms, lost, said = list[_Piece](), list[Likeness](), 0.0, list[str]()
+    members: dict[int, list[int]] = {}
+    for k, piece in enumerate(found):
+        members.setdefault(piece.shell, []).append(k)
+    for shell, own_numbers in members.items():
+        pieces, own = [found[k] for k in own_numbers], [likes[k] for k in own_numbers]
+        seamed = None
+        if 0 <= shell < len(shells):
+            whole = shells[shell]
+            seamed = _tried(whole, patches, len(own) if all(like.clear for like in own) else 1)
+            if seamed is not None:
+                said.append(_said(whole, seamed[0], "seams"))
+                lost += sum(p.solid.volume() for p in pieces) - sum(p.volume() for p in seamed[0])
+                pieces, own = [_Piece(p, "", False, shell) for p in seamed[0]], seamed[1]
+        for piece, like in zip(pieces, own, strict=True):
+            parted, how = None, "seams"
+            if not like.clear and not piece.name:
+                parted = _tried(piece.solid, patches, 1) if len(own_numbers) > 1 else None
+                if parted is None:
+                    parted, how = _tried(piece.solid, _by_notches, 1), "faces that meet inward"
+            if parted is None:
+                out.append(piece)
+                forms.append(like)
+                continue
+            said.append(_said(piece.solid, parted[0], how))
+            lost += piece.solid.volume() - sum(p.volume() for p in parted[0])
+            out += [replace(piece, solid=p) for p in parted[0]]
+            forms += parted[1]
+    return out, forms, lost, said
+
+
+def _said(whole: solids.Solid, parts: list[solids.Solid], how: str) -> str:
+    return f"a body of {whole.volume():.5g} m^3 parted along {how} into {len(parts)} forms"
+
+
+def _tried(
+    whole: solids.Solid, way: Callable[[solids.Solid], list[solids.Solid]], more_than: int
+) -> tuple[list[solids.Solid], list[Likeness]] | None:
+    """More parts than so many, all of them forms but for chips, that fill the solid; else None."""
+    if whole.num_tri() > MOST_PARTED:
+        return None
+    least = CHIPS * whole.volume() / MANY
+    parts = [p for p in way(whole) if p.volume() > least]
+    if not more_than < len(parts) <= MANY:
+        return None
+    if abs(sum(p.volume() for p in parts) / whole.volume() - 1.0) > 1.0 - WHOLLY:
+        return None
+    likes = [likeness(p) for p in parts]
+    if way is patches:
+        parts, likes = _notched_too(parts, likes)
+    good = sum(p.volume() for p, like in zip(parts, likes, strict=True) if like.clear)
+    return (parts, likes) if good > WHOLLY * whole.volume() else None
+
+
+def _notched_too(parts: list[solids.Solid], likes: list[Likeness]) -> tuple[list[solids.Solid], list[Likeness]]:
+    """What came out of seams and is like nothing, parted along faces that meet inward."""
+    out, forms = list[solids.Solid](), list[Likeness]()
+    for part, like in zip(parts, likes, strict=True):
+        more = None if like.clear else _tried(part, _by_notches, 1)
+        out += [part] if more is None else more[0]
+        forms += [like] if more is None else more[1]
+    return out, forms
+
+
+def _by_notches(of: solids.Solid) -> list[solids.Solid]:
+    return convex_pieces(of, by_notches=True)
 
 
 def _convex(found: list[_Piece], likes: list[Likeness]) -> tuple[list[_Piece], list[Likeness], float, list[str]]:
@@ -323,16 +413,27 @@ def _convex(found: list[_Piece], likes: list[Likeness]) -> tuple[list[_Piece], l
 
 def _part(piece: _Piece, like: Likeness, length: float) -> SimplifiedPart:
     """The form in round numbers: sizes to 1e-5 of the body's length, angles to 0.01 deg, near-right angles right."""
+    surface = solids.surface(piece.solid)
+    own = Piece.of(surface)
+    if not like.clear:
+        form, centre = Faceted.about_its_centre(TriangleMesh(*surface))
+        part = Part(piece.name, form, centre, np.eye(3))
+        areas, extents = own.projected(np.eye(3)), own.extents(np.eye(3))
+        return SimplifiedPart(part, like, own.volume, areas, extents, piece.cut, 0.0, surface).with_fit()
     decimals = int(np.ceil(-np.log10(RESOLUTION * length)))
     turn = snapped(like.rotation, SNAP_CUT if piece.cut or piece.name else SNAP)
     turned = float(np.arccos(np.clip((np.trace(turn.T @ like.rotation) - 1.0) / 2.0, -1.0, 1.0)))
     turn = rotation(*(np.radians(np.round(np.degrees(a), 2)) for a in angles(turn)))
     centre = np.where(np.abs(like.centre) < np.array([0.0, 1.0, 1.0]) * SNAP_OFFSET * length, 0.0, like.centre)
-    sizes = [round(s, decimals) if s > 100.0 * RESOLUTION * length else float(f"{s:.3g}") for s in like.sizes]
-    form: Form = FORMS[like.form](*sizes)
-    part = Part(piece.name, form, np.asarray(np.round(centre, decimals) + 0.0), turn)
-    own = Piece.of(solids.surface(piece.solid))
-    return SimplifiedPart(part, like, own.volume, own.projected(turn), own.extents(turn), piece.cut, turned).with_fit()
+    finest = 100.0 * RESOLUTION * length
+    sizes = tuple(float(round(s, decimals) if s > finest else f"{s:.3g}") for s in like.sizes)
+    if like.form == "revolution":
+        sizes = tuple(float(round(s, decimals)) + 0.0 for s in like.sizes)
+    made = replace(like, sizes=sizes).made
+    part = Part(piece.name, made, np.asarray(np.round(centre, decimals) + 0.0), turn)
+    return SimplifiedPart(
+        part, like, own.volume, own.projected(turn), own.extents(turn), piece.cut, turned, surface
+    ).with_fit()
 
 
 def _named(parts: list[SimplifiedPart]) -> tuple[SimplifiedPart, ...]:
@@ -362,7 +463,7 @@ def _place(p: SimplifiedPart, hull: SimplifiedPart) -> str:
 
 def _counted(likes: Sequence[Likeness]) -> list[str]:
     forms = [like.kind for like in likes]
-    return [f"{forms.count(f)} {PLURAL[f] if forms.count(f) > 1 else f}" for f in dict.fromkeys(forms)]
+    return [f"{forms.count(f)} {PLURAL.get(f, f + 's') if forms.count(f) > 1 else f}" for f in dict.fromkeys(forms)]
 
 
 def _body(body: Body, shape: Parts) -> Body:

@@ -54,8 +54,9 @@ def mesh_body(
             )
         return read_body(path)
     own_unit, own_axes = SELF_DESCRIBED.get(path.suffix.lower().lstrip("."), ("", ""))
+    scale = _factor(unit or own_unit, path)
     turn = parse_axes(_declared(axes or own_axes), file=path, key="--axes").rotation
-    return _bare(path, _factor(unit or own_unit, path), turn, repair, fill, sheets)
+    return _bare(path, scale, turn, repair, fill, sheets)
 
 
 def names_body(name: str) -> bool:

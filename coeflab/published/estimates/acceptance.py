@@ -101,10 +101,11 @@ def suboff(name: str, with_ring: bool) -> Body:
         Its reader gives no outline.
     """
     body = read_body(Path(shipped("geometry")) / name / "body.toml")
-    if body.outline is None:
+    seen = body.outline
+    if seen is None:
         raise InputError(f"{name} without an outline", "a body whose reader knows its hull and fins")
-    found = replace(body.outline, rings=(ring_wing(),) if with_ring else ())
-    return replace(body, outlined=lambda: found)
+    whole = replace(seen, rings=(ring_wing(),) if with_ring else ())
+    return replace(body, outlined=lambda: whole)
 
 
 def rows() -> tuple[Row, ...]:

@@ -106,7 +106,7 @@ def slope_figure(sweep: Sweep, row: AnswerRow, published: str = "", at: float | 
         framed_legend(figure, handles, 6.0, HEIGHT - 4.0 - rows * ROW)
         panel = numbers(axes, series, across, quotient, factor)
         svg = svg_text(figure, "answer-slope", title, description)
-    caption = f"{name} is the value at |{sweep.variable}'| = 0. Points slope away where the force is not linear."
+    caption = f"{name} is the value at |{sweep.variable}'| = 0. A linear force puts the points on a horizontal line."
     wrong = ", ".join(sweep.labels[i] for i in sweep.wrong)
     caption += f" Without point {wrong}, which does not fit the others (cross)." if wrong else ""
     caption += f" {left_out} near zero {'lies' if left_out == 1 else 'lie'} outside the frame." if left_out else ""
@@ -371,7 +371,7 @@ TEXT, LETTERING = 126.0, 7.75
 
 def shares_figure(found: Acceptance) -> Figure:
     """Of every table of a publication the largest difference over what is allowed, as a bar; 1 is all of it."""
-    title = "Largest difference over what is allowed, by table"
+    title = "Largest difference over tolerance, by table"
     shares = [[abs(s) for r in t.rows if not np.isnan(s := share(r))] for t in found.tables]
     # Two decimals: further ones differ from one linear algebra to the next, and a page must not.
     largest = np.array([round(min(max(s, default=0.0), WIDEST), 2) for s in shares])
@@ -380,7 +380,7 @@ def shares_figure(found: Acceptance) -> Figure:
     across = (0.0, max(1.05, 1.05 * float(largest.max(initial=0.0))))
     with settings():
         figure, axes = _drawing(
-            TEXT, 32.0, 0, across=across, up=(0.4, n + 0.6), name_across="of what is allowed  [-]",
+            TEXT, 32.0, 0, across=across, up=(0.4, n + 0.6), name_across="of the tolerance  [-]",
             rows=[_cut(t.title) for t in found.tables],
             steps=2,
             size=LETTERING,
@@ -393,7 +393,7 @@ def shares_figure(found: Acceptance) -> Figure:
         axes.axvline(1.0, color=COLOURS["ink"], linewidth=1.2, linestyle=DOTTED, zorder=3)
         notes = [f"{t.title}: {s:.2f}" for t, s in zip(found.tables, largest, strict=True)]
         panel = numbers(
-            axes, [points("share", "share", largest, level, notes)], "of what is allowed  [-]", "table", bars="across"
+            axes, [points("share", "share", largest, level, notes)], "of the tolerance  [-]", "table", bars="across"
         )
         svg = svg_text(figure, "answer-shares", title, said)
     caption = "Right: numbers that hold, of all in that table. A number holds up to 1, the dotted line."

@@ -24,7 +24,16 @@ from coeflab.bodies.mesh.solids import Surface
 from coeflab.bodies.shape import OTHER, Part, Parts
 from coeflab.core.types import Array, brief
 from coeflab.report.document import Figure
-from coeflab.report.figures.body_scene import COLOUR_OF, POOR, form_name, is_poor, normals, part_facets, picture_surface
+from coeflab.report.figures.body_scene import (
+    COLOUR_OF,
+    POOR,
+    form_name,
+    is_convex,
+    is_poor,
+    normals,
+    part_facets,
+    picture_surface,
+)
 from coeflab.report.figures.svg import COLOURS, POINTS, settings, svg_text
 from coeflab.report.notation import as_users_wrote
 
@@ -92,7 +101,7 @@ class Sheet:
         depth = [round(float(p.centre @ self.view.axes[2]), 9) for p in shape.parts]
         for i in sorted(range(len(depth)), key=lambda i: (depth[i], i)):
             part = shape.parts[i]
-            self._part(part_facets(part), COLOUR_OF[form_name(part.form)], is_poor(part))
+            self._part(part_facets(part), COLOUR_OF[form_name(part.form)], is_poor(part), is_convex(part.form))
         if outline is not None:
             self._fill(outline, "band", FILM)
             self._line(outline, "ink", 0.9)
@@ -103,8 +112,12 @@ class Sheet:
         self._fill(outline, "band", BEHIND)
         self._line(outline, "ink", 0.9)
 
-    def _part(self, facets: Array, colour: str, poor: bool) -> None:
-        whole = silhouette.convex_outline(facets.reshape(-1, 3), self.frame)
+    def _part(self, facets: Array, colour: str, poor: bool, convex: bool) -> None:
+        if convex:
+            whole = silhouette.convex_outline(facets.reshape(-1, 3), self.frame)
+        else:
+            toward = normals(facets) @ self.view.axes[2] > 1e-9
+            whole = silhouette.facets_outline(facets[toward] @ self.frame.T)
         if whole.area() <= EDGE_ON * (self.scale * self.extent) ** 2:
             ends = self.on_paper(facets.reshape(-1, 3))
             along = ends @ np.linalg.eigh(np.cov(ends.T))[1][:, 1]

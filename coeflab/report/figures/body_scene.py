@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.meshing import form_surface
 from coeflab.bodies.mesh.solids import Surface, simplified, solid, surface
-from coeflab.bodies.shape import Box, Cylinder, Form, Part, Parts, Plate
+from coeflab.bodies.shape import CLASSES, Box, Cylinder, Ellipsoid, Faceted, Form, Part, Parts, Plate, Turned
 from coeflab.core.types import Array
 from coeflab.report.figures.svg import COLOURS
 
@@ -74,13 +75,22 @@ def normals(facets: Array) -> Array:
 
 
 MOST_FACES = 20_000
-COLOUR_OF = {"cylinder": "a", "plate": "b", "ellipsoid": "c", "box": "d"}
+COLOUR_OF = {
+    "cylinder": "a", "revolution": "a", "plate": "b", "finned": "b", "ellipsoid": "c", "tube": "c", "box": "d", "bar": "d",
+    "mesh": "band",
+}  # fmt: skip
+DRAWN = 2_000
 POOR = ", a poor stand-in"
 
 
 def form_name(form: Form) -> str:
-    """``cylinder``, ``plate``, ``ellipsoid`` or ``box``."""
-    return type(form).__name__.lower()
+    """``cylinder``, ``plate``, ``ellipsoid``, ``box``, ``bar``, ``tube``, ``revolution``, ``finned`` or ``mesh``."""
+    return CLASSES[type(form)]
+
+
+def is_convex(form: Form) -> bool:
+    """Whether its outline is that of its corners."""
+    return isinstance(form, Cylinder | Plate | Box | Ellipsoid)
 
 
 def is_poor(part: Part) -> bool:
@@ -97,8 +107,15 @@ def part_facets(part: Part) -> Array:
         own = plate_facets(form.chord, form.span)
     elif isinstance(form, Box):
         own = box_facets(form.sides)
-    else:
+    elif isinstance(form, Ellipsoid):
         own = ellipsoid_facets(form.axes)
+    elif isinstance(form, Turned):
+        own = lathe_facets(
+            np.array([form.stations[0], *form.stations, form.stations[-1]]), np.array([0.0, *form.radii, 0.0])
+        )
+    else:
+        vertices, faces = form_surface(form, max(DRAWN, len(form.mesh.faces)) if isinstance(form, Faceted) else DRAWN)
+        own = vertices[faces[:, [0, 1, 2, 2]]]
     return np.asarray(own @ part.rotation.T + part.centre)
 
 

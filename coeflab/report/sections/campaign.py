@@ -312,9 +312,9 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     if not found:
         return ()
     text: tuple[str, ...] = (
-        "Every wanted coefficient of each body that our own computations tow, a missing one with its reason; grid: its share of "
-        "the value by the grid study, which U95 holds.",
-        "E = S - D against U_V, ASME V&V 20. A verdict needs tests of the very body at steady angles; else E and U_V have none.",
+        "Coefficients of the bodies that we tow by CFD ourselves; a missing one says why. Grid: the part of U95 that the grid "
+        "study gives, in % of the value.",
+        "E = S - D is compared with U_V (ASME V&V 20). There is a verdict only where the same body was tested, at steady angles.",
     )
     with_values = [one for one in found if any(r.value is not None for r in one.rows)]
     text += tuple(_nothing(one) for one in found if one not in with_values)

@@ -384,6 +384,12 @@ def inspected(table: ForceTable, most: int = 0) -> Table:
     ]
     if left_out:
         notes.insert(0, f"{len(left_out)} of {len(table)} rows are not shown; --rows 0 shows all")
+    spare = (headers[1],) if len(motions) > 1 or table.controls else ()
     return Table(
-        f"{table.name}: SI, FRD", tuple(headers), tuple(rows), ("(...) excluded from fits", *notes), frozenset({0})
+        f"{table.name}: SI, FRD",
+        tuple(headers),
+        tuple(rows),
+        ("(...) excluded from fits", *notes),
+        frozenset({0}),
+        spare,
     )

@@ -2,6 +2,7 @@
 // A zigzag by the fixed-step march of coeflab/motion: the same rates, steps, crossings and figures.
 const zigzagOf = (v, coefficients) => {
   const NEAR = 1e-9, SLOWEST = 1e-9, FLAT = 1e-12, SLACK = 1e-6, MOVING = 1e-3, SECANTS = 8, UNCOVERED = "no data cover it";
+  const ANGLES = { dr: "rudder angle", ds: "stern plane angle", db: "bow plane angle" };
   const law = v.law, many = law.source.length, offset = 1 + law.powers.length, pool = new Float64Array(offset + 2 * many);
   const total = new Float64Array(9), angled = law.angled;
 
@@ -229,7 +230,8 @@ const zigzagOf = (v, coefficients) => {
     const names = [...flags].filter(([, f]) => f.some((x, i) => x && m.time[i] <= when)).map(([n]) => n);
     if (!names.length) return { name, value, unit, status: "ok", why: "" };
     const bare = names.filter((n) => n.endsWith(UNCOVERED)), left = names.filter((n) => !n.endsWith(UNCOVERED));
-    const beyond = [left.length ? `beyond the data in ${left.join(", ")}` : "", bare.length ? `no data on ${bare.map((n) => n.slice(0, -2 - UNCOVERED.length)).join(", ")}` : ""].filter(Boolean).join("; ");
+    const said = (all) => all.map((n) => ANGLES[n] || n).join(", ");
+    const beyond = [left.length ? `beyond the data in ${said(left)}` : "", bare.length ? `no data on ${said(bare.map((n) => n.slice(0, -2 - UNCOVERED.length)))}` : ""].filter(Boolean).join("; ");
     if (turn && decisive(names, "r").length) return { name, value: null, unit, status: "not determined", why: `${beyond}; ${turn}` };
     return { name, value, unit, status: "extrapolated", why: beyond };
   };

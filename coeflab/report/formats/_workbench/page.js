@@ -308,8 +308,8 @@ const mountBench = (root, data, source, prefix = "bench") => {
   const table = (caption, head, rows) => make("table", {}, make("caption", {}, caption), make("thead", {}, make("tr", {}, head.map((t, i) => make("th", { scope: "col", class: i ? "number" : false }, t)))),
     make("tbody", {}, rows.map((r) => make("tr", {}, r.map((c, i) => (i ? make("td", { class: "number" }, c) : make("th", { scope: "row" }, c)))))));
   // A sign without an interval is said with the reason, not as a finding.
-  const byValue = (x) => x.sense.endsWith(" by its value alone");
-  const senseOf = (x) => (byValue(x) ? `${x.sense.replace(" by its value alone", "")}, but ${x.why.replace("no interval: ", "").replaceAll("'", "′")}` : x.sense);
+  const byValue = (x) => x.sense.endsWith(", no U95");
+  const senseOf = (x) => (byValue(x) ? `${x.sense.replace(", no U95", "")}, but ${x.why.replace("no U95: ", "").replaceAll("'", "′")}` : x.sense);
   const show = () => {
     const s = current(), { row, before } = shown, edit = edits[state.index] || { limit: null, dropped: [], without: [] }, has = row.value !== null;
     viewLabels[0].textContent = `${s.component}′ over ${s.variable}′`;
