@@ -71,7 +71,12 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False)
     if as_json:
         from coeflab.cli.as_json import study as study_json
 
-        show.json_object(study_json(study, paths))
+        more = {}
+        if study.shape is not None:
+            from coeflab.cli.vehicle import as_json as of_shape
+
+            more["vehicle"] = of_shape(study)
+        show.json_object(study_json(study, paths) | more)
     else:
         summarise(study)
         written(folder, sorted(files), changed)

@@ -110,7 +110,7 @@ def summarise(study: Study) -> None:
     parts = shape.estimates.shares if show.whole() else None
     show.table(tables.estimates_table(parameters, shape.carried, parts, few=not show.whole()))
     show.table(tables.manoeuvre_table(study.manoeuvres, shape.carried))
-    show.table(tables.particulars_table(shape))
+    show.table(tables.particulars_table(shape, parameters.added_mass))
     for line in shape.missing:
         show.marked("warn", line)
 

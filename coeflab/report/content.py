@@ -206,7 +206,7 @@ def _kept(sections: Sequence[Section]) -> tuple[Section, ...]:
 
 def _document(study: Study, full: bool) -> Document:
     places: set[str] = set()
-    own = [anchor(f"campaign {fit.campaign}", places) for fit in study.fits] if full else []
+    own = [anchor(f"campaign {fit.campaign}", places) for fit in study.fits] if full and study.shape is None else []
     alone = [partial(_alone, study, fit, place, places) for fit, place in zip(study.fits, own, strict=False)]
     sizes = [len(f.sweeps) for f in study.fits]
     with settings(), begun(alone if sum(sizes) > FEW else (), sizes) as drawn:

@@ -11,9 +11,10 @@ from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.law.added_mass import potential_part
-from coeflab.law.coefficient import Coefficient, Status
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.symbols import derivative, primed
 from coeflab.vehicle.comparison import coefficient_set
+from coeflab.vehicle.force_law import points_of
 from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterCovariance
 
@@ -67,7 +68,8 @@ def merged(base: ParameterFile, other: ParameterFile, name: str = "") -> Merged:
     """The base with every number that the other has: converted to the base's length, moved to its reference point.
 
     A force law is one: where the other gives terms of second or higher degree in some motions of a component, the base's
-    terms of second or higher degree in these motions are left out. Covariance between both is zero.
+    terms of second or higher degree in these motions are left out; so are estimates of such terms that take the law away from
+    the other's measured points. Covariance between both is zero.
 
     Parameters
     ----------
@@ -97,7 +99,7 @@ def merged(base: ParameterFile, other: ParameterFile, name: str = "") -> Merged:
     if not taken:
         raise InputError(f"no number of {other.name} that is none of an estimate", "a fitted or measured coefficient")
     curved = {_place(s) for s in taken} - {None}
-    entries: list[tuple[Coefficient, int, int]] = []
+    entries: list[Entry] = []
     replaced = []
     for i, c in enumerate(ours.coefficients):
         if c.symbol in taken:
@@ -112,14 +114,49 @@ def merged(base: ParameterFile, other: ParameterFile, name: str = "") -> Merged:
         if symbol not in ours:
             entries.append((theirs.coefficients[j], 1, j))
             replaced.append(Replaced(primed(symbol), None, theirs.coefficients[j]))
+    made = _joined(base, other, (ours, theirs), entries, replaced, name)
+    for symbol in _against_points(made):
+        entries = [e for e in entries if e[0].symbol != symbol]
+        replaced.append(Replaced(primed(symbol), ours[symbol], None))
+        made = _joined(base, other, (ours, theirs), entries, replaced, name)
+    return Merged(made.model_copy(update={"law_at_points": points_of(made)}), tuple(replaced))
+
+
+Entry = tuple[Coefficient, int, int]  # a coefficient, from which of both files, and its row there
+
+
+def _joined(
+    base: ParameterFile, other: ParameterFile, both: tuple[CoefficientSet, CoefficientSet], entries: Sequence[Entry],
+    replaced: Sequence[Replaced], name: str,
+) -> ParameterFile:  # fmt: skip
     covariance = np.zeros((len(entries), len(entries)))
     for a, (_, source, i) in enumerate(entries):
         for b, (_, other_source, j) in enumerate(entries):
             if source == other_source:
-                covariance[a, b] = (ours, theirs)[source].covariance[i, j]
+                covariance[a, b] = both[source].covariance[i, j]
     void = np.isnan(np.diag(covariance))
     covariance[void, :] = covariance[:, void] = np.nan
-    return Merged(_written(base, other, [e[0] for e in entries], covariance, replaced, name), tuple(replaced))
+    return _written(base, other, [e[0] for e in entries], covariance, replaced, name)
+
+
+def _against_points(made: ParameterFile) -> tuple[str, ...]:
+    """Estimated terms of second or higher degree that take the law away from measured points, component by component."""
+    out: list[str] = []
+    now = {(p.component, p.table): p.rms for p in points_of(made)}
+    for table in made.measured:
+        moves = {m.name for m in table.motion}
+        for component in dict.fromkeys(f.component for f in table.forces):
+            mine = [
+                c for c in estimates_of(made)
+                if (place := _place(c.symbol)) is not None and place[0] == component and place[1] <= moves
+            ]  # fmt: skip
+            if not mine or (component, table.table) not in now:
+                continue
+            without = made.model_copy(update={"coefficients": tuple(c for c in made.coefficients if c not in mine)})
+            then = {(p.component, p.table): p.rms for p in points_of(without)}
+            if then[component, table.table] < now[component, table.table]:
+                out += [c.symbol.removesuffix("'") for c in mine]
+    return tuple(dict.fromkeys(out))
 
 
 def _place(symbol: str) -> tuple[str, frozenset[str]] | None:
@@ -142,8 +179,13 @@ def _written(
         booked = hull is not None and c.value is not None and c.law != "rest"
         potential = potential_part(c.symbol, hull, base.scaling, hull.density) if booked and hull is not None else None
         rows.append(replace(c, symbol=primed(c.symbol), value_si=si, unit_si=bare.unit, potential=potential))
-    notes = [f"{r.symbol} from {other.name}" if r.after is not None else f"{r.symbol} left out: {other.name} has another "
-             "term of that motion" for r in replaced]  # fmt: skip
+    taken = [r.symbol for r in replaced if r.after is not None]
+    gone = [r.symbol for r in replaced if r.after is None]
+    notes = [f"from {other.name}: {', '.join(taken)}"]
+    notes += [f"estimates left out beside the law of {other.name}: {', '.join(gone)}"] if gone else []
+    same = np.allclose(base.reference_point.point, other.reference_point.point) and np.isclose(
+        other.conditions.density, at.density
+    )
     content = {k: getattr(base, k) for k in type(base).model_fields}
     mine, theirs = base.provenance, other.provenance
     content |= {
@@ -161,15 +203,15 @@ def _written(
         "surfaces": base.surfaces or other.surfaces,
         "models": (*base.models, *other.models),
         "covered": (*base.covered, *other.covered),
-        "measured": (*base.measured, *other.measured),
-        "law_holds": (*base.law_holds, *other.law_holds),
+        "measured": (*base.measured, *(other.measured if same else ())),
+        "law_holds": (*base.law_holds, *(other.law_holds if same else ())),
         "law_at_points": (),
         "provenance": mine.model_copy(
             update={
                 "coeflab_version": VERSION,
                 "inputs": tuple(dict.fromkeys((*mine.inputs, *theirs.inputs))),
                 "citations": tuple(dict.fromkeys((*mine.citations, *theirs.citations))),
-                "notes": (*mine.notes, *theirs.notes, *notes),
+                "notes": tuple(dict.fromkeys((*mine.notes, *theirs.notes, *notes))),
             }
         ),
     }

@@ -24,9 +24,10 @@ from coeflab.report.content import document
 from coeflab.report.sections.estimates import estimates_table, main_spread, manoeuvre_table, shares_figure
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan, Study
+from coeflab.vehicle.force_law import full_force
 from coeflab.vehicle.from_shape import Stated, spread_of, weighed
 from coeflab.vehicle.merge import merged
-from coeflab.vehicle.parameter_file import read_parameter_file
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.workbench import run
 from coeflab.workbench.vehicle import asked, from_shape
 
@@ -230,10 +231,9 @@ def test_an_option_that_is_no_number_is_named(bare: Body, option: str, text: str
         asked(bare, **{option: text})
 
 
-def test_a_fit_replaces_estimates_one_by_one(steered: Study) -> None:
-    (base,) = steered.parameter_files.values()
+def fitted(base: ParameterFile, keep: dict[str, tuple[str, float]], **more: object) -> ParameterFile:
+    """A file of some numbers of another, as a fit would give them."""
     content = json.loads(base.to_json())
-    keep = {"Yv'": ("Yv'", -0.025), "Nv'": ("Nv'", -0.014), "Yv|v|'": ("Yvvv'", -0.2)}
     rows = []
     for c in content["coefficients"]:
         if c["symbol"] in keep:
@@ -241,8 +241,36 @@ def test_a_fit_replaces_estimates_one_by_one(steered: Study) -> None:
             rows.append({**c, "symbol": symbol, "value": value, "u95": 0.001, "status": "ok", "origin": "fit",
                          "campaign": "tow", "value_si": None, "potential": None})  # fmt: skip
     content |= {"name": "tow", "coefficients": rows, "covariance": {"symbols": [], "matrix": []}, "added_mass": None}
-    other = type(base).model_validate_json(json.dumps(content))
-    made = merged(base, other, "both")
+    return ParameterFile.model_validate_json(json.dumps(content | more))
+
+
+def test_estimates_that_take_the_law_off_measured_points_go(steered: Study) -> None:
+    """A fit that is straight in r over its arm: the estimated Nr|r| bends the law away from these points, Yv|v| touches none."""
+    (base,) = steered.parameter_files.values()
+    keep = {"Yr'": ("Yr'", 0.004), "Nr'": ("Nr'", -0.006)}
+    bare = fitted(base, keep)
+    r = np.array([-0.4, -0.2, 0.2, 0.4])
+    states = np.zeros((4, 6))
+    states[:, 0], states[:, 5] = base.conditions.speed, r
+    moment = full_force(bare)(states, np.zeros((4, 3)))[:, 5]
+    table = {
+        "table": "arm.csv", "campaign": "tow", "labels": ["1", "2", "3", "4"],
+        "motion": [{"name": "u", "values": states[:, 0].tolist()}, {"name": "r", "values": r.tolist()}],
+        "forces": [{"component": "N", "values": moment.tolist(), "at_rest": [0.0] * 4, "scatter": None}],
+    }  # fmt: skip
+    made = merged(base, fitted(base, keep, measured=[table]))
+    left = {c.symbol for c in made.estimates}
+    assert "Nr|r|'" not in left
+    assert "Yv|v|'" in left
+    assert [x.share for x in made.parameters.law_at_points if x.component == "N"] == pytest.approx([0.0], abs=1e-9)
+    assert "Nr|r|'" in {c.symbol for c in merged(base, bare).estimates}
+
+
+def test_a_fit_replaces_estimates_one_by_one(steered: Study) -> None:
+    (base,) = steered.parameter_files.values()
+    made = merged(
+        base, fitted(base, {"Yv'": ("Yv'", -0.025), "Nv'": ("Nv'", -0.014), "Yv|v|'": ("Yvvv'", -0.2)}), "both"
+    )
     left = {c.symbol for c in made.estimates}
     assert left == {"Xu|u|'", "Yr'", "Nr'", "Nr|r|'", "Ydr'", "Ndr'"}
     assert [(r.symbol, r.after is None) for r in made.replaced] == [

@@ -9,6 +9,7 @@ import numpy as np
 
 from coeflab.core.table import ABSENT, Severity, Table, number, percent, with_u95
 from coeflab.core.wording import listed
+from coeflab.law.added_mass import AddedMass
 from coeflab.law.coefficient import Coefficient
 from coeflab.law.symbols import CONTROLS, derivative, primed
 from coeflab.motion.manoeuvre import Simulation
@@ -16,6 +17,7 @@ from coeflab.motion.uncertainty.uncertainty import Carried, Importance, Spread
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure, Section
 from coeflab.report.figures.motion import track_figures
 from coeflab.report.figures.uncertainty import bars
+from coeflab.report.tables import nouns as noun_tables
 from coeflab.report.tables.uncertainty import shown_unit
 from coeflab.study.study import FromShape, Study
 from coeflab.vehicle.derived import sense, stability
@@ -52,8 +54,8 @@ def main_spread(carried: Sequence[Carried]) -> tuple[Spread, Importance] | None:
     return None
 
 
-def particulars_table(shape: FromShape) -> Table:
-    """Displacement, centres, areas, mass and inertia, with what is assumed in the notes."""
+def particulars_table(shape: FromShape, hull: AddedMass | None = None) -> Table:
+    """Displacement, centres, areas, mass, inertia and added mass, with what is assumed in the notes."""
     c, rho = shape.weighed.configuration, shape.conditions.density
     rows = [("displacement", number(rho * (c.volume or 0.0)), "kg"), ("volume", number(c.volume, 5), "m^3")]
     datum = shape.weighed.body.datum
@@ -70,7 +72,14 @@ def particulars_table(shape: FromShape) -> Table:
     rows.append(("wetted surface", number(c.wetted_surface), "m^2"))
     if c.projected_areas is not None:
         rows.append(("projected areas along x, y, z", _three(c.projected_areas), "m^2"))
-    notes = (f"points from the {datum}, FRD; inertia about {_three(shape.weighed.body.reference_point)} m", *shape.said)
+    if hull is not None:
+        along, about = np.diag(hull.matrix)[:3], np.diag(hull.matrix)[3:]
+        rows += [("added mass along x, y, z", _three(along), "kg"), ("added inertia x, y, z", _three(about), "kg m^2")]
+    by = f"; added mass by {hull.method}" if hull is not None else ""
+    notes = (
+        f"points from the {datum}, FRD; inertia about {_three(shape.weighed.body.reference_point)} m{by}",
+        *shape.said,
+    )
     return Table(
         f"{shape.weighed.body.name}: particulars", ("", "value", "unit"), tuple(rows), notes, frozenset({0, 2})
     )
@@ -264,7 +273,10 @@ def estimates_sections(study: Study) -> tuple[Section, ...]:
         return ()
     shape, (name, parameters) = study.shape, next(iter(study.parameter_files.items()))
     figure = shares_figure(parameters, shape.carried, f"shares-{name}"[:60].replace("_", "-"))
-    tables = [particulars_table(shape), estimates_table(parameters, shape.carried, shape.estimates.shares)]
+    tables = [
+        particulars_table(shape, parameters.added_mass),
+        estimates_table(parameters, shape.carried, shape.estimates.shares),
+    ]
     text = (ESTIMATED, SHARES) if figure is not None else (ESTIMATED,)
     notes = tuple(f"{n[:1].upper()}{n[1:]}." for n in shape.estimates.notes)
     missing = (
@@ -276,7 +288,9 @@ def estimates_sections(study: Study) -> tuple[Section, ...]:
         f"{c.part}, {c.kind} by {c.method}: {c.outside}." for c in shape.estimates.contributions if c.outside
     )
     works = Section("methods", "Methods of the estimates", (*notes, *outside), (_methods(shape),), appendix=True)
-    subsections = tuple(s for s in (missing, works) if s is not None)
+    hull = parameters.added_mass
+    matrix = Section("added-mass-used", "Added mass", tables=(noun_tables.matrix(hull),)) if hull is not None else None
+    subsections = tuple(s for s in (missing, matrix, works) if s is not None)
     return (
         Section("coefficients", "Estimates", text, tuple(tables), (figure,) if figure is not None else (), subsections),
     )
