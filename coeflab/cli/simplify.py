@@ -39,6 +39,9 @@ def command(
     parts: int | None = typer.Option(
         None, "--parts", metavar="COUNT", min=1, help="How many parts there must be; else an error."
     ),
+    panels: int = typer.Option(
+        6_000, "--panels", metavar="COUNT", min=0, help="Of the panel method on the mesh; 0: parts are not compared."
+    ),
     out: Path | None = typer.Option(
         None, "--out", metavar="FOLDER", help="Folder to write; without it NAME_simplified."
     ),
@@ -64,7 +67,8 @@ def command(
         raise InputError(shown(split), "convex, or no --split", column="--split")
     named = tuple(parse_box(text) for text in box) + (read_boxes(boxes) if boxes is not None else ())
     with show.narrated():
-        found = against_mesh(simplify(mesh_body(mesh, unit, axes, repair), named, parts, split == "convex"))
+        made = simplify(mesh_body(mesh, unit, axes, repair), named, parts, split == "convex")
+        found = against_mesh(made, panels=panels)
     name = found.body.name
     folder = out if out is not None else Path(name)
     figure = body_figure(Verbatim(name), found.shape, found.mesh, "overlay")

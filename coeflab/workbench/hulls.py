@@ -150,7 +150,7 @@ def added_masses(
 
 
 @one_thread()
-def against_mesh(found: Simplification, density: float = 1000.0) -> Simplification:
+def against_mesh(found: Simplification, density: float = 1000.0, panels: int = 6_000) -> Simplification:
     """The added mass of the parts beside the panel method on the mesh, in six motions.
 
     Parameters
@@ -158,6 +158,8 @@ def against_mesh(found: Simplification, density: float = 1000.0) -> Simplificati
     found : Simplification
     density : float
         kg/m^3.
+    panels : int
+        On the mesh; none: they are not compared.
 
     Returns
     -------
@@ -166,8 +168,10 @@ def against_mesh(found: Simplification, density: float = 1000.0) -> Simplificati
     """
     if found.left_as_mesh:
         return found
+    if not panels:
+        return replace(found, uncompared="that was not asked for")
     try:
-        mesh = ADDED_MASS.load("panel").added_mass(replace(found.body, shape=found.mesh), density, None)
+        mesh = ADDED_MASS.load("panel").added_mass(replace(found.body, shape=found.mesh), density, {"panels": panels})
         parts = ADDED_MASS.load("primitives").added_mass(found.body, density, None)
     except InputError as why:
         return replace(found, uncompared=f"found {why.found}; expected {why.expected}")

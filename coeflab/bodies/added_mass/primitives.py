@@ -24,7 +24,6 @@ from coeflab.bodies.closed_forms import (
     lamb_end_correction,
     plate_added_mass,
     rectangle,
-    strip_added_mass,
 )
 from coeflab.bodies.mesh import solids
 from coeflab.bodies.mesh.mesh import TriangleMesh
@@ -52,7 +51,8 @@ from coeflab.core.options import one_of, parse_options
 from coeflab.core.types import locked
 from coeflab.law.added_mass import AddedMass, composed
 
-KEPT_FACES, EDGED = 20_000, 4.0 / 3.0  # order of the panel method at right-angled edges
+KEPT_FACES = 20_000
+SMOOTH, EDGED = 2.0, 4.0 / 3.0  # orders of the panel method, without and with right-angled edges
 
 
 def like_one_plate(mesh: TriangleMesh) -> Part | None:
@@ -83,7 +83,7 @@ def like_one_plate(mesh: TriangleMesh) -> Part | None:
     return Part("plate", Plate(chord, span), like.centre, like.rotation)
 
 
-summary = "closed forms of simple parts, panels on tubes and mesh parts, composed by the 6 x 6 transform"
+summary = "closed forms of simple parts, panels on tubes, revolutions and meshes, composed by the 6 x 6 transform"
 citations = ("huuv2025", "coeflab_plates", "lamb1932", "fossen2011")
 presets: Mapping[str, Mapping[str, str]] = {"huuv": {"cylinder_ends": "huuv"}}
 
@@ -105,12 +105,12 @@ BARS = (
     "bars: sections of rectangles, across and in turning times Lamb's k2 and k' of the spheroid of equal length and volume; "
     "along, 0.71 of the section to the power 3/2 (own panels)"
 )
-TURNED = "bodies of revolution: sections with Lamb's k1, k2, k' of the spheroid of equal length and volume"
 FINS = (
     "fins on a hull: as plates of both exposed halves, times the gain of sections by the hull (Bryson), an estimate; in roll "
     "each alone"
 )
 PANELS = "{}: the panel method on the part alone, {:,} panels{}"
+PANELLED = Tube | Turned | Faceted
 COARSE, FINE, WALL = 800, 3_200, 0.5
 CROSSED = 0.28  # 1 less 2 / pi over twice pi / 8, with each fin's own turning
 BLUNT = 0.71  # of section area to the power 3/2: panel method, five bars of 2 to 10 widths, 0.68 to 0.74
@@ -137,11 +137,9 @@ def _own(form: Form, density: float, ends: str) -> NDArray[Any]:
         return plate_added_mass(form.chord, form.span, density)
     if isinstance(form, Ellipsoid):
         return ellipsoid_added_mass(form.axes, density)
-    if isinstance(form, Turned):
-        return strip_added_mass(form.quadrature, density, lamb_end_correction(form.length, form.volume))
     if isinstance(form, Finned):
         return density * fins_on_hull(form)
-    if isinstance(form, Tube | Faceted):
+    if isinstance(form, PANELLED):
         return density * by_panels(form).matrix
     if isinstance(form, Bar) and form.height * SLENDEREST_RECTANGLE >= form.width:
         return density * bar_added_mass(form)
@@ -188,7 +186,7 @@ class _Flow:
 
 
 @lru_cache(64)
-def by_panels(form: Tube | Faceted) -> _Flow:
+def by_panels(form: Tube | Turned | Faceted) -> _Flow:
     """(6, 6) per density about the centre of a form without formula; of two meshes, if both can be made, extrapolated."""
     found: list[tuple[NDArray[Any], PanelSolution]] = []
     for count in (FINE, COARSE):
@@ -203,14 +201,17 @@ def by_panels(form: Tube | Faceted) -> _Flow:
         found.append((corners, panel_added_mass(corners, np.zeros(3), compiled=False)))
     fine = found[0][1]
     matrix = fine.matrix
-    if len(found) == 2 and isinstance(form, Tube):
-        ratio = (fine.count / found[1][1].count) ** (EDGED / 2.0)
+    if len(found) == 2 and not isinstance(form, Faceted):
+        order = EDGED if isinstance(form, Tube) else SMOOTH
+        ratio = (fine.count / found[1][1].count) ** (order / 2.0)
         matrix = matrix + (matrix - found[1][1].matrix) / (ratio - 1.0)
+    if not isinstance(form, Faceted):  # round about x: only facets move water
+        matrix = np.diag([matrix[0, 0], *[(matrix[1, 1] + matrix[2, 2]) / 2.0] * 2, 0.0, *[matrix[4, 4]] * 2])
     thin = thin_share(panels_of(found[0][0]))
     return _Flow(locked(matrix), fine.count, all(s.converged for _, s in found), thin)
 
 
-def _corners(form: Tube | Faceted, count: int) -> NDArray[Any]:
+def _corners(form: Tube | Turned | Faceted, count: int) -> NDArray[Any]:
     """Panels on the form; a coarse mesh is divided first."""
     if isinstance(form, Faceted):
         mesh = form.mesh
@@ -235,14 +236,14 @@ def _statements(parts: tuple[Part, ...], ends: str) -> tuple[str, ...]:
         out.append(PLATES)
     if any(isinstance(f, Box) and not isinstance(f, Bar) for f in forms):
         out.append(BOXES)
-    for kind, said in ((Bar, BARS), (Turned, TURNED), (Finned, FINS)):
+    for kind, said in ((Bar, BARS), (Finned, FINS)):
         if any(isinstance(f, kind) for f in forms):
             out.append(said)
     for part in parts:
         form = part.form
         if ends == "huuv" and isinstance(form, Cylinder) and form.length < 2.0 * form.radius:
             out.append(f"{part.name}: shorter than its diameter, sections are a poor model of it")
-        if isinstance(form, Tube | Faceted):
+        if isinstance(form, PANELLED):
             flow = by_panels(form)
             more = "" if flow.converged else ", NOT CONVERGED: do not use it"
             more += f", {flow.thin:.0%} of the surface thinner than its panels are large" if flow.thin > WALL else ""
@@ -301,6 +302,6 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     )
     method = "primitives" if ends == "lamb" else f"primitives:{ends}"
     statements = (*said, *_statements(shape.parts, ends))
-    flows = [by_panels(p.form) for p in shape.parts if isinstance(p.form, Tube | Faceted)]
+    flows = [by_panels(p.form) for p in shape.parts if isinstance(p.form, PANELLED)]
     rough = bool(said) or any(not f.converged or f.thin > WALL for f in flows)
     return AddedMass(matrix, body.reference_point, body.datum, body.name, method, statements, rough=rough)

@@ -448,7 +448,7 @@ def convex_pieces(of: Solid, by_notches: bool = False) -> list[Solid]:
     out, rest = [], of
     for hull in hulls:
         larger = hull if by_notches else _grown(hull)
-        out.append(rest ^ larger)
+        out += pieces(rest ^ larger)
         rest = rest - larger
     return sorted((p for p in out if not p.is_empty()), key=lambda p: -p.volume())
 

@@ -345,6 +345,13 @@ class Simplification:
         return Table("Parts against mesh", headers, tuple(rows), (self.advice, *self.compared[1].statements[:1]))
 
     @property
+    def recommended(self) -> str | None:
+        """``parts`` or ``mesh``; None where they were not compared."""
+        if self.left_as_mesh or (self.shape.agreement is not None and self.shape.agreement.apart):
+            return "mesh"
+        return None if self.shape.agreement is None else "parts"
+
+    @property
     def advice(self) -> str:
         """Which of them to use, in words."""
         if self.left_as_mesh:
@@ -355,7 +362,8 @@ class Simplification:
         if agreement.apart:
             return f"USE THE MESH: parts are off by more than {APART:.0%}: {', '.join(agreement.apart)}."
         worst = max((abs(e) for e in agreement.entries if e is not None), default=0.0)
-        return f"Parts agree with the mesh within {worst:.1%} in every motion; {APART:.0%} is the bound."
+        unsure = f" The mesh's own error is up to {agreement.error:.0%}." if agreement.error > APART / 2.0 else ""
+        return f"Parts agree with the mesh within {worst:.1%} in every motion; {APART:.0%} is the bound.{unsure}"
 
     def part_table(self) -> Table:
         """Sizes and errors part by part."""
@@ -439,7 +447,7 @@ class Simplification:
             if self.shape.agreement is None
             else dict(zip(MOTIONS, self.shape.agreement.entries, strict=True)),
             "mesh_error": None if self.shape.agreement is None else self.shape.agreement.error,
-            "recommended": "mesh" if self.left_as_mesh or self.shape.rough else "parts",
+            "recommended": self.recommended,
             "advice": self.advice,
             "failures": list(self.failures),
             "status": "failed" if self.failures else "ok",
