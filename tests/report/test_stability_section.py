@@ -63,7 +63,7 @@ def test_an_index_is_stable_unstable_or_not_determined_by_its_interval(values, h
     by_index = {row[1]: row for row in section.tables[0].rows}
     assert by_index["G_h"][4] == said
     (sentence,) = [text for text in in_words(study) if "G_h" in text]
-    assert sentence.startswith(f"On a straight course with controls fixed {said}: synthetic (G_h")
+    assert sentence.startswith(f"With controls fixed, straight motion is {said}: synthetic (G_h")
     assert sentence in document(study).sections[0].paragraphs
     (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability"]
     assert chip.text.startswith(f"{said}, G_h = ")
@@ -120,7 +120,7 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     diving = made({**STABLE, "Mw": 6e-2}).model_copy(update={"hydrostatics": None})
     study = with_files(diving)
     (said,) = in_words(study)
-    start = "On a straight course with controls fixed unstable at high speed (no restoring moment), no U95: synthetic"
+    start = "With controls fixed, straight motion is unstable at high speed (no restoring moment), no U95: synthetic"
     assert said.startswith(start)
     assert ", at 1.50 m/s not determined, as BG is not known; stable, no U95: synthetic (G_h" in said
     assert "BG is not known" in in_words(study, with_values=False)[0]

@@ -120,7 +120,7 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
             speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
             each += f", at {speeds} m/s not determined, as BG is not known" if speeds else ""
         out.append(f"{verdict.replace(FAST, f'{FAST} (no restoring moment)')}: {each}")
-    return [f"On a straight course with controls fixed {'; '.join(out)}."] if out else []
+    return [f"With controls fixed, straight motion is {'; '.join(out)}."] if out else []
 
 
 def _value(d: Derived) -> str:
