@@ -395,7 +395,9 @@ def _typed(raw: RawTable, settings: Mapping[str, Setting], asked: Group) -> dict
     show.sentence(asked.text)
     while True:
         try:
-            typed = str(typer.prompt(f"  {asked.name}", default=asked.enter or None))
+            enter = asked.enter
+            prompt = f"  {asked.name} [{enter}]" if enter else f"  {asked.name}"
+            typed = str(typer.prompt(prompt, default="" if enter else None, show_default=False))
             found = {key: _taken(asked.question(key), text) for key, text in asked.answers(typed).items()}
         except InputError as wrong:
             show.error(f"  {wrong}")
@@ -467,7 +469,9 @@ def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
         if column.name in out or error_of(column, out):
             continue
         hint = f"{offer.text}: {offer.why}" if offer.text else offer.why
-        show.sentence(f'Column "{column.name}" ({hint}). Say Y [N], -beta [deg], r\' [-], label, ignore ...')
+        own = column.unit not in ("", "-", "1")
+        example = f"Y or -Y, in the file's {column.unit}" if own else "Y [N], -beta [deg], r' [-]"
+        show.sentence(f'Column "{column.name}" ({hint}). Say {example}, label, ignore ...')
         while column.name not in out:
             try:
                 answer = read_column_map(str(typer.prompt(f"  {column.name}")))

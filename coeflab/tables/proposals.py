@@ -90,6 +90,7 @@ COEFFICIENTS = {
 TURNED = "{} the flow, turned to body axes by the alpha and beta of each row"
 UNITS = {"grad": "deg", "grd": "deg", "deg.": "deg", "sec": "s", "degree": "deg", "degrees": "deg", "°": "deg", "1/s": "rad/s", "s^-1": "rad/s", "n.m": "N*m",
          "n-m": "N*m", "knots": "kn", "kts": "kn", "newton": "N", "newtons": "N", "°/s": "deg/s"}  # fmt: skip
+_MONITOR = re.compile(r"(?i)\b(?:monitor|report|plot)\b(?:\s*\d+)?")
 _ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
 
 
@@ -159,7 +160,20 @@ def _fits(unit: str, dimension: str) -> bool:
 
 
 def _name(column: RawColumn) -> tuple[str, str, bool]:
-    """Plain name, what it rests on, and whether it is certain."""
+    """Plain name, what it rests on, and whether it is certain; of ``Side Force Monitor: Fy`` by both parts."""
+    found = _whole_name(column)
+    if found[0] or ":" not in column.name:
+        return found
+    error = "se_" * column.name.startswith("se_")
+    parts = [_MONITOR.sub("", p).strip() for p in column.name.removeprefix("se_").split(":")]
+    named = dict.fromkeys(n for p in parts if (n := _whole_name(replace(column, name=error + p))[0]))
+    if len(named) == 1:
+        return next(iter(named)), "its name", False
+    return "", f"{' or '.join(named)} by its name" if named else UNKNOWN, False
+
+
+def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
+    """By the name as it stands."""
     if column.means:
         try:
             return str(read_column_map(column.means)), "its format says so", True

@@ -326,18 +326,15 @@ class Group:
 
     @property
     def enter(self) -> str:
-        """What Enter takes; empty where it leaves something open."""
+        """What Enter takes; empty where nothing is offered for the first question."""
         offers = [q.default or q.on_enter for q in self.questions]
-        return ", ".join(offers) if all(offers) else ""
+        return ", ".join(filter(None, offers)) if offers[0] else ""
 
     @property
     def text(self) -> str:
         """What it asks, and what is offered with what it rests on."""
         offers = [f"{q.default} ({q.why})" if len(self.keys) > 1 else q.why for q in self.questions if q.default]
-        return (
-            f"{self.asks}."
-            + f" {'Default' if self.enter else 'Taken if nothing else is said'}: {'; '.join(offers)}." * bool(offers)
-        )
+        return f"{self.asks}." + f" {'Default' if self.enter else 'Unless said'}: {'; '.join(offers)}." * bool(offers)
 
     def answers(self, typed: str) -> dict[str, str]:
         """Texts by key; fewer texts than keys go to those without a default, which the others take.
@@ -350,7 +347,7 @@ class Group:
         parts = self.split(typed)
         if len(parts) > len(self.keys):
             raise InputError(shown(typed), f"at most {len(self.keys)} answers: {', '.join(self.keys)}")
-        defaults = {q.key: q.default for q in self.questions}
+        defaults = {q.key: q.default or q.on_enter for q in self.questions}
         bare = [k for k in self.keys if not defaults[k]]
         said = dict(zip(bare if len(parts) == len(bare) else self.keys, parts))
         return {k: text for k in self.keys if (text := said.get(k, "") or defaults[k])}

@@ -513,6 +513,20 @@ def test_primes_are_counted_in_what_the_row_of_units_says(write_campaign, by: st
     np.testing.assert_allclose(table.forces["Y"], [size * force * y for _, y, _ in rows], rtol=1e-12, atol=1e-12)
 
 
+def test_monitors_with_two_names_are_known_by_the_one_that_both_say() -> None:
+    """STAR-CCM+ writes NAME OF THE MONITOR: NAME OF THE REPORT; where they differ a person says which."""
+    offers = [proposed(RawColumn(name, unit, np.ones(2))) for name, unit in (
+        ("Side Force Monitor: Fy", "kN"), ("se_Yaw Moment Monitor: Mz", "kN*m"), ("Drag Monitor: Fx", "kN"), ("Monitor 1: heat", "kN"),
+    )]  # fmt: skip
+    assert [o.text for o in offers] == ["Y [kN]", "se_N [kN*m]", "", ""]
+    assert "drag or X by its name" in offers[2].why
+
+
+@pytest.mark.parametrize("name", ["Moment um Hochachse", "Giermoment", "Moment de lacet"])
+def test_german_and_french_words_that_end_as_a_standard_error_does(name: str) -> None:
+    assert proposed(RawColumn(name, "Nm", np.ones(2))).text == "N [Nm]"
+
+
 def test_a_unit_of_primes_that_cannot_be_read_is_refused(write_campaign) -> None:
     text = "Drift [deg];CY [E3x];CN [-]\n-4;1;1\n0;0;0\n4;-1;-1\n"
     columns = '\n[columns]\nDrift = "beta"\nCY = "Y\'"\nCN = "N\'"\n'
