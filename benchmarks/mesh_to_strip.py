@@ -26,8 +26,8 @@ import trimesh
 from coeflab.bodies.added_mass import strip
 from coeflab.bodies.mesh.meshing import meshed
 from coeflab.bodies.mesh.solids import box, solid, surface
+from coeflab.bodies.profiles import suboff_meridian
 from coeflab.bodies.readers import mesh
-from coeflab.bodies.readers.groves import meridian
 
 REPEATS = 9
 FACES, MANY = 100_000, 1_000_000
@@ -49,7 +49,7 @@ length = "4356 mm"
 
 def write(folder: Path, faces: int) -> int:
     """The body and its STL; returns the number of faces."""
-    hull = meshed(meridian(), faces)
+    hull = meshed(suboff_meridian(), faces)
     whole = solid(hull.vertices, hull.faces) + box(np.array([-1.3, -0.03, -0.46]), np.array([-0.95, 0.03, 0.0]))
     for k in range(4):
         whole += box(np.array([-4.2, -0.008, 0.0]), np.array([-4.0, 0.008, 0.25])).rotate((90.0 * k, 0.0, 0.0))

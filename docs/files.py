@@ -19,7 +19,7 @@ an editor completes and checks a file: its first line says `#:schema` and the pa
 docs/parameter_file.md explains the parameter file.
 
 - TOML in UTF-8. A key that is not named here is refused; all that is wrong with a file stands in one message, with lines.
-- A bare number is in the unit given here; a text carries its own: `"4.356 m"`, `"20 deg"`, `"6.5 kn"`.
+- A bare number is in the unit given here, a bare angle is 0; a text carries its own: `"4.356 m"`, `"20 deg"`, `"6.5 kn"`.
 - Paths count from the folder of the file.
 """
 COLUMNS = "| Key | Takes | Unit | If absent | Meaning |\n| --- | --- | --- | --- | --- |\n"
@@ -84,6 +84,8 @@ def _takes(field: dict[str, Any]) -> str:
     if field.get("type") == "integer":
         return "whole number"
     if field.get("type") == ["number", "string"]:
+        if field.get("maximum") == 0:
+            return "angle with its unit"
         return "number" + (
             " above zero" if "exclusiveMinimum" in field else " of zero or more" if "minimum" in field else ""
         )

@@ -5,8 +5,9 @@ What every body.toml says beside the shape: names, datum, source, lengths, confi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache, partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -14,10 +15,14 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.bodies.mass_model import MassKeys, MassModel, WaterKeys, modelled
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.source import MeshSource
 from coeflab.bodies.outline import Outline
 from coeflab.bodies.pieces import Control, ControlKeys, Piece
+from coeflab.bodies.recognition import outline_of
 from coeflab.bodies.shape import Shape
+from coeflab.bodies.thrusters import Thruster, ThrusterKeys
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum, DatumKeys
 from coeflab.core.errors import InputError, shown
@@ -32,9 +37,6 @@ from coeflab.law.symbols import derivative
 if TYPE_CHECKING:
     from pydantic import GetJsonSchemaHandler
     from pydantic_core import CoreSchema
-
-
-SAME_VOLUME, SAME_SURFACE = 0.01, 0.03  # printed particulars of one model; sail and planes of a submarine are more
 
 
 @brief
@@ -128,14 +130,17 @@ class Body:
         The length that primes are made with, where the file names one.
     measured : tuple of Measured
         Acceleration derivatives from elsewhere, to be shown beside computed ones.
+    thrusters : tuple of Thruster
     mesh : MeshSource, optional
         Where the shape's parts stand for a mesh: that mesh.
     pieces : tuple of Piece
         The closed pieces that the shape is made of, where its reader knows them.
     controls : tuple of Control
         Which of them turn.
-    outline : Outline, optional
-        What semi-empirical methods see of it, where its reader knows.
+    mass_model : MassModel, optional
+        Where its file gives parts with masses.
+    outlined : callable, optional
+        Makes the outline where the reader knows more of it than the shape.
     """
 
     name: str
@@ -149,10 +154,12 @@ class Body:
     shape: Shape | None = None
     scaling: Scaling | None = None
     measured: tuple[Measured, ...] = ()
+    thrusters: tuple[Thruster, ...] = ()
     mesh: MeshSource | None = None
     pieces: tuple[Piece, ...] = ()
     controls: tuple[Control, ...] = ()
-    outline: Outline | None = None
+    mass_model: MassModel | None = None
+    outlined: Callable[[], Outline] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "lengths", MappingProxyType(dict(self.lengths)))
@@ -166,6 +173,13 @@ class Body:
     def _repr_html_(self) -> str:
         """Outlines and particulars, for notebooks."""
         return html_by("body", self)
+
+    @property
+    def outline(self) -> Outline | None:
+        """What semi-empirical methods see of it, made when first asked for; None of a body without a shape."""
+        if self.outlined is not None:
+            return self.outlined()
+        return None if self.shape is None else outline_of(self.shape, self.controls)
 
     def configuration(self, name: str) -> Configuration | None:
         """The configuration of that name, if the body has it."""
@@ -199,59 +213,6 @@ class Body:
             known = ", ".join(c.name for c in self.configurations)
             raise InputError(f"no configuration {shown(name)} of {self.name}", f"one of {known}")
         return found
-
-
-@dataclass(frozen=True, slots=True)
-class Likeness:
-    """Whether a shape is that of a vehicle.
-
-    Attributes
-    ----------
-    same : bool or None
-        None where nothing but their names can be compared, and these differ.
-    words : str
-        What was compared.
-    """
-
-    same: bool | None
-    words: str
-
-
-def likeness(hull: Body, vehicle: str, stated: Configuration | None, own_file: bool = False) -> Likeness:
-    """Compare a shape with the vehicle that it is to stand for.
-
-    A body that bears the vehicle's name, or whose file has a configuration of that name, is the vehicle unless both its
-    volume and its wetted surface say otherwise. A body of another name is the vehicle where both are known and agree.
-
-    Parameters
-    ----------
-    hull : Body
-        With a shape; its first configuration is computed from it.
-    vehicle : str
-    stated : Configuration or None
-        Of the vehicle, from its particulars.
-    own_file : bool
-        The particulars stand in the hull's own file, which then describes one vehicle.
-    """
-    named = hull.name == vehicle or hull.configuration(vehicle) is not None
-    if (named and own_file) or stated is None:
-        return Likeness(
-            True if named else None, f"the body of {vehicle}" if named else "no particulars to compare with"
-        )
-    own = next(iter(hull.configurations), None)
-    apart, words = [], []
-    for what, unit, limit in (("volume", "m^3", SAME_VOLUME), ("wetted_surface", "m^2", SAME_SURFACE)):
-        ours, theirs = getattr(own, what, None), getattr(stated, what)
-        if ours and theirs:
-            share = ours / theirs - 1.0
-            apart.append(abs(share) > limit)
-            words.append(
-                f"{what.replace('_', ' ')} {ours:.4g} against {theirs:.4g} {unit} ({share:+.1%}, limit {limit:.0%})"
-            )
-    said = ", ".join(words) or "neither volume nor wetted surface to compare"
-    if len(apart) == 2:
-        return Likeness(not (all(apart) if named else any(apart)), said)
-    return Likeness(True if named else False if any(apart) else None, said)
 
 
 def mass_from_primes(mass: float, moment: float, inertia: float | None, by: Scaling, density: float) -> MassProperties:
@@ -534,10 +495,19 @@ class ShapedBodyFile(BodyFile):
         Acceleration derivatives from elsewhere, to be shown beside computed ones.
     control : array of tables
         Parts that turn.
+    thruster : array of tables
+        Thrusters, for manoeuvres and exports.
+    mass : array of tables
+        Parts with masses: they give the mass of the configuration that is computed from the shape.
+    water : table
+        What they float in.
     """
 
     measured: tuple[MeasuredKeys, ...] = ()
     control: tuple[ControlKeys, ...] = ()
+    thruster: tuple[ThrusterKeys, ...] = ()
+    mass: tuple[MassKeys, ...] = ()
+    water: WaterKeys | None = None
 
     def check(self) -> None:
         """Primed values have a length."""
@@ -546,24 +516,64 @@ class ShapedBodyFile(BodyFile):
             expected = "[prime] with length and length_name"
             raise InputError("primed values without a length", expected, column="measured")
 
-    def shaped(self, path: Path, shape: Shape, computed: Configuration, pieces: tuple[Piece, ...] = ()) -> Body:
+    def shaped(
+        self,
+        path: Path,
+        shape: Shape,
+        computed: Configuration,
+        pieces: tuple[Piece, ...] = (),
+        outlined: Callable[[tuple[Control, ...]], Outline] | None = None,
+    ) -> Body:
         """The body with its shape, its pieces, what turns and what was measured.
+
+        Parameters
+        ----------
+        path : Path
+        shape : Shape
+        computed : Configuration
+            From the shape.
+        pieces : tuple of Piece
+        outlined : callable, optional
+            ``outlined(controls)``: the outline, where the reader knows more of it than the shape.
 
         Raises
         ------
         InputError
             A control of a part that is none of the pieces, by file, line and key.
         """
-        controls = []
+        controls: list[Control] = []
+        own = {piece.name for piece in pieces}
+        foils: tuple[str, ...] = ()
+        if isinstance(shape, TriangleMesh) and any(set(one.parts) - own for one in self.control):
+            foils = tuple(foil.name for foil in outline_of(shape).foils)
         for i, one in enumerate(self.control):
             try:
-                controls.append(one.made(pieces))
+                controls.append(one.made(pieces, foils))
             except InputError as why:
                 raise read_toml(path).fail(f"control[{i}].{why.column}", why.found, why.expected) from None
+        model = self._weighed(path, computed, pieces)
+        if model is not None:
+            computed = replace(computed, mass=model.properties(self.body.reference_point))
         return replace(
             self.made(path, shape, (computed,)),
+            mass_model=model,
             scaling=self.prime and self.prime.scaling,
             measured=tuple(m for s in self.measured for m in s.made),
+            thrusters=tuple(t.made for t in self.thruster),
             pieces=pieces,
             controls=tuple(controls),
+            outlined=None if outlined is None else cache(partial(outlined, tuple(controls))),
         )
+
+    def _weighed(self, path: Path, computed: Configuration, pieces: tuple[Piece, ...]) -> MassModel | None:
+        if not self.mass:
+            return None
+        toml = read_toml(path)
+        if computed.volume is None or computed.centre_of_buoyancy is None:
+            raise toml.fail("mass", "masses of a body that displaces nothing", "a shape with a volume")
+        try:
+            return modelled(
+                self.mass, pieces, (self.water or WaterKeys()).density, computed.volume, computed.centre_of_buoyancy
+            )
+        except InputError as why:
+            raise toml.fail(why.column or "mass", why.found, why.expected, why.advice) from None

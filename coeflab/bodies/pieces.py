@@ -124,12 +124,16 @@ class Control:
         A point on the hinge, m, FRD, from the datum.
     axis : (3,) array
         Along the hinge, a unit vector, FRD; a positive angle turns right-handed about it.
+    limit, rate : float, optional
+        Largest angle either way, rad, and how fast it turns, rad/s, where they are stated.
     """
 
     name: str
     parts: tuple[str, ...]
     hinge: Array
     axis: Array
+    limit: float | None = None
+    rate: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "hinge", locked(self.hinge))
@@ -157,12 +161,18 @@ class ControlKeys(takes.Declaration):
     axis : (3,) tuple
         Along the hinge, [x, y, z], FRD; a positive angle turns right-handed about it: [0, 0, 1] for a rudder, positive with
         its trailing edge to port, [0, 1, 0] for stern planes, positive with their trailing edges down.
+    limit : float
+        Largest angle either way; a vehicle is moved with none beyond it.
+    rate : float
+        Of the angle; at once unless given.
     """
 
     name: takes.Text
     parts: takes.Texts
     hinge: takes.Point
     axis: Direction
+    limit: Annotated[takes.Angle, takes.ABOVE_ZERO] | None = None
+    rate: Annotated[takes.Rate, takes.ABOVE_ZERO] | None = None
 
     def check(self) -> None:
         """Something turns, about a direction."""
@@ -171,18 +181,24 @@ class ControlKeys(takes.Declaration):
         if not np.linalg.norm(self.axis) > 0.0:
             raise InputError("an axis without a direction", "[x, y, z], one of them not zero", column="axis")
 
-    def made(self, pieces: tuple[Piece, ...]) -> Control:
+    def made(self, pieces: tuple[Piece, ...], foils: tuple[str, ...] = ()) -> Control:
         """The control of a body of these pieces.
+
+        Parameters
+        ----------
+        pieces : tuple of Piece
+        foils : tuple of str
+            Names of foils that were found on a mesh in one piece; estimates turn them, a tow does not.
 
         Raises
         ------
         InputError
             A part that the body does not have.
         """
-        known = [piece.name for piece in pieces]
+        known = [*(piece.name for piece in pieces), *foils]
         for name in self.parts:
             if name not in known:
                 found = f"no part {shown(name)} of the body"
                 raise InputError(found, f"one of {', '.join(known) or 'none: it is in one piece'}", column="parts")
         axis = np.asarray(self.axis) / np.linalg.norm(self.axis)
-        return Control(self.name, self.parts, self.hinge, axis)
+        return Control(self.name, self.parts, self.hinge, axis, self.limit, self.rate)

@@ -80,6 +80,8 @@ def mirrors(shape: Shape) -> tuple[bool, bool, bool]:
     """
     if isinstance(shape, Revolution):
         return _fore_aft(shape), True, True
+    if isinstance(shape, TriangleMesh) and not len(shape.faces):
+        return False, False, False
     if isinstance(shape, TriangleMesh):
         x, y, z = asymmetries(shape.vertices, shape.faces) < WITHIN
         return bool(x), bool(y), bool(z)
@@ -128,7 +130,7 @@ def must_vanish(shape: Shape, point: Array) -> NDArray[np.bool_]:
 
 EXACT = "Lamb's exact form for one ellipsoid, or ellipsoids too far apart to interact"
 ELSE = (
-    "the panel method; else closed forms with corrected ends, for parts that include plates or do not touch and for a mesh like one plate; else strips with Lamb's end correction; else the ellipsoid of equal volume and proportions; rough guides come last: strips of a short body, an ellipsoid whose projected areas or second moments "
+    "the panel method; else closed forms with corrected ends, for parts and for a mesh like one plate; else strips with Lamb's end correction; else the ellipsoid of equal volume and proportions; rough guides come last: strips of a short body, an ellipsoid whose projected areas or second moments "
     "of volume are off by over 10 %, a mesh as one plate"
 )
 RULE = f"{EXACT}; else {ELSE}"

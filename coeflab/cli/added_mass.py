@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import typer
 
 from coeflab.cli import complete, show
+
+if TYPE_CHECKING:
+    from coeflab.bodies.body import Body
 
 EXAMPLE = "coeflab added-mass suboff_bare_hull"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
@@ -30,6 +35,20 @@ def command(
         "", metavar="AXES", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."
     ),
     repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
+    fill: bool = typer.Option(False, "--fill", help="Close holes of a mesh file, of up to 1 % of its surface each."),
+    sheets: bool = typer.Option(
+        False, "--sheets", help="Open surfaces of a mesh file are walls without thickness, with water on both sides."
+    ),
+    wall: str = typer.Option(
+        "",
+        "--wall",
+        metavar="WALL",
+        help="bottom, surface_zero or surface_infinite (frequency): the panel method against the distance from it.",
+    ),
+    distance: str = typer.Option("", "--distance", metavar="M,M,..", help="From the reference point to the wall, m."),
+    error: str = typer.Option(
+        "", "--error", metavar="SHARE", help="Raise the panels until their error estimate is below it: 2%, 0.02."
+    ),
     density: float = typer.Option(1000.0, "--density", metavar="DENSITY", help="Of the water, kg/m^3."),
     json: bool = typer.Option(False, "--json", help="Print {method: 6 x 6 in SI}; remarks go to standard error."),
 ) -> None:
@@ -45,7 +64,12 @@ def command(
     from coeflab.workbench.hulls import added_masses
 
     with show.narrated():
-        found = added_masses(mesh_body(body, unit, axes, repair), density, method, further(ctx.args))
+        given = mesh_body(body, unit, axes, repair, fill, sheets)
+        if wall or distance:
+            more = further(ctx.args) | ({"error": _share(error)} if error else {})
+            _near(given, density, method, wall, distance, more, json)
+            return
+        found = added_masses(given, density, method, further(ctx.args), error=_share(error) if error else "")
     if json:
         for line in (*(f"{c.name}: {c.title}" for c in found.body.configurations), *tables.remarks(found)):
             show.error(line)
@@ -60,3 +84,41 @@ def command(
     show.table(tables.primes(found))
     for citation in found.citations:
         show.text(f"  {work(citation)}")
+
+
+def _share(text: str) -> str:
+    """As per cent, which the option takes; 0.02 is 2 %."""
+    try:
+        return text if text.rstrip().endswith("%") else f"{100.0 * float(text):.10g}%"
+    except ValueError:
+        return text
+
+
+def _near(
+    body: Body, density: float, method: str, wall: str, distance: str, given: dict[str, int | float | str], json: bool
+) -> None:
+    from coeflab.core.errors import InputError, shown
+    from coeflab.report.tables import added_mass as tables
+    from coeflab.report.tables import nouns as noun_tables
+    from coeflab.workbench.hulls import near_walls
+
+    if not (wall and distance) or method not in ("all", "panel"):
+        raise InputError(
+            "--wall without --distance, or for another method than panel",
+            "--wall bottom --distance 0.5,1,2",
+            column="--wall",
+            advice="Only the panel method knows walls; it needs both.",
+        )
+    try:
+        distances = [float(word) for word in distance.split(",")]
+    except ValueError:
+        raise InputError(shown(distance), "metres with commas, such as 0.5,1,2", column="--distance") from None
+    found = near_walls(body, density, wall, distances, given)
+    if json:
+        far = found[0]
+        walls = [{"wall": w.wall, "distance": w.distance, "matrix": w.matrix.tolist()} for w in far.walls]
+        show.json_object({"method": far.method, "matrix": far.matrix.tolist(), "walls": walls})
+        return
+    for result in found:
+        show.table(noun_tables.matrix(result))
+    show.table(tables.near_walls(found))

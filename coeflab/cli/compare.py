@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from coeflab.core.table import Table
@@ -20,9 +20,14 @@ EXAMPLE = "coeflab compare a.parameters.json b.parameters.json"
 
 def command(
     first: Path = typer.Argument(
-        ..., metavar="PARAMS", help="A parameter file; its length and reference point are kept."
+        ...,
+        metavar="PARAMS",
+        autocompletion=complete.parameters,
+        help="A parameter file; its length and reference point are kept.",
     ),
-    second: Path = typer.Argument(..., metavar="OTHER", help="The parameter file that is compared with it."),
+    second: Path = typer.Argument(
+        ..., metavar="OTHER", autocompletion=complete.parameters, help="The parameter file that is compared with it."
+    ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
     """Compare two parameter files by their combined U95.

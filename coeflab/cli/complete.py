@@ -46,6 +46,26 @@ def studies(incomplete: str) -> list[str]:
     return _or_paths(shipped_ones(), incomplete)
 
 
+def folders(incomplete: str) -> list[str]:
+    """Folders."""
+    return [path for path in _or_paths((), incomplete) if path.endswith("/")]
+
+
+def plans(incomplete: str) -> list[str]:
+    """Shipped plans, and paths."""
+    return _or_paths(_shipped("cfd_data", "plan.toml"), incomplete)
+
+
+def tunings(incomplete: str) -> list[str]:
+    """Shipped plans of a tuning, and paths."""
+    return _or_paths(_shipped("cfd_data", "tune.toml"), incomplete)
+
+
+def parameters(incomplete: str) -> list[str]:
+    """Shipped parameter files, and paths."""
+    return _or_paths(_shipped("cfd_data", "*.parameters.json"), incomplete)
+
+
 def campaigns(incomplete: str) -> list[str]:
     """Shipped campaigns, and paths."""
     return _or_paths(_shipped("cfd_data", "campaign.toml"), incomplete)

@@ -12,7 +12,9 @@ EXAMPLE = "coeflab export reports/suboff/suboff_bare_hull.parameters.json --to x
 
 
 def command(
-    file: Path = typer.Argument(..., metavar="PARAMS", help="A parameter file."),
+    file: Path = typer.Argument(
+        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
+    ),
     to: str = typer.Option(
         ..., "--to", metavar="TARGET", autocompletion=complete.exporters, help="Target (see coeflab formats exporters)."
     ),
@@ -39,6 +41,13 @@ def command(
     made = export(parameters, to, accelerations)
     loss = made.loss
     if loss is not None and not json:
+        whole = (
+            f"{to} holds all of {parameters.name}."
+            if made.lossless
+            else f"{to} does not hold all of {parameters.name}:"
+        )
+        show.text(whole + ("" if made.lossless else f" {loss_tables.in_short(loss)}."))
+        show.text()
         show.table(loss_tables.forces(loss))
         show.table(loss_tables.at_points(loss.at_points, f"Force law of {to}", controls=False))
         if not parameters.measured:
@@ -51,8 +60,8 @@ def command(
         show.json_object({"files": [], **export_json(made)})
     if loss is not None and refused:
         raise InputError(
-            f"{to} cannot hold all of {shown(parameters.name)}: {loss_tables.in_short(loss)}",
-            "a target that holds everything" if strict else "--accept-loss, once the loss above has been read",
+            f"a target that loses part of {shown(parameters.name)}: {loss_tables.in_short(loss)}",
+            "a target that holds everything" if strict else "--accept-loss, to write the rest",
             file=file,
         )
     folder = out if out is not None else file.parent / (made.folder or f"{file_stem(parameters.name)}.{to}")

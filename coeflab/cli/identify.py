@@ -21,7 +21,11 @@ def command(
         ..., metavar="SERIES", help="Time series, CSV with units in the headers: t, u v w p q r, dr ds db ..."
     ),
     params: Path = typer.Option(
-        ..., "--params", metavar="PARAMS", help="Parameter file: mass, inertia, scaling, and what to compare with."
+        ...,
+        "--params",
+        metavar="PARAMS",
+        autocompletion=complete.parameters,
+        help="Parameter file: mass, inertia, scaling, and what to compare with.",
     ),
     terms: str = typer.Option(
         "", metavar="Yv,Yr,...", help="Candidates; file: those of the file; default first and second order."

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from coeflab.tables.conditions import NoConditionError
     from coeflab.tables.force_table import ForceTable
     from coeflab.tables.proposals import Proposal
-    from coeflab.tables.questions import Question, Setting, Understood
-    from coeflab.tables.raw_table import RawColumn, RawTable
+    from coeflab.tables.questions import Group, Question, Understood
+    from coeflab.tables.raw_table import RawColumn, RawTable, SeveralError
+    from coeflab.tables.settings import Setting
 
 
 EXAMPLE = "coeflab import drift.csv --out cfd_data/mine"
@@ -118,23 +119,31 @@ def command(
     from coeflab.tables.conditions import NoConditionError
     from coeflab.tables.imported import checked, contents
     from coeflab.tables.mapping import assigned
-    from coeflab.tables.questions import assumed, doubtful_setting, stated_settings, understood
+    from coeflab.tables.questions import understood
+    from coeflab.tables.raw_table import SeveralError
     from coeflab.tables.reading import importer_of, read_raw
+    from coeflab.tables.settings import assumed, doubtful_setting, stated_settings
 
     file, out = typed(path), typed(out)
     if not force and out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
     said = _said(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
     importer = importer_of(file, said.importer)
-    try:
-        with show.narrated(), show.progress(False) as say:
-            raw = read_raw(file, importer, said.options, say)
-    except NoConditionError as unsaid:
-        if name or runs or not sys.stdin.isatty():
-            raise
-        said.options["names"] = _asked_pattern(unsaid)
-        with show.narrated(), show.progress(False) as say:
-            raw = read_raw(file, importer, said.options, say)
+    sheets: tuple[str, ...] = ()
+    while True:
+        try:
+            with show.narrated(), show.progress(False) as say:
+                raw = read_raw(file, importer, said.options, say)
+            break
+        except SeveralError as several:
+            if not several.choices or not sys.stdin.isatty():
+                raise several if not several.choices else _each(several, path, out) from None
+            sheets = several.choices
+            said.options["sheet"] = _asked_sheet(sheets)
+        except NoConditionError as unsaid:
+            if name or runs or not sys.stdin.isatty():
+                raise
+            said.options["names"] = _asked_pattern(unsaid)
     said.columns |= _mapped(map_, raw)
     settings = assumed(out) | stated_settings(raw) | said.settings
     found = understood(raw, said.columns, settings, yes)
@@ -151,6 +160,39 @@ def command(
     table = checked(made, raw, columns)
     write_all(out, made)
     _written(out, table, settings)
+    others = [s for s in sheets if s != said.options.get("sheet")]
+    _listed(
+        "The other sheets, with the answers of this one",
+        [_of_sheet(path, s, out, out / "mapping.toml") for s in others],
+    )
+
+
+def _of_sheet(path: str, sheet: str, out: Path, mapping: Path | None = None) -> str:
+    """The command that imports one sheet into a folder of its own."""
+    from coeflab.core.wording import identifier
+
+    words = ["coeflab", "import", path, "--option", f"sheet={sheet}", *(["--mapping", str(mapping)] if mapping else [])]
+    return shlex.join([*words, "--out", f"{out}_{identifier(sheet)}"])
+
+
+def _each(several: SeveralError, path: str, out: Path) -> SeveralError:
+    """The error of a file with several tables, with a command for each; fits take several campaigns together."""
+    commands = "; ".join(_of_sheet(path, sheet, out) for sheet in several.choices)
+    made = type(several)(several.found, several.expected, file=several.file, advice=f"One each: {commands}.")
+    made.choices = several.choices
+    return made
+
+
+def _asked_sheet(sheets: Sequence[str]) -> str:
+    """The sheet that is meant, by its name or number."""
+    show.sentence("Sheets with rows of numbers: " + ", ".join(f"{i} {s}" for i, s in enumerate(sheets, start=1)) + ".")
+    while True:
+        typed = str(typer.prompt("  sheet")).strip()
+        if typed in sheets:
+            return typed
+        if typed.isdecimal() and 0 < int(typed[:4]) <= len(sheets):
+            return sheets[int(typed[:4]) - 1]
+        show.error(f"  {typed}: no such sheet")
 
 
 def _asked_pattern(open_: NoConditionError) -> str:
@@ -213,7 +255,7 @@ def _listed(title: str, texts: Sequence[str]) -> None:
 def _said(mapping: Path | None, set_: Sequence[str], option: Sequence[str], as_: str) -> Said:
     """All that the command line and a saved mapping say, but for columns; complaints at once."""
     from coeflab.core.errors import shown, together
-    from coeflab.tables.questions import Setting, read_setting, saved_mapping
+    from coeflab.tables.settings import Setting, read_setting, saved_mapping
 
     out = Said()
     if mapping is not None:
@@ -311,7 +353,7 @@ def _possible(found: Understood) -> None:
 
 
 def _taken(question: Question, text: str) -> Setting:
-    from coeflab.tables.questions import Setting, read_setting
+    from coeflab.tables.settings import Setting, read_setting
 
     return Setting(read_setting(question.key, text), question.why if text == question.default else "confirmed")
 
@@ -320,7 +362,8 @@ def _asked(
     raw: RawTable, said: Mapping[str, ColumnMap], settings: Mapping[str, Setting], found: Understood, yes: bool
 ) -> Settled:
     """Everything, asked for where it is open; a default only where the file or clear evidence gives one."""
-    from coeflab.tables.questions import doubtful_setting, understood
+    from coeflab.tables.questions import alone, together_with, understood
+    from coeflab.tables.settings import doubtful_setting
 
     _listed("Check", [f"warning, {key}: {why}" for key in settings if (why := doubtful_setting(raw, settings, key))])
     answers = {**said, **_asked_columns(raw, found)}
@@ -328,27 +371,42 @@ def _asked(
     shown = {e.text for e in found.shows}
     while True:
         now = understood(raw, answers, settings, yes)
-        _listed("The numbers show", [e.text for e in now.shows if e.text not in shown])
+        fresh = [e for e in now.shows if e.text not in shown]
+        _listed("The numbers show", [e.text for e in fresh])
         shown |= {e.text for e in now.shows}
         _possible(now)
+        against = [e.key for e in fresh if e.key in settings and e.text.startswith("warning")]
+        if against and not typer.confirm(f"  Keep {against[0]} as declared?", default=None):
+            del settings[against[0]]
+            continue
         if not now.questions:
             return now.mapping, settings
         one = now.questions[0]
         if yes and one.default:
             settings[one.key] = _taken(one, one.default)
+        else:
+            settings |= _typed(raw, settings, together_with(one, now.questions) or alone(one))
+
+
+def _typed(raw: RawTable, settings: Mapping[str, Setting], asked: Group) -> dict[str, Setting]:
+    """Settings of one line, asked again until it can be read and doubtful numbers are kept; said back where it is not plain."""
+    from coeflab.tables.settings import PLACE_KEYS, doubtful_setting
+
+    show.sentence(asked.text)
+    while True:
+        try:
+            typed = str(typer.prompt(f"  {asked.name}", default=asked.enter or None))
+            found = {key: _taken(asked.question(key), text) for key, text in asked.answers(typed).items()}
+        except InputError as wrong:
+            show.error(f"  {wrong}")
             continue
-        show.sentence(f"{one.asks}." + (f" Default: {one.why}." if one.default else ""))
-        while one.key not in settings:
-            try:
-                settings[one.key] = _taken(
-                    one, str(typer.prompt(f"  {one.key}", default=one.default or one.on_enter or None))
-                )
-                if why := doubtful_setting(raw, settings, one.key):
-                    show.sentence(f"  warning: {why}.")
-                    if not typer.confirm("  Keep it?", default=None):
-                        del settings[one.key]
-            except InputError as why:
-                show.error(f"  {why}")
+        if len(found) > 1 or set(found) & set(PLACE_KEYS):
+            show.sentence("  Taken: " + "; ".join(f"{key} = {one.value}" for key, one in found.items()) + ".")
+        doubts = [why for key in found if (why := doubtful_setting(raw, {**settings, **found}, key))]
+        for why in doubts:
+            show.sentence(f"  warning: {why}.")
+        if not doubts or typer.confirm("  Keep it?", default=None):
+            return found
 
 
 def _with_sizes(offered: Sequence[tuple[RawColumn, Proposal]]) -> list[tuple[RawColumn, Proposal]]:
@@ -365,8 +423,10 @@ def _with_sizes(offered: Sequence[tuple[RawColumn, Proposal]]) -> list[tuple[Raw
             continue
         whose = "by 1/2 rho U^2 A" if letter == "A" else "of moments, by 1/2 rho U^2 A L"
         show.sentence(f"{dimension.capitalize()} {letter} of the coefficients {', '.join(named)} ({whose}), such as {example}; "
-                      "Enter: each column is asked.")  # fmt: skip
+                      "prime: they are primes by the campaign's length; Enter: each column is asked.")  # fmt: skip
         while typed := str(typer.prompt(f"  {letter}", default="", show_default=False)).strip():
+            if typed.casefold().strip("s") == "prime":
+                return [(c, replace(o, text=_primed(c, o)) if OPEN in o.text else o) for c, o in out]
             try:
                 size = quantity(float(typed) if typed.replace(".", "", 1).isdigit() else typed, dimension)
             except InputError as why:
@@ -378,6 +438,16 @@ def _with_sizes(offered: Sequence[tuple[RawColumn, Proposal]]) -> list[tuple[Raw
             out = [(c, replace(o, text=o.text.replace(want, f"{letter}={size!r} {unit}"))) for c, o in out]
             break
     return out
+
+
+def _primed(column: RawColumn, offer: Proposal) -> str:
+    """The proposal of a coefficient as a prime, counted in what the file says."""
+    from coeflab.tables.column_map import share
+
+    name = offer.text.partition(" [")[0]
+    return (
+        f"{name}' [{column.unit.strip() if share(column.unit) else '-'}]" if "coefficient" in offer.text else offer.text
+    )
 
 
 def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
@@ -411,7 +481,7 @@ def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
 
 def _written(out: Path, table: ForceTable, settings: Mapping[str, Setting]) -> None:
     """What was written, what was taken without a question, and the next command."""
-    from coeflab.tables.questions import CONFIRMED
+    from coeflab.tables.settings import CONFIRMED
 
     taken = [f"{k} = {s.value} ({s.origin})" for k, s in settings.items() if not s.origin.startswith(CONFIRMED)]
     _listed("Taken as it stands", taken)

@@ -96,8 +96,9 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     from coeflab.cli.import_ import described, options_of, point_lines
     from coeflab.core.files import located
     from coeflab.core.wording import identifier
-    from coeflab.tables.questions import open_points, stated_settings, understood
+    from coeflab.tables.questions import open_points, understood
     from coeflab.tables.reading import importer_of, read_raw
+    from coeflab.tables.settings import stated_settings
 
     path = located(table, "cfd_data")
     importer = importer_of(path, importer)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 app = typer.Typer(help="Check a parameter file; print what its fields mean.", no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, add_completion=False)  # fmt: skip
 
@@ -19,7 +19,10 @@ def _root() -> None:
 @app.command(epilog="Example: coeflab params check reports/suboff/suboff_fully_appended.parameters.json")
 def check(
     file: Path = typer.Argument(
-        ..., metavar="PARAMS", help="A parameter file, or a model: SDF, URDF or xacro, xdyn YAML, MSS .m."
+        ...,
+        metavar="PARAMS",
+        autocompletion=complete.parameters,
+        help="A parameter file, or a model: SDF, URDF or xacro, xdyn YAML, MSS .m.",
     ),
     density: float | None = typer.Option(None, metavar="DENSITY", help="kg/m^3, for a model that states none."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),

@@ -6,14 +6,20 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 EXAMPLE = "coeflab report suboff --to html,pdf"
 
 
 def command(
-    study: str = typer.Argument(..., help="A plan.toml, a folder with one, or a validation such as suboff."),
-    to: str = typer.Option("html,pdf", help="Formats, separated by commas; `coeflab formats reporting` lists them."),
+    study: str = typer.Argument(
+        ..., autocompletion=complete.studies, help="A plan.toml, a folder with one, or a validation such as suboff."
+    ),
+    to: str = typer.Option(
+        "html,pdf",
+        autocompletion=complete.reports,
+        help="Formats, separated by commas; `coeflab formats reporting` lists them.",
+    ),
     out: Path | None = typer.Option(None, help="Folder for the files; default reports/STUDY."),
     section: list[str] = typer.Option([], help="Only this section, by its anchor or title; may be repeated."),
     full: bool = typer.Option(False, "--full", help="With the appendix: every budget, point, curve, check and loss."),

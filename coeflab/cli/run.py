@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,7 +24,9 @@ EXAMPLE = "coeflab run my_study/plan.toml"
 
 
 def command(
-    plan: Path = typer.Argument(..., metavar="PLAN", help="The plan.toml, or its folder."),
+    plan: Path = typer.Argument(
+        ..., metavar="PLAN", autocompletion=complete.plans, help="The plan.toml, its folder, or a shipped study."
+    ),
     out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/STUDY."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
@@ -34,11 +36,11 @@ def command(
     Prints the answer first; --wide prints every table.
     """
     from coeflab.core.errors import InputError
-    from coeflab.core.files import typed
+    from coeflab.core.files import named, typed
     from coeflab.study.plan import read_plan
 
     plan = typed(plan)
-    file = plan / "plan.toml" if plan.is_dir() else plan
+    file = plan / "plan.toml" if plan.is_dir() else named(plan, "plan.toml")
     try:
         carry_out(read_plan(file), out, json, strict)
     except InputError as why:
@@ -69,7 +71,12 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False)
     if as_json:
         from coeflab.cli.as_json import study as study_json
 
-        show.json_object(study_json(study, paths))
+        more = {}
+        if study.shape is not None:
+            from coeflab.cli.vehicle import as_json as of_shape
+
+            more["vehicle"] = of_shape(study)
+        show.json_object(study_json(study, paths) | more)
     else:
         summarise(study)
         written(folder, sorted(files), changed)
@@ -95,6 +102,12 @@ def summarise(study: Study) -> None:
     from coeflab.report.answer import answer
     from coeflab.report.tables import models as model_tables
 
+    if study.shape is not None:
+        from coeflab.cli.vehicle import summarise as of_shape
+
+        of_shape(study)
+        findings(study.checks)
+        return
     answered(answer(study, drawn=False))
     models = tuple(m for f in study.fits for m in f.models)
     if show.whole():
@@ -172,6 +185,7 @@ def findings(found: Sequence[Check], *, notes: bool = False) -> None:
 
     counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
     groups: dict[tuple[Severity, str, str, str], list[Check]] = {}
+    notes = notes or show.whole()
     for severity in (Severity.FAIL, Severity.WARN, *((Severity.NOTE,) if notes else ())):
         for c in found:
             if c.severity is severity:
@@ -186,7 +200,8 @@ def findings(found: Sequence[Check], *, notes: bool = False) -> None:
         show.marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {meant}".rstrip())
         for c in same:
             show.text(f"        {c.subject}: {c.statistic}")
-    show.text("Checks: " + ", ".join(f"{n} {name}" for name, n in counts.items()) + ".")
+    hint = {Severity.NOTE.value: " (--wide shows them)"} if counts[Severity.NOTE.value] and not notes else {}
+    show.text("Checks: " + ", ".join(f"{n} {name}{hint.get(name, '')}" for name, n in counts.items()) + ".")
 
 
 def _short(comment: str) -> str:

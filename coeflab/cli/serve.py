@@ -6,13 +6,15 @@ from pathlib import Path
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 EXAMPLE = "coeflab serve reports"
 
 
 def command(
-    folder: Path = typer.Argument(..., help="Folder of reports and parameter files; those below it count too."),
+    folder: Path = typer.Argument(
+        ..., autocompletion=complete.folders, help="Folder of reports and parameter files; those below it count too."
+    ),
     port: int = typer.Option(8765, min=0, max=65535, help="Port on 127.0.0.1; 0 takes any that is free."),
     open_: bool = typer.Option(False, "--open", help="Show the gallery in the browser."),
 ) -> None:

@@ -20,7 +20,9 @@ TABLES = ("csv", "parquet")
 
 def command(
     ctx: typer.Context,
-    file: Path = typer.Argument(..., metavar="PARAMS", help="A parameter file."),
+    file: Path = typer.Argument(
+        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
+    ),
     manoeuvre: str = typer.Option(
         "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="See coeflab formats manoeuvres."
     ),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 from coeflab.core.limits import TABLE_POINTS
 
 if TYPE_CHECKING:
@@ -29,7 +29,9 @@ VALUES = "low:high:step, a number, or numbers with commas"
 
 def command(
     ctx: typer.Context,
-    params: Path = typer.Argument(..., metavar="PARAMS", help="A parameter file with fitted tables."),
+    params: Path = typer.Argument(
+        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file with fitted tables."
+    ),
     response: str = typer.Option("", metavar="NAME", help="Only this response, such as C_D or Y'."),
     out: Path | None = typer.Option(
         None, metavar="FILE.csv", help="File to write; without it the table goes to standard output."

@@ -47,7 +47,7 @@ def command(
         "",
         metavar="NAME",
         autocompletion=complete.solvers,
-        help="openfoam, external ... (coeflab formats); default openfoam.",
+        help="openfoam, external, estimate ... (coeflab formats); default openfoam.",
         show_default=False,
     ),
     out: Path = typer.Option(

@@ -18,7 +18,9 @@ EXAMPLE = "coeflab trim vehicle.parameters.json --speed 1.5 --yaw-rate 3"
 
 
 def command(
-    file: Path = typer.Argument(..., metavar="PARAMS", help="A parameter file."),
+    file: Path = typer.Argument(
+        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
+    ),
     speed: str = typer.Option("", metavar="VALUE", help='u, bare in m/s, or with its unit: "3 kn".'),
     sway: str = typer.Option("", metavar="VALUE", help="v, bare in m/s."),
     heave: str = typer.Option("", metavar="VALUE", help="w, bare in m/s."),

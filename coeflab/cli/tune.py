@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from coeflab.cli import show
+from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from coeflab.workbench.tune import Tuned
@@ -19,7 +19,10 @@ EXAMPLE = "coeflab tune cfd_data/huuv/tune.toml"
 
 def command(
     plan: Path = typer.Argument(
-        ..., metavar="PLAN", help="A TOML file: [tune], [measured] and one [[free]] a parameter."
+        ...,
+        metavar="PLAN",
+        autocompletion=complete.tunings,
+        help="A TOML file: [tune], [measured] and one [[free]] a parameter.",
     ),
     out: Path | None = typer.Option(
         None, "--out", metavar="FOLDER", help="Folder for the files; default reports/NAME."

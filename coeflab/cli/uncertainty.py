@@ -19,7 +19,9 @@ CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
 def command(
     ctx: typer.Context,
-    file: Path = typer.Argument(..., metavar="PARAMS", help="A parameter file."),
+    file: Path = typer.Argument(
+        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
+    ),
     manoeuvre: str = typer.Option(
         "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="See coeflab formats manoeuvres."
     ),

@@ -19,7 +19,10 @@ EXAMPLE = "coeflab validate suboff"
 
 def command(
     name: str = typer.Argument(
-        ..., metavar="NAME", help="suboff, huuv, flyingfish, thauv or tank.", autocompletion=complete.validations
+        ...,
+        metavar="NAME",
+        help="suboff, huuv, flyingfish, thauv, tank or estimates.",
+        autocompletion=complete.validations,
     ),
     out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/NAME."),
     strict: bool = typer.Option(False, "--strict", help="Exit code 1 for a warning, too."),
@@ -74,6 +77,8 @@ def _print(found: Acceptance) -> None:
     from coeflab.report.answer import answer
 
     answered(answer(found, drawn=False))
+    for whole in found.shown:
+        show.table(whole)
     if show.whole():
         for line in acceptance_tables.headline(acceptance_tables.held(found)):
             show.text(line)
@@ -84,7 +89,7 @@ def _print(found: Acceptance) -> None:
         for line in (*found.statements, *(f"Parameter file: {note}" for note in found.file_notes)):
             show.text(line)
     else:
-        for table in acceptance_tables.tables(found):
+        for table in () if found.shown else acceptance_tables.tables(found):
             show.table(replace(table, rows=tuple(row for row in table.rows if row[-1] == "fail")))
         show.text("--wide prints every number, erratum and statement.")
     bare = [p.name for p in found.parameter_files if not p.measured]

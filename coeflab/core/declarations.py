@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 Kind = TypeVar("Kind")
 Loc = tuple[str | int, ...]
 Expected = Callable[[Any], str]
+UNIT_BEHIND = r"\s*[^\s\d.]"
 NUMBER_WITH_UNIT = r"^\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?"
 
 
@@ -207,8 +208,11 @@ def taken(kind: type) -> dict[str, Takes]:
 
 
 def number_in(dimension: str) -> Takes:
-    """A number in SI or a text with its unit; ``dimension`` is a key of `coeflab.core.units.SI`."""
-    schema = {"type": ["number", "string"], "pattern": NUMBER_WITH_UNIT, "unit": SI[dimension] or "1"}
+    """A number in SI or a text with its unit; ``dimension`` is a key of `coeflab.core.units.SI`. A bare angle is 0."""
+    pattern = NUMBER_WITH_UNIT if dimension == "none" else NUMBER_WITH_UNIT + UNIT_BEHIND
+    schema: dict[str, Any] = {"type": ["number", "string"], "pattern": pattern, "unit": SI[dimension] or "1"}
+    if dimension == "angle":
+        schema |= {"minimum": 0, "maximum": 0}
     words = "a number" if dimension == "none" else f"an {dimension}" if dimension[0] in "aei" else f"a {dimension}"
     return Takes(words, lambda v, _: with_unit(v, dimension), schema)
 

@@ -75,6 +75,31 @@ def located(name: str | Path, kind: str, base: Path | None = None) -> Path:
     )
 
 
+def named(name: str | Path, file: str) -> Path:
+    """The path that a person typed, or the shipped file of that name.
+
+    Parameters
+    ----------
+    name : str or Path
+    file : str
+        What is shipped under a name, below ``cfd_data/NAME``: ``plan.toml``, ``*.parameters.json``.
+
+    Raises
+    ------
+    InputError
+        No path of a file, and no shipped name.
+    """
+    path = typed(name)
+    if path.is_file() or len(path.parts) != 1:
+        return path
+    places = {p.parent.name: p for p in sorted(shipped("cfd_data").glob(f"*/{file}"))}
+    if path.name in places:
+        return places[path.name]
+    if path.suffix or path.exists():
+        return path
+    raise InputError(f"no file {shown(path, 300)}", f"a file that exists, or a shipped name ({', '.join(places)})")
+
+
 def write_all(folder: Path, contents: Mapping[str, bytes]) -> dict[str, bool]:
     """Write files so that all of them change or none: every content first goes to a temporary neighbour, then into place.
 

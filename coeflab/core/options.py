@@ -64,6 +64,29 @@ def measured(default: float, low: float, high: float, dimension: str) -> Any:
     return _option(default, f"{dimension}, {bare}", read, SI[dimension])
 
 
+def share(default: float, low: float, high: float) -> Any:
+    """A dataclass field that takes a share of one, or a text in per cent (``"2 %"``).
+
+    Parameters
+    ----------
+    default, low, high : float
+        Of one; the bounds are allowed values.
+    """
+
+    def read(value: Any, _file: Path) -> float:
+        number = value
+        if isinstance(value, str) and value.rstrip().endswith("%"):
+            try:
+                number = float(value.rstrip()[:-1]) / 100.0
+            except ValueError:
+                number = None
+        if isinstance(number, bool) or not isinstance(number, (int, float)) or not low <= number <= high:
+            raise InputError(shown(value), f"a share from {low:g} to {high:g}, or in per cent such as 2%")
+        return float(number)
+
+    return _option(default, f"share, {low:g} to {high:g}, or in per cent (2%)", read)
+
+
 def one_of(default: str, *choices: str) -> Any:
     """A dataclass field that takes one of some words."""
 

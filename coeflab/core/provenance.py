@@ -14,7 +14,7 @@ from typing import Annotated
 from coeflab.core.declarations import Declaration, Text, Words, one_of
 from coeflab.core.stored import Means, Within, stored
 
-TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic")
+TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic", "estimate")
 BODY_KINDS = (*TABLE_KINDS, "computed")
 
 
@@ -199,6 +199,27 @@ WORKS: dict[str, str] = {
     "J. Aeronautical Sciences 21, 1954.",
     "coeflab_plates": "coeflab, Added mass of rectangular plates at eleven aspects from 1 to 10, computed for this project with a "
     "lattice of doublets, extrapolated, to 1e-4, 2026.",
+    "ittc1957": "ITTC, Proceedings of the 8th International Towing Tank Conference, Madrid, 1957: the model-ship correlation line.",
+    "townsin1990": "R. L. Townsin, S. K. Dey, The correlation of roughness drag with surface characteristics, RINA International "
+    "Workshop on Marine Roughness and Drag, 1990; in ITTC, recommended procedure 7.5-02-02-02.",
+    "hoerner1965": "S. F. Hoerner, Fluid-Dynamic Drag, published by the author, 1965.",
+    "gillmer1982": "T. C. Gillmer, B. Johnson, Introduction to Naval Architecture, Naval Institute Press, 1982.",
+    "allen1951": "H. J. Allen, E. W. Perkins, A study of effects of viscosity on flow over slender inclined bodies of revolution, "
+    "NACA Report 1048, 1951.",
+    "roshko1961": "A. Roshko, Experiments on the flow past a circular cylinder at very high Reynolds number, J. Fluid Mechanics "
+    "10, 1961.",
+    "munk1924": "M. M. Munk, The aerodynamic forces on airship hulls, NACA Report 184, 1924.",
+    "hopkins1951": "E. J. Hopkins, A semiempirical method for calculating the pitching moment of bodies of revolution at low Mach "
+    "numbers, NACA RM A51C14, 1951.",
+    "pitts1957": "W. C. Pitts, J. N. Nielsen, G. E. Kaattari, Lift and center of pressure of wing-body-tail combinations at "
+    "subsonic, transonic, and supersonic speeds, NACA Report 1307, 1957.",
+    "lighthill1960": "M. J. Lighthill, Note on the swimming of slender fish, J. Fluid Mechanics 9, 1960.",
+    "glauert1926": "H. Glauert, The Elements of Aerofoil and Airscrew Theory, Cambridge, 1926.",
+    "weissinger1955": "J. Weissinger, Zur Aerodynamik des Ringfluegels, Deutsche Versuchsanstalt fuer Luftfahrt, DVL-Bericht 2, 1955.",
+    "fletcher1957": "H. S. Fletcher, Experimental investigation of lift, drag, and pitching moment of five annular airfoils, "
+    "NACA TN 4117, 1957.",
+    "bernitsas1981": "M. M. Bernitsas, D. Ray, P. Kinley, KT, KQ and efficiency curves for the Wageningen B-series propellers, "
+    "University of Michigan, report 237, 1981.",
     "mss": "T. I. Fossen, T. Perez, Marine Systems Simulator (MSS), 2004, VESSELS/npsauv.m and VESSELS/navalvessel.m, "
     "github.com/cybergalactic/MSS.",
     "python_vehicle_simulator": "T. I. Fossen, Python Vehicle Simulator, as of 2026, src/python_vehicle_simulator/vehicles/remus100.py "

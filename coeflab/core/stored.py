@@ -156,8 +156,8 @@ def stored(names: str = "") -> Callable[[type[Noun]], type[Noun]]:
     Parameters
     ----------
     names : str
-        Fields that a file holds, in its order, ``?`` behind those that it may leave out. Unless given: all fields as declared,
-        those with a default optional.
+        Fields that a file holds, in its order, ``?`` behind those that it may leave out, ``??`` behind those that it does leave
+        out where they have their default. Unless given: all fields as declared, those with a default optional.
     """
 
     def decorated(cls: type[Noun]) -> type[Noun]:
@@ -178,6 +178,7 @@ class StoredField:
     required: bool
     default: Any
     since: str
+    silent: bool = False
 
 
 @lru_cache
@@ -193,8 +194,10 @@ def stored_fields(cls: Hashable) -> tuple[StoredField, ...]:
     hints, defaults = get_type_hints(cls, include_extras=True), _defaults(cls)
     names = names or tuple(n if v is MISSING else f"{n}?" for n, v in defaults.items())
     return tuple(
-        StoredField(n, _in_si(hints[n]), not mark, defaults[n], _since(getattr(hints[n], "__metadata__", ())))
-        for n, mark in ((n.rstrip("?"), n.endswith("?")) for n in names)
+        StoredField(
+            n, _in_si(hints[n]), not mark, defaults[n], _since(getattr(hints[n], "__metadata__", ())), mark == "??"
+        )
+        for n, mark in ((n.rstrip("?"), n[len(n.rstrip("?")) :]) for n in names)
     )
 
 
@@ -233,7 +236,10 @@ def _core_schema(cls: Any, _source: Any, handler: Any) -> Any:
 
     def apart(value: Any) -> Any:
         noun = cls(*value) if tuple in cls.__bases__ and isinstance(value, tuple) else value
-        return {f.name: getattr(noun, f.name) for f in known} if isinstance(noun, cls) else value
+        if not isinstance(noun, cls):
+            return value
+        held = {f.name: getattr(noun, f.name) for f in known}
+        return {f.name: held[f.name] for f in known if not (f.silent and held[f.name] == f.default)}
 
     def made(values: Any) -> Any:
         noun = cls(**values)

@@ -107,7 +107,7 @@ def set_lines(table: Table, width: int) -> tuple[Line, ...]:
     chosen = list(range(len(table.headers)))
     below: list[str] = []
     for i in list(chosen):
-        if _room(table, chosen, SPARED) > width and _says_one(table, i):
+        if _room(table, chosen, SPARED) > width and says_one(table, i):
             chosen.remove(i)
             said = table.rows[0][i]
             below += [f"All rows: {table.headers[i]} {said}"] if said not in ("", ABSENT) else []
@@ -132,7 +132,7 @@ def set_lines(table: Table, width: int) -> tuple[Line, ...]:
 MORE = "more"
 
 
-def _says_one(table: Table, i: int) -> bool:
+def says_one(table: Table, i: int) -> bool:
     """Whether a column of text says the same in each of several rows."""
     return bool(
         i in table.left and table.headers[i] and len(table.rows) > 1 and len({row[i] for row in table.rows}) == 1
@@ -215,6 +215,12 @@ def coefficient(value: float | None) -> str:
     if value is None or isnan(value):
         return ABSENT
     return f"{value:.2e}" if 0 < abs(value) < 5e-5 else f"{value:.6f}"
+
+
+def as_printed(value: float | None) -> str:
+    """A published coefficient: as `coefficient`, without zeros behind its fourth decimal, which no source prints."""
+    shown = coefficient(value)
+    return shown if "e" in shown or shown == ABSENT else shown[:-2] + shown[-2:].rstrip("0")
 
 
 def with_u95(value: float | None, u95: float | None) -> tuple[str, str]:

@@ -18,7 +18,10 @@ from coeflab.bodies.outline import Outline
 from coeflab.core.errors import InputError
 from coeflab.core.registry import Plugin, Registry
 from coeflab.core.types import brief
-from coeflab.law.coefficient import CoefficientSet
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status
+from coeflab.law.scaling import Scaling
+from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS
+from coeflab.law.transforms import force_transfer, velocity_transfer
 
 Forces = Callable[[NDArray[np.float64], dict[str, NDArray[np.float64]]], NDArray[np.float64]]
 
@@ -32,11 +35,20 @@ class Water:
     ----------
     density, viscosity, speed : float
         kg/m^3, kinematic m^2/s, m/s of the reference condition.
+    roughness : float
+        Height on the surface, m; 0 is smooth.
     """
 
     density: float
     viscosity: float
     speed: float
+    roughness: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("density", "viscosity", "speed"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value > 0.0):
+                raise InputError(f"{name} = {value:g}", "a number above zero", column=name)
 
 
 @brief
@@ -117,12 +129,262 @@ class EstimateMethod(Plugin, Protocol):
 METHODS = Registry("coeflab.estimates", "method of estimates", EstimateMethod, __name__)  # type: ignore[type-abstract]
 
 
+KINDS_OF_ESTIMATE = "semi-empirical, from the shape"
+STEP, GRID = 2e-3, (0.1, 0.2, 0.3)
+NOTHING = 1e-9  # of the largest value
+PLANES = (("v", "r", "Y", "N"), ("w", "q", "Z", "M"))
+
+
 def estimated(body: Body, water: Water) -> Estimates:
     """Estimate all that the methods can of a body.
+
+    Parameters
+    ----------
+    body : Body
+        With an outline.
+    water : Water
 
     Raises
     ------
     InputError
-        The body has no outline, or no length that primes are made with.
+        The body has no outline, or nothing in it that a method is for.
     """
-    raise InputError(f"{body.name}: estimates are not built yet", "a method")
+    outline = body.outline
+    if outline is None:
+        advice = "Give its body.toml a shape: a mesh, a hull form with fins, or parts."
+        raise InputError(
+            f"{body.name} without an outline", "a body whose reader knows its hull, fins and parts", advice=advice
+        )
+    found: list[Contribution] = []
+    for name in METHODS.names():
+        with METHODS.guarded(name):
+            found += METHODS.load(name).contributions(outline, water)
+    if not found:
+        raise InputError(f"{body.name}: no hull, fin or bluff part", "an outline with at least one")
+    contributions = tuple(found)
+    return combined(body, outline, contributions, water)
+
+
+def combined(body: Body, outline: Outline, contributions: tuple[Contribution, ...], water: Water) -> Estimates:
+    """Coefficients, covariance and shares of contributions.
+
+    Parameters
+    ----------
+    body : Body
+    outline : Outline
+    contributions : tuple of Contribution
+    water : Water
+
+    Notes
+    -----
+    Alternatives of one part and kind: their mean, with half-width range / sqrt(3) (95 % of a rectangular distribution
+    between the extremes has standard deviation range / (2 sqrt 3)). Scatter of one kind is common to all of its parts;
+    kinds are independent.
+    """
+    scaling = body.scaling or _overall(body, outline)
+    point = body.reference_point
+    functionals = _functionals(
+        scaling.length, water.speed, tuple(dict.fromkeys(f.control for f in outline.foils if f.control))
+    )
+    symbols = tuple(f.symbol for f in functionals)
+    units = np.array([scaling.unit(s[0], water.density, water.speed) for s in symbols])
+    rows = [_derived(functionals, shifted(c.forces, point), units) for c in contributions]
+    kinds: dict[str, dict[str, list[int]]] = {}
+    for i, c in enumerate(contributions):
+        kinds.setdefault(c.kind, {}).setdefault(c.part, []).append(i)
+    value, covariance = np.zeros(len(symbols)), np.zeros((len(symbols), len(symbols)))
+    scatter, spread = np.zeros(len(symbols)), np.zeros(len(symbols))
+    shares: dict[str, dict[str, float]] = {s: {} for s in symbols}
+    for kind, parts in kinds.items():
+        common = np.zeros(len(symbols))
+        alternatives: dict[str, NDArray[np.float64]] = {}
+        for part, members in parts.items():
+            mean = np.mean([rows[i] for i in members], axis=0)
+            value += mean
+            common += mean * float(np.mean([contributions[i].share for i in members]))
+            for s, v in zip(symbols, mean, strict=True):
+                if v != 0.0:
+                    shares[s][f"{part}, {kind}"] = float(v)
+            for i in members if len(members) > 1 else ():
+                key = contributions[i].method
+                alternatives[key] = alternatives.get(key, np.zeros(len(symbols))) + rows[i] - mean
+        covariance += np.outer(common, common) / 4.0
+        scatter += common**2
+        if alternatives:
+            apart = np.array(list(alternatives.values()))
+            width = (apart.max(axis=0) - apart.min(axis=0)) / np.sqrt(3.0)
+            size = np.sqrt(np.sum(apart**2, axis=0))
+            along = np.divide(apart, size, out=np.zeros_like(apart), where=size > 0.0)
+            covariance += np.outer(width, width) / 4.0 * (along.T @ along)
+            spread += width**2
+    keep = [i for i, s in enumerate(symbols) if _counts(s, value[i], scatter[i] + spread[i], value, symbols)]
+    works = {s: _works(contributions, rows, i) for i, s in enumerate(symbols)}
+    coefficients = tuple(
+        Coefficient(
+            symbol=symbols[i], value=float(value[i]), u95=float(2.0 * np.sqrt(covariance[i, i])), status=Status.ESTIMATE,
+            body=body.name, parts=Parts(model_form=float(np.sqrt(spread[i])), input=float(np.sqrt(scatter[i]))),
+            origin="estimate", estimator=KINDS_OF_ESTIMATE, citation=", ".join(works[symbols[i]]),
+        )
+        for i in keep
+    )  # fmt: skip
+    found = CoefficientSet(
+        coefficients, covariance[np.ix_(keep, keep)], scaling, np.array(point), body.datum, body.name
+    )
+    return Estimates(
+        found, contributions, {symbols[i]: shares[symbols[i]] for i in keep},
+        shifted(recommended(contributions), point), _notes(outline, contributions),
+    )  # fmt: skip
+
+
+def recommended(contributions: tuple[Contribution, ...]) -> Forces:
+    """The sum of contributions about the datum, alternatives by their mean."""
+    many: dict[tuple[str, str], int] = {}
+    for c in contributions:
+        many[c.part, c.kind] = many.get((c.part, c.kind), 0) + 1
+
+    def forces(nu: NDArray[np.float64], angles: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+        out = np.zeros((len(nu), 6))
+        for c in contributions:
+            out += c.forces(nu, angles) / many[c.part, c.kind]
+        return out
+
+    return forces
+
+
+def shifted(forces: Forces, point: NDArray[np.float64]) -> Forces:
+    """Forces about the datum as forces about a point, by velocities of that point."""
+    velocity, moment = velocity_transfer(-np.asarray(point)), force_transfer(np.asarray(point))
+
+    def about(nu: NDArray[np.float64], angles: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+        return np.asarray(forces(np.asarray(nu, dtype=float) @ velocity.T, angles) @ moment.T)
+
+    return about
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Functional:
+    """One coefficient as weights on forces at motions.
+
+    Attributes
+    ----------
+    symbol : str
+    nu : (n, 6) array
+    angles : mapping of str to (n,) array
+    component : int
+    weights : (n,) array
+        Per prime units of the variables.
+    """
+
+    symbol: str
+    nu: NDArray[np.float64]
+    angles: dict[str, NDArray[np.float64]]
+    component: int
+    weights: NDArray[np.float64]
+
+
+def _motions(length: float, speed: float, **primed: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n, 6) velocities at the whole speed U from v' w' and p' q' r'."""
+    count = len(next(iter(primed.values())))
+    nu = np.zeros((count, 6))
+    for name, values in primed.items():
+        nu[:, MOTIONS.index(name)] = values * (speed if name in LINEAR else speed / length)
+    nu[:, 0] = np.sqrt(speed**2 - nu[:, 1] ** 2 - nu[:, 2] ** 2)
+    return nu
+
+
+def _functionals(length: float, speed: float, controls: tuple[str, ...]) -> tuple[Functional, ...]:
+    """All coefficients that are asked for, each as a linear functional of the forces.
+
+    With D(h) = (f(h) - f(-h)) / 2h = a + b h of a force that goes as a x + b x|x|: a = 2 D(h) - D(2h), b = (D(2h) - D(h)) / h.
+    """
+    out = []
+    steps = STEP * np.array([1.0, -1.0, 2.0, -2.0, 0.0])
+    first = np.array([1.0, -1.0, -0.25, 0.25, 0.0]) / STEP
+    second = np.array([-0.5, 0.5, 0.25, -0.25, 0.0]) / STEP**2
+    even = np.array([0.5, 0.5, 0.0, 0.0, -1.0]) / STEP**2
+    rest = np.array([0.0, 0.0, 0.0, 0.0, 1.0])
+    ahead = _motions(length, speed, v=np.zeros(5))
+    out += [Functional(f"{c}0", ahead, {}, i, rest) for i, c in enumerate(COMPONENTS) if c in "XZM"]
+    for m in ("v", "w", "p", "q", "r"):
+        nu = _motions(length, speed, **{m: steps})
+        out += [Functional(f"{c}{m}", nu, {}, i, first) for i, c in enumerate(COMPONENTS) if c != "X"]
+        out += [Functional(f"{c}{m}|{m}|", nu, {}, i, second) for i, c in enumerate(COMPONENTS) if c != "X"]
+        out.append(Functional(f"X{m}{m}", nu, {}, 0, even))
+    out += [f for slide, turn, *two in PLANES for f in _coupled(length, speed, slide, turn, two)]
+    for control in (c for c in controls if c in CONTROLS):
+        angles = {control: steps}
+        out += [Functional(f"{c}{control}", ahead, angles, i, first) for i, c in enumerate(COMPONENTS) if c != "X"]
+        out.append(Functional(f"X{control}{control}", ahead, angles, 0, even))
+    return tuple(out)
+
+
+def _coupled(length: float, speed: float, slide: str, turn: str, components: list[str]) -> list[Functional]:
+    """v|r| and |v|r of the side, vr of X, by least squares over drift and rate together; of the other plane alike."""
+    a, b = (
+        g.ravel()
+        for g in np.meshgrid([*(-x for x in GRID), *GRID], [*(-2.0 * x for x in GRID), *(2.0 * x for x in GRID)])
+    )
+    none = np.zeros_like(a)
+    nu = np.vstack([
+        _motions(length, speed, **{slide: x, turn: y}) for x, y in ((a, b), (a, none), (none, b), (none, none))
+    ])  # fmt: skip
+    signs = np.repeat([1.0, -1.0, -1.0, 1.0], len(a))
+    out = []
+    both = np.linalg.pinv(np.column_stack([a * np.abs(b), np.abs(a) * b]))
+    for c in components:
+        for name, row in ((f"{slide}|{turn}|", both[0]), (f"|{slide}|{turn}", both[1])):
+            out.append(Functional(f"{c}{name}", nu, {}, COMPONENTS.index(c), np.tile(row, 4) * signs))
+    product = np.linalg.pinv((a * b)[:, None])[0]
+    out.append(Functional(f"X{slide}{turn}", nu, {}, 0, np.tile(product, 4) * signs))
+    return out
+
+
+def _derived(functionals: tuple[Functional, ...], forces: Forces, units: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(k,) primed coefficients of one law of forces; each set of motions is computed once."""
+    known: dict[tuple[int, tuple[str, ...]], NDArray[np.float64]] = {}
+    out = np.empty(len(functionals))
+    for i, f in enumerate(functionals):
+        key = (id(f.nu), tuple(f.angles))
+        if key not in known:
+            known[key] = forces(f.nu, f.angles)
+        out[i] = known[key][:, f.component] @ f.weights
+    return out / units
+
+
+def _counts(symbol: str, value: float, variance: float, values: NDArray[np.float64], symbols: tuple[str, ...]) -> bool:
+    """Whether a coefficient is more than rounding beside the others of its component."""
+    alike = [abs(v) for s, v in zip(symbols, values, strict=True) if s[0] == symbol[0]]
+    floor = 1e-6 * max(alike, default=0.0)
+    return max(abs(value), float(np.sqrt(variance))) > max(floor, NOTHING)
+
+
+def _works(contributions: tuple[Contribution, ...], rows: list[NDArray[np.float64]], i: int) -> tuple[str, ...]:
+    named = [key for c, row in zip(contributions, rows, strict=True) if row[i] != 0.0 for key in c.citation.split(", ")]
+    return tuple(dict.fromkeys(named))
+
+
+def _overall(body: Body, outline: Outline) -> Scaling:
+    """The length over all of what the outline holds.
+
+    Raises
+    ------
+    InputError
+        Nothing of any length.
+    """
+    ends = [x for h in outline.hulls for x in (h.x[0], h.x[-1])]
+    ends += [
+        p.centre[0] + s * float((np.abs(p.rotation) @ p.half_extents)[0]) for p in outline.bluff for s in (1.0, -1.0)
+    ]
+    ends += [x for f in outline.foils for x in (f.root[0] + 0.25 * f.root_chord, f.root[0] - 0.75 * f.root_chord)]
+    if not ends or max(ends) <= min(ends):
+        raise InputError(f"{body.name} without a length", "a [prime] length in body.toml", column="prime.length")
+    return Scaling(float(max(ends) - min(ends)), "length over all")
+
+
+def _notes(outline: Outline, contributions: tuple[Contribution, ...]) -> tuple[str, ...]:
+    """What is assumed and left out."""
+    outside = [f"{c.part}, {c.kind}: {c.outside}" for c in contributions if c.outside]
+    said = ["Ahead only: no hull lift and no sidewash astern; foils do not stall."]
+    said += ["Bluff parts: mean of shielded and not, across each axis and along the motion."] if outline.bluff else []
+    return tuple(dict.fromkeys([*said, *outside, *(f"left out: {x}" for x in outline.left_out)]))

@@ -333,10 +333,11 @@ def covered_grid(parameters: ParameterFile) -> tuple[Array, str]:
                 continue
             rates = [primes.get(r, 0.0) * at / length for r in "pqr"]
             rows.append([at * np.sqrt(1.0 - across), *(at * side), *rates])
-    words = ", ".join(
-        f"{n}' {a:.3g} to {b:.3g}{' (covered by no campaign)' if n in assumed else ''}" for n, (a, b) in ranges.items()
-    )
-    words = words or "straight motion"
+    said = [f"{n}' {a:.3g} to {b:.3g}" for n, (a, b) in ranges.items() if n not in assumed]
+    if assumed:
+        bare = ", ".join(f"{n}'" for n in assumed)
+        said.append(f"{bare} -{ASSUMED:g} to {ASSUMED:g} (assumed: no data on {'it' if len(assumed) == 1 else 'them'})")
+    words = ", ".join(said) or "straight motion"
     words = "; ".join((words, *parameters.narrowed))
     return np.array(rows), f"{words}; U {', '.join(f'{f * speed:.3g}' for f in SPEEDS)} m/s; {len(rows)} states"
 

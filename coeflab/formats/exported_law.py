@@ -212,6 +212,15 @@ def states_buoyancy(parameters: ParameterFile, otherwise: str) -> str:
     return "the file's hydrostatics are not in it" if parameters.hydrostatics is not None else otherwise
 
 
+def propulsion(parameters: ParameterFile) -> str:
+    """That an export has no propulsion, and which thrust keeps the file's speed on a straight course, in words."""
+    speed, nu = parameters.conditions.speed, np.zeros((1, 6))
+    nu[0, 0] = speed
+    thrust = -float(force_law(parameters).force(nu)[0, 0])
+    needed = f": {thrust:.4g} N along x keep {speed:g} m/s straight ahead" if thrust > 0.0 else ""
+    return f"propulsion is not in the export{needed}"
+
+
 def common_changes(parameters: ParameterFile, law: ExportedLaw, *, whole: bool) -> tuple[str, ...]:
     """What any such export changes, in words; `whole` says whether the target takes v^2 and w^2 of the resistance."""
     out = [f"numbers are SI: primes times 1/2 rho L^k at {parameters.conditions.density:g} kg/m^3", *law.statements[1:]]
@@ -226,7 +235,7 @@ def common_changes(parameters: ParameterFile, law: ExportedLaw, *, whole: bool) 
             f"u stands for U in {', '.join(speed)} (u v for U v, u|u| or u^2 for U^2): alike on a straight course ahead, in drift "
             "less by 1 - cos(beta) of a term in U, 1 - cos^2(beta) of one in U^2"
         )
-    return tuple(out)
+    return (*out, propulsion(parameters))
 
 
 # Of the speed; products such as v|v| err by the first power of a step, which two steps take off.

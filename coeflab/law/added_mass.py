@@ -101,7 +101,16 @@ class OtherMethod(NamedTuple):
     matrix: Annotated[Square6, Means("as that of `added_mass`", "kg, kg m, kg m^2")]
 
 
-@stored("body method density matrix others? statements?")
+@stored()
+class NearWall(NamedTuple):
+    """The same matrix at one distance from a wall."""
+
+    wall: Annotated[Name, Means("bottom, or a free surface: surface_zero, surface_infinite, by its frequency")]
+    distance: Annotated[Positive, Means("from the reference point to the wall", "m")]
+    matrix: Annotated[Square6, Means("as that of `added_mass`", "kg, kg m, kg m^2")]
+
+
+@stored("body method density matrix others? walls?? statements?")
 @dataclass(frozen=True, slots=True, eq=False)
 class AddedMass:
     """M_A, positive, FRD, about the file's reference point; acceleration derivatives are its negatives.
@@ -126,6 +135,8 @@ class AddedMass:
         Of the water that it holds for, kg/m^3; NaN where nothing says so.
     others : tuple of OtherMethod
         In a parameter file: the same by other methods, about the same point.
+    walls : tuple of NearWall
+        The same near walls, about the same point, of one wall by rising distance; empty where none were asked for.
     """
 
     matrix: Annotated[
@@ -143,6 +154,7 @@ class AddedMass:
     rough: bool = False
     density: Annotated[Positive, Means("density of the water that the matrix holds for", "kg/m^3")] = np.nan
     others: Annotated[tuple[OtherMethod, ...], Means("the same by other methods, to be compared with")] = ()
+    walls: Annotated[tuple[NearWall, ...], Means("the same near walls, by distance", since="1.5")] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", locked(self.matrix))
@@ -195,7 +207,34 @@ class AddedMass:
             lever = np.abs(velocity_transfer(-shift))
             error = lever.T @ self.error @ lever
         others = tuple(OtherMethod(o.method, moved(o.matrix, shift)) for o in self.others)
-        return replace(self, matrix=matrix, reference_point=np.asarray(point), error=error, others=others)
+        # The distance of a table near walls is from its reference point: it moves with that along z, down.
+        walls = tuple(
+            NearWall(w.wall, w.distance - shift[2] * (1.0 if w.wall == "bottom" else -1.0), moved(w.matrix, shift))
+            for w in self.walls
+        )
+        return replace(self, matrix=matrix, reference_point=np.asarray(point), error=error, others=others, walls=walls)
+
+    def near(self, wall: str, distance: float) -> NDArray[np.float64]:
+        """(6, 6) matrix at a distance from a wall, of its table.
+
+        Between distances by a cubic in the cube of one over the distance, by which an image's effect falls; beyond the
+        last, the effect there falls by that cube to nothing.
+
+        Raises
+        ------
+        InputError
+            No table for that wall, or nearer than its first distance.
+        """
+        known = sorted((w for w in self.walls if w.wall == wall), key=lambda w: w.distance)
+        if not known or distance < known[0].distance * (1.0 - 1e-12):
+            found = f"no table near {wall}" if not known else f"{distance:g} m from {wall}"
+            expected = "added mass computed near it" if not known else f"{known[0].distance:g} m and more"
+            raise InputError(found, expected, advice="Compute it with coeflab added-mass --wall and --distance.")
+        from scipy.interpolate import PchipInterpolator
+
+        at = [0.0, *(w.distance**-3 for w in reversed(known))]
+        values = np.stack([self.matrix, *(w.matrix for w in reversed(known))])
+        return np.asarray(PchipInterpolator(at, values, axis=0)(min(distance**-3, at[-1])))
 
     def derivatives(self) -> dict[str, float]:
         """All 36 acceleration derivatives, SI: Xudot, ..., Nrdot."""

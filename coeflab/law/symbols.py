@@ -19,6 +19,7 @@ LINEAR = ("u", "v", "w")
 ANGULAR = ("p", "q", "r")
 MOTIONS = LINEAR + ANGULAR
 CONTROLS = ("dr", "ds", "db")
+ANGLE_NAMES = {"dr": "rudder angle", "ds": "stern plane angle", "db": "bow plane angle"}
 CONTROL_COLUMNS = {"delta_r": "dr", "delta_s": "ds", "delta_b": "db"}
 FLOW_ANGLES = {
     "alpha": "alpha = atan2(w, u)",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,14 +11,15 @@ from coeflab.core.errors import InputError
 from coeflab.core.options import named_numbers
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
-from coeflab.law.symbols import ANGULAR, CONTROLS, MOTIONS
+from coeflab.law.symbols import ANGLE_NAMES, ANGULAR, CONTROLS, MOTIONS
 from coeflab.motion.dynamics import linearised, modes
 from coeflab.motion.manoeuvre import UPRIGHT, Figure, Manoeuvre, Phase
-from coeflab.motion.trajectory import UNCOVERED, Trajectory, outside, outside_in_words
+from coeflab.motion.trajectory import UNCOVERED, Trajectory, covered_ranges, outside, outside_in_words
 from coeflab.motion.vehicle import THRUST, Vehicle
 from coeflab.vehicle.parameter_parts import ParameterThruster
 
 SURFACES = {"dr": "rudder", "ds": "stern planes", "db": "bow planes"}
+NOT_DETERMINED = "not determined"
 STEP = 1e-4  # rad: an angle that is small for every law, and far above rounding
 
 
@@ -214,26 +215,49 @@ def unlimited(vehicle: Vehicle, rate: str, speed: float) -> str:
     other, components = ("v", "YN") if rate == "r" else ("w", "ZM")
     if has_rotary_limit(vehicle, rate, components) or linear_growth(vehicle, (other, rate), speed) <= 0.0:
         return ""
-    return f"unstable, and no nonlinear term such as {components[0]}{rate}|{rate}| or {components[1]}{rate}|{rate}| limits the turn"
+    return unlimited_in_words(rate, components)
 
 
-def undetermined_at_once(vehicle: Vehicle, manoeuvre: Manoeuvre) -> str:
-    """Why a file determines nothing of a manoeuvre, in words, before it is computed; empty where it determines its beginning.
+def unlimited_in_words(rate: str, components: Sequence[str]) -> str:
+    """Why nothing limits a turn in a rate; components are ``YN`` or ``ZM``."""
+    terms = f"{components[0]}{rate}|{rate}| or {components[1]}{rate}|{rate}|"
+    return f"unstable, and no nonlinear term such as {terms} limits the turn"
+
+
+def decisive(names: Iterable[str], rate: str) -> list[str]:
+    """Of what a motion has left, what leaves a turn that nothing limits open: a range of data, or the rate, on which there are none."""
+    return [name for name in names if not name.endswith(UNCOVERED) or name == f"{rate}': {UNCOVERED}"]
+
+
+def undetermined_at_once(vehicle: Vehicle, manoeuvre: Manoeuvre, figures: Sequence[Figure]) -> str:
+    """Why a file determines nothing of a manoeuvre, in words; empty where it determines its beginning.
 
     A vehicle whose straight course is unstable, without nonlinear terms that limit the turn, is determined only within its
-    data. Orders that it follows at once may leave them at time zero.
+    data. Orders that it follows at once may leave them at time zero; where no data cover the rate of turn, it has none.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+    manoeuvre : Manoeuvre
+    figures : sequence of Figure
+        Read off the motion.
     """
     speed = float(manoeuvre.velocity[0])
-    lacking = next(
-        (why for rate in "rq" if rate in vehicle.free and speed > 0.0 and (why := unlimited(vehicle, rate, speed))), ""
+    rate, lacking = next(
+        ((r, why) for r in "rq" if r in vehicle.free and speed > 0.0 and (why := unlimited(vehicle, r, speed))),
+        ("", ""),
     )
     rated = {s.control for s in vehicle.surfaces if s.rate is not None}
     first = {**manoeuvre.orders, **manoeuvre.phases[0].orders}
     angles = {c: first[c] for c in CONTROLS if c in first and c not in rated}
     flags = outside(vehicle, manoeuvre.velocity[None, :], {c: np.array([x]) for c, x in angles.items()})
-    if not lacking or not any(f[0] for name, f in flags.items() if not name.endswith(UNCOVERED)):
+    if not lacking:
         return ""
-    return " ".join((*outside_in_words(vehicle, manoeuvre.velocity, angles), f"{lacking[:1].upper()}{lacking[1:]}."))
+    why = f"{lacking[:1].upper()}{lacking[1:]}."
+    if any(f[0] for name, f in flags.items() if not name.endswith(UNCOVERED)):
+        return " ".join((*outside_in_words(vehicle, manoeuvre.velocity, angles), why))
+    none = all(f.value is None for f in figures) and any(f.status == NOT_DETERMINED for f in figures)
+    return f"There are no data on {rate}'. {why}" if none and f"{rate}'" not in covered_ranges(vehicle) else ""
 
 
 def in_current(current: Array) -> tuple[str, ...]:
@@ -246,7 +270,7 @@ def in_current(current: Array) -> tuple[str, ...]:
     )
 
 
-def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking: str = "") -> Figure:
+def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking: str = "", rate: str = "r") -> Figure:
     """The figure, marked where the motion has left the data before the time it was read off.
 
     Parameters
@@ -256,7 +280,9 @@ def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking:
     until : float or None
         When it was read off, s.
     lacking : str
-        Of `unlimited`; then there is no value once the motion has left a range that data cover.
+        Of `unlimited`; then there is no value once the motion has left what data cover, as `decisive` says.
+    rate : str
+        That `lacking` is about.
     """
     if figure.value is None or until is None:
         return figure
@@ -264,15 +290,20 @@ def judged(figure: Figure, trajectory: Trajectory, until: float | None, lacking:
     names = [name for name, flags in trajectory.outside.items() if np.any(flags & before)]
     if not names:
         return figure
-    bare = [name.removesuffix(f": {UNCOVERED}") for name in names if name.endswith(UNCOVERED)]
-    left = [name for name in names if not name.endswith(UNCOVERED)]
+    bare = [in_field_terms(name.removesuffix(f": {UNCOVERED}")) for name in names if name.endswith(UNCOVERED)]
+    left = [in_field_terms(name) for name in names if not name.endswith(UNCOVERED)]
     said = (f"beyond the data in {', '.join(left)}" if left else "", f"no data on {', '.join(bare)}" if bare else "")
     beyond = "; ".join(filter(None, said))
-    if lacking and any(not name.endswith(UNCOVERED) for name in names):
-        return replace(figure, value=None, status="not determined", why=f"{beyond}; {lacking}")
+    if lacking and decisive(names, rate):
+        return replace(figure, value=None, status=NOT_DETERMINED, why=f"{beyond}; {lacking}")
     return replace(figure, status="extrapolated", why=beyond)
+
+
+def in_field_terms(name: str) -> str:
+    """A variable as people call it: dr is the rudder angle."""
+    return ANGLE_NAMES.get(name, name)
 
 
 def undetermined(figure: Figure, lacking: str) -> Figure:
     """A figure of a steady turn; without a value where nothing limits the turn."""
-    return replace(figure, value=None, status="not determined", why=lacking) if lacking else figure
+    return replace(figure, value=None, status=NOT_DETERMINED, why=lacking) if lacking else figure

@@ -6,17 +6,24 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import inf
 from typing import Any
 
+import numpy as np
+
 from coeflab.core.errors import InputError, shown
 from coeflab.core.machine import one_thread
 from coeflab.core.options import of_a_file
 from coeflab.law.symbols import MOTIONS
-from coeflab.motion.approach import at_once, undetermined_at_once, unlimited
+from coeflab.motion.approach import at_once, decisive, undetermined_at_once, unlimited
 from coeflab.motion.manoeuvre import PlannedManoeuvre, Simulation
 from coeflab.motion.manoeuvres import MANOEUVRES
 from coeflab.motion.simulators import SIMULATORS
 from coeflab.motion.trajectory import UNCOVERED, Trajectory
 from coeflab.motion.vehicle import Vehicle, vehicle
 from coeflab.vehicle.parameter_file import ParameterFile
+
+SWING, SWINGS = (
+    float(np.radians(5.0)),
+    6,
+)  # rad/s from one extreme of the roll rate to the next; that many are an oscillation
 
 
 def manoeuvres_of(
@@ -127,10 +134,29 @@ def simulate(
         dict.fromkeys((*body.statements, *plan.statements, *at_once(body, plan.phases), *trajectory.statements))
     )
     until, why = determined_until(trajectory, body)
+    rolling = rolls(trajectory) if "p" in body.free else ""
     figures = plugin.figures(trajectory, body, options)
     works = tuple(dict.fromkeys((*plugin.citations, *mover.citations)))
-    nothing = undetermined_at_once(body, plan)
-    return Simulation(body, plan, trajectory, figures, (*statements, *([why] if why else [])), until, works, nothing)
+    nothing = undetermined_at_once(body, plan, figures)
+    return Simulation(
+        body, plan, trajectory, figures, (*statements, *filter(None, (rolling, why))), until, works, nothing
+    )
+
+
+def rolls(trajectory: Trajectory) -> str:
+    """That the roll rate oscillates, in words; empty below six swings of `SWING` from one extreme to the next."""
+    rate, t = trajectory.velocity[:, 3], trajectory.time
+    at = np.flatnonzero(np.diff(np.sign(np.diff(rate)))) + 1
+    swings = np.abs(np.diff(rate[at]))
+    large = swings > SWING
+    if np.count_nonzero(large) < SWINGS:
+        return ""
+    period = 2.0 * float(np.mean(np.diff(t[at])[large]))
+    return (
+        f"roll rate oscillates: {np.count_nonzero(large)} swings of more than {np.degrees(SWING):g} deg/s, the largest "
+        f"{np.degrees(np.max(swings)):.2g} deg/s, period about {period:.2g} s, roll up to "
+        f"{np.degrees(np.max(np.abs(trajectory.angles[:, 0]))):.2g} deg"
+    )
 
 
 def determined_until(trajectory: Trajectory, vehicle: Vehicle) -> tuple[float, str]:
@@ -139,10 +165,10 @@ def determined_until(trajectory: Trajectory, vehicle: Vehicle) -> tuple[float, s
     for rate in ("r", "q"):
         lacking = unlimited(vehicle, rate, speed) if rate in vehicle.free and speed > 0.0 else ""
         if lacking:
-            beyond = [
-                trajectory.time[f] for n, f in trajectory.outside.items() if not n.endswith(UNCOVERED) and f.any()
-            ]
-            if beyond:
-                first = float(min(times[0] for times in beyond))
+            left = decisive((name for name, f in trajectory.outside.items() if f.any()), rate)
+            if any(name.endswith(UNCOVERED) for name in left):
+                return 0.0, f"not determined: no data on {rate}'; {lacking}"
+            if left:
+                first = float(min(trajectory.time[trajectory.outside[name]][0] for name in left))
                 return first, f"stopped at {first:.4g} s: {lacking}"
     return inf, ""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from coeflab.core.table import html_by, number
 from coeflab.core.types import Array, in_angles, locked, locked_columns
 from coeflab.law.force_law import SLOWEST
-from coeflab.law.symbols import ANGULAR, CONTROLS, LINEAR, MOTIONS
+from coeflab.law.symbols import ANGLE_NAMES, ANGULAR, CONTROLS, LINEAR, MOTIONS
 from coeflab.motion.dynamics import euler_angles, rotations
 from coeflab.motion.vehicle import Vehicle, control_rows
 
@@ -187,7 +187,7 @@ def outside_in_words(vehicle: Vehicle, velocity: Array, controls: Mapping[str, f
             factor, unit = (180.0 / np.pi, " deg") if name in CONTROLS or name.startswith("asin") else (1.0, "")
             spans = " or ".join(f"{number(low * factor)} to {number(high * factor)}{unit}" for low, high in ranges)
             here = f"{number(float(values[name][1][0]) * factor)}{unit}"
-            out.append(f"{name} = {here} is outside the data, {spans}.")
+            out.append(f"{ANGLE_NAMES.get(name, name)} = {here} is outside the data, {spans}.")
     return tuple(out)
 
 

@@ -13,7 +13,7 @@ from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan
 
 PLAN = "plan.toml"
-PUBLISHED = ("flyingfish", "huuv", "tank", "thauv")
+PUBLISHED = ("estimates", "flyingfish", "huuv", "tank", "thauv")
 
 
 def validations() -> tuple[str, ...]:

@@ -34,10 +34,10 @@ class Basis(StrEnum):
 
 
 BASES: dict[Basis, str] = {
-    Basis.PREDICTED: "published, and not used to make the model that meets it",
+    Basis.PREDICTED: "published, and not used to make our model",
     Basis.PRINTED: "printed by the paper, and computed here from other printed numbers",
-    Basis.CALIBRATION: "the model was calibrated on this very number, so that meeting it proves nothing new",
-    Basis.CONSISTENCY: "worked out here another way, or by theory; the paper does not print it",
+    Basis.CALIBRATION: "our model was calibrated on this number, so that agreement proves nothing",
+    Basis.CONSISTENCY: "computed here in a second way, or by theory; the paper does not print it",
 }
 
 
@@ -168,6 +168,8 @@ class Acceptance:
         Axes, signs and units of its own, beside those that hold for every report.
     parameter_files : tuple of ParameterFile
         The system, as far as the format holds it; their notes say what it does not hold.
+    shown : tuple of Table
+        What a terminal prints whole, in the place of the rows that fail.
     """
 
     name: str
@@ -179,10 +181,11 @@ class Acceptance:
     figures: tuple[tuple[str, Drawing], ...] = ()
     conventions: tuple[str, ...] = ()
     parameter_files: tuple[ParameterFile, ...] = ()
+    shown: tuple[Table, ...] = ()
 
     def __repr__(self) -> str:
         good = sum(r.holds for r in self.numbers)
-        return in_angles(self, f"{self.name}: {good} of {len(self.numbers)} published numbers within what is allowed")
+        return in_angles(self, f"{self.name}: {good} of {len(self.numbers)} published numbers within the tolerance")
 
     def _repr_html_(self) -> str:
         """Its answer with pictures, for notebooks."""
@@ -239,10 +242,10 @@ def headline(numbers: Held) -> tuple[str, str]:
     """How many numbers hold by basis, and how many of them validate anything: two sentences."""
     every = [sum(pair[k] for pair in numbers.values()) for k in (0, 1)]
     by_basis = ", ".join(f"{good} of {count} {b}" if count else f"0 {b}" for b, (good, count) in numbers.items())
-    first = f"{every[0]} of {every[1]} numbers within what is allowed: {by_basis}."
+    first = f"{every[0]} of {every[1]} numbers within the tolerance: {by_basis}."
     good, count = (sum(pair[k] for b, pair in numbers.items() if b.validates) for k in (0, 1))
     if count:
-        second = f"Validation rests on {count} of them, predicted or printed and recomputed, of which {good} hold."
+        second = f"{count} of them are validation (predicted, or printed and recomputed); {good} of these hold."
     else:
         second = (
             "Nothing here is validation: no number of the paper is predicted, and none that it prints is recomputed."
@@ -261,7 +264,7 @@ def _table(t: ComparedTable) -> Table:
     return Table(t.title, HEADERS, tuple(_row(r) for r in t.rows), notes, frozenset({0, 1, 3, 5, 8}))
 
 
-HEADERS = ("case", "quantity", "held against", "basis", "found", "unit", "difference", "allowed", "verdict")
+HEADERS = ("case", "quantity", "reference", "basis", "found", "unit", "difference", "tolerance", "verdict")
 
 
 def _row(r: Compared) -> tuple[str, ...]:
@@ -306,9 +309,7 @@ def overview(found: Acceptance) -> Table:
         )
         for t in found.tables
     )
-    notes = (
-        "used: the largest difference as a share of what is allowed, where that is not zero; of a limit the share that is reached",
-    )
+    notes = ("used: the largest difference in % of the tolerance; of a limit, the share that is reached",)
     headers = ("what", "of the publication", "hold", "used", "verdict")
     return Table("Tables of the publication", headers, rows, notes, frozenset({0, 1, 4}))
 
@@ -323,7 +324,7 @@ def errata(acceptance: Acceptance) -> Table:
     rows = tuple((str(i), text) for i, text in enumerate(acceptance.errata, start=1))
     return Table(
         "Errata of the publication",
-        ("no.", "what is wrong, and what stands in its place"),
+        ("no.", "what is wrong, and the correction"),
         rows,
         left=frozenset({0, 1}),
     )

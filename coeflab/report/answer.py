@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coeflab.core.table import Severity, Table, number, with_u95
+from coeflab.core.table import Severity, Table, number, plus_minus, with_u95
 from coeflab.core.types import brief
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
@@ -23,10 +23,11 @@ from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, s
 from coeflab.report.figures.model import model_figures
 from coeflab.report.figures.svg import size_of
 from coeflab.report.sections.campaign import anchor
+from coeflab.report.sections.estimates import answer_of_shape
 from coeflab.report.tables.models import quality
 from coeflab.study.study import Study
 from coeflab.study.towed import Towed, towed
-from coeflab.vehicle.derived import Derived, sense, stability
+from coeflab.vehicle.derived import ALONE, Derived, sense, stability
 from coeflab.vehicle.reference import Comparison, Reference, Relation
 
 LONGEST, MOST_LETTERS, MOST_ROWS, MOST_COLUMNS = 160, 240, 6, 3
@@ -73,6 +74,8 @@ def answer(found: Study | Acceptance, *, drawn: bool = True) -> Answer:
         Of a study its wanted coefficients beside the published columns of their body: from its re-analysed tables, else from
         an own tow of that body. A difference has a verdict only where the authors' own evaluation of the same data is known.
     """
+    if isinstance(found, Study) and found.shape is not None:
+        return answer_of_shape(found, drawn=drawn)
     made = _of_study(found) if isinstance(found, Study) else _of_publication(found)
     return _drawn(found, made) if drawn else made
 
@@ -278,9 +281,16 @@ def _stability(study: Study) -> Chip:
         return Chip("Stability", "not determined", Severity.NOTE, "stability" if study.parameter_files else "")
     first = [index for index in every if index.subject == every[0].subject]
     d: Derived = min(first, key=lambda index: index.name != "G_h")
-    said = sense(d).partition(" at ")[0]
-    grave = Severity.PASS if said == "stable" else Severity.WARN if said.startswith("unstable") else Severity.NOTE
-    return Chip("Stability", f"{said}, {d.name} = {d.value:.2f}", grave, "stability")
+    said = sense(d).removesuffix(ALONE).partition(" at ")[0]
+    grave = (
+        Severity.PASS
+        if said == "stable" and d.result is not None
+        else Severity.WARN
+        if said.startswith("unstable")
+        else Severity.NOTE
+    )
+    value = f"{d.value:.2f}, no U95" if d.result is None else plus_minus(d.value, d.result.linear)
+    return Chip("Stability", f"{said}, {d.name} = {value}", grave, "stability")
 
 
 def _largest(rows: Sequence[AnswerRow]) -> Chip:
@@ -348,13 +358,15 @@ def _notes(study: Study, beside: _Beside, rows: tuple[AnswerRow, ...]) -> tuple[
     out = []
     if sources:
         scaling = beside.among.scaling if beside.among else None
-        by = f"; primes by {scaling.length_name} {scaling.length:.5g} m" if scaling else ""
+        by = f"; made dimensionless with {scaling.length_name} = {scaling.length:.5g} m" if scaling else ""
         out.append(f"Ours: {listed(sources)}{by}.")
     own = [r for r in rows if r.source in towed_rows]
     if own:
         out.append(f"{listed([primed(r.symbol) for r in own])}: own tow {own[0].source}; no verdict.")
     if any(r.agrees is not None for r in rows):
-        out.append(f"{beside.columns[0].name}: the same data, evaluated by their authors. Only here is a verdict.")
+        out.append(
+            f"{beside.columns[0].name}: the same data, evaluated by their authors; the only column with a verdict."
+        )
     others = [r for r in beside.columns if r.relation is Relation.CROSS_BODY]
     if others:
         twice = [(r.name, r.scaling, r.other_scaling) for r in others]
@@ -380,11 +392,11 @@ def _of_models(study: Study) -> Answer:
 
 def _of_publication(found: Acceptance) -> Answer:
     good, count, valid = _held(found)
-    some = f"{count - good} of {count} numbers outside what is allowed"
-    said = f"all {count} numbers within what is allowed" if good == count else some
-    none = "none of them validates: calibration and consistency only"
+    some = f"{count - good} of {count} numbers outside the tolerance"
+    said = f"all {count} numbers within the tolerance" if good == count else some
+    none = "none of them is validation: calibration and consistency only"
     said += (
-        f"; {'all' if valid == count else valid} of them validate: predicted, or printed and recomputed"
+        f"; {'all' if valid == count else valid} of them are validation: predicted, or printed and recomputed"
         if valid
         else f"; {none}"
     )

@@ -18,12 +18,12 @@ from coeflab.core.errors import InputError
 from coeflab.core.types import brief
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.slope_at_origin import NODES
-from coeflab.fits.statistics import diagnostics, origin_slope, slopes
+from coeflab.fits.statistics import diagnostics, origin_slope, slope_mixture, slopes
 from coeflab.fits.statistics.many_rows import EACH_ROW
 from coeflab.fits.uncertainty.budget import Budget
 from coeflab.law.coefficient import transfer_matrix
 from coeflab.law.symbols import ANGULAR, CONTROLS, MOTIONS, primed
-from coeflab.motion.approach import has_rotary_limit
+from coeflab.motion.approach import has_rotary_limit, unlimited_in_words
 from coeflab.motion.dynamics import FIRST, SECOND
 from coeflab.motion.manoeuvre import Manoeuvre, orders_of
 from coeflab.motion.manoeuvres import zigzag
@@ -38,7 +38,7 @@ from coeflab.vehicle.parameter_file import ParameterFile
 CONSTANTS = (
     "NOTHING", "SIZES", "COARSE", "NUISANCE", "REMAINDER", "SCATTER", "BEYOND", "FAR", "NO_REMAINDER", "NOTHING_CURVED",
     "QUADRATIC_ODDS", "ALIKE", "GROWING", "SETTING", "COMMON", "LOOSE", "POWER", "TAIL", "TAIL_PER_DECADE", "TAILS", "WRONG",
-    "REMOVE", "PINNED", "ROUNDING", "WEIGHTLESS", "DECAY", "ORDERS", "STATED_FREEDOM", "FEWEST", "MOST_LIKELY",
+    "PINNED", "ROUNDING", "WEIGHTLESS", "DECAY", "ORDERS", "STATED_FREEDOM", "MOST_LIKELY",
 )  # fmt: skip
 COMPONENTS = "YNZMK"
 RUDDERS = (10.0, 20.0)  # deg: the zigzags of IMO MSC.137(76)
@@ -70,9 +70,10 @@ class BenchData:
 
     def content(self) -> dict[str, Any]:
         """All of it, with the constants of the method."""
-        constants = {name: _plain(getattr(origin_slope, name)) for name in CONSTANTS}
-        constants |= {"ODD": list(origin_slope.ODD.items()), "SIDES": list(origin_slope.SIDES.items())}
-        constants |= {"NODES": origin_slope.NODES.tolist(), "WEIGHTS": origin_slope.WEIGHTS.tolist()}
+        constants = {name: _plain(getattr(slope_mixture, name)) for name in CONSTANTS}
+        constants |= {"REMOVE": origin_slope.REMOVE, "FEWEST": origin_slope.FEWEST}
+        constants |= {"ODD": list(slope_mixture.ODD.items()), "SIDES": list(slope_mixture.SIDES.items())}
+        constants |= {"NODES": slope_mixture.NODES.tolist(), "WEIGHTS": slope_mixture.WEIGHTS.tolist()}
         return {
             "constants": constants | {"KEPT": diagnostics.KEPT},
             "nodes": NODES,
@@ -306,5 +307,5 @@ def _limit(vehicle: Vehicle, rate: str, speed: float) -> dict[str, Any]:
         "at": at,
         "scale": [speed / vehicle.length if MOTIONS[i] in ANGULAR else speed for i in at],
         "inverse": held.inverse_inertia().tolist(),
-        "words": f"straight motion is unstable, and no nonlinear term in {rate} of {components[0]} or {components[1]} limits the turn",
+        "words": unlimited_in_words(rate, components),
     }

@@ -37,6 +37,7 @@ from coeflab.report.sections.campaign import anchor, budget_sections, campaign_s
 from coeflab.report.sections.coefficients import coefficients_section
 from coeflab.report.sections.conventions import conventions_section
 from coeflab.report.sections.data_quality import quality_sections
+from coeflab.report.sections.estimates import estimates_sections, verdict_of_shape
 from coeflab.report.sections.parameter_file import export_sections, in_words, manoeuvre_sections, stability_sections
 from coeflab.report.tables import formats as format_tables
 from coeflab.report.tables import models as model_tables
@@ -205,7 +206,7 @@ def _kept(sections: Sequence[Section]) -> tuple[Section, ...]:
 
 def _document(study: Study, full: bool) -> Document:
     places: set[str] = set()
-    own = [anchor(f"campaign {fit.campaign}", places) for fit in study.fits] if full else []
+    own = [anchor(f"campaign {fit.campaign}", places) for fit in study.fits] if full and study.shape is None else []
     alone = [partial(_alone, study, fit, place, places) for fit, place in zip(study.fits, own, strict=False)]
     sizes = [len(f.sweeps) for f in study.fits]
     with settings(), begun(alone if sum(sizes) > FEW else (), sizes) as drawn:
@@ -218,7 +219,7 @@ def _document(study: Study, full: bool) -> Document:
         verdict(study),
         *_comparison(study),
         *tow_sections(study),
-        coefficients_section(study),
+        *(estimates_sections(study) or (coefficients_section(study),)),
         *_models(study),
         *_laws(study),
         *moving,
@@ -314,6 +315,8 @@ def _re_analysis(study: Study) -> list[str]:
 
 def verdict(study: Study) -> Section:
     """What comes out, in short paragraphs: the verdict, what was found, stability, what is missing, the checks."""
+    if study.shape is not None:
+        return verdict_of_shape(study)
     text = [*_re_analysis(study), _harvest(study)]
     others = [c for c in study.comparisons if c.relation is Relation.CROSS_BODY]
     if others:
@@ -391,8 +394,8 @@ def _laws(study: Study) -> tuple[Section, ...]:
     if not each:
         return ()
     text = (
-        "The force law of every parameter file at the measured points that it was fitted to. It may miss a point by three times the "
-        "scatter of repeated runs plus 5 % of the largest force; more, where the law is said to hold, is a failure.",
+        "The force law of every parameter file compared with the measured points that it was fitted to. Allowed is a difference of three "
+        "times the scatter of repeated runs plus 5 % of the largest force; a larger one inside the range of the law is a failure.",
     )
     return (Section("law-at-points", "The law at the measured points", text, each),)
 
@@ -400,12 +403,12 @@ def _laws(study: Study) -> tuple[Section, ...]:
 def _comparison(study: Study) -> tuple[Section, ...]:
     if not study.comparisons:
         return ()
-    text = ["Published values are primed by our length before they are compared."]
+    text = ["Published values are made dimensionless with our length before they are compared."]
     for r in study.references:
         if r.other_scaling is not None:
             text.append(
-                f'"{r.name}" has two readings, as the length of its primes is not certain: {r.scaling}, as printed, and '
-                f"{r.other_scaling}, which rescales every value."
+                f'"{r.name}" has two readings, since the length behind its primes is not certain: {r.scaling} (values as printed), or '
+                f"{r.other_scaling} (every value rescaled)."
             )
     shown = filled(without(tables.side_by_side(study), "random", "form"), without(tables.verdicts(study), "combined"))
     apart = filled(tables.differences(study))
@@ -435,9 +438,11 @@ def _checks(study: Study) -> Section:
 
 
 def _provenance(study: Study) -> Section:
-    text = ["The files below are known by the sha256 of their bytes. Equal inputs give this report byte for byte."]
+    text = ["The files below are identified by the sha256 of their bytes. Equal inputs give this report byte for byte."]
     settings = dict.fromkeys(
-        f"{f.fit}: {', '.join(f'{k} {v}' for k, v in sorted(f.settings.items()))}." for f in study.fits if f.settings
+        f"Settings of {f.fit}: {', '.join(f'{k} = {v}' for k, v in sorted(f.settings.items()))}."
+        for f in study.fits
+        if f.settings
     )
     text += settings
     return Section("provenance", "Provenance", tuple(text), filled(tables.provenance(study)))

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Datum
 from coeflab.core.errors import InputError, shown
-from coeflab.core.files import located
+from coeflab.core.files import located, named
 from coeflab.core.provenance import InputFile, sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.formats.export import PlannedExport
@@ -301,7 +301,7 @@ class TowKeys(takes.Declaration):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanFile(takes.Declaration):
-    """A plan.toml: a study of tables, and what is made of it.
+    """A plan.toml: a study of tables, or of a body alone by estimates, and what is made of it.
 
     Attributes
     ----------
@@ -345,13 +345,13 @@ class PlanFile(takes.Declaration):
     manoeuvre: tuple[ManoeuvreKeys, ...] = ()
 
     def check(self) -> None:
-        """A table at least; parameter files and targets once each."""
-        if not self.table and self.joint is None:
+        """A table or a body at least; parameter files and targets once each."""
+        if not self.table and self.joint is None and self.body is None:
             raise InputError(
                 "no [[table]]",
-                "at least one",
+                "at least one, or a [body] to estimate from",
                 column="table",
-                advice='Add [[table]] with campaign = "path/to/campaign".',
+                advice='Add [[table]] with campaign = "path/to/campaign", or [body] with path = "path/to/body.toml".',
             )
         names = [f.name.casefold() for f in self.parameter_file]
         for i, f in enumerate(self.parameter_file):
@@ -405,6 +405,7 @@ def read_plan(path: Path) -> Plan:
     InputError
         Everything that is wrong, by file, line and key.
     """
+    path = named(path, "plan.toml")
     file = takes.declared(PlanFile, read_toml(path))
     study = file.study
     tows = tuple(_tow(t, path, [own.campaign for own in file.table]) for t in file.tow)

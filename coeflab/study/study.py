@@ -29,8 +29,11 @@ from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.reference import Comparison, Reference
 
 if TYPE_CHECKING:
+    from coeflab.estimates import Estimates
     from coeflab.formats.export import Export, Refused
     from coeflab.motion.manoeuvre import Simulation
+    from coeflab.motion.uncertainty.uncertainty import Carried
+    from coeflab.vehicle.from_shape import Weighed
     from coeflab.vehicle.parameter_file import ParameterFile
 
 
@@ -134,13 +137,40 @@ class Plan:
             object.__setattr__(self, "reference_point", locked(self.reference_point))
 
 
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class FromShape:
+    """What a study of a shape without tables rests on.
+
+    Attributes
+    ----------
+    weighed : Weighed
+        The body with its mass, and what is assumed.
+    estimates : Estimates
+    conditions : Conditions
+    said : tuple of str
+        Mass against displacement, then what is assumed.
+    missing : tuple of str
+        For a manoeuvre under way, with what to write.
+    carried : tuple of Carried
+        The uncertainty of the estimates through the first manoeuvre; none where it shows nothing.
+    """
+
+    weighed: Weighed
+    estimates: Estimates
+    conditions: Conditions
+    said: tuple[str, ...]
+    missing: tuple[str, ...] = ()
+    carried: tuple[Carried, ...] = ()
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Study:
     """Everything that a run found; export and report are two leaves of this one object.
 
     ``parameter_files`` and ``hulls``, the added mass of those that have one, go by the name of the file. ``refused`` are
     planned exports that were not made; all else stands. ``unfitted`` says of the campaign of a tow why a fit of it could not
-    be made.
+    be made. ``shape`` is there where no table is: then the fit is that of the estimates.
     """
 
     plan: Plan
@@ -159,6 +189,7 @@ class Study:
     refused: tuple[Refused, ...] = ()
     manoeuvres: tuple[Simulation, ...] = ()
     unfitted: Mapping[str, str] = field(default_factory=dict)
+    shape: FromShape | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "unfitted", MappingProxyType(dict(self.unfitted)))

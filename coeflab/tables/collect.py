@@ -37,13 +37,17 @@ ONE_FOR_ALL = ("axes.", "scaling.", "conditions.density", "conditions.viscosity"
 ITERATIONS, START, STATUS, ORIGIN = "iterations", "plateau start", "status", "condition from"
 DOUBTFUL, ALL, LABEL, IGNORE = "uncertain", "all", "label", "ignore"
 MOST_REMARKS = 20
+FINE = 0.01  # of the largest mean of a component: a standard error below it is small enough, however short the history
 KEPT = {
-    Convergence.TOO_SHORT: "of which what is too short is marked as uncertain",
+    Convergence.SHORT: f"as every error, the range of the plateau in it, is below {100 * FINE:g} % of the largest mean of its component",
+    Convergence.TOO_SHORT: "of which what is too short is marked as uncertain and not used",
     Convergence.DRIFTING: "which are kept but marked as uncertain",
 }
 SAME = 1e-5  # relative: speeds come from vectors of six digits
 EARLY = 0.6  # of the median end of all runs: what ends before it may have crashed
-FINE = 0.01  # of the largest mean of a component: a standard error below it is small enough, however short the history
+UNLIKE = (
+    3.0  # ratio of two standard errors beyond what eight batches explain: 95 % of chi-square of 7 degrees of freedom
+)
 
 
 @brief
@@ -185,7 +189,9 @@ def collect(
     duplicates, copies, grids = _duplicates(rows, known)
     missing = (*absent, *_holes(rows, known))
     doubtful = _doubtful(rows, copies)
-    remarks = _remarks(summaries, rows, missing, duplicates, copies, grids, doubtful)
+    used = {s.name: replace(s, status=Convergence.SHORT) for s in rows if _is_short_but_used(s, doubtful)}
+    rows, summaries = [used.get(s.name, s) for s in rows], [used.get(s.name, s) for s in summaries]
+    remarks = _remarks(summaries, rows, missing, duplicates, copies, grids)
     table = _table(path, chosen, rows, known, doubtful, remarks)
     return Collected(table, tuple(summaries), missing, duplicates, chosen, again)
 
@@ -277,6 +283,10 @@ def _doubtful(rows: Sequence[RunSummary], copies: Mapping[str, str]) -> dict[str
     return {r.name: of(r) for r in rows}
 
 
+def _is_short_but_used(run: RunSummary, doubtful: Mapping[str, str]) -> bool:
+    return run.status is Convergence.TOO_SHORT and not doubtful[run.name]
+
+
 def _lacks_forces(run: RunSummary) -> bool:
     return run.status is Convergence.EMPTY and NO_FORCES in run.why
 
@@ -306,7 +316,7 @@ def _holes(rows: Sequence[RunSummary], known: Sequence[str]) -> tuple[str, ...]:
 
 def _remarks(
     summaries: Sequence[RunSummary], rows: Sequence[RunSummary], missing: Sequence[str], duplicates: Sequence[Sequence[str]],
-    copies: Mapping[str, str], grids: Sequence[Sequence[str]], doubtful: Mapping[str, str],
+    copies: Mapping[str, str], grids: Sequence[Sequence[str]],
 ) -> tuple[str, ...]:  # fmt: skip
     """What a person has to know of the runs, a sentence each; many runs of one kind in one sentence."""
     out = []
@@ -316,14 +326,6 @@ def _remarks(
         out.append(f"{len(bare)} case{'s' * (len(bare) > 1)} without forces: {named(bare)}{advice}")
     for status in ORDER[1:]:
         alike = [s for s in summaries if s.status is status and not _lacks_forces(s)]
-        if status is Convergence.TOO_SHORT:
-            fine = [s for s in alike if not doubtful.get(s.name)]
-            alike = [s for s in alike if doubtful.get(s.name)]
-            if fine:
-                out.append(
-                    f"{len(fine)} {status} and used, as every error, the range of the plateau in it, is below {100 * FINE:g} % of "
-                    f"the largest mean of its component: {_with_reasons(fine)}."
-                )
         if not alike:
             continue
         what = KEPT.get(status, "which have no numbers")
@@ -365,12 +367,16 @@ def _table(
         header = next(r.headers[c] for r in rows if c in r.means)
         values = _numbers([r.means.get(c) for r in rows])
         columns.append(RawColumn(header, _unit_of(rows, c), values, means="" if by_name else c))
+    header_of = {c: next(r.headers[c] for r in rows if c in r.means) if by_name else c for c in components}
     for c in components:
         errors = _numbers([r.errors.get(c) for r in rows])
         bare = [r.name for r, e in zip(rows, errors, strict=True) if c in r.means and not e > 0.0]
         if bare:
             more.append(f"No se_{c}: {named(bare)} without a history, or of zeros only, has no standard error.")
         else:
+            errors, raised = _floored(errors, [r.status is Convergence.CONVERGED for r in rows])
+            if raised:
+                more.append(raised.format(f"se_{header_of[c]}", _unit_of(rows, c)))
             columns.append(RawColumn(f"se_{c}", _unit_of(rows, c), errors, means="" if by_name else f"se_{c}"))
     others = dict.fromkeys(k for r in rows for k in r.conditions if k not in SETTINGS)
     columns += [
@@ -401,6 +407,22 @@ def _table(
         stated=stated,
         remarks=tuple(more),
     )
+
+
+def _floored(errors: Array, converged: Sequence[bool]) -> tuple[Array, str]:
+    """Standard errors of runs, none below the pooled one of the converged runs where they differ more than chance explains.
+
+    A history that converged to the last digit says nothing of how far its mean is from that of its neighbours: unless errors are
+    pooled, few rows carry the whole fit.
+    """
+    own = errors[np.array(converged) & np.isfinite(errors)]
+    if own.size < 2 or float(own.max()) <= UNLIKE * float(own.min()):
+        return errors, ""
+    pooled = float(np.sqrt(np.mean(own**2)))
+    low = errors < pooled
+    said = f"{{}} of {int(low.sum())} of {errors.size} runs raised to {pooled:.2g} {{}}, the pooled error (root mean square) of the "
+    said += f"converged runs: their own differ {own.max() / own.min():.2g}-fold, which would leave the fit to the few smallest."
+    return np.where(low, pooled, errors), said
 
 
 def _numbers(values: Sequence[float | None]) -> Array:

@@ -70,7 +70,8 @@ class ColumnMap:
         One of alpha beta U R density u v w p q r dr ds db X Y Z K M N lift drag side, or label, point, cells, uncertain,
         ignore.
     unit : str
-        Of the column; empty for the one that its file states, ``-`` for a prime or a coefficient.
+        Of the column; empty for the one that its file states, ``-`` for a prime or a coefficient, or what a prime is counted
+        in, such as ``1e-3``.
     negative : bool
         Whether the column has the opposite sign.
     primed : bool
@@ -122,6 +123,20 @@ class ColumnMap:
         if self.area:
             unit = f"coefficient A={self.area!r} m^2" + (f" L={self.length!r} m" if self.length else "")
         return f"{sign}{self.plain}{prime}" + (f" [{unit}]" if unit else "")
+
+
+_SHARE = re.compile(r"(?i)(?:[x*×·]\s*)?(?:1e|10\s*(?:\^|\*\*)\s*)\(?(?P<power>[+-]?\d{1,2})\)?|(?P<percent>%)")
+_RAISED = str.maketrans("⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹−", "-+0123456789-")
+
+
+def share(unit: str) -> float | None:
+    """What a pure number is counted in, 0.001 of ``1e-3``, ``10^-3`` and ``10⁻³``, 0.01 of ``%``; None of anything else."""
+    plain = unit.strip()
+    plain = plain[1:-1].strip() if plain[:1] + plain[-1:] in ("[]", "()", "<>") else plain
+    m = _SHARE.fullmatch(re.sub(r"^10(?=[+-])", "10^", plain.translate(_RAISED)))
+    if m is None:
+        return None
+    return 0.01 if m["percent"] else 10.0 ** int(m["power"])
 
 
 def folded(name: str) -> str:
@@ -178,9 +193,12 @@ def _checked(said: ColumnMap, text: str) -> ColumnMap:
     if said.primed:
         if said.name not in (*FORCES, *LINEAR, *ANGULAR):
             raise InputError(shown(text), f"a prime of {' '.join((*COMPONENTS, *LINEAR, *ANGULAR, *WIND))} only")
-        if said.unit not in ("", "-"):
-            raise UnitsError(f"[{said.unit}]", f"[-] of {said.name}'", advice="Leave out ' for a dimensional column.")
-        return replace(said, unit="-")
+        if said.unit not in ("", "-") and share(said.unit) is None:
+            raise UnitsError(
+                f"[{said.unit}]", f"[-], [%] or a power of ten such as [1e-3] of {said.name}'",
+                advice="Leave out ' for a dimensional column.",
+            )  # fmt: skip
+        return replace(said, unit=said.unit or "-")
     if said.unit.startswith("coefficient"):
         return _coefficient(said, text)
     if said.unit == "-":

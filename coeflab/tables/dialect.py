@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -16,7 +16,7 @@ from coeflab.core.errors import shown
 from coeflab.core.types import Array
 from coeflab.core.units import parse_header
 from coeflab.law.symbols import COMPONENTS, CONTROL_COLUMNS, MOTIONS
-from coeflab.tables.column_map import WIND
+from coeflab.tables.column_map import WIND, share
 from coeflab.tables.raw_table import RawColumn
 
 SNIFFED = 1 << 16
@@ -107,9 +107,12 @@ _BEHIND = re.compile(r"(?P<name>.*?[^\s,/])(?:\s*,\s*|\s+/\s+)(?P<unit>\S.*)")
 _NO_UNIT_BEHIND = re.compile(r"(?i)(c|se|k|d|delta|sd|std|err|sigma|max|min)_.{1,2}")
 
 
+_NO_UNIT = frozenset({"", "-", "–", "—"})
+
+
 def is_unit(text: str) -> bool:
     """Whether a text is a unit as tables write it, without brackets."""
-    return text in ("-", "–", "—") or (len(text) <= 24 and _UNIT.fullmatch(text) is not None)
+    return text in _NO_UNIT - {""} or (len(text) <= 24 and _UNIT.fullmatch(text) is not None)
 
 
 def name_and_unit(text: str) -> tuple[str, str]:
@@ -138,28 +141,39 @@ def _bare(cell: str) -> str:
     return cell[1:-1].strip() if cell[:1] + cell[-1:] in ("[]", "()", "<>") else cell
 
 
-_SHARE = re.compile(r"(?i)(?:[x*×·]\s*)?(?:1e|10\s*(?:\^|\*\*)\s*)\(?(?P<power>[+-]?\d{1,2})\)?|(?P<percent>%)")
+def numbered(rows: Sequence[Sequence[str]], marks: Marks) -> frozenset[int]:
+    """The columns of equally long rows in which more cells are numbers than text."""
+    out = set()
+    for k, column in enumerate(zip(*rows)):
+        filled = [c for c in column if c not in _DASHES]
+        if 2 * numeric(filled, marks) > len(filled):
+            out.add(k)
+    return frozenset(out)
 
 
-def share(unit: str) -> float | None:
-    """What a pure number is counted in, 0.001 of ``1e-3``, ``10^-3`` and ``10⁻³``, 0.01 of ``%``; None of anything else."""
-    plain = _bare(unit.strip()).translate(_RAISED)
-    m = _SHARE.fullmatch(re.sub(r"^10(?=[+-])", "10^", plain))
-    if m is None:
-        return None
-    return 0.01 if m["percent"] else 10.0 ** int(m["power"])
+def is_unit_row(cells: Sequence[str], numbers: Set[int]) -> bool:
+    """Whether a row between names and data holds units: the letters of a run (A, K, m, s) and the number 1 are units too.
 
+    Every cell is a unit, a share such as 1e-3, or blank. Beyond that one cell has to be what no row of data has: a unit in
+    letters or % over a column of numbers, a bracket, or a share such as 1e-3 beside a dash; or all are dashes.
 
-_RAISED = str.maketrans("⁻⁺⁰¹²³⁴⁵⁶⁷⁸⁹−", "-+0123456789-")
-
-
-def is_unit_row(cells: Sequence[str]) -> bool:
-    """Whether every cell is a unit, a share such as 1e-3, or blank, and at least one is a unit; with shares, one in letters."""
+    Parameters
+    ----------
+    cells : sequence of str
+    numbers : set of int
+        Columns that hold numbers below, see `numbered`.
+    """
     bare = [_bare(c) for c in cells]
-    if not all(not c or is_unit(c) or share(c) is not None for c in bare):
+    if not any(cells) or not all(not c or is_unit(c) or share(c) is not None for c in bare):
         return False
-    shares = any(share(c) is not None and not is_unit(c) for c in bare)
-    return any(cells) and (not shares or any(c[:1].isalpha() and is_unit(c) for c in bare))
+    over = [bare[k] for k in numbers if k < len(bare)]
+    if any(c and c != b for c, b in zip(cells, bare)) or any(
+        c != "1" and c not in _NO_UNIT and is_unit(c) for c in over
+    ):
+        return True
+    shares = any(share(c) is not None for c in over)
+    dashes = any(c in _NO_UNIT for c in over if c)
+    return dashes and (shares or all(c in _NO_UNIT for c in bare))
 
 
 def is_name_row(cells: Sequence[str], marks: Marks) -> bool:
@@ -197,7 +211,9 @@ class Head:
 Row = tuple[int, list[str]]
 
 
-def read_head(above: Sequence[Row], width: int, marks: Marks, named: int = 0, united: int = 0) -> Head:
+def read_head(
+    above: Sequence[Row], width: int, marks: Marks, numbers: Set[int], named: int = 0, united: int = 0
+) -> Head:
     """The names over a table's columns.
 
     Parameters
@@ -206,31 +222,53 @@ def read_head(above: Sequence[Row], width: int, marks: Marks, named: int = 0, un
         Rows over the data, the nearest last, each as wide as the table.
     width : int
     marks : Marks
+    numbers : set of int
+        Columns that hold numbers, see `numbered`.
     named, united : int
         Lines that a person says hold the names and the units; 0 to find them, -1 where there are none.
     """
     rows = list(above)
+    remarks = []
+    while (
+        named == 0
+        and united == 0
+        and len(rows) > 1
+        and _is_empty(rows[-1][1], numbers)
+        and is_name_row(rows[-2][1], marks)
+    ):
+        remarks.append(f"line {rows[-1][0]}: left out, no number in it ({shown(' '.join(filter(None, rows[-1][1])))})")
+        rows.pop()
     units: Row | None = next((r for r in rows if r[0] == united), None)
     if (
         united == 0
         and len(rows) > 1
-        and is_unit_row(rows[-1][1])
+        and is_unit_row(rows[-1][1], numbers)
         and is_name_row(rows[-2][1], marks)
         and named != rows[-1][0]
     ):
         units = rows[-1]
+        if any(marks.number(c) is not None and c not in _DASHES for c in units[1]):
+            remarks.append(
+                f"line {units[0]}: {shown(' '.join(filter(None, units[1])))} are taken for the units of the columns"
+            )
     rows = [r for r in rows if r is not units]
     names: Row | None = next((r for r in rows if r[0] == named), None)
     if named == 0 and rows and is_name_row(rows[-1][1], marks):
         names = rows[-1]
     if names is None:
         own = tuple(_bare(u) for u in units[1]) if units else ("",) * width
-        return Head(tuple(f"column {k + 1}" for k in range(width)), own, unit_line=units[0] if units else 0)
+        plain = tuple(f"column {k + 1}" for k in range(width))
+        return Head(plain, own, unit_line=units[0] if units else 0, remarks=tuple(remarks))
     group = next((r for r in reversed(rows) if r[0] < names[0]), None)
-    return _head(names, units, group)
+    return _head(names, units, group, remarks)
 
 
-def _head(names: Row, units: Row | None, group: Row | None) -> Head:
+def _is_empty(cells: Sequence[str], numbers: Set[int]) -> bool:
+    """Whether a row over the data is one of them without any number: nothing in all columns of numbers, and no units."""
+    return bool(numbers) and all(cells[k] in _DASHES for k in numbers) and not is_unit_row(cells, numbers)
+
+
+def _head(names: Row, units: Row | None, group: Row | None, before: Sequence[str]) -> Head:
     texts = [" ".join(t.split()) for t in names[1]]
     stand = "none"
     if units:
@@ -244,6 +282,7 @@ def _head(names: Row, units: Row | None, group: Row | None) -> Head:
             split = _underscored(texts)
             stand = "after an underscore" if any(u for _, u in split) else stand
     found, remarks = _distinct([n or f"column {k}" for k, (n, _) in enumerate(split, start=1)], names[0], group)
+    remarks = [*before, *remarks]
     written = tuple(tuple(r[1]) for r in (names, units) if r)
     return Head(
         tuple(found), tuple(u for _, u in split), names[0], units[0] if units else 0, written, stand, tuple(remarks)

@@ -46,6 +46,7 @@ class Convergence(StrEnum):
     """What a history says of its run, the best first."""
 
     CONVERGED = "converged"
+    SHORT = "short but used"  # what a folder of runs says of a history that is too short by itself
     TOO_SHORT = "too short"
     DRIFTING = "drifting"
     DIVERGED = "diverged"
@@ -56,7 +57,7 @@ class Convergence(StrEnum):
     @property
     def has_numbers(self) -> bool:
         """Whether a run that ended so has a mean."""
-        return self in (Convergence.CONVERGED, Convergence.TOO_SHORT, Convergence.DRIFTING)
+        return self in (Convergence.CONVERGED, Convergence.SHORT, Convergence.TOO_SHORT, Convergence.DRIFTING)
 
 
 ORDER = tuple(Convergence)

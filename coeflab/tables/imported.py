@@ -24,8 +24,8 @@ from coeflab.tables.column_map import ColumnMap
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers.csv import read as read_house
 from coeflab.tables.mapping import Assigned, doubtful, mapped_table, row_name, texts_of, usable_rows
-from coeflab.tables.questions import CONFIRMED, SECTIONS, Settings
 from coeflab.tables.raw_table import RawTable
+from coeflab.tables.settings import CONFIRMED, SECTIONS, Settings
 
 LONG = {short: name for name, short in CONTROL_COLUMNS.items()}
 TABLE = "table.csv"

@@ -15,8 +15,7 @@ from coeflab.core.types import Array, brief
 from coeflab.core.units import factor
 from coeflab.core.wording import Verbatim, listed
 from coeflab.tables.campaign import Campaign, TableDeclaration
-from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map, unturned
-from coeflab.tables.dialect import share
+from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_column_map, share, unturned
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.to_frd import BLANK, Columns, force_table, speed_of_rows
@@ -184,7 +183,13 @@ def with_unit(raw: RawTable, column: RawColumn, said: ColumnMap) -> Assigned:
             raise fault(
                 raw, f"[{column.unit}] in the file", f"[-], [%] or a power of ten such as [1e-3] for {said}", column
             )
-        return Assigned(column, said, sign * (counted or 1.0))
+        declared = share(said.unit)
+        if declared and stated and counted != declared:
+            raise fault(
+                raw, f"[{column.unit}] in the file, [{said.unit}] in the mapping", "the same unit", column,
+                f'Leave the unit out to take the file\'s: "{replace(said, unit="-")}".',
+            )  # fmt: skip
+        return Assigned(column, said, sign * (declared or counted or 1.0))
     own = _factor(column.unit, said.dimension)
     unit = said.unit or column.unit
     if not unit or (unit == "-" and not said.unit):
@@ -368,7 +373,7 @@ def another_density(raw: RawTable, known: Sequence[Assigned], density: float) ->
     said = raw.stated.get("conditions.density")
     own = any(one.said.name == "density" for one in known)
     in_newton = any(one.said.role == "force" and not one.said.pure for one in known)
-    if said is None or not isinstance(said.value, float) or own or not in_newton:
+    if said is None or said.offered or not isinstance(said.value, float) or own or not in_newton:
         return None
     if abs(density - said.value) <= SAME_DENSITY * abs(said.value):
         return None

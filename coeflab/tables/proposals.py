@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from coeflab.tables.column_map import (
     ColumnMap,
     folded,
     read_column_map,
+    share,
     unturned,
 )
 from coeflab.tables.mapping import Assigned
@@ -42,32 +43,39 @@ ALLOWED = {
 TURN = "counts about the z axis of the frame: z down, r > 0 turns to starboard; z up (CFD, FLU), to port"
 CLEAR = 0.8  # correlation beyond which a slope has a sign
 _SAID = {
-    "X": "fx forcex xforce surgeforce longitudinalforce axialforce laengskraft langskraft forcelongitudinale fxtotal",
-    "Y": "fy forcey yforce swayforce sideforce lateralforce transverseforce querkraft seitenkraft forcelaterale "
-    "efforttransversal fytotal",
-    "Z": "fz forcez zforce heaveforce verticalforce normalforce vertikalkraft forceverticale fztotal",
-    "K": "mx momentx xmoment rollmoment rollingmoment rollmoment momentderoulis",
-    "M": "my momenty ymoment pitchmoment pitchingmoment trimmoment nickmoment momentdetangage",
-    "N": "mz momentz zmoment yawmoment yawmom yawingmoment giermoment momentdelacet",
-    "alpha": "alpha α aoa angleofattack attack attackangle pitchangle incidence anstellwinkel angledattaque",
-    "beta": "beta β drift driftangle sideslip sideslipangle yawangle driftwinkel schiebewinkel derive angledederive",
+    "X": "fx forcex xforce surgeforce longitudinalforce axialforce laengskraft langskraft kraftlangs kraftlaengs kraftx xkraft widerstandskraft forcelongitudinale effortlongitudinal fxtotal",
+    "Y": "fy forcey yforce swayforce sideforce lateralforce transverseforce querkraft seitenkraft kraftquer "
+    "krafty ykraft forcelaterale forcetransversale efforttransversal effortlateral fytotal",
+    "Z": "fz forcez zforce heaveforce verticalforce normalforce vertikalkraft hubkraft kraftvertikal krafthoch kraftz zkraft "
+    "forceverticale effortvertical fztotal",
+    "K": "mx momentx xmoment rollmoment rollingmoment krangungsmoment kraengungsmoment momentumlangsachse momentumlaengsachse "
+    "momentderoulis momentroulis",
+    "M": "my momenty ymoment pitchmoment pitchingmoment trimmoment nickmoment stampfmoment momentumquerachse "
+    "momentdetangage momenttangage",
+    "N": "mz momentz zmoment yawmoment yawmom yawingmoment giermoment momentumhochachse "
+    "momentumvertikalachse momentdelacet momentlacet",
+    "alpha": "alpha α aoa angleofattack attack attackangle pitchangle incidence anstellwinkel trimmwinkel nickwinkel "
+    "angledattaque angledincidence",
+    "beta": "beta β drift driftangle sideslip sideslipangle yawangle driftwinkel schiebewinkel gierwinkel schraglage abdrift "
+    "derive angledederive angledelacet",
     "U": "speed velocity towingspeed carriagespeed towspeed freestreamvelocity uinf vinf umag vmag vitesse "
-    "geschwindigkeit geschw schleppgeschwindigkeit",
+    "geschwindigkeit geschw schleppgeschwindigkeit vmodell modellgeschwindigkeit vitessechariot vitessederemorquage",
     "u": "surgevelocity surgespeed longitudinalvelocity",
     "v": "swayvelocity swayspeed lateralvelocity transversevelocity",
     "w": "heavevelocity heavespeed verticalvelocity",
     "p": "rollrate omegax rollgeschwindigkeit",
     "q": "pitchrate omegay nickgeschwindigkeit",
-    "r": "yawrate omegaz turnrate turningrate giergeschwindigkeit gierrate vitessedelacet",
-    "R": "radius turningradius armradius radiusofturn armlength",
-    "density": "rho density waterdensity dichte densite",
-    "dr": "rudder rudderangle deltar ruder ruderwinkel barre",
-    "ds": "sternplane sternplaneangle elevator elevatorangle deltas hoehenruder",
+    "r": "yawrate omegaz turnrate turningrate giergeschwindigkeit gierrate drehrate drehgeschwindigkeit "
+    "vitessedelacet tauxdelacet",
+    "R": "radius turningradius armradius radiusofturn armlength drehkreisradius bahnradius rayon rayondegiration",
+    "density": "rho density waterdensity dichte wasserdichte densite massevolumique",
+    "dr": "rudder rudderangle deltar ruder ruderwinkel seitenruder ruderlage barre angledebarre",
+    "ds": "sternplane sternplaneangle elevator elevatorangle deltas hoehenruder hohenruder tiefenruder",
     "db": "bowplane bowplaneangle deltab",
     "cells": "cells ncells cellcount meshcells numberofcells elements gridcells zellen",
     "point": "run runno runnumber runid case caseno casename test testno testid point pointno id no nr number "
-    "versuch versuchsnr messung fall lauf essai",
-    "ignore": "comment comments remark remarks note notes bemerkung bemerkungen kommentar commentaire date datum time zeit "
+    "versuch versuchsnr messung messpunkt fahrt fall lauf lfd lfdnr essai numero",
+    "ignore": "comment comments remark remarks note notes bemerkung bemerkungen kommentar commentaire remarque remarques date datum time zeit heure uhrzeit "
     "iteration iterations residual residuals",
 }
 NAMES = {word: name for name, words in _SAID.items() for word in words.split()}
@@ -166,7 +174,7 @@ def _name(column: RawColumn) -> tuple[str, str, bool]:
         except InputError:
             pass
     bare = folded(own)
-    error = _ERROR.search(bare)
+    error = None if bare in NAMES else _ERROR.search(bare)  # Achse, Bremse
     bare = _ERROR.sub("", bare) if error else bare
     prefix, prime = "se_" if error else "", ""
     if bare.endswith("prime") or short.endswith("'"):
@@ -188,19 +196,21 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     unit = " ".join(column.unit.split())
     name = str(said).partition(" [")[0]
     why += f"; {TURN}" * (said.name == "r")
+    counted = share(unit) is not None
     if said.primed:
-        return Proposal(f"{name} [-]", why, certain)
+        return Proposal(f"{name} [{unit if counted else '-'}]", why, certain)
     unit = UNITS.get(unit.casefold(), unit)
     moment = said.name in MOMENTS
     is_coefficient = said.name in FORCES and (
-        unit in ("-", "1") or (not unit and folded(column.name) in COEFFICIENTS and not certain)
+        unit in ("-", "1") or counted or (not unit and folded(column.name) in COEFFICIENTS and not certain)
     )
     if is_coefficient:
         area, length = (
             f"{float(str(x))!r} m{u}" if x is not None else OPEN for x, u in zip(by, ("^2", ""), strict=True)
         )
         text = f"{name} [coefficient A={area}" + (f" L={length}]" if moment else "]")
-        return Proposal(text, f"{why}, no unit: by 1/2 rho U^2 A{' L' * moment}, or {name}' for primes", certain)
+        pure = f"counted in {unit}" if counted else "no unit"
+        return Proposal(text, f"{why}, {pure}: by 1/2 rho U^2 A{' L' * moment}, or {name}' for primes", certain)
     try:
         whole = read_column_map(f"{name} [{unit}]") if unit else None
     except InputError:
@@ -216,10 +226,12 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
 def proposals(raw: RawTable) -> tuple[Proposal, ...]:
     """What every column of a table may be; of several that may be the same, or name the rows, only the first keeps it."""
     stated = {key: s.value for key, s in raw.stated.items()}
+    offered = any(s.offered for key, s in raw.stated.items() if key.startswith("coefficients."))
     out: list[Proposal] = []
     taken: dict[str, str] = {}
     for column in raw.columns:
         one = proposed(column, stated)
+        one = replace(one, certain=False) if offered and "coefficient" in one.text else one
         said = read_column_map(one.text.partition(" [")[0]) if one.text else None
         if said is not None and said.name not in ("label", "ignore"):
             if said.name == "point" and (said.plain in taken or _repeats(column)):

@@ -2,79 +2,34 @@
 
 from __future__ import annotations
 
-import json
+import re
 import shlex
-import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from coeflab.core.axes import ANGLE_SIGNS, FRAMES, Axes, angle_sign, parse_axes
-from coeflab.core.declarations import POINT, numbers, one_of, text_of
-from coeflab.core.errors import InputError, shown, together
+from coeflab.core.axes import ANGLE_SIGNS, Axes
+from coeflab.core.errors import InputError, shown
 from coeflab.core.provenance import TABLE_KINDS
-from coeflab.core.text.toml import read_toml
 from coeflab.core.units import quantity
-from coeflab.law.scaling import Scaling, doubtful_size, speaks_of_air
 from coeflab.law.symbols import ANGULAR
-from coeflab.tables.campaign import (
-    CENTRES,
-    CampaignAxes,
-    CampaignConditions,
-    CampaignHead,
-    InputUncertainty,
-    TableDeclaration,
-    TableSource,
-    TowedInertia,
-)  # fmt: skip
+from coeflab.tables.campaign import CENTRES
 from coeflab.tables.column_map import ROLES, ColumnMap, read_column_map
 from coeflab.tables.mapping import Assigned, another_density, assigned, entry_of, error_of, fault, known_as, with_unit
 from coeflab.tables.proposals import OPEN, Evidence, Proposal, astern, evidence, proposals
 from coeflab.tables.raw_table import RawColumn, RawTable
-
-POINT_OF = "axes.reference_point"
-CONFIRMED = ("confirmed", "from ")
-_KINDS = {
-    "campaign": CampaignHead, "axes": CampaignAxes, "scaling": Scaling, "conditions": CampaignConditions,
-    "source": TableSource, "inertia": TowedInertia, "uncertainty": InputUncertainty, "table": TableDeclaration,
-}  # fmt: skip
-SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
-PLACES = ("FRAME", "POINT", "NAME", "SOURCE", "KIND", "SIGN", "SIDE")
-RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
-
+from coeflab.tables.settings import POINT_OF, Settings, frame_of
 
 FRAMES_ASKED = (
     "Axes of the forces: FRD (x forward, y starboard, z down), FLU (x forward, y port, z up), CFD (x aft, y starboard, "
     "z up), or three directions such as aft,port,down"
 )
 PLACE_ASKED = "x, y, z in m from the datum, x forward, y starboard, z down, such as -2.1, 0, 0 (2.1 m aft of it), or 0 for the datum"
-PLACE_WANTED = "x, y, z in m, such as -2.1, 0, 0; 0 is the datum"
-PLACE_KEYS = ("axes.reference_point", "inertia.centre_of_gravity", "table.arm_point", "table.reference_point")
 INERTIA_ASKED = (
     "Do the forces contain the model's own inertia: true for a balance on a real rotating arm, false for a solver"
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Setting:
-    """A value of campaign.toml and where it comes from.
-
-    Attributes
-    ----------
-    value : object
-        As TOML holds it.
-    origin : str
-        For the comment beside it.
-    """
-
-    value: Any
-    origin: str
-
-
-Settings = Mapping[str, Setting]
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,155 +59,6 @@ class Question:
     why: str = ""
     certain: bool = False
     on_enter: str = ""
-
-
-def _sign(name: str) -> Callable[[Any], Any]:
-    def read(said: Any) -> str:
-        formulas = {"+" if sign > 0 else "-": formula for formula, sign in ANGLE_SIGNS[name].items()}
-        text = formulas.get(str(said), said)
-        angle_sign(name, text)
-        return " ".join(str(text).split())
-
-    return read
-
-
-def _frame(said: Any) -> Any:
-    if isinstance(said, str) and said not in FRAMES:
-        listed = [word.strip(" \"'[]") for word in said.split(",")]
-        said = said.upper() if said.upper() in FRAMES else listed if len(listed) == 3 else said
-    parse_axes(said)
-    return said
-
-
-def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:
-    def parsed(typed: Any) -> Any:
-        said = list(typed) if isinstance(typed, tuple) else typed
-        if isinstance(said, str):
-            inner = said.strip(" []()")
-            parts = inner.split("," if "," in inner else ";" if ";" in inner else None)
-            said = [_toml(part.strip(" \"'")) for part in parts]
-        try:
-            read(said, Path())
-        except InputError as why:
-            if not isinstance(typed, str):
-                raise
-            advice = "Write a decimal point." if len(said) > 3 and "." not in typed else why.advice
-            raise type(why)(shown(typed), why.expected, advice=advice) from None
-        return said
-
-    return parsed
-
-
-def _place(said: Any) -> Any:
-    if not isinstance(said, bool) and said in (0, "0"):
-        return [0.0, 0.0, 0.0]
-    try:
-        return _triple(POINT.read)(said)
-    except InputError as why:
-        raise type(why)(why.found, PLACE_WANTED, advice=why.advice) from None
-
-
-def _flag(said: Any) -> bool:
-    words = {"yes": True, "y": True, "true": True, "no": False, "n": False, "false": False}
-    found = said if isinstance(said, bool) else words.get(str(said).casefold())
-    if found is None:
-        raise InputError(shown(said), "true or false")
-    return found
-
-
-def _measured(dimension: str) -> Callable[[Any], Any]:
-    def read(said: Any) -> Any:
-        if not quantity(said, dimension) > 0.0:
-            raise InputError(shown(said), f"a {dimension} above zero")
-        return said
-
-    return read
-
-
-def _one_of(*words: str) -> Callable[[Any], Any]:
-    return lambda said: one_of(*words).read(said, Path())
-
-
-READERS: dict[str, Callable[[Any], Any]] = {
-    "axes.frame": _frame,
-    "axes.alpha": _sign("alpha"),
-    "axes.beta": _sign("beta"),
-    **dict.fromkeys(PLACE_KEYS, _place),
-    "table.centre": _one_of(*CENTRES),
-    "inertia.inertia": _triple(numbers(3, "inertia", "three numbers [Ix, Iy, Iz]").read),
-    "inertia.mass": _measured("mass"),
-    "scaling.length": _measured("length"),
-    "conditions.density": _measured("density"),
-    "conditions.speed": _measured("speed"),
-    "table.contains_inertia": _flag,
-    "source.kind": _one_of(*TABLE_KINDS),
-    **dict.fromkeys(
-        ("axes.datum", "axes.datum_note", "scaling.length_name", "source.citation", "campaign.title", "campaign.body", "campaign.name"),
-        lambda said: str(text_of(said if isinstance(said, str) else json.dumps(said), Path())),
-    ),
-}  # fmt: skip
-
-
-def _toml(text: str) -> Any:
-    try:
-        return tomllib.loads(f"x = {text}")["x"]
-    except (tomllib.TOMLDecodeError, RecursionError):
-        return text
-
-
-def read_setting(key: str, text: Any) -> Any:
-    """A value of campaign.toml as a person types it: TOML, or bare words.
-
-    Raises
-    ------
-    InputError
-        No such key, or nothing that it takes.
-    """
-    section, _, name = key.partition(".")
-    if name not in SECTIONS.get(section, ()) or key in RESERVED:
-        known = [f"{section}.{n}" for n in SECTIONS.get(section, ()) if f"{section}.{n}" not in RESERVED]
-        expected = f"one of {', '.join(known or SECTIONS)}" + ("" if known else " with a key, such as axes.frame")
-        raise InputError(f"the key {shown(key)}", expected)
-    if text in PLACES:
-        raise InputError(shown(text), "a value in its place", column=key)
-    typed = _toml(text) if isinstance(text, str) and READERS.get(key) is not READERS["axes.datum"] else text
-    try:
-        return READERS.get(key, lambda said: said)(typed)
-    except InputError as why:
-        raise type(why)(why.found, why.expected, column=key, advice=why.advice) from None
-
-
-def stated_settings(raw: RawTable) -> dict[str, Setting]:
-    """What a file says of itself, as far as campaign.toml has keys for it.
-
-    A reference point is left out: a file counts it in its own axes from its own origin.
-    """
-    out = {}
-    for key, said in raw.stated.items():
-        section, _, name = key.partition(".")
-        if name in SECTIONS.get(section, ()) and key not in (*RESERVED, POINT_OF):
-            plain = list(map(float, said.value)) if isinstance(said.value, tuple) else said.value
-            out[key] = Setting(plain, f"stated: {said.place}")
-    return out
-
-
-def doubtful_setting(raw: RawTable, settings: Settings, key: str) -> str:
-    """Why the number of a key is probably one in another unit; empty where it is a usual one, or the file states it."""
-    one = settings[key]
-    sizes = {"conditions.density": "density", "conditions.speed": "speed", "scaling.length": "length"}
-    if key not in sizes or one.origin.startswith("stated"):
-        return ""
-    texts = [
-        raw.path.name,
-        raw.dialect.get("importer", ""),
-        *(s.value for k, s in settings.items() if k.startswith(("campaign.", "source."))),
-    ]
-    return doubtful_size(key, quantity(one.value, sizes[key]), speaks_of_air(texts))
-
-
-def frame_of(settings: Settings) -> Axes | None:
-    """The axes of the file, where they are known."""
-    return parse_axes(settings["axes.frame"].value) if "axes.frame" in settings else None
 
 
 def questions(
@@ -328,7 +134,16 @@ def questions(
         Question("source.kind", f"What the numbers are: {kinds}", "KIND"),
         Question("source.citation", "Their report, test or person", "SOURCE", cited, "the file's name", True),
     ]
-    return tuple(q for q in out if q.key not in settings)
+    return tuple(_offered(q, raw) for q in out if q.key not in settings)
+
+
+def _offered(q: Question, raw: RawTable) -> Question:
+    """The question with what words over the table say as its default, where nothing else gives one."""
+    said = raw.stated.get(q.key)
+    if q.default or said is None or not said.offered:
+        return q
+    value = f"{said.value:.12g}" if isinstance(said.value, float) else str(said.value)
+    return replace(q, default=value, why=said.place)
 
 
 @dataclass(frozen=True, slots=True)
@@ -395,7 +210,7 @@ def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings,
         complaints = (why, *why.others)
         columns = tuple(_possible(raw, said_of))
     frame = frame_of(settings)
-    shows = evidence(columns, frame)
+    shows = tuple(_against(e, settings) for e in evidence(columns, frame))
     names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
     asked = questions(raw, columns, settings, shows, names)
     if frame and (back := astern(columns, frame)):
@@ -408,6 +223,15 @@ def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings,
         if e.against and one.said.name == e.against and not set(said) & {one.column.name, *known_as(one.column)}
     ]  # fmt: skip
     return Understood(offers, mapping, tuple(still), columns, shows, asked, complaints, tuple(doubts))
+
+
+def _against(shows: Evidence, settings: Settings) -> Evidence:
+    """Evidence of a sign, as a warning where the opposite is declared."""
+    declared = settings.get(shows.key)
+    if declared is None or " ".join(str(declared.value).split()) == shows.value:
+        return shows
+    return replace(shows, text=f"warning: {shows.text}, so {shows.value}; declared is {shows.key} = {declared.value}. One of "
+                   f"them is wrong: the sign of the angle, of the force, or the axes")  # fmt: skip
 
 
 def _astern(raw: RawTable, back: Assigned, frame: Axes) -> InputError:
@@ -462,44 +286,6 @@ def open_points(found: Understood, accept: bool = False) -> tuple[tuple[str, str
     return tuple(out)
 
 
-def saved_mapping(path: Path) -> tuple[dict[str, ColumnMap], dict[str, Setting], str, dict[str, Any]]:
-    """Columns, settings, importer and its options of a mapping.toml that an import wrote, or of a campaign.toml.
-
-    Raises
-    ------
-    InputError
-        All that is wrong with it, by line and key.
-    """
-    file = read_toml(path)
-    content = dict(file.content)
-    columns: dict[str, ColumnMap] = {}
-    settings: dict[str, Setting] = {}
-    complaints: list[InputError] = []
-    options = content.pop("importer", {})
-    named = content.pop("columns", {})
-    for name, text in named.items() if isinstance(named, dict) else ():
-        try:
-            columns[name] = read_column_map(text)
-        except InputError as why:
-            line = file.line(("columns", name))
-            complaints.append(InputError(why.found, why.expected, file=path, line=line, key=f"columns.{name}"))
-    importer = ""
-    for section, inner in content.items():
-        keys = inner[0] if isinstance(inner, list) and inner else inner
-        for name, said in keys.items() if isinstance(keys, dict) else {section: keys}.items():
-            key = f"{section}.{name}"
-            if key == "campaign.importer":
-                importer = str(said)
-            elif key not in RESERVED and section != "campaign":
-                try:
-                    settings[key] = Setting(read_setting(key, said), f"from {path.name}")
-                except InputError as why:
-                    complaints.append(file.fail(key, why.found, why.expected, why.advice))
-    if complaints:
-        raise together(complaints)
-    return columns, settings, importer, dict(options) if isinstance(options, dict) else {}
-
-
 def _point(value: Any) -> str:
     return f"({', '.join(f'{x:g}' for x in value)})" if isinstance(value, tuple) else str(value)
 
@@ -511,11 +297,154 @@ def _median(columns: Sequence[Assigned], role: str) -> str:
     return f"{float(np.median(usable)):.12g}" if usable.size else ""
 
 
-def assumed(out: Path) -> dict[str, Setting]:
-    """Names without physics, by the folder that is written."""
-    name = out.resolve().name or "campaign"
-    return {
-        "campaign.name": Setting(name, "the folder's"),
-        "campaign.title": Setting(name, "for people; reports print it"),
-        "campaign.body": Setting(name, "the configuration of body.toml that the table is about"),
-    }
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Questions that one line answers; what it leaves open is asked alone.
+
+    Attributes
+    ----------
+    name : str
+        For the prompt.
+    keys : tuple of str
+    asks : str
+        With an example.
+    split : callable
+        From what was typed to texts, one a key; empty ones are open.
+    questions : tuple of Question
+        In the order of the keys.
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    asks: str
+    split: Callable[[str], tuple[str, ...]]
+    questions: tuple[Question, ...] = ()
+
+    def question(self, key: str) -> Question:
+        """The question of a key."""
+        return self.questions[self.keys.index(key)]
+
+    @property
+    def enter(self) -> str:
+        """What Enter takes; empty where it leaves something open."""
+        offers = [q.default or q.on_enter for q in self.questions]
+        return ", ".join(offers) if all(offers) else ""
+
+    @property
+    def text(self) -> str:
+        """What it asks, and what is offered with what it rests on."""
+        offers = [f"{q.default} ({q.why})" if len(self.keys) > 1 else q.why for q in self.questions if q.default]
+        return (
+            f"{self.asks}."
+            + f" {'Default' if self.enter else 'Taken if nothing else is said'}: {'; '.join(offers)}." * bool(offers)
+        )
+
+    def answers(self, typed: str) -> dict[str, str]:
+        """Texts by key; fewer texts than keys go to those without a default, which the others take.
+
+        Raises
+        ------
+        InputError
+            More than is asked for, or a place with its side in words.
+        """
+        parts = self.split(typed)
+        if len(parts) > len(self.keys):
+            raise InputError(shown(typed), f"at most {len(self.keys)} answers: {', '.join(self.keys)}")
+        defaults = {q.key: q.default for q in self.questions}
+        bare = [k for k in self.keys if not defaults[k]]
+        said = dict(zip(bare if len(parts) == len(bare) else self.keys, parts))
+        return {k: text for k in self.keys if (text := said.get(k, "") or defaults[k])}
+
+
+def _place_and_datum(typed: str) -> tuple[str, ...]:
+    """``-2.1 from nose``, ``nose -2.1, 0, 0``, or ``midship``, which is the point itself."""
+    numbers = re.search(r"[-+]?\d[^A-Za-z]*(?:(?:mm|cm|m)\b)?", typed)
+    at = numbers[0].strip(" ,;:@") if numbers else ""
+    rest = (
+        (typed[: numbers.start()] + " " + typed[numbers.end() :] if numbers else typed)
+        .replace("(", " ")
+        .replace(")", " ")
+    )
+    words = [w for w in re.split(r"[\s,;:@]+", rest) if w]
+    if numbers and (sided := {w.casefold() for w in words} & _SIDED):
+        raise InputError(
+            f"{shown(typed)}, the side as a word", "the side as a sign, x forward: -2.1 from nose is 2.1 m aft of it",
+            advice=f"Leave out {sided.pop()}.",
+        )  # fmt: skip
+    named = " ".join(w for w in words if w.casefold() not in _BETWEEN)
+    return named, at or ("0" if named else "")
+
+
+_BETWEEN = frozenset(["from", "of", "the", "at", "von", "vom", "ab", "am", "du", "de", "la", "m"])
+_SIDED = frozenset(
+    [
+        "aft",
+        "behind",
+        "abaft",
+        "astern",
+        "after",
+        "forward",
+        "fwd",
+        "fore",
+        "ahead",
+        "before",
+        "below",
+        "above",
+        "under",
+        "over",
+        "port",
+        "starboard",
+        "hinter",
+        "vor",
+        "achtern",
+        "achterlich",
+        "vorn",
+        "ueber",
+        "über",
+        "unter",
+        "derriere",
+        "derrière",
+        "devant",
+    ]
+)
+
+
+def _size_and_name(typed: str) -> tuple[str, ...]:
+    """``4.3 m LBP``, ``4.3, LBP`` or ``4300 mm``."""
+    found = re.match(r"\s*([-+]?[\d.,]*\d(?:\s*(?:mm|cm|m|ft|in)\b)?)[\s,;:]*(.*)", typed)
+    return (found[1].strip(), found[2].strip(" ()")) if found else (typed, "")
+
+
+def _numbers(typed: str) -> tuple[str, ...]:
+    """``998.8 kg/m^3, 1.5 m/s`` or ``998.8 1.5``."""
+    return tuple(p for p in re.split(r"\s*;\s*|,\s+|(?<=\d),(?=\d+\.)|\s+(?=[-+.]?\d)", typed.strip()) if p)
+
+
+def _kind_and_citation(typed: str) -> tuple[str, ...]:
+    kind, _, cited = typed.replace(":", ",", 1).replace(";", ",", 1).partition(",")
+    return kind.strip(), cited.strip()
+
+
+GROUPS = (
+    Group("moments about", ("axes.datum", POINT_OF), "Point that the moments are about: a named one (midship, cg, nose), or x or "
+          "x, y, z in m from one, x forward, y starboard, z down: -2.1 from nose (2.1 m aft of it)", _place_and_datum),
+    Group("length", ("scaling.length", "scaling.length_name"), "Length of the primes and its name, such as 4.3 m LBP", _size_and_name),
+    Group("density, speed", ("conditions.density", "conditions.speed"), "Density of the water in kg/m^3 and speed in m/s, such as "
+          "998.8, 1.5", _numbers),
+    Group("source", ("source.kind", "source.citation"), f"What the numbers are ({', '.join(TABLE_KINDS)}), and their report, test "
+          "or person, such as experiment, basin report 12", _kind_and_citation),
+)  # fmt: skip
+
+
+def alone(one: Question) -> Group:
+    """A question by itself."""
+    return Group(one.key, (one.key,), one.asks, lambda typed: (typed,), (one,))
+
+
+def together_with(one: Question, asked: Sequence[Question]) -> Group | None:
+    """The group of a question, if all of it is open and what Enter takes is clear; else None."""
+    by_key = {q.key: q for q in asked}
+    group = next((g for g in GROUPS if one.key in g.keys), None)
+    if group is None or any(k not in by_key or by_key[k].on_enter for k in group.keys):
+        return None
+    return replace(group, questions=tuple(by_key[k] for k in group.keys))

@@ -11,6 +11,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
 
 NO_FORCES = "a case without forces"  # what an importer says to have found where a case was never run
@@ -26,10 +27,13 @@ class Stated:
         As campaign.toml would hold it: SI numbers, or a text.
     place : str
         File and line, such as ``constant/transportProperties:21``.
+    offered : bool
+        Words over a table say it, which may be about something else: to be confirmed.
     """
 
     value: str | float | bool | tuple[float, ...]
     place: str
+    offered: bool = False
 
 
 @brief
@@ -65,6 +69,12 @@ class RawColumn:
     def is_text(self) -> bool:
         """Whether a cell is neither a number nor blank."""
         return bool(self.texts)
+
+
+class SeveralError(InputError):
+    """A file that holds several tables; ``choices`` of the option sheet are their names."""
+
+    choices: tuple[str, ...] = ()
 
 
 @brief

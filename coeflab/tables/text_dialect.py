@@ -6,8 +6,8 @@ import codecs
 import csv
 import math
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Set
+from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
 from statistics import median
@@ -15,7 +15,21 @@ from statistics import median
 from coeflab.core.errors import InputError, shown
 from coeflab.core.limits import CSV_LINE, TABLE_COLUMNS
 from coeflab.core.options import bounded, one_of
-from coeflab.tables.dialect import BLANKS, ERRORS, SAID, SNIFFED, Head, Marks, Row, is_unit_row, numeric, read_head
+from coeflab.tables.dialect import (
+    BLANKS,
+    ERRORS,
+    SAID,
+    SNIFFED,
+    Head,
+    Marks,
+    Row,
+    is_unit_row,
+    numbered,
+    numeric,
+    read_head,
+)
+from coeflab.tables.raw_table import Stated
+from coeflab.tables.words_above import words_above
 
 DELIMITERS = {"tab": "\t", "semicolon": ";", "pipe": "|", "comma": ",", "blanks": " ", "none": ""}
 MARKS = {"blank": " ", "point": ".", "comma": ",", "apostrophe": "'", "none": ""}
@@ -89,6 +103,7 @@ class TextDialect:
     decimals: int  # digits behind the mark in the last column, -1 where they differ
     said: Mapping[str, str]
     remarks: tuple[str, ...] = ()
+    stated: Mapping[str, Stated] = field(default_factory=dict)
 
 
 def _said_delimiter(delimiter: str) -> str:
@@ -306,7 +321,12 @@ def _fitted(line: str, delimiter: str, width: int, filled: int) -> list[str] | N
 
 
 def _head(
-    lines: list[str], start: int, dialect: tuple[str, Marks, int, int], options: Options, path: Path
+    lines: list[str],
+    start: int,
+    dialect: tuple[str, Marks, int, int],
+    numbers: Set[int],
+    options: Options,
+    path: Path,
 ) -> tuple[Head, list[str]]:
     """The names over the line ``start`` (counted from 1)."""
     delimiter, marks, width, filled = dialect
@@ -356,7 +376,7 @@ def _head(
                 column=what,
                 file=path,
             )
-    head = read_head(above, width, marks, options.header, options.units)
+    head = read_head(above, width, marks, numbers, options.header, options.units)
     if head.line and is_comment(lines[head.line - 1].lstrip(), comments):
         remarks.append(f"line {head.line}: the last comment over the data is taken for the names of the columns")
     return head, remarks
@@ -392,11 +412,12 @@ def sniff(path: Path, options: Options) -> TextDialect:
     usual = median(counts[run[0] : run[1]]) / 2
     fits = [n > 0 and n >= usual for n in counts]
     begin = next(i for i in range(run[1]) if i == run[0] or (fits[i] and all(fits[i : i + 2])))
-    if options.units == 0 and begin + 1 < run[1] and is_unit_row(rows[begin][1]):
+    numbers_below = numbered([c for _, c in rows[begin + 1 : run[1]] or rows[begin : run[1]]], marks)
+    if options.units == 0 and begin + 1 < run[1] and is_unit_row(rows[begin][1], numbers_below):
         begin, run = begin + 1, (begin + 1, *run[1:])  # 1e-3 and the like over the data, read as numbers
     body = [c for _, c in rows[run[0] : run[1]]]
     filled = max(k + 1 for c in body for k, cell in enumerate(c) if cell)
-    head, remarks = _head(lines, rows[begin][0], (delimiter, marks, width, filled), options, path)
+    head, remarks = _head(lines, rows[begin][0], (delimiter, marks, width, filled), numbers_below, options, path)
     _two_blanks(delimiter, marks, kept, rows[begin : run[1]], path)
     numbers = tuple(k for k in range(width) if any(numeric([c[k]], marks) for c in body))
     words = frozenset(k for c in body for k in range(width) if marks.number(c[k]) is None)
@@ -425,8 +446,16 @@ def sniff(path: Path, options: Options) -> TextDialect:
     }
     return TextDialect(
         encoding, delimiter, marks, comments, head, rows[begin][0], width, numbers, words, ends_of.pop() if len(ends_of) == 1 else -1,
-        said, tuple(remarks),
+        said, tuple(remarks), words_above(_above(lines[: rows[begin][0] - 1], head, delimiter, comments), marks),
     )  # fmt: skip
+
+
+def _above(lines: list[str], head: Head, delimiter: str, comments: tuple[str, ...]) -> Iterator[Row]:
+    """Lines over a table that are none of its head, as sentences or as cells."""
+    for n, line in enumerate(lines, start=1):
+        bare = line.strip().lstrip("".join(comments)).strip()
+        if bare and n not in (head.line, head.unit_line):
+            yield n, [bare] if {"=", ":"} & set(bare) else split_line(bare, delimiter)
 
 
 def _single_column(lines: list[str], kept: list[tuple[int, str]], found: Found, options: Options, path: Path) -> Found:

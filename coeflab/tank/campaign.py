@@ -44,6 +44,7 @@ LONG_CONTROLS = {short: name for name, short in CONTROL_COLUMNS.items()}
 _QUARTER = {"v": ("w", 1.0), "w": ("v", -1.0), "q": ("r", 1.0), "r": ("q", -1.0),
             "Y": ("Z", 1.0), "Z": ("Y", -1.0), "M": ("N", 1.0), "N": ("M", -1.0)}  # fmt: skip
 _SIDE = ("X", "Y", "N")
+SMOOTH = "none per point: a smooth law, whose fits do not show the scatter of the methods"
 
 
 @brief
@@ -159,7 +160,7 @@ def rows_of(tank: Tank, table: RawTable) -> tuple[TowedRun, ...]:
 
 def campaign_files(
     tank: Tank, body: TowedBody, runs: Sequence[TowedRun], version: str, inputs: Mapping[str, Path] | None = None,
-    stated: str = "",
+    stated: str = "", kind: str = "cfd",
 ) -> dict[str, bytes]:  # fmt: skip
     """The files of the campaign folder, by name: tables, campaign.toml, runs.csv, and a short history of each run.
 
@@ -175,6 +176,8 @@ def campaign_files(
         Files whose sha256 is written down: ``body.toml``, ``tank.toml``.
     stated : str
         Who made the rows, and the table, where they are no runs of ours: then nothing is said of how they came about.
+    kind : str
+        Of the source, as campaign.toml has it.
 
     Returns
     -------
@@ -193,7 +196,9 @@ def campaign_files(
         declared.append(_declared(name, group, notes, origin, hashlib.sha256(files[f"{name}.csv"]).hexdigest()))
     if not declared:
         return {}
-    files[FILE] = _campaign_text(tank, body, runs, version, inputs or {}, declared, tuple(turned), stated).encode()
+    files[FILE] = _campaign_text(
+        tank, body, runs, version, inputs or {}, declared, tuple(turned), stated, kind
+    ).encode()
     files[RUNS] = _runs_text(runs)
     for r in runs:
         if r.history is not None and len(r.history.history):
@@ -371,7 +376,7 @@ def _declared(name: str, group: Sequence[TowedRun], names: Mapping[str, list[str
 
 def _campaign_text(
     tank: Tank, body: TowedBody, runs: Sequence[TowedRun], version: str, inputs: Mapping[str, Path],
-    declared: Sequence[str], turned: Sequence[str], made: str,
+    declared: Sequence[str], turned: Sequence[str], made: str, kind: str,
 ) -> str:  # fmt: skip
     finished = sum(r.counts for r in runs)
     stated = [*tank.by_symmetry, *(f"{t}.csv from {_SOURCES[t]}.csv by fourfold symmetry" for t in turned)]
@@ -407,7 +412,8 @@ def _campaign_text(
         },
         "source": {
             "citation": f"{body.body.name}: {made}" if made else f"coeflab tow of {body.body.name}, {version}",
-            "kind": "cfd", "how_obtained": how, "stated_uncertainty": f"{scatter}; modelling error not assessed",
+            "kind": kind, "how_obtained": how,
+            "stated_uncertainty": SMOOTH if kind == "estimate" else f"{scatter}; modelling error not assessed",
         },
     }  # fmt: skip
     lines = ["# Made by `coeflab tow`. What its rows come from, run by run, is in runs.csv."]

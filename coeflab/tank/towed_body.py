@@ -151,6 +151,7 @@ def _placed(
     if body.mesh is not None:  # what the parts stand for
         shape, _ = body.mesh.read()
         pieces = (mesh_piece(shape, body.mesh),)
+    _require_turnable(body, pieces, controls)
     if panels < FEWEST * len(pieces):
         raise InputError(f"{panels} triangles", f"{FEWEST * len(pieces)} at least, {FEWEST} a part", column="panels")
     share = np.sqrt([piece.area for piece in pieces])
@@ -164,6 +165,16 @@ def _placed(
                 surface = TriangleMesh(turned, surface.faces)
         surfaces.append(surface)
     return pieces, surfaces, isinstance(shape, TriangleMesh) and shape.remade is None
+
+
+def _require_turnable(body: Body, pieces: tuple[Piece, ...], controls: Mapping[str, float]) -> None:
+    """Refuse an angle of what is a fin of a mesh in one piece: estimates see it, but nothing can be cut off and turned."""
+    own = {piece.name for piece in pieces}
+    for control in body.controls:
+        if controls.get(control.name) and not own & set(control.parts):
+            parts = ", ".join(control.parts)
+            raise InputError(f"{control.name} turns {parts}, which {body.name} has in one piece with its hull",
+                             "a part of its own", column="control", advice="Give the fin as a part in body.toml.")  # fmt: skip
 
 
 def _united(body: Body, surfaces: list[TriangleMesh], origin: Array) -> tuple[Array, Faces, Index]:

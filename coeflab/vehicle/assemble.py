@@ -15,7 +15,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.body import Body, likeness
+from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.particulars import likeness
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError, ScalingMismatchError, shown
 from coeflab.core.provenance import InputFile

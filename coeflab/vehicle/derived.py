@@ -17,6 +17,7 @@ import numpy as np
 
 from coeflab.core.table import number
 from coeflab.core.types import Array, brief
+from coeflab.core.wording import listed
 from coeflab.fits.uncertainty.propagation import Propagated, propagate, reaches_zero
 from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import primed
@@ -84,8 +85,11 @@ class Derived:
         return not self.driven and (self.result is None or abs(self.value) > self.result.linear)
 
 
+ALONE = ", no U95"
+
+
 def sense(index: Derived) -> str:
-    """What a stability index says: not determined where its interval holds zero, by its value alone where there is none.
+    """What a stability index says: not determined where its interval holds zero; without an interval `ALONE` follows.
 
     Positive is stable only where side force and turning moment damp; where one of them drives, nothing is determined.
 
@@ -95,7 +99,7 @@ def sense(index: Derived) -> str:
         return "not determined"
     by_value = "stable" if index.value > 0.0 else "unstable"
     by_value += f" {FAST}" if index.name == "G_v" else ""
-    return f"{by_value} by its value alone" if index.result is None else by_value
+    return by_value + ALONE if index.result is None else by_value
 
 
 def without_restoring(parameters: ParameterFile) -> str:
@@ -139,7 +143,9 @@ def centre_of_pressure(
             return np.asarray(sign * (m + d[:, 0]) / (f + d[:, 1]))
 
         denominators = [(primed(force), f, 2.0 * float(cells[1, 1]) ** 0.5)]
-        out.append(_derived(name, subject, sign * m / f, ratio, gradient, cells, denominators, draws, seed))
+        out.append(
+            _derived(name, subject, sign * m / f, ratio, gradient, cells, denominators, (moment, force), draws, seed)
+        )
     return tuple(out)
 
 
@@ -170,7 +176,8 @@ def stability(parameters: ParameterFile, draws: int = DRAWS, seed: int = SEED) -
             (f"{chosen[3].symbol} - xG'm'", float(values[3]) - moment, float(halves[3])),
         ]
         value = float(index(np.zeros((1, 4)))[0])
-        found = _derived(name, parameters.name, value, index, gradient, whole, denominators, draws, seed)
+        wanted = [c.symbol for c in chosen]
+        found = _derived(name, parameters.name, value, index, gradient, whole, denominators, wanted, draws, seed)
         out.append(replace(found, driven=next((label for label, size, _ in denominators if size >= 0.0), "")))
     return tuple(out)
 
@@ -183,14 +190,19 @@ def _derived(
     gradient: Array,
     cells: Array,
     denominators: Sequence[tuple[str, float, float]],
+    symbols: Sequence[str],
     draws: int,
     seed: int,
 ) -> Derived:
+    without = [s for s, half in zip(symbols, np.diag(cells), strict=True) if not np.isfinite(half)]
     if not np.all(np.isfinite(cells)):
-        return Derived(name, subject, value, None, "no interval: a coefficient in it has no U95")
+        without = without or list(symbols)
+        return Derived(
+            name, subject, value, None, f"no U95: {listed(without)} {'has' if len(without) == 1 else 'have'} none"
+        )
     for label, size, half in denominators:
         if reaches_zero(size, half):
-            text = f"no interval: that of the denominator {label} = {size:.3g} +- {half:.2g} contains zero"
+            text = f"no U95: {name} divides by {label} = {size:.3g} +- {half:.2g}, whose interval contains zero"
             return Derived(name, subject, value, None, text)
     result = propagate(function, gradient, cells, draws, seed)
     apart = abs(result.linear / result.monte_carlo - 1.0) if result.monte_carlo > 0.0 else 0.0

@@ -94,14 +94,14 @@ def water_inertia(parameters: ParameterFile, accelerations: str = MEASURED) -> W
     refused = _no_inertia(parameters, matrix)
     if computed is not None:
         if refused:
-            why = f"accelerations {COMPUTED}, not {MEASURED}: with {names} {refused}"
+            why = f"accelerations {COMPUTED}, not those of the file: with {names} {refused}"
             return WaterInertia(computed, accelerations, COMPUTED, f"accelerations {COMPUTED}, {by}", (why,))
-        source = f"accelerations {MEASURED}, {names} of the file; all other entries from {by}"
+        source = f"{whence(parameters)}; all other entries from {by}"
         return WaterInertia(matrix, accelerations, MEASURED, source, apart)
     warnings = list(apart)
     if accelerations == COMPUTED:
-        warnings.append(f"accelerations {MEASURED}, not {COMPUTED}: the file has no computed added mass")
-    source = f"accelerations {MEASURED}, {names} only; all other entries are unknown and zero"
+        warnings.append(f"accelerations of the file, not {COMPUTED} ones: it has no computed added mass")
+    source = f"{whence(parameters)}; all other entries are unknown and zero"
     if refused and parameters.mass is not None:
         matrix = np.diag(np.diag(matrix))
         warnings.append(
@@ -113,6 +113,19 @@ def water_inertia(parameters: ParameterFile, accelerations: str = MEASURED) -> W
                 advice="An acceleration derivative has the wrong sign, or mass and added mass belong to different bodies.",
             )  # fmt: skip
     return WaterInertia(matrix, accelerations, MEASURED, source, tuple(warnings))
+
+
+def whence(parameters: ParameterFile) -> str:
+    """Where the acceleration derivatives of a file come from, in words: measured by whom, or printed where."""
+    works = parameters.provenance.citations
+    groups: dict[str, list[str]] = {}
+    for c in parameters.coefficients:
+        if c.value is None or entry_of(c.symbol) is None:
+            continue
+        named = c.campaign if c.origin == "fit" else c.citation or (works[0] if len(works) == 1 else "")
+        place = f"{c.origin}, {named}" if named else c.origin
+        groups.setdefault(place, []).append(primed(derivative(c.symbol).text))
+    return "accelerations: " + "; ".join(f"{', '.join(names)} ({place})" for place, names in groups.items())
 
 
 def with_accelerations(parameters: ParameterFile, accelerations: str) -> ParameterFile:

@@ -22,6 +22,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from coeflab.core.axes import Datum
 from coeflab.core.errors import CoeflabError, InputError, shown
+from coeflab.core.files import named
 from coeflab.core.limits import JSON_BYTES
 from coeflab.core.provenance import InputFile
 from coeflab.core.stored import FIRST_VERSION, AsStored, Finite, Means, Name, Words, stored_fields
@@ -52,10 +53,12 @@ VERSIONS = {
     "1.3": "Buoyancy, gravity, thrusters and the limits of control surfaces.",
     "1.4": "The measured points behind the law, how far the law is from them, and the range in which it holds; the status "
     "form_rejected.",
+    "1.5": "The status and the origin estimate: numbers from the shape alone, by semi-empirical methods; added mass near walls.",
 }
 NARROWER = 1e-3  # of a range: less is what a campaign is run at
 _MINOR = re.compile(r"1\.\d{1,6}", re.ASCII)
 SCHEMA_VERSION = next(reversed(VERSIONS))
+SHIPPED = "*.parameters.json"
 
 
 def is_later(version: str, other: str) -> bool:
@@ -116,7 +119,7 @@ def as_of(version: str, noun: Any, content: Any) -> Any:
     """The JSON content of a noun without the fields that came after a version."""
     if known := stored_fields(noun.__class__):
         kept = [f.name for f in known if not is_later(f.since, version)]
-        return {name: as_of(version, getattr(noun, name), content[name]) for name in kept}
+        return {name: as_of(version, getattr(noun, name), content[name]) for name in kept if name in content}
     if isinstance(noun, tuple):
         return [as_of(version, v, c) for v, c in zip(noun, content, strict=True)]
     return content
@@ -340,11 +343,17 @@ def refusals_told(place: str) -> Iterator[None]:
 def read_parameter_file(path: Path) -> ParameterFile:
     """Read and validate a parameter file.
 
+    Parameters
+    ----------
+    path : Path
+        Of the file, or the name of a shipped one: ``remus100``.
+
     Raises
     ------
     InputError
         Not JSON (with line and column), or the first thing that breaks the schema.
     """
+    path = named(path, SHIPPED)
     text = read_text(path, JSON_BYTES)
     content = parse_json(text, path, "a parameter file in JSON")
     if not isinstance(content, dict):

@@ -18,7 +18,7 @@ from coeflab.core.errors import ScalingMismatchError, shown
 from coeflab.core.stored import Finite, Means, Name, Positive, Words, fail_fast
 from coeflab.core.types import brief
 from coeflab.core.units import STANDARD_GRAVITY
-from coeflab.law.added_mass import AddedMass, OtherMethod
+from coeflab.law.added_mass import AddedMass, OtherMethod, definiteness
 
 
 @brief
@@ -91,18 +91,26 @@ def added_mass_record(found: Triangulation, point: np.ndarray, datum: Datum, veh
             f"the added mass of {chosen.body} is stated from {shown(chosen.datum.id)}, the parameter file from {shown(datum.id)}; "
             "give both the same datum."
         )
+    rounded = [OtherMethod(o.method, _rounded(o, point)) for o in others]
     return AddedMass(
         _rounded(chosen, point), point, datum, vehicle or chosen.body, chosen.method, chosen.statements, density=found.density,
-        others=tuple(OtherMethod(o.method, _rounded(o, point)) for o in others if o.definiteness.holds),
+        others=tuple(o for o in rounded if definiteness(o.matrix).holds),
     )  # fmt: skip
 
 
 def _rounded(found: AddedMass, point: np.ndarray) -> np.ndarray:
-    """Symmetric, to ten digits of the diagonal: what is below differs from one machine to the next."""
+    """Symmetric, to ten digits of the diagonal: what is below differs from one machine to the next.
+
+    A motion that moves no water, such as the roll of a body of revolution, has a row of zeros and not of rounding errors.
+    """
     matrix = found.about(point).matrix
-    cut = 1e-10 * np.sqrt(np.outer(np.diag(matrix), np.diag(matrix)))
+    diagonal = np.diag(matrix)
+    cut = 1e-10 * np.sqrt(np.abs(np.outer(diagonal, diagonal)))
     kept = [float(f"{v:.10g}") for v in ((matrix + matrix.T) / 2.0).ravel()]
-    return np.where(np.abs((matrix + matrix.T) / 2.0) > cut, np.reshape(kept, (6, 6)), 0.0)
+    out = np.where(np.abs((matrix + matrix.T) / 2.0) > cut, np.reshape(kept, (6, 6)), 0.0)
+    still = np.abs(diagonal) <= STILL * np.repeat([np.max(np.abs(diagonal[:3])), np.max(np.abs(diagonal[3:]))], 3)
+    out[still, :] = out[:, still] = 0.0
+    return out
 
 
 Triple = tuple[Finite, Finite, Finite]
@@ -111,6 +119,7 @@ Triple = tuple[Finite, Finite, Finite]
 Control = Literal["dr", "ds", "db"]
 UNIT_LENGTH = 1e-6
 FALL = 1e-9
+STILL = 1e-20  # of the largest entry of its kind: the square of what rounding leaves of a lever
 
 
 class ParameterHydrostatics(Strict):

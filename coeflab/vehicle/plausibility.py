@@ -1,22 +1,12 @@
-"""Whether the numbers of a parameter file can be those of a body in water: units, buoyancy, added mass, signs of the damping.
+"""Whether the numbers of a parameter file can be those of a body in water: buoyancy, added mass, signs of the damping.
 
 Whether a stated added mass can be that of a body in water.
 
 Whether damping damps, its rates are in radians, and both planes are written in one set of axes.
-
-A Munk moment counted twice: written as damping into a file whose simulator adds that of its added mass itself.
-
-The moment of an ideal fluid on a body in steady drift is (Yvdot - Xudot) u v in yaw and its like in pitch (Lamb 1932, article
-124). A measured derivative contains it; what remains of a hull once it is taken out is the lift of tail and fins, of the
-other sign. So a written slope of the same sign and size as the ideal fluid's is the measured total.
-
-Units that a file's numbers give away: densities, gravity, weights and volumes of pound, slug and foot.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,193 +22,21 @@ from coeflab.vehicle.force_law import force_law, force_of_tables, points_of
 from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once, slot
+from coeflab.vehicle.stated_numbers import (
+    MOMENTS,
+    Written,
+    displaced,
+    gravity,
+    gyration,
+    munk_twice,
+    water,
+)
 
-POUND, SLUG, FOOT = 0.45359237, 14.593902937206, 0.3048
-WATER = (950.0, 1100.0)
-SLUGS, POUNDS, TONNES = (1.9, 2.1), (60.0, 66.0), (0.95, 1.1)
-FEET_PER_SECOND = (32.0, 32.4)
-BUOYANCY = (0.8, 1.25)  # rho V / m of what swims under water, with room for flooded spaces that were left out
-NEAR = 0.15  # of a factor between units, for rho V / m is not just one
-SLENDER = (0.05, 3.0)  # radius of gyration of the water over the cube root of the volume, from a sphere to a rod
-SIZES = "units of mass, Yvdot, Nrdot"
-MIXED = {
-    SLUG / FOOT**3: "the mass in slug and the volume in cubic feet",
-    POUND / FOOT**3: "the mass in pounds and the volume in cubic feet",
-    SLUG: "the mass in slug",
-    FOOT**-3: "the volume in cubic feet",
-    POUND: "the mass in pounds",
-}
-
-
-def water(kind: str, density: float, key: str = "density") -> Check:
-    """Whether a density can be that of water in kg/m^3, and which unit it looks like if not."""
-    good = WATER[0] <= density <= WATER[1]
-    comment = "" if good else "No density of water in kg/m^3."
-    for (low, high), unit, factor in (
-        (SLUGS, "slug/ft^3", SLUG / FOOT**3), (POUNDS, "lb/ft^3", POUND / FOOT**3), (TONNES, "t/m^3", 1000.0),
-    ):  # fmt: skip
-        if low < density < high:
-            comment = f"It looks like {unit}, {density * factor:.4g} kg/m^3. Convert to SI, masses and lengths too."
-    return Check(kind, key, Severity.PASS if good else Severity.FAIL, f"{density:g}",
-                 f"{WATER[0]:g} to {WATER[1]:g} kg/m^3", comment)  # fmt: skip
-
-
-def gravity(kind: str, value: float, key: str) -> tuple[Check, ...]:
-    """A finding where gravity is in feet."""
-    if not FEET_PER_SECOND[0] < abs(value) < FEET_PER_SECOND[1]:
-        return ()
-    return (Check(kind, key, Severity.FAIL, f"{value:g}", "9.8 m/s^2",
-                  "Gravity in ft/s^2. Convert the file to SI: slug and pound to kg, feet to m."),)  # fmt: skip
-
-
-def weight(kind: str, force: float, mass: float, key: str) -> tuple[Check, ...]:
-    """A finding where weight over mass is that of slug and pound, or of pounds for both."""
-    ratio = force / mass if mass else 0.0
-    slugs, pounds = FEET_PER_SECOND[0] < ratio < FEET_PER_SECOND[1], abs(ratio - 1.0) < NEAR
-    if not (slugs or pounds):
-        return ()
-    means = "pound-force and slug" if slugs else "pounds, or kg, for weight and mass alike"
-    return (Check(kind, key, Severity.FAIL, f"weight over mass = {ratio:.4g}", "9.8 m/s^2",
-                  f"It looks like {means}. Convert the file to SI."),)  # fmt: skip
-
-
-def displaced(kind: str, mass: float, volume: float, density: float, key: str) -> tuple[Check, ...]:
-    """A finding about rho V / m of a submerged vehicle, with the units that it looks like.
-
-    Parameters
-    ----------
-    kind : str
-        Name of the check.
-    mass, volume, density : float
-        As in the file, kg, m^3 and kg/m^3.
-    key : str
-        What the finding is about.
-    """
-    ratio = density * volume / mass
-    statistic, rule = f"rho V / m = {ratio:.4g}", f"{BUOYANCY[0]:g} to {BUOYANCY[1]:g}"
-    if BUOYANCY[0] <= ratio <= BUOYANCY[1]:
-        return (Check(kind, key, Severity.PASS, statistic, rule, ""),)
-    nearest = min(MIXED, key=lambda factor: abs(ratio / factor - 1.0))
-    likely = f"It looks like {MIXED[nearest]}. Convert both to SI."
-    comment = likely if imperial(ratio) else "Mass, volume and density do not belong together."
-    return (Check(kind, key, Severity.FAIL, statistic, rule, comment),)
-
-
-def imperial(ratio: float) -> bool:
-    """Whether rho V / m is that of a mass or a volume in pound, slug and foot."""
-    return any(abs(ratio / factor - 1.0) < NEAR for factor in MIXED)
-
-
-def no_mass(kind: str, mass: float | None, key: str) -> tuple[Check, ...]:
-    """A finding where a stated mass is none."""
-    if mass is None or mass > 0.0:
-        return ()
-    return (Check(kind, key, Severity.FAIL, f"{mass:g} kg", "above zero", "No body has it; it is not read."),)
-
-
-def gyration(kind: str, mass: float, density: float, sway: float, yaw: float) -> tuple[Check, ...]:
-    """Whether a mass in kg, an added mass in kg and one in kg m^2 can be those of one body."""
-    if not (mass > 0.0 and density > 0.0 and sway > 0.0 and yaw > 0.0):
-        return ()
-    ratio = math.sqrt(yaw / sway) / (mass / density) ** (1.0 / 3.0)
-    statistic, rule = (
-        f"sqrt(Nrdot / Yvdot) over the cube root of m / rho: {ratio:.3g}",
-        f"{SLENDER[0]:g} to {SLENDER[1]:g}",
-    )
-    if SLENDER[0] <= ratio <= SLENDER[1]:
-        return (Check(kind, SIZES, Severity.PASS, statistic, rule, ""),)
-    return (Check(
-        kind, SIZES, Severity.FAIL,
-        f"{statistic}; mass {mass:.4g}, Yvdot {-sway:.4g}, Nrdot {-yaw:.4g}, density {density:.4g}",
-        rule, "Masses and moments are not of one system of units. Convert all to kg and m.",
-    ),)  # fmt: skip
-
-
-# A product u v over the ideal fluid's; a linear term over it is a speed, m/s.
-SIMILAR = (0.5, 2.0)
-USUAL_SPEEDS = (0.5, 4.0)
-MOMENTS = {"N": (5, 0, 1), "M": (4, 0, 2)}
 NOT_EVEN = (
-    "Symmetry makes X even in drift; no law can follow a measured X that is not. Exports and motions keep the range of "
+    "By symmetry the law of X is even in drift; the measured X is not. Exports and motions keep the range of "
     "the other components."
 )
 CHANGED = 1e-6  # of the largest force: far above rounding, far below what any digit of a coefficient is worth
-PRODUCTS = {"N": "u v", "M": "u w"}
-
-
-@dataclass(frozen=True, slots=True)
-class Written:
-    """One term of a file that turns a body in drift.
-
-    Attributes
-    ----------
-    component : str
-        ``N`` for what goes with v, ``M`` for what goes with w.
-    key : str
-        Where it stands in the file.
-    value : float
-        FRD; of u v or u w in kg, or of v or w in N m/(m/s).
-    with_speed : bool
-        Whether the force is that of the product with u.
-    """
-
-    component: str
-    key: str
-    value: float
-    with_speed: bool
-
-
-def munk_twice(kind: str, written: Sequence[Written], added: Array, ideal: Array) -> tuple[Check, ...]:
-    """Findings about yaw and pitch.
-
-    Parameters
-    ----------
-    kind : str
-        Format of the file.
-    written : sequence of Written
-    added : (6, 6, 6) array
-        Quadratics that the simulator adds itself, FRD.
-    ideal : (6, 6, 6) array
-        Those of an ideal fluid for the file's added mass.
-
-    Notes
-    -----
-    A term of the product u v fails from half to twice the ideal fluid's. A linear one does not grow with the speed as the
-    Munk moment does; it is pointed at where both are equal at a usual speed of a vehicle, 0.5 to 4 m/s.
-    """
-    out = []
-    for component, at in MOMENTS.items():
-        own, potential = products_once(added)[at], products_once(ideal)[at]
-        if own == 0.0 or potential == 0.0:
-            continue
-        for with_speed in (True, False):
-            terms = [w for w in written if (w.component, w.with_speed) == (component, with_speed) and w.value != 0.0]
-            total = sum(w.value for w in terms)
-            share = total / potential
-            low, high = SIMILAR if with_speed else USUAL_SPEEDS
-            if low <= share <= high:
-                keys = ", ".join(w.key for w in terms)
-                out.append(_check(kind, component, keys, total, own, share, with_speed, bool(own * potential > 0.0)))
-    return tuple(out)
-
-
-def _check(
-    kind: str, component: str, keys: str, total: float, own: float, share: float, with_speed: bool, same: bool
-) -> Check:
-    product = PRODUCTS[component]
-    mine = f"{total:.4g} {product}" if with_speed else f"{total:.4g} {product[-1]}, equal at {share:.3g} m/s"
-    viscous = f", here {total - own:.4g} {product}" if with_speed else ""
-    comment = (
-        f"Munk moment twice: the simulator adds it from the added mass. Write the total less that{viscous}."
-        if same
-        else "The Coriolis term of the simulator has the reverse sign: the two cancel. Disable it and keep the total here."
-    )
-    return Check(
-        kind, keys, Severity.FAIL if with_speed else Severity.WARN,
-        f"{component} of {mine}, beside {own:.4g} {product} of the simulator's C_A(nu)", "the Munk moment once", comment,
-    )  # fmt: skip
-
-
 MISTYPED = 0.05  # asymmetry of one wrong digit; more is another convention
 HEAVY = 5.0  # of the mass: a disc or plate in a vehicle's place
 SMALLEST_PRIME = 1e-5  # of 1/2 rho L^3: a cylinder 400 diameters long
@@ -531,7 +349,7 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
         elif f.beyond:
             severity = Severity.WARN
             comment = (
-                f"The law misses {', '.join(f.beyond)} by up to {100.0 * f.worst_beyond / largest:.2g} %; its stated range leaves them out. "
+                f"At {', '.join(f.beyond)}, outside the range of the law, it differs by up to {100.0 * f.worst_beyond / largest:.2g} %. "
             ) + (NOT_EVEN if f.component == "X" else "Exports and motions use the smaller range.")
         out.append(Check("law at points", f"{f.component} {f.table}", severity, said, rule, comment))
     return tuple(out)

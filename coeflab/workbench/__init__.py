@@ -6,6 +6,7 @@ What a plan names, read: tables about one reference point, bodies.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from coeflab.core.wording import Verbatim
 from coeflab.fits import FITS, CompletingFit
 from coeflab.fits.joint.rows import joint_name, one_length
 from coeflab.fits.results.fit_result import FitResult
-from coeflab.fits.uncertainty.budget import Budget, budgets_of, with_budget
+from coeflab.fits.uncertainty.budget import Budget, as_estimates, budgets_of, with_budget
 from coeflab.fits.uncertainty.model_budget import with_model_budgets
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.scaling import Scaling
@@ -38,6 +39,7 @@ from coeflab.vehicle.parameter_file import refusals_told
 from coeflab.vehicle.reference import compare, compare_set, read_references
 from coeflab.workbench.exports import exports_of, parameter_files_rendered, refuse_unknown
 from coeflab.workbench.hulls import hulls_of
+from coeflab.workbench.vehicle import from_shape
 
 
 def settled(table: ForceTable, plan: Plan) -> ForceTable:
@@ -65,7 +67,7 @@ def together(joint: PlannedJoint, plan: Plan) -> list[ForceTable]:
     return read
 
 
-__all__ = ["read_body", "read_tables", "rendered", "run"]
+__all__ = ["checked", "read_body", "read_tables", "rendered", "run"]
 
 Progress = Callable[[str], None]
 FEWEST = 3
@@ -92,6 +94,8 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         Input that cannot be used.
     """
     refuse_unknown(plan.exports)
+    if not plan.tables and not plan.joint:
+        return checked(_of_shape(plan, progress), progress)
     tables: list[ForceTable] = []
     fits: list[FitResult] = []
     budgets: list[Budget] = []
@@ -156,6 +160,19 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         manoeuvres=manoeuvres_of(plan.manoeuvres, files, progress),
         unfitted=unfitted,
     )
+    return checked(study, progress)
+
+
+def _of_shape(plan: Plan, progress: Progress) -> Study:
+    """The study of a body alone."""
+    if plan.body is None:
+        raise InputError("no table and no body", "a table, or a body to estimate from", column="table")
+    path = plan.body / "body.toml" if plan.body.is_dir() else plan.body
+    return from_shape(plan, read_body(path), progress=progress)
+
+
+def checked(study: Study, progress: Progress = lambda _: None) -> Study:
+    """The study with what every check finds."""
     findings = [c for name in CHECKS.names() for c in _findings(name, study)]
     progress(f"{len(findings)} checks")
     return study.with_checks(tuple(findings))
@@ -213,6 +230,8 @@ def _fitted(
     _refuse_starved(fit)
     found = budgets_of(fit, {t.name: t for t in tables})
     fit, more = with_model_budgets(with_budget(fit, found), tables, scaling, once)
+    if all(t.source.kind == "estimate" for t in tables):
+        return as_estimates(fit), tuple(replace(b, u95=None) for b in (*found, *more))
     return fit, (*found, *more)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from coeflab.bodies.added_mass import ADDED_MASS
 from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed
 from coeflab.bodies.readers import read_body
 from coeflab.bodies.shape import Agreement, Parts
@@ -18,7 +19,7 @@ from coeflab.bodies.simplify.simplified import Simplification
 from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.errors import InputError
 from coeflab.core.machine import one_thread
-from coeflab.law.added_mass import AddedMass
+from coeflab.law.added_mass import AddedMass, NearWall
 from coeflab.vehicle.assemble import PlannedParameterFile
 
 DENSEST = 1e5
@@ -70,6 +71,7 @@ def added_masses(
     given: Mapping[str, Any] | None = None,
     *,
     reproducible: bool = False,
+    error: str = "",
 ) -> Triangulation:
     """Run one method, or all that apply.
 
@@ -87,6 +89,8 @@ def added_masses(
         Options of the one method.
     reproducible : bool
         Take the options of each plugin that give the same numbers with and without optional packages.
+    error : str
+        Target of the panel method's error, such as ``2%``; empty for its panels as they are.
 
     Raises
     ------
@@ -115,11 +119,13 @@ def added_masses(
             raise InputError(f'the unknown preset "{preset}" of {plugin_name}', f"one of {', '.join(known) or 'none'}")
         options = dict(plugin.reproducible if reproducible else {})
         options |= {**(known[preset] if preset else {}), **(given or {})}
+        options |= {"error": error} if error and plugin_name == "panel" else {}
         subjects = [body]
         if original is not None and plugin.takes_surface:
             subjects = [original, body] if method == "all" else [original]
         for subject in subjects:
             try:
+                _require_solid(subject, plugin_name)
                 found = plugin.added_mass(subject, density, options)
             except InputError as why:
                 if method != "all":
@@ -177,6 +183,58 @@ def against_mesh(found: Simplification, density: float = 1000.0, panels: int = 6
     worst = float(np.max(error[heard] / own[heard], initial=0.0))
     shape = replace(found.shape, agreement=Agreement(entries, round(worst, SHARE)))
     return replace(found, shape=shape, body=replace(found.body, shape=shape), compared=(parts, mesh))
+
+
+@one_thread()
+def near_walls(
+    body: Body, density: float, wall: str, distances: Sequence[float], given: Mapping[str, Any] | None = None
+) -> tuple[AddedMass, ...]:
+    """Added mass by the panel method far from walls and at distances from one.
+
+    Parameters
+    ----------
+    body : Body
+    density : float
+        kg/m^3.
+    wall : str
+        ``bottom``, ``surface_zero`` or ``surface_infinite``.
+    distances : sequence of float
+        From the reference point to the wall, m.
+    given : mapping, optional
+        Further options of the panel method.
+
+    Returns
+    -------
+    tuple of AddedMass
+        Far from walls, with all others as its ``walls``; then one for each distance, rising.
+
+    Raises
+    ------
+    InputError
+        A density not above zero, no distance or one within the body, and what the method refuses.
+    """
+    if not 0.0 < density <= DENSEST:
+        raise InputError(
+            f"a density of {density:g} kg/m^3", f"a value above zero, at most {DENSEST:g}", column="density"
+        )
+    if not distances:
+        raise InputError("no distance", "distances from the reference point to the wall, m", column="--distance")
+    method = ADDED_MASS.load("panel")
+    subject = _original(body) or body
+    options, rising = dict(given or {}), sorted(set(distances))
+    near = [method.added_mass(subject, density, {**options, "wall": wall, "distance": d}) for d in rising]
+    far = method.added_mass(subject, density, options)
+    walls = tuple(NearWall(wall, d, n.matrix) for d, n in zip(rising, near, strict=True))
+    return replace(far, walls=walls), *near
+
+
+def _require_solid(body: Body, method: str) -> None:
+    """Refuse sheets of a mesh for methods that would leave them out."""
+    shape = body.require_shape()
+    if isinstance(shape, TriangleMesh) and len(shape.sheets) and method != "panel":
+        raise InputError(
+            "a mesh with sheets of no thickness", "a closed surface", advice="The method panel takes sheets."
+        )
 
 
 def _original(body: Body) -> Body | None:

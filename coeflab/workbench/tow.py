@@ -18,6 +18,8 @@ from coeflab.core.files import write_all, write_atomically
 from coeflab.core.provenance import sha256_of
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import brief
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.law.coefficient import CoefficientSet
 from coeflab.law.symbols import ANGULAR, LINEAR
 from coeflab.study.plan import DEFAULT_FITS, table_at
 from coeflab.study.study import Plan, PlannedTow, Study
@@ -27,7 +29,7 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tables.reading import read_tables
 from coeflab.tank.campaign import SIX, TowedRun, campaign_files, rows_of, towed_run
-from coeflab.tank.declaration import TankFile, declared_body, default_tank, default_text, read_tank
+from coeflab.tank.declaration import TankFile
 from coeflab.tank.folder import (
     BODY,
     CAMPAIGN,
@@ -56,6 +58,7 @@ from coeflab.tank.plateau import until
 from coeflab.tank.runners import RUNNERS
 from coeflab.tank.solvers import SOLVERS, Installation, TowSolver
 from coeflab.tank.tank import Tank
+from coeflab.tank.tank_file import declared_body, default_tank, default_text, read_tank
 from coeflab.tank.test_matrix import EXACT, TowCondition
 from coeflab.tank.towed_body import TowedBody, stl, towed
 from coeflab.workbench import rendered, run
@@ -210,8 +213,8 @@ def read(body: Path | None, matrix: Path | None, solver: str = "", runner: str =
     file = body if body is not None else declared_body(matrix) if matrix is not None else None
     if file is None:
         raise InputError("no body", "a folder with a body.toml, or a shipped name", column="BODY")
-    file = (file / "body.toml" if file.is_dir() else file).resolve()
-    own = read_body(file)
+    file = file / "body.toml" if file.is_dir() else file
+    own, file = read_body(file), file.resolve()
     point = own.reference_point
     if matrix is not None:
         said = declared(TankFile, read_toml(matrix)).tank.reference_point
@@ -434,9 +437,9 @@ def collected(tow: Tow, fitted: bool = True) -> Collected:
     InputError
         A history that cannot be read; a table that an outside solver gives.
     """
-    runs, stated = _runs(tow)
+    runs, stated, kind = _runs(tow)
     inputs = {"body.toml": tow.tank.body, "tank.toml": tow.folder / TANK}
-    files = campaign_files(tow.tank, tow.body, runs, tow.installed.version or tow.tank.solver, inputs, stated)
+    files = campaign_files(tow.tank, tow.body, runs, tow.installed.version or tow.tank.solver, inputs, stated, kind)
     folder = tow.folder / CAMPAIGN
     write_all(folder, files)
     for stale in sorted(folder.glob("*.csv")) if folder.is_dir() else ():
@@ -467,14 +470,16 @@ def filled(tow: Tow) -> int:
     return sum(r.state is not JobState.WAITING for r in _runs(tow)[0])
 
 
-def _runs(tow: Tow) -> tuple[tuple[TowedRun, ...], str]:
-    """Every condition as it came out, and what is stated of forces that no run of ours gave."""
+def _runs(tow: Tow) -> tuple[tuple[TowedRun, ...], str, str]:
+    """Every condition as it came out, what is stated of forces that no run of ours gave, and the kind of the source."""
     solver, jobs = tow.solver, tow.of
     if solver.table is not None:
         with SOLVERS.guarded(tow.tank.solver):
             table: RawTable = solver.table(tow.tank, tow.body, tow.folder)
         made = table.stated.get("source.how_obtained")
-        return rows_of(tow.tank, table), f"{made.value if made is not None else tow.tank.solver} ({table.path.name})"
+        kind = table.stated.get("source.kind")
+        said = f"{made.value if made is not None else tow.tank.solver} ({table.path.name})"
+        return rows_of(tow.tank, table), said, "cfd" if kind is None else str(kind.value)
     states = {name: progress(job) for name, job in jobs.items()}
     out = []
     for condition in tow.tank.matrix:
@@ -485,7 +490,7 @@ def _runs(tow: Tow) -> tuple[tuple[TowedRun, ...], str]:
         remarks = [r for name in job.needs if name in states for r in states[name].remarks]
         now = states[condition.name]
         out.append(towed_run(condition, now, jobs, job, _history(tow, job, now), remarks))
-    return tuple(out), ""
+    return tuple(out), "", "cfd"
 
 
 def _history(tow: Tow, job: Job, now: Progressed) -> Run | None:
@@ -512,12 +517,34 @@ def _study(tow: Tow, campaign: Path) -> Study:
     """
     tank = tow.tank
     planned = PlannedTow(tank.title, tow.body.body.name, tank.name, added=campaign)
-    return run(
+    study = run(
         Plan(
             name=tank.name, title=tank.title, tables=(table_at(campaign, DEFAULT_FITS),), scaling=tank.scaling,
             conditions=tank.conditions, body=tank.body, wanted=SIX, tows=(planned,),
         )
     )  # fmt: skip
+    if tow.solver.known is None:
+        return study
+    with SOLVERS.guarded(tank.solver):
+        among = tow.solver.known(tank, tow.body)
+    return replace(study, fits=tuple(_with_scatter(f, among) for f in study.fits))
+
+
+def _with_scatter(fit: FitResult, among: CoefficientSet) -> FitResult:
+    """A fit to forces of a method, with the method's own U95 and covariance of the coefficients that it states."""
+    own = [c.symbol for c in fit.coefficients.coefficients]
+    at = [(i, among.symbols.index(s)) for i, s in enumerate(own) if s in among]
+    changed = tuple(
+        replace(c, u95=among[c.symbol].u95, parts=among[c.symbol].parts)
+        if c.value is not None and c.symbol in among
+        else c
+        for c in fit.coefficients.coefficients
+    )
+    spread = np.array(fit.coefficients.covariance)
+    if at:
+        mine, theirs = (np.array(k) for k in zip(*at, strict=True))
+        spread[np.ix_(mine, mine)] = among.covariance[np.ix_(theirs, theirs)]
+    return replace(fit, coefficients=replace(fit.coefficients, coefficients=changed, covariance=spread))
 
 
 def _has_a_sweep(campaign: Path) -> bool:

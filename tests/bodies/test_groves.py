@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from coeflab.bodies.readers.groves import CAP_END, FOOT, meridian, radius
+from coeflab.bodies.profiles import CAP_END, FOOT, suboff_meridian, suboff_radius
 from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
@@ -29,54 +29,54 @@ OFFSETS = [
 
 @pytest.mark.parametrize(("station", "share"), OFFSETS)
 def test_offsets_of_roddy(station: float, share: float) -> None:
-    assert radius(station * STATION * FOOT) / (5.0 / 6.0 * FOOT) == pytest.approx(share, abs=4e-5)
+    assert suboff_radius(station * STATION * FOOT) / (5.0 / 6.0 * FOOT) == pytest.approx(share, abs=4e-5)
 
 
 @pytest.mark.parametrize("joint", JOINTS)
 def test_pieces_meet(joint: float) -> None:
-    before, after = radius((joint - 1e-9) * FOOT), radius((joint + 1e-9) * FOOT)
+    before, after = suboff_radius((joint - 1e-9) * FOOT), suboff_radius((joint + 1e-9) * FOOT)
     assert before == pytest.approx(after, abs=1e-6)
 
 
 def test_ends_close() -> None:
-    assert radius(0.0) == pytest.approx(0.0, abs=1e-12)
-    assert radius(CAP_END * FOOT) == pytest.approx(0.0, abs=1e-9)
+    assert suboff_radius(0.0) == pytest.approx(0.0, abs=1e-12)
+    assert suboff_radius(CAP_END * FOOT) == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("aft", [-0.001, 4.3562, np.nan])
 def test_off_the_hull(aft: float) -> None:
     with pytest.raises(InputError, match=r"aft of the nose; expected 0 to 4\.3561 m"):
-        radius(aft)
+        suboff_radius(aft)
 
 
 def test_integrals_against_adaptive_quadrature() -> None:
     joints = (0.0, *JOINTS, CAP_END)
     pieces = [
-        quad(lambda x, n=n: (x * FOOT) ** n * np.pi * radius(x * FOOT) ** 2 * FOOT, a, b, epsrel=1e-11, limit=300)[0]
+        quad(lambda x, n=n: (x * FOOT) ** n * np.pi * suboff_radius(x * FOOT) ** 2 * FOOT, a, b, epsrel=1e-11, limit=300)[0]
         for n in (0, 1) for a, b in pairwise(joints)
     ]  # fmt: skip
     volume, moment = sum(pieces[:4]), sum(pieces[4:])
-    hull = meridian()
+    hull = suboff_meridian()
     assert hull.volume == pytest.approx(volume, rel=1e-10)
     assert hull.centre_of_volume[0] == pytest.approx(-moment / volume, rel=1e-10)
 
 
 def test_converged() -> None:
-    once, twice = meridian().integrals, meridian(192).integrals
+    once, twice = suboff_meridian().integrals, suboff_meridian(192).integrals
     assert once.volume == pytest.approx(twice.volume, rel=1e-11)
     assert once.wetted_surface == pytest.approx(twice.wetted_surface, rel=1e-10)
 
 
 def test_slope_belongs_to_the_radius() -> None:
     """Central differences of the radius, at stations that are not about to change piece."""
-    hull, h = meridian(24), 1e-5
+    hull, h = suboff_meridian(24), 1e-5
     joints = np.array([0.0, *JOINTS, CAP_END]) * FOOT
     inside = [k for k, x in enumerate(hull.x) if np.min(np.abs(-x - joints)) > 0.005]
     assert len(inside) > 20
     for k in inside:
         x = hull.x[k]
-        difference = (radius(-(x + h)) ** 2 - radius(-(x - h)) ** 2) / (4.0 * h)
-        assert hull.radius[k] == pytest.approx(radius(-x), rel=1e-8)
+        difference = (suboff_radius(-(x + h)) ** 2 - suboff_radius(-(x - h)) ** 2) / (4.0 * h)
+        assert hull.radius[k] == pytest.approx(suboff_radius(-x), rel=1e-8)
         assert hull.radius_slope[k] == pytest.approx(difference, rel=1e-4, abs=1e-9)
 
 

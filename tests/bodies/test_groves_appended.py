@@ -11,7 +11,8 @@ from coeflab.bodies.added_mass import panel
 from coeflab.bodies.mesh.decimation import is_closed
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.readers.groves import FOOT, appended, meridian, mesh
+from coeflab.bodies.profiles import FOOT, suboff_meridian
+from coeflab.bodies.readers.groves import appended, mesh
 from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
@@ -37,7 +38,7 @@ def test_integrals_of_aff8() -> None:
 
 
 def test_bare_hull_is_as_it_was() -> None:
-    hull, found = meridian(), appended(False, False)
+    hull, found = suboff_meridian(), appended(False, False)
     assert found.title == "integrals of the equations"
     assert found.volume == hull.volume
     assert found.wetted_surface == hull.integrals.wetted_surface
@@ -57,7 +58,7 @@ def test_beside_roddy() -> None:
         assert ours.volume is not None
         assert ours.volume / his.volume - 1.0 == pytest.approx(gap, abs=1e-5)
         assert ours.centre_of_buoyancy == pytest.approx(his.centre_of_buoyancy, abs=6e-4)
-    bare = meridian().volume
+    bare = suboff_meridian().volume
     sail, planes = (appended(*on).volume - bare for on in ((True, False), (False, True)))
     assert sail / FOOT**3 == pytest.approx(0.14954, abs=1e-5)
     assert planes / FOOT**3 == pytest.approx(0.08487, abs=1e-5)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coeflab.bodies.added_mass import panel as mesh_family
-from coeflab.bodies.added_mass.panel import family
+from coeflab.bodies.mesh import family as mesh_family
+from coeflab.bodies.mesh.family import family
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import box_surface, meshed
 from coeflab.bodies.panels.influence import panels_of, unfit_share

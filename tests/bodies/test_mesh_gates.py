@@ -9,8 +9,10 @@ import pytest
 import trimesh
 
 from coeflab.bodies.mesh import gates as mesh_gates
-from coeflab.bodies.mesh.gates import examined, repaired
-from coeflab.bodies.mesh.mesh import mesh_integrals
+from coeflab.bodies.mesh.decimation import is_closed
+from coeflab.bodies.mesh.gates import examined, repaired, sound
+from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
+from coeflab.bodies.mesh.solids import box, surface
 from coeflab.core.errors import InputError
 from tests.bodies.test_surface_mesh import CUBE, CUBE_FACES
 
@@ -67,7 +69,7 @@ FAULTS = {
     "twisted": twisted(),
 }
 MESSAGES = {
-    "hole": ["not watertight: 3 edges with one face", "repair does not close holes"],
+    "hole": ["not watertight: 3 edges with one face", "--fill", "--sheets"],
     "fin of one sheet": ["not watertight: 2 edges with one face and 1 edges with more than two"],
     "turned": ["inconsistent winding", "at 3 edges", "repair = true"],
     "inward": ["inward normals", "repair = true"],
@@ -174,3 +176,61 @@ def test_repair_joins_what_is_nearly_joined() -> None:
     assert len(found.vertices) == 8
     assert found.statements == ("repaired: 28 vertices joined",)
     assert repaired(CUBE, CUBE_FACES, FILE).statements == ("repaired: nothing to do",)
+
+
+def meeting() -> Mesh:
+    """Two cubes on one common edge, their vertices joined: four faces there, two one way and two the other."""
+    corner = {tuple(v): k for k, v in enumerate(CUBE)}
+    moved = CUBE + np.array([np.ptp(CUBE[:, 0]), np.ptp(CUBE[:, 1]), 0.0])
+    number = [corner.get(tuple(v), 8 + k) for k, v in enumerate(moved)]
+    vertices = np.vstack([CUBE, moved])
+    return vertices, np.vstack([CUBE_FACES, np.array(number)[CUBE_FACES]])
+
+
+@pytest.mark.parametrize("mend", [False, True])
+def test_edges_in_balance_close_a_surface(mend: bool) -> None:
+    found = sound(*meeting(), FILE, repair=mend)
+    assert mesh_integrals(found.vertices, found.faces).volume == pytest.approx(2.0, rel=1e-12)
+    assert is_closed(found.faces)
+    assert mend or found.statements == ("solids that meet in 1 edges taken apart there",)
+
+
+@pytest.mark.parametrize("move", [(1.0, 1.0, 0.0), (1.0, 0.5, 0.5), (1.0, 1.0, 1.0), (0.5, 0.0, 0.0)])
+def test_what_manifold_unites_is_accepted(move: tuple[float, float, float]) -> None:
+    """Unions that meet in an edge, a face, a corner and a body, read back with their vertices joined."""
+    block = box(np.zeros(3), np.ones(3))
+    whole = block + block.translate(move)
+    found = examined(*surface(whole), FILE)
+    assert mesh_integrals(found.vertices, found.faces).volume == pytest.approx(whole.volume(), rel=1e-12)
+
+
+def test_small_holes_are_filled_on_request_and_large_ones_are_not() -> None:
+    ball = trimesh.creation.icosphere(subdivisions=3)
+    vertices, faces = np.array(ball.vertices), np.asarray(ball.faces)
+    around = np.any(faces == 40, axis=1)
+    found = sound(vertices, faces[~around], FILE, fill=True)
+    assert found.statements[0] == "1 holes of up to 1% of the surface filled"
+    assert mesh_integrals(found.vertices, found.faces).volume == pytest.approx(ball.volume, rel=5e-3)
+    cap = vertices[faces].mean(axis=1)[:, 2] > 0.6
+    with pytest.raises(InputError, match=r"not watertight.* --sheets"):
+        sound(vertices, faces[~cap], FILE, fill=True)
+
+
+def test_a_fin_of_one_sheet_is_a_sheet_on_request() -> None:
+    found = sound(*FAULTS["fin of one sheet"], FILE, open_sheets=True)
+    assert len(found.faces) == 12
+    assert len(found.sheets) == 1
+    assert "1 faces of" in found.statements[0]
+    mesh = TriangleMesh(found.vertices, found.faces, sheets=found.sheets)
+    assert mesh.volume == pytest.approx(1.0)
+    alone = sound(CUBE, CUBE_FACES[2:], FILE, open_sheets=True)
+    assert (len(alone.faces), len(alone.sheets)) == (0, 10)
+    assert TriangleMesh(alone.vertices, alone.faces, sheets=alone.sheets).volume == 0.0
+
+
+def test_solids_glued_on_a_face_are_one_after_repair() -> None:
+    """Both have the wall between them: neither half of it is kept."""
+    vertices, faces = two(CUBE + np.array([np.ptp(CUBE[:, 0]), 0.0, 0.0]))
+    found = repaired(vertices, faces, FILE)
+    assert mesh_integrals(found.vertices, found.faces).volume == pytest.approx(2.0, rel=1e-12)
+    assert mesh_integrals(found.vertices, found.faces).area == pytest.approx(10.0, rel=1e-12)

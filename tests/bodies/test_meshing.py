@@ -8,7 +8,7 @@ import pytest
 from coeflab.bodies.mesh.decimation import is_closed
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import meshed
-from coeflab.bodies.readers.groves import meridian
+from coeflab.bodies.profiles import suboff_meridian
 from coeflab.bodies.readers.primitives import rotation
 from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, Revolution, as_revolution
 from coeflab.core.errors import InputError
@@ -44,17 +44,17 @@ def test_single_parts(form: Form) -> None:
 
 def test_suboff_bare_hull() -> None:
     """The default mesh of the issue: 0.1 % of Roddy's volume, his centre within 1 mm, its own error said."""
-    mesh = meshed(meridian(), 60_000)
+    mesh = meshed(suboff_meridian(), 60_000)
     assert is_closed(mesh.faces)
     assert mesh.volume == pytest.approx(24.692 * 0.3048**3, rel=1e-3)
     assert mesh.centre_of_volume[0] == pytest.approx(-6.59003 * 0.3048, abs=1e-3)
-    assert mesh.discretisation_error == pytest.approx(mesh.volume / meridian().volume - 1.0, abs=1e-15)
+    assert mesh.discretisation_error == pytest.approx(mesh.volume / suboff_meridian().volume - 1.0, abs=1e-15)
     assert -1e-3 < mesh.discretisation_error < -1e-4
     assert mesh.extents == pytest.approx([14.291667 * 0.3048, 0.508, 0.508], rel=1e-6)
 
 
 def test_extrapolates_to_the_integral() -> None:
-    hull = meridian()
+    hull = suboff_meridian()
     coarse, fine = meshed(hull, 4000), meshed(hull, 16000)
     h2 = 1.0 / len(coarse.faces), 1.0 / len(fine.faces)
     at_zero = fine.volume + (fine.volume - coarse.volume) * h2[1] / (h2[0] - h2[1])
@@ -98,12 +98,12 @@ def test_boxes_that_only_seem_to_meet_keep_their_volume() -> None:
 
 
 def test_a_mesh_is_itself_or_decimated() -> None:
-    fine = meshed(meridian(), 8000)
+    fine = meshed(suboff_meridian(), 8000)
     assert meshed(fine, 10000) is fine
     coarse = meshed(fine, 5000)
     assert is_closed(coarse.faces)
     assert 4900 <= len(coarse.faces) <= 5000
-    assert coarse.exact_volume == meridian().volume
+    assert coarse.exact_volume == suboff_meridian().volume
     assert coarse.discretisation_error == pytest.approx(fine.discretisation_error, abs=2e-3)
     with pytest.raises(
         InputError, match=r"changes its volume by -\d+\.\d% when decimated to 100; expected a change within 2%"

@@ -13,7 +13,7 @@ from scipy.integrate import quad
 
 from coeflab.bodies.mesh.decimation import is_closed
 from coeflab.bodies.mesh.meshing import dense_meridian, meshed
-from coeflab.bodies.readers.myring import Myring
+from coeflab.bodies.profiles import Myring
 from coeflab.bodies.shape import Revolution
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped

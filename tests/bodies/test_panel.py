@@ -13,7 +13,7 @@ from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import box_surface, meshed
 from coeflab.bodies.panels.influence import slivers
-from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Plate, Shape
+from coeflab.bodies.shape import Box, Cylinder, Ellipsoid, Form, Part, Parts, Shape
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.law.added_mass import AddedMass
@@ -294,10 +294,6 @@ def test_parts_that_touch_in_a_point_are_solved() -> None:
     alone = 2.0 * RHO * 2.0 * np.pi / 3.0
     assert alone < found.matrix[1, 1] < 1.2 * alone
     assert 0.9 * alone < found.matrix[0, 0] < alone
-
-
-def test_a_plate_is_refused() -> None:
-    assert "no thickness" in refused(Parts((part(Plate(1.0, 2.0)),))).found
 
 
 def test_more_panels_than_memory_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:

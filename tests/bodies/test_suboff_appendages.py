@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from coeflab.bodies.profiles import suboff_profile
 from coeflab.bodies.readers.groves import (
     HALF_THICKNESS,
     SAIL_JOINTS,
     TIP,
     TRAILING_EDGE,
     plane,
-    profile,
     sail,
     sail_half_thickness,
     sail_sections,
@@ -52,11 +52,11 @@ def test_sail_by_counting_columns() -> None:
     b, _ = sail_half_thickness(x)
     share = (np.arange(400) + 0.5) / 400.0
     y = b[:, None] * share
-    radius = profile(x)[0][:, None]
+    radius = suboff_profile(x)[0][:, None]
     top = 1.507813 + 0.5 * b[:, None] * np.sqrt(1.0 - share**2)
     foot = np.sqrt(radius**2 - y**2)
     cell = 2.0 * b[:, None] / 400.0 * (SAIL_JOINTS[-1] - SAIL_JOINTS[0]) / 8000.0
-    found = sail(profile)
+    found = sail(suboff_profile)
     assert found.volume == pytest.approx(float(np.sum(cell * (top - foot))), rel=1e-5)
     assert found.moment[0] == pytest.approx(float(np.sum(cell * (top - foot) * x[:, None])), rel=1e-5)
     assert found.moment[1] == pytest.approx(float(np.sum(cell * (top**2 - foot**2) / 2.0)), rel=1e-5)
@@ -68,9 +68,9 @@ def test_plane_by_counting_columns() -> None:
     x = TRAILING_EDGE - (np.arange(1200) + 0.5) / 1200.0 * 0.8
     q = np.clip((x[:, None] - TRAILING_EDGE) / chord(y) + 1.0, 0.0, 1.0)
     half = chord(y) * naca(q)
-    within = np.sqrt(np.clip(profile(x)[0][:, None] ** 2 - y**2, 0.0, None))
+    within = np.sqrt(np.clip(suboff_profile(x)[0][:, None] ** 2 - y**2, 0.0, None))
     column = 2.0 * np.clip(half - within, 0.0, None) * 0.8 / 1200.0 * (TIP - 0.2) / 1200.0
-    found = plane(profile)
+    found = plane(suboff_profile)
     assert found.volume == pytest.approx(float(column.sum()), rel=1e-4)
     assert found.moment[0] == pytest.approx(float(np.sum(column * x[:, None])), rel=1e-4)
 

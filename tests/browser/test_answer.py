@@ -165,10 +165,28 @@ def test_everything_is_saved_in_one_archive_equal_each_time(plain, tmp_path):
     assert len(names) == len(set(names)) > 10
     assert len([n for n in names if n.endswith(".svg")]) == plain.locator("figure:not(.space)").count()
     assert all(Path(n).parts[0] in ("figures", "tables") for n in names)
+    sheets = [list(csv.reader(io.StringIO(archive.read(n).decode()))) for n in names if n.endswith(".csv")]
+    assert all(len({len(row) for row in sheet}) == 1 for sheet in sheets)
+    assert any("," in cell for sheet in sheets for row in sheet for cell in row)
 
 
 def looked_at(page):
     return page.evaluate(f"document.querySelector('{SLOPE} .plot > svg').outerHTML")
+
+
+def axes_of(page):
+    """Pixels a unit of both axes of the slope's figure, and what stands at x = 0 and y = 0 of the screen, by their numbers."""
+    marks = page.evaluate(
+        f"""() => [...document.querySelectorAll('{SLOPE} .plot > svg text')].filter(t => t.style.display !== 'none' &&
+        /^[\u2212-]?[0-9.]+$/.test(t.textContent)).map(t => {{ const b = t.getBoundingClientRect();
+        return [Number(t.textContent.replace('\u2212', '-')), b.x + b.width / 2, b.y + b.height / 2]; }})"""
+    )
+    below = max(m[2] for m in marks)
+    out = []
+    for k, of in ((1, [m for m in marks if m[2] > below - 2]), (2, [m for m in marks if m[2] <= below - 2])):
+        rate = (of[-1][k] - of[0][k]) / (of[-1][0] - of[0][0])
+        out.append((rate, of[0][0] - of[0][k] / rate))
+    return out
 
 
 def test_a_figure_is_looked_at_closely_by_wheel_and_keys_and_comes_back(plain):
@@ -181,10 +199,15 @@ def test_a_figure_is_looked_at_closely_by_wheel_and_keys_and_comes_back(plain):
     plain.evaluate("scrollTo(0, 0)")
     plain.mouse.down()
     plain.mouse.up()
+    whole = axes_of(plain)
     plain.mouse.wheel(0, -200)
     plain.wait_for_function("s => document.querySelector(s + ' .back')", arg=SLOPE)
     assert plain.evaluate("scrollY") == 0
     near = looked_at(plain)
+    places = box["x"] + box["width"] / 2, box["y"] + box["height"] / 3
+    for (rate, zero), (closer, start), place in zip(whole, axes_of(plain), places, strict=True):
+        assert closer / rate > 1.2
+        assert start + place / closer == pytest.approx(zero + place / rate, abs=abs(2.0 / rate))
     probe.press("+")
     assert looked_at(plain) not in (home, near)
     probe.press("0")

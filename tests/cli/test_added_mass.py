@@ -32,7 +32,7 @@ def test_suboff_shows_the_gap(coeflab: Run) -> None:
 def test_json_holds_matrices(coeflab: Run) -> None:
     done = coeflab("added-mass", "huuv", "--json", "--density", "1025")
     found = json.loads(done.stdout)
-    assert set(found) == {"ellipsoid", "primitives", "primitives:huuv"}
+    assert set(found) == {"ellipsoid", "panel", "primitives", "primitives:huuv"}
     matrix = np.array(found["primitives:huuv"])
     assert matrix.shape == (6, 6)
     assert matrix[1, 1] == pytest.approx(1025.0 * np.pi * (0.07**2 * 1.2 + 0.02**2 * 0.3), rel=1e-12)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -43,3 +44,22 @@ def test_a_shell_is_answered(coeflab: Run, monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setenv("COMP_WORDS", "coeflab export a.json --to xd")
     monkeypatch.setenv("COMP_CWORD", "4")
     assert coeflab().stdout.split() == ["xdyn"]
+
+
+def test_every_plan_and_parameter_file_is_offered() -> None:
+    assert complete.parameters("remus") == ["remus100"]
+    assert complete.plans("subo") == ["suboff"]
+    assert "huuv" in complete.tunings("hu")
+
+
+def test_a_shipped_name_is_a_parameter_file(coeflab: Run, tmp_path: Path) -> None:
+    """A vehicle of the package was found by its path in a checkout only."""
+    by_name = coeflab("simulate", "remus100", "--manoeuvre", "zigzag", "--executes", "2", "--json")
+    assert (by_name.returncode, by_name.stderr) == (0, "")
+    checked = coeflab("params", "check", "huuv", "--json")
+    assert json.loads(checked.stdout)["name"] == "huuv"
+    missing = coeflab("simulate", "remus10")
+    assert missing.returncode == 2
+    assert "remus100" in missing.stderr
+    (tmp_path / "remus100").mkdir()
+    assert coeflab("params", "check", "remus100").returncode == 0

@@ -26,9 +26,10 @@ from coeflab.tables.campaign import read_campaign
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
-from coeflab.tables.questions import Setting, questions, read_setting, understood
+from coeflab.tables.questions import questions, understood
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.reading import read_tables
+from coeflab.tables.settings import Setting, read_setting
 from tests.cli.conftest import COEFLAB, Run
 from tests.tables.runs_as_text import FILE, write_run
 from tests.tables.test_collect import stub
@@ -282,7 +283,7 @@ def test_a_rate_whose_sign_the_numbers_contradict_stays_open(tmp_path: Path) -> 
 
 @pytest.mark.parametrize(("arguments", "said"), [
     (("--set", "axes.reference_point=L/2"), 'found "L/2"'),
-    (("--set", "axes.reference_point=-1,2,0,0"), 'found "-1,2,0,0"; expected x, y, z in m, such as -2.1, 0, 0; 0 is the datum. Write a decimal point.'),
+    (("--set", "axes.reference_point=-1,2,0,0"), 'found "-1,2,0,0"; expected x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum. Write a decimal point.'),
     (("--set", "scaling.length=2,5"), 'found "2,5"; expected a number in m or a text with its unit, such as "2.5 m". Write a decimal point.'),
     (("--map", "Fy=Y [coefficient A=6.25]"), 'found "A=6.25"; expected A with its unit, such as 6.25 m^2'),
     (("--map", "Fy=Y [coefficient A=6,25 m^2]"), 'found "A=6,25 m^2"'),
@@ -458,14 +459,15 @@ def test_places_and_sizes_are_asked_with_examples(tmp_path: Path, monkeypatch: p
     file.write_text(
         "Run,Drift (deg),R (m),CY,CN\n" + "".join(f"{i},{2 * i},{10 + i},{0.1 * i},{0.01 * i}\n" for i in range(1, 6))
     )
-    answers = ["0.2", "L", "4 m", "y", "FRD", "-", "nose", "mid", "0 0 0", "4", "LOA", "1.025", "n", "1.025 g/cm3", "2",
-               "starboard", "", "yes", "10", "", "synthetic", ""]  # fmt: skip
+    answers = ["0.2", "L", "4 m", "y", "FRD", "-", "2 m aft of nose", "0 from nose", "4", "LOA", "1.025", "n", "1.025 g/cm3, 2",
+               "starboard", "", "yes", "10", "", "synthetic"]  # fmt: skip
     done = answered(monkeypatch, answers, "import", file, "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
     said = " ".join(done.output.split())
     for part in ("Area A of the coefficients CY, CN (by 1/2 rho U^2 A), such as 0.2 m^2", "Length L of the coefficients CN (of moments",
-                 "such as -2.1, 0, 0 (2.1 m aft of it), or 0 for the datum", 'found "mid"; expected x, y, z in m, such as -2.1, 0, 0',
-                 "is it g/cm^3? Then", "Keep it?", "table.arm_point [0, 0, 0]"):  # fmt: skip
+                 "-2.1 from nose (2.1 m aft of it)", "the side as a word; expected the side as a sign", "prime: they are primes by",
+                 "Taken: axes.datum = nose; axes.reference_point = [0.0, 0.0, 0.0]", "Length of the primes and its name",
+                 "is it g/cm^3? Then", "Keep it?", "table.arm_point [0.0, 0.0, 0.0]"):  # fmt: skip
         assert part in said, (part, said)
     text = (tmp_path / "out" / "mapping.toml").read_text()
     assert 'CN = "N [coefficient A=0.2 m^2 L=4.0 m]"' in text
@@ -473,6 +475,68 @@ def test_places_and_sizes_are_asked_with_examples(tmp_path: Path, monkeypatch: p
     assert table.conditions.density == pytest.approx(1025.0)
     assert table.arm_point is not None
     assert table.arm_point.tolist() == table.reference_point.tolist() == [0.0, 0.0, 0.0]
+
+
+TANK = """Schlepptank, Versuch 2213
+v = 1,5 m/s; rho = 998,8 kg/m3
+Lpp = 4,3 m
+Fahrt;Schiebewinkel;Kraft längs;Kraft quer;Moment um Hochachse
+-;deg;N;N;Nm
+""" + "".join(f"{i};{b};{-20 - abs(b):d},5;{3 * b},25;{-b},125\n" for i, b in enumerate((-8, -4, 0, 4, 8), start=1))
+
+
+def test_lines_over_a_german_table_are_offered_and_seven_lines_are_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Speed, density and length of its own lines by Enter; a sign that the numbers contradict is asked again."""
+    file = tmp_path / "tank.csv"
+    file.write_text(TANK, encoding="utf-8")
+    answers = ["y", "FRD", "+", "n", "-", "-2.15 from nose", "", "", "experiment"]
+    done = answered(monkeypatch, answers, "import", file, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    said = " ".join(done.output.split())
+    for part in ("Kraft quer = Y [N]; Moment um Hochachse = N [Nm]", "declared is axes.beta = v = +U sin(beta). One of them is wrong",
+                 'Default: 4.3 (line 3: "Lpp = 4,3 m"); LPP', 'Default: 998.8 (line 2: "rho = 998,8 kg/m3"); 1.5 (line 2',
+                 "axes.reference_point = [-2.15, 0.0, 0.0]"):  # fmt: skip
+        assert part in said, (part, said)
+    table = table_of(tmp_path / "out")
+    assert (table.conditions.speed, table.conditions.density, table.scaling.length, table.scaling.length_name) == (
+        1.5,
+        998.8,
+        4.3,
+        "LPP",
+    )
+    assert table.forces["Y"].tolist() == [-24.25, -12.25, 0.25, 12.25, 24.25]
+
+
+def test_lines_over_a_table_are_offered_as_arguments_and_never_taken(tmp_path: Path) -> None:
+    """An area of them makes a coefficient that has to be confirmed, even under coeflab's own names."""
+    file = tmp_path / "tank.csv"
+    file.write_text("# S = 0.25 m^2, V = 2 m/s, m = 4.3 m\nbeta [deg],Y [-]\n-4,0.01\n0,0\n4,-0.01\n")
+    said = refused(invoke("import", file, "--out", tmp_path / "out"))
+    for part in (
+        "--set conditions.speed=2",
+        '"V = 2 m/s"',
+        "--map 'Y=Y [coefficient A=0.25 m^2]'",
+        "--set scaling.length=METRES",
+    ):
+        assert any(part in line for line in said), (part, said)
+    assert not (tmp_path / "out").exists()
+
+
+def test_coefficients_without_an_area_may_be_primes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "primes.csv"
+    file.write_text("Drift;CY;CN\ndeg;1e-3;1e-3\n-4;1.5;0.5\n0;0;0\n4;-1.5;-0.5\n")
+    answers = ["primes", "y", "FRD", "", "cg", "4 LOA", "1000, 2", "synthetic, nobody"]
+    done = answered(monkeypatch, answers, "import", file, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    assert table_of(tmp_path / "out").forces["Y"].tolist() == pytest.approx([48.0, 0.0, -48.0])
+    by_map = ("--map", "CY=Y' [1e-3]", "--map", "CN=N' [1e-3]")
+    answers = ["y", *answers[2:]]
+    file.write_text(file.read_text().replace("1e-3;1e-3", "-;-"))
+    done = answered(monkeypatch, answers, "import", file, "--out", tmp_path / "mapped", *by_map)
+    assert done.exit_code == 0, done.output
+    assert table_of(tmp_path / "mapped").forces["Y"].tolist() == pytest.approx([48.0, 0.0, -48.0])
 
 
 def test_a_pattern_of_names_is_proposed_shown_and_confirmed(
@@ -497,15 +561,15 @@ def test_a_pattern_of_names_is_proposed_shown_and_confirmed(
 
 @pytest.mark.parametrize(("typed", "read"), [
     ("0", [0.0, 0.0, 0.0]), ("0 0 0", [0, 0, 0]), ("-2.1 0 0.3", [-2.1, 0, 0.3]), ("[-2, 0, 0]", [-2, 0, 0]), ("-2; 0; 0", [-2, 0, 0]),
-    ("7 ft, 0, 0", ["7 ft", 0, 0]),
+    ("7 ft, 0, 0", ["7 ft", 0, 0]), ("-1.2", [-1.2, 0, 0]), ("1", [1, 0, 0]), ("-1200 mm", [-1.2, 0, 0]),
 ])  # fmt: skip
 def test_ways_to_write_a_place(typed: str, read: list[object]) -> None:
     assert read_setting("axes.reference_point", typed) == read
 
 
-@pytest.mark.parametrize("typed", ["1", "", "0 0", "1,2", "nose", "true", "false", "0 0 0 0", "-2,1 0 0"])
+@pytest.mark.parametrize("typed", ["", "0 0", "1,2", "1,2 m", "nose", "true", "false", "0 0 0 0", "-2,1 0 0"])
 def test_what_is_no_place_says_how_to_write_one(typed: str) -> None:
-    with pytest.raises(InputError, match=r"expected x, y, z in m, such as -2.1, 0, 0; 0 is the datum"):
+    with pytest.raises(InputError, match=r"expected x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum"):
         read_setting("axes.reference_point", typed)
 
 
@@ -522,13 +586,13 @@ def test_enter_takes_the_point_that_a_file_states_turned_to_frd_and_yes_does_not
 @pytest.mark.slow
 def test_questions_on_a_terminal(drift: Path, tmp_path: Path) -> None:
     """Proposals at once, a wrong answer asked again, a default by evidence, none without."""
-    answers = ["y", "XYZ", "CFD", "", "nose", "", "-2, 0, 0", "4", "LOA", "998.2", "2", "experiment", ""]
+    answers = ["y", "XYZ", "CFD", "", "nose", "-2, 0, 0", "4 m LOA", "998.2, 2", "experiment"]
     command = [str(COEFLAB), "import", drift.name, "--out", "mine"]
     code, said = on_a_terminal(tmp_path, command, "\n".join(answers) + "\n")
     assert code == 0, said
     for part in (
         "All of them right?", 'found "XYZ"; expected "FRD", "FLU", "CFD"', "axes.beta [v = -U sin(beta)]",
-        "Y to starboard and beta have the same sign", "source.citation [drift.csv]", "Next: coeflab fit mine",
+        "Y to starboard and beta have the same sign", "source.citation = drift.csv", "Next: coeflab fit mine",
     ):  # fmt: skip
         assert part in said.replace("\n", " "), (part, said)
     assert table_of(tmp_path / "mine").forces["Y"].tolist()[:2] == [-29.4, -11.8]

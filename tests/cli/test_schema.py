@@ -13,6 +13,7 @@ import jsonschema
 import pytest
 
 from coeflab.cli.schema import KINDS, schema
+from coeflab.core.declarations import number_in
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 
@@ -59,6 +60,20 @@ def test_a_schema_refuses_what_reading_refuses(kind: str, old: str, new: str) ->
     texts = [t for t in (p.read_text() for p in SHIPPED[kind]) if old in t]
     spoiled = tomllib.loads(texts[0].replace(old, new, 1))
     assert not jsonschema.Draft202012Validator(SCHEMAS[kind]).is_valid(spoiled)
+
+
+@pytest.mark.parametrize(
+    ("value", "fits"),
+    [(0, True), (0.0, True), (0.3, False), (20, False), ("20", False), ("20 deg", True), (" .3rad", True)],
+)
+def test_an_angle_has_its_unit_in_schema_and_reader_alike(value: object, fits: bool) -> None:
+    angle = number_in("angle")
+    assert jsonschema.Draft202012Validator(dict(angle.schema)).is_valid(value) == fits
+    if fits:
+        angle.read(value, Path())
+    else:
+        with pytest.raises(InputError):
+            angle.read(value, Path())
 
 
 @pytest.mark.parametrize("kind", KINDS)

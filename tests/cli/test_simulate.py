@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -68,11 +69,11 @@ def test_what_cannot_be_is_one_message(coeflab: Run, torpedo: Path, words: tuple
 def test_what_a_file_determines_nothing_of_is_said_once(coeflab: Run, tmp_path: Path, command: str) -> None:
     """The README's own zigzag drew an empty figure, leaked four warnings of Python, and ran 1000 draws for six empty rows."""
     path = tmp_path / "unstable.parameters.json"
-    path.write_bytes(with_uncertainty(rudder_covered(np.radians(15.0)), {"Nr'": 1e-3}, {}).to_json())
+    path.write_bytes(with_uncertainty(rudder_covered(np.radians(15.0), 1.0), {"Nr'": 1e-3}, {}).to_json())
     done = coeflab(command, path, "--manoeuvre", "zigzag", "--rudder", "20 deg", *FREE, "--out", "zigzag")
     assert (done.returncode, done.stderr) == (1, "")
     assert (
-        "dr = -20.00 deg is outside the data, -15.00 to 15.00 deg. Unstable, and no nonlinear term such as Yr|r|"
+        "rudder angle = -20.00 deg is outside the data, -15.00 to 15.00 deg. Unstable, and no nonlinear term such as Yr|r|"
         in flat(done.stdout)
     )
     assert "not determined" not in flat(done.stdout)
@@ -81,6 +82,13 @@ def test_what_a_file_determines_nothing_of_is_said_once(coeflab: Run, tmp_path: 
     assert (within.returncode, within.stderr) == (0, "")
     drawing = (tmp_path / "zigzag" / "zigzag.svg").read_text(encoding="utf-8")
     assert "<desc>no added mass is known</desc>" in drawing
+    path.write_bytes(with_uncertainty(rudder_covered(np.radians(15.0)), {"Nr'": 1e-3}, {}).to_json())
+    said = set()
+    for manoeuvre in ("zigzag", "turning_circle"):
+        bare = coeflab(command, path, "--manoeuvre", manoeuvre, "--rudder", "10 deg", *FREE, "--json")
+        assert bare.returncode == 1, manoeuvre
+        said.add(json.loads(bare.stdout)["undetermined"])
+    assert said == {"There are no data on r'. Unstable, and no nonlinear term such as Yr|r| or Nr|r| limits the turn."}
 
 
 def test_without_control_surfaces_the_way_out_exists(coeflab: Run, tmp_path: Path) -> None:

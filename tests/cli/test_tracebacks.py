@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from coeflab.bodies.readers.myring import Myring
+from coeflab.bodies.profiles import Myring
 from coeflab.core.errors import InputError, shown
 from coeflab.core.files import shipped
 from coeflab.study.plan import read_plan

@@ -9,10 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.files import shipped
 from coeflab.formats.xdyn import write as xdyn
 from coeflab.law.transforms import force_transfer, velocity_transfer
+from coeflab.motion.simulation import simulate
 from coeflab.vehicle.force_law import force_law
-from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from tests.consumers.lxdyn_environment import PYTHON
 from tests.formats.files import at_rest, control_force, full
 from tests.formats.massed import ADDED, CENTRE, INERTIA, MASS, OWN, torpedo, with_mass
@@ -160,3 +162,21 @@ def test_what_xdyn_reads_of_an_expression(tmp_path: Path, expression: str, read:
     text = text.partition("    data: ")[0] + "    data: ['Fx(hydrodynamic_forces,body_of_tow,body_of_tow)', t]\n"
     rows, _ = in_xdyn(tmp_path, text, 0.02)
     assert rows[0, 0] == pytest.approx(read)
+
+
+@pytest.mark.slow
+def test_the_edits_of_the_page_make_our_own_turn(tmp_path: Path) -> None:
+    """xdyn moves the centre of gravity, we the reference point."""
+    file = read_parameter_file(shipped("cfd_data") / "remus100" / "remus100.parameters.json")
+    page = (Path(__file__).parents[2] / "docs" / "simulators.md").read_text(encoding="utf-8")
+    block = page.split("```yaml\n")[1].split("```")[0]
+    text = xdyn.render(file)["remus100.yml"].decode().replace("filename: remus100.csv", "filename: file.csv")
+    text = text.replace("commands:\n  - name", f"{block}commands:\n  - name")
+    text = text.replace("dr: {unit: rad, values: [0.0]}", "dr: {unit: deg, values: [-10.0]}")
+    rows, said = in_xdyn(tmp_path, text, 30.0)
+    assert "Warning" not in said
+    turn = {"rudder": float(np.radians(10.0)), "turns": 5.0, "longest": 30.0}
+    ours = simulate(file, "turning_circle", turn).trajectory
+    shift = np.array([rotation(q) @ [0.0, 0.0, 0.0196] for q in ours.attitude[[0, -1]]])
+    way = ours.position[-1] + shift[1] - shift[0]
+    np.testing.assert_allclose(rows[-1, 1:4], way, atol=1e-3)

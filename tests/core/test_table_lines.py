@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coeflab.core.table import Table, folded, percent, set_lines
+from coeflab.core.table import Table, as_printed, folded, percent, set_lines
 
 WORDS = st.lists(st.text("abcxyz_.", min_size=1, max_size=20), max_size=8).map(" ".join)
 TABLES = st.integers(1, 7).flatmap(
@@ -77,3 +77,19 @@ def test_no_line_is_too_long_and_no_word_is_lost(table: Table, width: int) -> No
 @pytest.mark.parametrize(("part", "of", "shown"), [(0.5, 1.0, "50.0 %"), (142.017, 1.0, "> 1000 %"), (1.0, 0.0, "-")])
 def test_a_share_has_no_more_digits_than_it_means(part: float, of: float, shown: str) -> None:
     assert percent(part, of) == shown
+
+
+@pytest.mark.parametrize(
+    ("value", "printed"),
+    [
+        (0.0052, "0.0052"),
+        (-0.01391, "-0.01391"),
+        (-0.027834, "-0.027834"),
+        (0.004, "0.0040"),
+        (1.2e-6, "1.20e-06"),
+        (None, "-"),
+    ],
+)
+def test_a_published_coefficient_has_the_digits_of_its_source(value: float | None, printed: str) -> None:
+    """0.005200 stood beside two digits of uncertainty."""
+    assert as_printed(value) == printed

@@ -17,7 +17,7 @@ import numpy as np
 from scipy import stats
 
 from coeflab.core.types import Array
-from coeflab.fits.statistics.origin_slope import estimate_many, prepare
+from coeflab.fits.statistics.slope_mixture import estimate_many, prepare
 
 NOISE = (0.03, 0.01, 0.001, 0.0001, 0.00001)
 DESIGNS = ("even", "uneven", "one-sided", "replicated")

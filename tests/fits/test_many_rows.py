@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from coeflab.fits.statistics.many_rows import EACH_ROW, SETTINGS, by_neighbours, condensed_rows
-from coeflab.fits.statistics.origin_slope import curve, estimate, prepare
+from coeflab.fits.statistics.origin_slope import curve, estimate
+from coeflab.fits.statistics.slope_mixture import prepare
 
 RNG = np.random.default_rng(11)
 TRUE = -0.03

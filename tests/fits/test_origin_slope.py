@@ -11,20 +11,8 @@ import pytest
 from scipy import special, stats
 
 from coeflab.core.types import Array
-from coeflab.fits.statistics.origin_slope import (
-    ODD,
-    PARTS,
-    POWER,
-    SIDES,
-    SIZES,
-    OriginSlope,
-    Status,
-    curve,
-    estimate,
-    estimate_many,
-    next_points,
-    prepare,
-)
+from coeflab.fits.statistics.origin_slope import OriginSlope, Status, curve, estimate, next_points
+from coeflab.fits.statistics.slope_mixture import ODD, PARTS, POWER, SIDES, SIZES, estimate_many, prepare
 from coeflab.fits.statistics.slopes import by_largest
 
 SLOPE = -0.028

@@ -13,7 +13,8 @@ from coeflab.core.table import Check, Severity
 from coeflab.fits import FITS, slope_at_origin
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.statistics import slopes
-from coeflab.fits.statistics.origin_slope import estimate, estimate_many
+from coeflab.fits.statistics.origin_slope import estimate
+from coeflab.fits.statistics.slope_mixture import estimate_many
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.coefficient import Status
 from coeflab.study.checks import coverage, significance

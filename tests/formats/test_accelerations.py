@@ -218,7 +218,7 @@ def test_the_choice_is_named_in_every_file() -> None:
     for target in (*TARGETS, "stonefish"):
         made = written(file, target, "measured")
         text = b"".join(made.files.values())
-        assert b"accelerations measured, Yvdot', Nvdot'" in text, target
+        assert b"accelerations: Yvdot', Nvdot'" in text, target
         assert b"accelerations computed, the added mass of body of tow by panel" in b"".join(
             written(file, target, "computed").files.values()
         ), target

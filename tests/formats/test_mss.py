@@ -10,15 +10,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from coeflab.core.files import shipped
 from coeflab.core.wording import matlab, one_line
 from coeflab.formats.mss import read as importer
 from coeflab.formats.mss import write as mss
 from coeflab.formats.mss.m_file import assignments
+from coeflab.motion.simulation import simulate
 from coeflab.vehicle.force_law import force_law
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.workbench.exports import export
 from tests.formats import files as made
 from tests.formats.massed import torpedo
 
+PAGE = Path(__file__).parents[2] / "docs" / "simulators.md"
 GOLDEN = Path(__file__).parent / "golden" / "mss.m"
 PRIMES = {"mass_prime": 1.0, "mass_moment_prime": 0.0}  # computed from the mass
 
@@ -96,6 +100,30 @@ def test_real_octave_computes_the_same_force_and_added_mass(tmp_path: Path) -> N
     matrix = np.array(file.added_mass.matrix)
     np.testing.assert_allclose(by_state[0, 6:].reshape(6, 6), matrix, rtol=1e-13, atol=1e-12 * matrix.max())
     np.testing.assert_allclose(found[-6:], force_law(file).force(nu[:1])[0], rtol=1e-9, atol=1e-9 * scale.min())
+
+
+def test_the_thrust_that_keeps_the_speed_is_stated() -> None:
+    """Prestero: 1.62 kg/m times (1.54 m/s)^2."""
+    (said,) = [c for c in mss.changes(remus()) if "propulsion" in c]
+    assert float(said.split(": ")[1].split()[0]) == pytest.approx(1.62 * 1.54**2, rel=1e-3)
+    assert said in next(iter(mss.render(remus()).values())).decode()
+
+
+def remus() -> ParameterFile:
+    return read_parameter_file(shipped("cfd_data") / "remus100" / "remus100.parameters.json")
+
+
+@pytest.mark.slow
+def test_the_loop_of_the_page_is_our_own_turn(tmp_path: Path) -> None:
+    written(tmp_path, remus())
+    loop = re.search(r'title="mss/loop.m"\n(.*?)^```', PAGE.read_text(encoding="utf-8"), re.S | re.M)
+    assert loop is not None
+    north, east, heading, speed = octave(tmp_path, loop[1])
+    turn = {"rudder": float(np.radians(10.0)), "turns": 5.0, "longest": 30.0}
+    ours = simulate(remus(), "turning_circle", turn).trajectory
+    np.testing.assert_allclose((north, east), ours.position[-1, :2], atol=2e-3)
+    assert heading == pytest.approx(np.degrees(ours.heading[-1]), abs=0.02)
+    assert speed == pytest.approx(ours.speed[-1], abs=2e-4)
 
 
 @pytest.mark.slow

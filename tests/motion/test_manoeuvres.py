@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +14,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.motion.manoeuvre import Figure, Simulation
 from coeflab.motion.manoeuvres import MANOEUVRES
-from coeflab.motion.simulation import simulate
+from coeflab.motion.simulation import rolls, simulate
 from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics
 from tests.motion.vehicles import DENSITY, INERTIA, LENGTH, MASS, SPEED, STABLE, UNSTABLE, made, with_limits
@@ -292,7 +295,7 @@ def test_a_current_is_said_beside_the_distances_that_hold_it() -> None:
 def test_figures_beyond_the_data_say_so() -> None:
     found = figures(run(made(), "turning_circle", rudder=0.2))
     assert found["advance"].status == "extrapolated"
-    assert found["advance"].why == "no data on v', r', dr"
+    assert found["advance"].why == "no data on v', r', rudder angle"
 
 
 @pytest.mark.parametrize(
@@ -324,3 +327,24 @@ def test_every_manoeuvre_is_tried_here() -> None:
     assert set(MANOEUVRES.names()) == {
         "depth_change", "free_decay", "pull_out", "spiral", "stop", "straight_run", "turning_circle", "zigzag",
     }  # fmt: skip
+
+
+def test_a_roll_that_oscillates_is_said() -> None:
+    """Twenty half periods of 0.65 s with swings of 12 deg/s; swings of 4 deg/s are small."""
+    t = np.linspace(0.0, 13.0, 2001)
+    straight = simulate(made(), "straight_run", {"duration": 13.0}, free=("u", "v", "r")).trajectory
+
+    def rolling(amplitude: float) -> str:
+        velocity = np.zeros((len(t), 6))
+        velocity[:, 3] = np.radians(amplitude) * np.cos(2.0 * np.pi * t / 1.3)
+        upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(t), 1))
+        return rolls(replace(straight, time=t, velocity=velocity, attitude=upright))
+
+    said = [float(word) for word in re.findall(r"[\d.]+", rolling(6.0))]
+    assert said == pytest.approx([18, 5, 12, 1.3, 0])
+    assert rolling(2.0) == ""
+
+
+def test_the_roll_of_remus_in_its_zigzag_is_said() -> None:
+    said = simulate(read_parameter_file(Path("remus100")), "zigzag", {"executes": 3}).statements
+    assert any(line.startswith("roll rate oscillates") for line in said)

@@ -31,10 +31,15 @@ def made(values: dict[str, float] = STABLE, metacentric: float = 0.0) -> Paramet
     return file.model_copy(update={"hydrostatics": hydrostatics, "schema_version": "1.3"})
 
 
-def rudder_covered(rudder: float) -> ParameterFile:
-    """An unstable vehicle whose rudder was tested up to an angle, rad, and whose turning nobody tested."""
-    tested = CoveredRange(variable="dr", low=-rudder, high=rudder, unit="rad", campaign="synthetic")
-    return made(UNSTABLE).model_copy(update={"covered": (tested,)})
+def rudder_covered(rudder: float, rate: float = 0.0) -> ParameterFile:
+    """An unstable vehicle whose rudder was tested up to an angle, rad, and its turning up to a rate r', if at all."""
+    limits = {"dr": (rudder, "rad"), "r'": (rate, "1")}
+    tested = tuple(
+        CoveredRange(variable=name, low=-limit, high=limit, unit=unit, campaign="synthetic")
+        for name, (limit, unit) in limits.items()
+        if limit
+    )
+    return made(UNSTABLE).model_copy(update={"covered": tested})
 
 
 def with_limits(file: ParameterFile, limit: float, rate: float | None) -> ParameterFile:

@@ -61,15 +61,13 @@ def test_parts_without_content_are_left_out():
 
 def test_the_verdict_counts_and_names_what_fails():
     assert acceptance_document.verdict(found(2.05)).paragraphs[0] == (
-        "3 of 3 numbers within what is allowed: 0 predicted, 2 of 2 printed and recomputed, 1 of 1 calibration, 0 consistency."
+        "3 of 3 numbers within the tolerance: 0 predicted, 2 of 2 printed and recomputed, 1 of 1 calibration, 0 consistency."
     )
     failed = acceptance_document.verdict(found(2.5))
-    assert failed.paragraphs[0].startswith("2 of 3 numbers within what is allowed: ")
-    assert (
-        failed.paragraphs[1] == "Validation rests on 2 of them, predicted or printed and recomputed, of which 2 hold."
-    )
+    assert failed.paragraphs[0].startswith("2 of 3 numbers within the tolerance: ")
+    assert failed.paragraphs[1] == "2 of them are validation (predicted, or printed and recomputed); 2 of these hold."
     assert failed.paragraphs[2] == "Outside, Turns: u of case 2."
-    assert "calibration: the model was calibrated on this very number" in failed.paragraphs[3].lower()
+    assert "calibration: our model was calibrated on this number" in failed.paragraphs[3].lower()
 
 
 def test_numbers_met_another_way_count_once():
@@ -78,8 +76,8 @@ def test_numbers_met_another_way_count_once():
     again = replace(made.tables[0], key="again", repeats="turns_a")
     first, second = acceptance_document.headline(replace(made, tables=(*made.tables, again)))
     assert first.startswith("3 of 3 numbers within")
-    assert first.endswith("3 of 3 comparisons meet numbers among them another way, and do not count.")
-    assert "rests on 2 of them" in second
+    assert first.endswith("3 of 3 comparisons repeat one of these numbers in another way, and do not count.")
+    assert "2 of them are validation" in second
     failing = replace(again, rows=(*again.rows, Compared("case 4", "u", "m/s", 1.0, 2.0, 0.1, Basis.PRINTED)))
     assert not replace(made, tables=(*made.tables, failing)).holds
 
@@ -87,7 +85,7 @@ def test_numbers_met_another_way_count_once():
 def test_a_number_is_called_printed_only_where_it_is():
     """Basis beside every number; no column says paper, and a report without printed numbers says so."""
     (shown,) = acceptance_tables.tables(found(2.05))
-    assert shown.headers[2:5] == ("held against", "basis", "found")
+    assert shown.headers[2:5] == ("reference", "basis", "found")
     assert [row[2:4] for row in shown.rows] == [
         ("1", "printed and recomputed"),
         ("2", "calibration"),
@@ -101,7 +99,7 @@ def test_a_number_is_called_printed_only_where_it_is():
     said = acceptance_document.verdict(made)
     assert none in said.paragraphs
     assert said.figures[0].panels[0].series[0].notes == (
-        "case, mass: held against 2.2297 kg (consistency), found 2.2297 kg",
+        "case, mass: reference 2.2297 kg (consistency), found 2.2297 kg",
     )
     assert all("paper " not in note for p in said.figures[0].panels for s in p.series for note in s.notes)
 

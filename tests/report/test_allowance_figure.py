@@ -37,7 +37,7 @@ def test_what_holds_lies_within_and_what_does_not_is_marked_outside() -> None:
         Compared("5", "u", "m/s", 2.0, 2.11, 0.1, Basis.PRINTED),
     )  # fmt: skip
     series = {s.name: s for s in figure.panels[0].series}
-    assert figure.title == "2 of 5 comparisons within what is allowed"
+    assert figure.title == "2 of 5 comparisons within the tolerance"
     assert series["printed and recomputed"].x == pytest.approx((0.5,))
     assert series["calibration"].x == pytest.approx((0.2,))
     # Ten times the allowance and no number at all stand at the edge, where their places are no values to tell.

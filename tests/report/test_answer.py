@@ -240,16 +240,16 @@ def test_without_published_values_the_forest_is_over_ours():
 
 
 def test_senses_in_the_sketch():
-    """Bow to the right in both views: r turns it down, q up; y and z point down."""
+    """Right-handed: r turns x to y and p turns y to z, both drawn downwards; q turns z to x, up to the axis ahead."""
     svg = axes_figure().svg
-    for text in ("from above", "from starboard"):
+    for text in ("from above", "from starboard", "from astern"):
         assert text in svg
     place = {said: float(y) for y, said in re.findall(r'<text [^>]*?y="([\d.]+)"[^>]*>(?:<tspan[^>]*>)?(\w)', svg)}
-    ahead = place["x"]
-    assert place["r"] > ahead
-    assert place["y"] > ahead
-    assert place["z"] > ahead
-    assert place["q"] < ahead + 1.0
+    assert set("xyzpqr") <= set(place)
+    tips = re.findall(r'<path d="M [\d.]+ ([\d.]+) \nL [^"]*z\n"[^>]*fill: var\(--fig-a', svg)
+    r, q, p = map(float, tips)
+    assert min(r, p) > place["x"] + 20.0
+    assert q < place["x"] + 15.0
 
 
 def test_every_document_has_its_answer():
@@ -269,13 +269,13 @@ def test_a_publication_has_its_tables_in_the_place_of_rows():
     made = answer(found(2.5))
     assert (
         made.sentence
-        == "Boat: 1 of 3 numbers outside what is allowed; 2 of them validate: predicted, or printed and recomputed."
+        == "Boat: 1 of 3 numbers outside the tolerance; 2 of them are validation: predicted, or printed and recomputed."
     )
     assert made.rows == ()
     assert answer_table(made).rows == (("Turns", "2 of 3", "500 %", "fail"),)
     assert [c.severity.value for c in made.chips] == ["fail", "pass", "note", "note"]
     assert made.slope.anchor == "answer-figure"
-    assert answer(found(2.05)).sentence.startswith("Boat: all 3 numbers within what is allowed;")
+    assert answer(found(2.05)).sentence.startswith("Boat: all 3 numbers within the tolerance;")
 
 
 def test_long_names_are_cut_on_a_terminal_only():

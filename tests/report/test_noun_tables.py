@@ -134,7 +134,7 @@ def test_text_columns_are_flush_left_and_numbers_flush_right():
 
 def test_coefficients_fit_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:
     """Columns go in the stated order, what has no table stands on one line, nothing of a kept row is cut."""
-    headers = ("", "value", "U95", "U95", "random", "form", "input", "window", "n", "campaign", "estimator")
+    headers = ("", "value", "U95", "U95 %", "random", "form", "input", "window", "n", "campaign", "estimator")
     row = (
         "-0.0262",
         "0.0027",

@@ -324,7 +324,7 @@ def test_the_validation_is_printed_whole(suboff, suboff_document):
     whole = suboff_document
     made = opened(whole)
     assert flaws(made) == []
-    assert len(made) < 140
+    assert len(made) < 110
     text = text_of(made)
     figures = [*first_page(whole), *(f for s in whole.sections for f in figures_of(s))]
     tables, elsewhere = on_paper(whole)

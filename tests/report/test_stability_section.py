@@ -30,7 +30,7 @@ def test_stability_has_indices_roots_and_figures():
     (section,) = stability_sections(with_files(made()))
     indices, roots = section.tables
     assert [row[1] for row in indices.rows] == ["G_h", "G_v"]
-    assert [row[4] for row in indices.rows] == ["stable by its value alone", "stable at high speed by its value alone"]
+    assert [row[4] for row in indices.rows] == ["stable, no U95", "stable at high speed, no U95"]
     assert all("no U95" in row[5] for row in indices.rows)
     assert [row[-1] for row in roots.rows] == ["none", "none"]
     assert len(section.figures) == 2
@@ -89,7 +89,7 @@ def test_the_mass_that_an_index_is_made_of_is_shown_and_named_as_not_assessed():
     v = STABLE
     heavier, plain = (1.0 - v["Nv"] * (v["Yr"] - m) / (v["Yv"] * v["Nr"]) for m in (1.01 * M, M))
     remark = next(row[-1] for row in indices.rows if row[1] == "G_h")
-    assert "m' and xG' are not assessed" in remark
+    assert "uncertainty of m' and xG' not in U95" in remark
     assert float(remark.rpartition(" ")[2]) == pytest.approx(heavier - plain, rel=0.05)
 
 
@@ -120,15 +120,16 @@ def test_the_vertical_index_speaks_of_high_speed_wherever_it_stands():
     diving = made({**STABLE, "Mw": 6e-2}).model_copy(update={"hydrostatics": None})
     study = with_files(diving)
     (said,) = in_words(study)
-    start = "On a straight course with controls fixed unstable at high speed (no restoring moment) by its value alone: synthetic"
+    start = "On a straight course with controls fixed unstable at high speed (no restoring moment), no U95: synthetic"
     assert said.startswith(start)
-    assert ", at 1.50 m/s not determined, as BG is not known; stable by its value alone: synthetic (G_h" in said
+    assert ", at 1.50 m/s not determined, as BG is not known; stable, no U95: synthetic (G_h" in said
     assert "BG is not known" in in_words(study, with_values=False)[0]
     (known,) = in_words(with_files(made({**STABLE, "Mw": 6e-2})))
     assert known.startswith(start)
     assert "BG" not in known
     (chip,) = [c for c in study_summary(study).answer.chips if c.name == "Stability"]
-    assert chip.text.startswith("stable by its value alone, G_h = ")
+    assert chip.text.startswith("stable, G_h = ")
+    assert chip.text.endswith(", no U95")
     (found,) = [c for c in stability_check(study) if c.subject.endswith("G_v")]
     assert "unstable at high speed" in found.statistic
     assert "since BG is unknown" in found.comment

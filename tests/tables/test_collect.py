@@ -154,15 +154,34 @@ def test_only_the_component_that_is_too_short_is_marked(tmp_path: Path) -> None:
     write_run(tmp_path / "b6", histories(4, {"Y": 0.004}))
     write_run(tmp_path / "b8", histories(5, {"X": 0.05, "Y": 0.05, "N": 0.05}))
     found = collect(tmp_path, names="b{beta:deg}")
-    assert [str(r.status) for r in found.runs] == ["converged", *["too short"] * 4]
+    assert [str(r.status) for r in found.runs] == ["converged", "too short", "too short", "short but used", "too short"]
     assert found.table.column("uncertain").texts == ("", "X", "X", "", "all")
     error = found.table.column("se_Y").values
     assert max(error[2:4]) < 0.5 < error[4]
     said = "\n".join(found.table.remarks)
+    assert "1 short but used, as every error, the range of the plateau in it, is below 1 % of the largest mean" in said
     assert (
-        "1 too short and used, as every error, the range of the plateau in it, is below 1 % of the largest mean" in said
+        "3 too short, of which what is too short is marked as uncertain and not used: b2 (X spans more than 1 %" in said
     )
-    assert "3 too short, of which what is too short is marked as uncertain: b2 (X spans more than 1 %" in said
+
+
+def test_errors_that_differ_more_than_chance_are_raised_to_the_pooled_one(tmp_path: Path) -> None:
+    """A run that converged to the last digit weighed 5,000 times one whose last digits still move."""
+    for k, noise in enumerate((1e-6, 1e-6, 1e-6, 7e-5)):
+        rng = np.random.default_rng(k)
+        write_run(
+            tmp_path / f"b{k}",
+            {"Y": 50.0 * k + 50.0 * noise * rng.normal(size=400), "N": 9.0 + 1e-3 * rng.normal(size=400)},
+        )
+    table = collect(tmp_path, names="b{beta:deg}").table
+    error = table.column("se_Y").values
+    own = 50.0 * 7e-5 / 20.0
+    assert error[3] == pytest.approx(own, rel=0.5)
+    np.testing.assert_allclose(error[:3], error[3] / 2.0, rtol=0.05)
+    assert len(set(table.column("se_N").values)) == 4
+    (said,) = [r for r in table.remarks if "pooled" in r]
+    assert said.startswith("se_Y of 3 of 4 runs raised to ")
+    assert "-fold" in said
 
 
 def test_errors_of_fewer_rows_than_were_calibrated_are_not_trusted(tmp_path: Path) -> None:

@@ -18,7 +18,7 @@ from coeflab.core.errors import InputError
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
-from coeflab.tables.mapping import assigned
+from coeflab.tables.mapping import assigned, with_unit
 from coeflab.tables.proposals import evidence, proposals, proposed
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.reading import importer_of, read_tables, recognised
@@ -498,11 +498,14 @@ def test_any_text_is_a_column_or_a_clear_refusal(text: str) -> None:
 @pytest.mark.parametrize(
     ("unit", "size"), [("1e-3", 1e-3), ("10^-3", 1e-3), ("10⁻³", 1e-3), ("x 1e-3", 1e-3), ("%", 1e-2), ("-", 1.0)]
 )
-def test_primes_are_counted_in_what_the_row_of_units_says(write_campaign, unit: str, size: float) -> None:
+@pytest.mark.parametrize("by", ["row of units", "mapping"])
+def test_primes_are_counted_in_what_the_row_of_units_says(write_campaign, by: str, unit: str, size: float) -> None:
     """A factor of 1000 that nobody saw: the row ``- | deg | 1e-3`` was read as data."""
     rows = [(-4.0, -1.5, 0.8), (0.0, 0.0, 0.0), (4.0, 1.5, -0.8)]
-    text = f"Case;Drift;CY;CN\n-;deg;{unit};{unit}\n" + "".join(f"D{b:g};{b};{y};{n}\n" for b, y, n in rows)
-    columns = '\n[columns]\nCase = "label"\nDrift = "beta"\nCY = "Y\'"\nCN = "N\'"\n'
+    row = unit if by == "row of units" else "-"
+    text = f"Case;Drift;CY;CN\n-;deg;{row};{row}\n" + "".join(f"D{b:g};{b};{y};{n}\n" for b, y, n in rows)
+    said = f" [{unit}]" if by == "mapping" else ""
+    columns = f'\n[columns]\nCase = "label"\nDrift = "beta"\nCY = "Y\'{said}"\nCN = "N\'{said}"\n'
     by_table = SECTIONS["campaign"] + '\nimporter = "table"'
     folder = write_campaign(text, campaign=by_table, source=SECTIONS["source"] + "\n" + columns)
     (table,) = read_tables(PlannedTable(folder, ()))
@@ -517,3 +520,7 @@ def test_a_unit_of_primes_that_cannot_be_read_is_refused(write_campaign) -> None
     folder = write_campaign(text, campaign=by_table, source=SECTIONS["source"] + "\n" + columns)
     with pytest.raises(InputError, match="1e-3"):
         read_tables(PlannedTable(folder, ()))
+    with pytest.raises(InputError, match=r"\[%\] in the file, \[1e-3\] in the mapping"):
+        with_unit(RawTable(folder, ()), RawColumn("CY", "%", np.ones(2)), read_column_map("Y' [1e-3]"))
+    with pytest.raises(InputError, match="power of ten"):
+        read_column_map("Y' [N]")

@@ -155,6 +155,48 @@ def test_words_for_no_number_are_counted(tmp_path: Path) -> None:
     assert all(word in remark for word in ('"nan" 2 times', "blank", '"n.a."', '"#DIV/0!"', "first in line 3"))
 
 
+LETTERS = ("A", "K", "m", "s", "N", "g", "t", "h", "V", "W")  # of runs; units too
+
+
+@given(
+    first=st.tuples(
+        st.sampled_from(LETTERS), st.sampled_from(LETTERS), st.sampled_from(["1", "1e-3", "0.5", "-", "", "nan"])
+    ),
+    places=st.permutations([0, 1, 2]),
+    delimiter=st.sampled_from([",", ";", "\t"]),
+    many=st.integers(2, 5),
+)
+@settings(max_examples=80, deadline=None)
+def test_a_first_run_by_the_letter_of_a_unit_does_not_vanish(
+    tmp_path_factory: pytest.TempPathFactory, first: tuple[str, ...], places: list[int], delimiter: str, many: int
+) -> None:
+    """A row without any number is left out as any other, and said; a row with one is data."""
+    rows = [("run", "kind", "Y"), first, *((f"r{k}", "hull", str(2 * k)) for k in range(many))]
+    path = tmp_path_factory.mktemp("letters") / "a.txt"
+    path.write_text("".join(delimiter.join(row[k] for k in places) + "\n" for row in rows))
+    table = raw(path, {})
+    assert sorted(c.name for c in table.columns) == ["Y", "kind", "run"]
+    assert {c.unit for c in table.columns} == {""}
+    empty = first[2] in ("-", "")
+    assert len(table) == many + 1 - empty
+    assert any("line 2: left out, no number" in r for r in table.remarks) == empty
+
+
+@pytest.mark.parametrize(
+    ("row", "units"),
+    [
+        ("-;deg;1e-3;1", ("-", "deg", "1e-3", "1")), ("-;-;1e-3;1e-3", ("-", "-", "1e-3", "1e-3")), (";[1];[1];[1]", ("", "1", "1", "1")),
+        ("-;%;%;%", ("-", "%", "%", "%")), ("-;-;-;-", ("-",) * 4), ("D;1;1e-3;1", None), ("-;1;1;1e-3", None), ("-;0;1e-3;-", None),
+    ],
+)  # fmt: skip
+def test_what_makes_a_row_of_units(tmp_path: Path, row: str, units: tuple[str, ...] | None) -> None:
+    """Numbers alone are data, whatever letter of a run is beside them; where numbers are taken for units it is said."""
+    table = read(tmp_path, f"Case;Drift;CY;CN\n{row}\nD1;-4;1.5;0.8\nD2;4;-1.5;-0.8\n")
+    assert len(table) == (2 if units else 3)
+    assert tuple(c.unit for c in table.columns) == (units or ("",) * 4)
+    assert any("taken for the units" in r for r in table.remarks) == bool(units and "1" in row and "[" not in row)
+
+
 def test_text_in_a_column_of_numbers_is_kept_as_written(tmp_path: Path) -> None:
     """After the first 64 KiB too, when all columns were taken for numbers."""
     long = "1.00000000000000000000,2.00000000000000000000\n" * 2_000

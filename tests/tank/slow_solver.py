@@ -47,7 +47,8 @@ def program() -> None:
             history.flush()
             asked = Path(ASKED).exists() and not case["deaf"]
             if i % case["fields"] == 0 or asked:
-                Path(FIELDS).write_text(str(i))
+                Path(f"{FIELDS}.new").write_text(str(i))  # a kill leaves the last ones whole
+                Path(f"{FIELDS}.new").replace(FIELDS)
             if asked:
                 return
             time.sleep(case["pause"])

@@ -72,7 +72,7 @@ def test_jobs_on_workers(scheduler: str, tmp_path: Path) -> None:
     found = {job.name: progress(job) for job in (mesh, broken, behind, run)}
     assert [one.state for one in found.values()] == [
         JobState.FINISHED, JobState.CRASHED, JobState.WAITING, JobState.FINISHED
-    ]  # fmt: skip
+    ], found  # fmt: skip
     assert killed
     assert found["run"].resumed_from >= 5.0
     assert (found["run"].plateau, found["run"].means) == (found["mesh/m"].plateau, found["mesh/m"].means)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError, PluginError
-from coeflab.tank.declaration import declared_body, default_tank, default_text, read_tank
+from coeflab.tank.tank_file import declared_body, default_tank, default_text, read_tank
 from coeflab.tank.test_matrix import Half, Kind
 from tests.tank.towed_bodies import BODY_FILE, LENGTH, with_mirrors
 

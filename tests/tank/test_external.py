@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
-from coeflab.tank.declaration import read_tank
 from coeflab.tank.solvers import SOLVERS, external
 from coeflab.tank.tank import Tank
+from coeflab.tank.tank_file import read_tank
 from tests.tank.towed_bodies import BODY_FILE, with_mirrors
 
 BODY = with_mirrors("y")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -9,9 +10,11 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull, cKDTree
 
+from coeflab.bodies import profiles
 from coeflab.bodies.body import Body
-from coeflab.bodies.mesh.mesh import mesh_integrals
+from coeflab.bodies.mesh.mesh import TriangleMesh, mesh_integrals
 from coeflab.bodies.mesh.topology import edges
+from coeflab.bodies.pieces import Piece
 from coeflab.bodies.readers import finned, groves, read_body
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
@@ -36,12 +39,12 @@ def in_tank(name: str, **controls: float) -> TowedBody:
 def above_the_meridian(of: TowedBody, points: np.ndarray) -> np.ndarray:
     """Distance to the SUBOFF hull by its equations, m, negative inside."""
     end = np.linspace(0.0, 1.0, 4000) ** 3 * 0.1
-    aft = np.concatenate([end, np.linspace(0.1, groves.CAP_END - 0.1, 60_000), groves.CAP_END - end])
-    radius = groves.profile(aft)[0]
+    aft = np.concatenate([end, np.linspace(0.1, profiles.CAP_END - 0.1, 60_000), profiles.CAP_END - end])
+    radius = profiles.suboff_profile(aft)[0]
     around = np.hypot(points[:, 1], points[:, 2])
     found = np.column_stack([-points[:, 0] - of.body.reference_point[0], around])
-    away, nearest = cKDTree(groves.FOOT * np.column_stack([aft, radius])).query(found)
-    return np.where(around < groves.FOOT * radius[nearest], -away, away)
+    away, nearest = cKDTree(profiles.FOOT * np.column_stack([aft, radius])).query(found)
+    return np.where(around < profiles.FOOT * radius[nearest], -away, away)
 
 
 def corners(of: TowedBody, patch: str) -> np.ndarray:
@@ -75,13 +78,13 @@ def test_aff8_is_closed_and_has_its_volume_and_surface(suboff: Body, aff8: Towed
 
 def test_the_origin_is_the_reference_point(suboff: Body, aff8: TowedBody) -> None:
     assert aff8.vertices[:, 0].max() == pytest.approx(-suboff.reference_point[0], abs=1e-9)
-    assert aff8.length == pytest.approx(groves.FOOT * groves.CAP_END, abs=1e-8)
+    assert aff8.length == pytest.approx(profiles.FOOT * profiles.CAP_END, abs=1e-8)
 
 
 def test_patches_of_aff8_lie_where_the_equations_say(suboff: Body, aff8: TowedBody) -> None:
     """Hull and stern on the meridian, nothing of sail and planes below it; the areas of Groves' integrals."""
     assert aff8.patches == ("hull", "stern", "sail", "fins")
-    run = -groves.FOOT * groves.MIDDLE_END - suboff.reference_point[0]
+    run = -profiles.FOOT * profiles.MIDDLE_END - suboff.reference_point[0]
     for patch in aff8.patches:
         points = corners(aff8, patch)
         gap, x, z = above_the_meridian(aff8, points), points[:, 0], points[:, 2]
@@ -93,10 +96,10 @@ def test_patches_of_aff8_lie_where_the_equations_say(suboff: Body, aff8: TowedBo
             assert np.all(z < 0.0) if patch == "sail" else np.all(x < run)
     triangles = aff8.vertices[aff8.faces]
     area = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1) / 2.0
-    sail, four = groves.sail(groves.profile).surface, 4.0 * groves.plane(groves.profile).surface
+    sail, four = groves.sail(profiles.suboff_profile).surface, 4.0 * groves.plane(profiles.suboff_profile).surface
     for patch, exact in (("sail", sail), ("fins", four)):
         own = area[aff8.patch == aff8.patches.index(patch)].sum()
-        assert own == pytest.approx(groves.FOOT**2 * exact, rel=2e-3)
+        assert own == pytest.approx(profiles.FOOT**2 * exact, rel=2e-3)
 
 
 def test_chords(aff8: TowedBody) -> None:
@@ -192,8 +195,17 @@ def test_a_control_by_degrees_in_place_of_radians(planes: Body) -> None:
 
 
 def test_a_part_that_the_hull_hides(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="which lies wholly inside the body"):
+    with pytest.raises(InputError, match="which lies within the hull"):
         written(tmp_path, SPHEROID.replace("tip = 0.15", "tip = 0.04", 1))
+    fin = next(p for p in body("naca0020_plane").pieces)
+    spheroid = body("finned_spheroid")
+    hidden = Piece("hidden", "hidden", lambda n: scaled(fin.surface(n), 0.1), fin.area, fin.chord)
+    with pytest.raises(InputError, match="which lies wholly inside the body"):
+        towed(replace(spheroid, pieces=(*spheroid.pieces, hidden)), spheroid.reference_point, panels=FEW)
+
+
+def scaled(of: TriangleMesh, share: float) -> TriangleMesh:
+    return TriangleMesh(share * of.vertices, of.faces)
 
 
 def test_too_few_triangles() -> None:
@@ -257,9 +269,9 @@ def test_the_section_is_that_of_suboffs_planes() -> None:
 def test_the_isolated_plane_is_suboffs() -> None:
     """Root cut where the half-chord line leaves the hull; the planform's area, and its mirror image below."""
     found = in_tank("naca0020_plane")
-    foot = float(groves._foot(groves.profile, np.array([0.5]), np.zeros(1))[0])
-    root, tip = (groves.FOOT * float(groves._chord(np.array(y))) for y in (foot, groves.TIP))
-    span = groves.FOOT * (groves.TIP - foot)
+    foot = float(groves._foot(profiles.suboff_profile, np.array([0.5]), np.zeros(1))[0])
+    root, tip = (profiles.FOOT * float(groves._chord(np.array(y))) for y in (foot, groves.TIP))
+    span = profiles.FOOT * (groves.TIP - foot)
     assert found.length == pytest.approx(root, rel=1e-5)
     assert found.vertices[:, 2].max() == pytest.approx(span, rel=1e-5)
     assert found.chord["plane"] == pytest.approx((root + tip) / 2.0, rel=1e-5)

@@ -119,6 +119,6 @@ def test_a_potential_part_that_the_added_mass_does_not_give_is_refused() -> None
 
 def test_a_rate_that_no_campaign_covers_is_tried_all_the_same() -> None:
     nu, words = covered_grid(parameters({"Yv": -0.03, "Nr": -0.004}))
-    assert "r' -0.2 to 0.2 (covered by no campaign)" in words
+    assert "r' -0.2 to 0.2 (assumed: no data on it)" in words
     assert np.ptp(nu[:, 5]) > 0.0
     assert not np.any(nu[:, [2, 3, 4]])

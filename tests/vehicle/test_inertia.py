@@ -6,14 +6,16 @@ import numpy as np
 import pytest
 
 from coeflab.core.errors import InputError
+from coeflab.core.files import shipped
 from coeflab.law.rigid_body import ideal_force
 from coeflab.motion.vehicle import vehicle
 from coeflab.vehicle.inertia import water_inertia, with_accelerations
-from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
 from tests.formats.massed import ADDED, VALUES, torpedo, with_mass
 from tests.vehicle.test_force_law import parameters
 
 MEASURED = {"Yvdot": -1.2e-2, "Nvdot": -6e-4, "Yrdot": -4e-4, "Nrdot": -7e-4, "Zqdot": 5e-4}
+REMUS = shipped("cfd_data") / "remus100" / "remus100.parameters.json"
 UNIT = 0.5 * 1000.0 * 2.0**3  # 1/2 rho L^3 of the torpedo, kg
 
 
@@ -33,9 +35,17 @@ def test_measured_entries_stand_and_the_computed_matrix_completes_them() -> None
     wanted[2, 4] = wanted[4, 2] = -5e-4 * UNIT * 2.0
     np.testing.assert_allclose(found.matrix, wanted, rtol=1e-12)
     assert (found.asked, found.used) == ("measured", "measured")
-    assert "Yvdot', Nvdot', Yrdot', Nrdot', Zqdot' of the file" in found.source
+    (campaign,) = {c.campaign for c in accelerating().coefficients if "dot" in c.symbol}
+    assert f"Yvdot', Nvdot', Yrdot', Nrdot', Zqdot' (fit, {campaign})" in found.source
     (said,) = found.warnings
     assert "their mean, 4 kg m, is used for both" in said
+
+
+def test_accelerations_say_where_they_come_from() -> None:
+    """Prestero's values of REMUS, which nobody here measured, were called measured."""
+    said = water_inertia(read_parameter_file(REMUS)).source
+    assert "measured" not in said
+    assert "(literature, prestero2001)" in said
 
 
 def test_computed_is_the_file_without_its_derivatives() -> None:
@@ -59,7 +69,7 @@ def test_derivatives_that_leave_no_inertia_give_way_with_a_warning(symbol: str, 
     np.testing.assert_array_equal(found.matrix, ADDED)
     assert (found.asked, found.used) == ("measured", "computed")
     (said,) = found.warnings
-    assert said.startswith("accelerations computed, not measured: with Yvdot', ")
+    assert said.startswith("accelerations computed, not those of the file: with Yvdot', ")
     assert said.endswith(why)
     moved = vehicle(file)
     assert said in moved.statements
@@ -71,7 +81,7 @@ def test_derivatives_alone() -> None:
     file = accelerating(hull=False)
     found = water_inertia(file, "computed")
     assert found.used == "measured"
-    assert any("the file has no computed added mass" in w for w in found.warnings)
+    assert any("no computed added mass" in w for w in found.warnings)
     np.testing.assert_array_equal(found.matrix, water_inertia(file).matrix)
     assert found.matrix[0, 0] == 0.0
     coupled = water_inertia(accelerating({"Nrdot": -7e-4, "Yrdot": -0.06}, hull=False))

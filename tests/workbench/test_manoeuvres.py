@@ -15,7 +15,7 @@ from coeflab.motion.simulation import manoeuvres_of
 from coeflab.report.sections.parameter_file import manoeuvre_sections
 from coeflab.study.plan import read_plan
 from coeflab.workbench.exports import exports_of
-from tests.motion.vehicles import UNSTABLE, made, rudder_covered
+from tests.motion.vehicles import made, rudder_covered
 from tests.report.studies import FULL, small_study
 from tests.vehicle.test_inertia import accelerating
 
@@ -94,7 +94,7 @@ def test_nothing_is_drawn_of_a_motion_that_nothing_determines() -> None:
 def test_a_turn_that_nothing_limits_is_said_to_be_undetermined() -> None:
     from dataclasses import replace
 
-    made_up = manoeuvres_of([PlannedManoeuvre("v", "turning_circle")], {"v": made(UNSTABLE)}, quiet)
+    made_up = manoeuvres_of([PlannedManoeuvre("v", "turning_circle")], {"v": rudder_covered(0.5, 0.5)}, quiet)
     (section,) = manoeuvre_sections(replace(small_study(FULL), manoeuvres=made_up))
     (turn,) = section.subsections
     status = {row[0]: row[-2] for row in turn.tables[0].rows}

@@ -14,10 +14,10 @@ from coeflab.cli.tow import _fates
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped, write_all
 from coeflab.report.tables import tow as tables
-from coeflab.tank.declaration import read_tank
 from coeflab.tank.folder import CAMPAIGN, PLAN, read_plan
 from coeflab.tank.jobs import Job, JobState, only_one
 from coeflab.tank.tank import Tank
+from coeflab.tank.tank_file import read_tank
 from coeflab.tank.towed_body import TowedBody
 from coeflab.workbench import tow as room
 from coeflab.workbench.tow import Collected, Tow

@@ -8,7 +8,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from coeflab.fits.statistics import origin_slope
+from coeflab.fits.statistics import origin_slope, slope_mixture
 from coeflab.motion.manoeuvres import zigzag
 from coeflab.motion.marching import Ensemble, march
 from coeflab.motion.simulation import determined_until, moved
@@ -41,7 +41,7 @@ def edits_of(bench, seed: int, parts: bool = False):
     for i, s in enumerate(bench.sweeps):
         x = np.abs(s["x"])
         limit = float(np.sort(x)[len(x) * 2 // 3]) if rng.random() < 0.4 else None
-        without = [p for p in origin_slope.PARTS if parts and rng.random() < 0.4]
+        without = [p for p in slope_mixture.PARTS if parts and rng.random() < 0.4]
         out[i] = {"limit": limit, "dropped": np.flatnonzero(rng.random(len(x)) < 0.12).tolist(), "without": without}
     return out
 

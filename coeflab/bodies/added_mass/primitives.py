@@ -90,7 +90,7 @@ presets: Mapping[str, Mapping[str, str]] = {"huuv": {"cylinder_ends": "huuv"}}
 COMPOSED = "no interaction between parts"
 CYLINDERS = {
     "huuv": "cylinders by HUUV equations 28-31 as corrected: 0.1 along, 1 across, ends not corrected",
-    "lamb": "cylinders with Lamb's k1, k2, k' of the spheroid of equal length and volume",
+    "lamb": "cylinders with flat ends by our panel method, tabulated from 0.1 to 20 diameters",
 }
 PLATES = (
     "plates: k(aspect) pi/4 rho c^2 b along the normal, k by doublet lattice from aspect 1 to 10; own turning terms "
@@ -100,7 +100,7 @@ MESH = (
     "the mesh is taken as the one plate that it is like, chord {:.4g} m, span {:.4g} m, of mean thickness {:.2g} of the shorter; "
     "formulas for no thickness and a rectangle, so nothing along the plate or about its normal: a rough guide"
 )
-BOXES = "boxes: Lamb's ellipsoid of equal volume and proportions, an estimate"
+BOXES = "boxes by our panel method, tabulated at 36 proportions"
 BARS = (
     "bars: sections of rectangles, across and in turning times Lamb's k2 and k' of the spheroid of equal length and volume; "
     "along, 0.71 of the section to the power 3/2 (own panels)"
@@ -123,7 +123,7 @@ class Options:
     Attributes
     ----------
     cylinder_ends : str
-        ``huuv``: HUUV equations 28-31 as corrected. ``lamb``: end-corrected.
+        ``huuv``: HUUV equations 28-31 as corrected. ``lamb``: with flat ends, by our panel method.
     """
 
     cylinder_ends: str = one_of("lamb", "lamb", "huuv")
@@ -241,7 +241,7 @@ def _statements(parts: tuple[Part, ...], ends: str) -> tuple[str, ...]:
             out.append(said)
     for part in parts:
         form = part.form
-        if isinstance(form, Cylinder) and form.length < 2.0 * form.radius:
+        if ends == "huuv" and isinstance(form, Cylinder) and form.length < 2.0 * form.radius:
             out.append(f"{part.name}: shorter than its diameter, sections are a poor model of it")
         if isinstance(form, PANELLED):
             flow = by_panels(form)

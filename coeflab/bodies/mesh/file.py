@@ -12,6 +12,7 @@ from __future__ import annotations
 import logging
 import re
 from collections.abc import Callable
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -265,7 +266,21 @@ def _ply_least(words: list[str], binary: bool) -> int:
     return sizes[0] + 3 * sizes[-1] if "list" in words and sizes else sum(sizes)
 
 
-FORMATS: dict[str, Callable[[Path], int]] = {"stl": stl_faces, "obj": obj_faces, "ply": ply_faces, "glb": glb_faces}
+def _composed_faces(path: Path) -> int:
+    """A model of links, or a STEP, does not say how many triangles it comes to; its size is bounded as that of a text."""
+    _text(path)
+    return 1
+
+
+FORMATS: dict[str, Callable[[Path], int]] = {
+    "stl": stl_faces,
+    "obj": obj_faces,
+    "ply": ply_faces,
+    "glb": glb_faces,
+    **dict.fromkeys(("step", "stp", "urdf", "sdf"), _composed_faces),
+}
+SELF_DESCRIBED = {"urdf": ("m", "FLU"), "sdf": ("m", "FLU"), "step": ("m", ""), "stp": ("m", "")}
+STEP_ANGLE = 0.1  # rad, largest turn from facet to facet of a curved face of a STEP
 
 
 BYTES_PER_FACE, BYTES_PER_LETTER = 700, 7
@@ -341,7 +356,9 @@ def _only(scene: Scene) -> Trimesh:
 
 
 def load(path: Path) -> tuple[Array, NDArray[np.int64]]:
-    """Vertices (n, 3) and faces (m, 3) of an STL, OBJ, PLY or GLB; nothing is joined, dropped or mended.
+    """Vertices (n, 3) and faces (m, 3) of an STL, OBJ, PLY, GLB, STEP, URDF or SDF; nothing is joined, dropped or mended.
+
+    The shapes of a URDF or SDF are united; a STEP is triangulated and turned to m by the package cascadio.
 
     Polygons become triangles; placed copies within a GLB become one mesh. Materials are not read.
 
@@ -361,7 +378,18 @@ def load(path: Path) -> tuple[Array, NDArray[np.int64]]:
     if not theirs.handlers:
         theirs.addHandler(logging.NullHandler())
     kind = path.suffix.lower().lstrip(".")
+    if kind in ("urdf", "sdf"):
+        from coeflab.bodies.mesh.robot import robot_surface
+
+        return robot_surface(path, load)
     extra: dict[str, Any] = {"skip_materials": True} if kind in ("obj", "glb") else {}
+    if kind in ("step", "stp"):
+        if find_spec("cascadio") is None:
+            raise InputError(
+                "a STEP without the package that reads it", "cascadio", file=path,
+                advice='Install "coeflab[step]", or save the body as STL or GLB.',
+            )  # fmt: skip
+        extra = {"tol_angular": STEP_ANGLE}
     try:
         with path.open("rb") as stream:
             scene = trimesh.load_scene(stream, file_type=kind, process=False, **extra)

@@ -6,10 +6,11 @@ The repair of a mesh that a person may ask for.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.solids import Solid, solid, surface
 from coeflab.bodies.mesh.topology import (
@@ -17,9 +18,11 @@ from coeflab.bodies.mesh.topology import (
     crossing_faces,
     degenerate,
     edges,
+    filled,
     joined,
     oriented,
     repeated,
+    sheets,
     shell_volumes,
     shells,
     welded,
@@ -33,18 +36,27 @@ NOTHING, JOINED, OVERLAP, SHEET = 1e-9, 1e-6, 1e-6, 1e-6
 ASK = "set repair = true under [mesh], or --repair with a bare mesh file"
 ON_REQUEST = f"Mend it where it was made, or {ASK}."
 NEARLY = f"Its vertices nearly meet: {ASK}, to join them."
-PLATE = "Describe it as a plate in a body.toml of reader primitives: the formulas of plates need no thickness."
-BY_HAND = "Mend it where it was made; repair does not close holes or untangle surfaces."
+PLATE = (
+    "Describe it as a plate in a body.toml of reader primitives: the formulas of plates need no thickness; or take it as a "
+    "sheet with water on both sides: set sheets = true under [mesh], or --sheets."
+)
+BY_HAND = "Mend it where it was made; repair does not untangle surfaces."
+SMALL_HOLE = 0.01
+FILL = (
+    f"Close them where it was made. Or set fill = true under [mesh], or --fill, which closes holes of up to {SMALL_HOLE:.0%} of the "
+    "surface each; or, where water is on both sides of the wall, sheets = true, or --sheets."
+)
 
 
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
 class SoundMesh:
-    """A closed mesh with all faces outward, and what was done or left undone to say so."""
+    """A closed mesh with all faces outward, and what was done or left undone to say so; sheets have water on both sides."""
 
     vertices: Array
     faces: Faces
     statements: tuple[str, ...]
+    sheets: Faces = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
 
 
 def examined(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
@@ -78,24 +90,28 @@ def examined(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
     if border.open or border.crowded:
         what = [f"{border.open} edges with one face"] * bool(border.open)
         what += [f"{border.crowded} edges with more than two"] * bool(border.crowded)
-        advice = NEARLY if _nearly_closed(vertices, faces) else BY_HAND
+        advice = NEARLY if _nearly_closed(vertices, faces) else FILL if border.open else BY_HAND
         raise fail(f"a mesh that is not watertight: {' and '.join(what)}", "two faces at every edge", advice)
     if border.turned:
         raise fail(
             f"inconsistent winding: neighbours face opposite sides at {border.turned} edges", "all faces outward"
         )
+    said: tuple[str, ...] = ()
+    if border.shared:
+        # Solids that meet in an edge: each gets vertices of its own there, as everything behind this gate expects.
+        vertices, faces = surface(as_solid(vertices, faces, fail))
+        said = (f"solids that meet in {border.shared} edges taken apart there",)
     stage(f"separating the shells of {len(faces):,} faces")
     count, shell = shells(faces)
     _outward(*shell_volumes(vertices, faces, shell), fail)
     if count > 1:
         _apart(vertices, faces, shell, count, fail)
-    said: tuple[str, ...] = ()
     if len(faces) > MOST_TESTED:
-        said = (f"self-intersection not looked for above {MOST_TESTED} faces",)
+        said += (f"self-intersection not looked for above {MOST_TESTED} faces",)
     else:
         crossing = crossing_faces(vertices, faces)
         if crossing is None:
-            said = ("self-intersection not looked for: too many faces lie close together",)
+            said += ("self-intersection not looked for: too many faces lie close together",)
         elif crossing:
             raise fail(f"a surface that cuts through itself, in {crossing} pairs of faces", "a simple surface", BY_HAND)
     return SoundMesh(vertices, faces, said)
@@ -168,11 +184,69 @@ def as_solid(vertices: Array, faces: Faces, fail: Callable[..., InputError]) -> 
         raise fail(str(why), "a closed surface", BY_HAND) from None
 
 
+def sound(
+    vertices: Array, faces: Faces, file: Path, *, repair: bool = False, fill: bool = False, open_sheets: bool = False
+) -> SoundMesh:
+    """The mesh as a person wants it read.
+
+    Parameters
+    ----------
+    vertices, faces : (n, 3) and (m, 3) arrays
+    file : Path
+    repair : bool
+        See `repaired`.
+    fill : bool
+        Close holes of up to 1 % of the surface each; faces are then turned alike as well.
+    open_sheets : bool
+        Take faces with an open edge, and those that have one once they are gone, as sheets with water on both sides.
+
+    Raises
+    ------
+    InputError
+        See `examined`.
+    """
+    said: tuple[str, ...] = ()
+    if fill:
+        vertices, faces = joined(vertices, faces, JOINED)
+        turned = oriented(faces)
+        vertices, faces, number = filled(vertices, faces if turned is None else turned, SMALL_HOLE)
+        said = (f"{number} holes of up to {SMALL_HOLE:.0%} of the surface filled",)
+    thin = np.zeros((0, 3), dtype=np.int64)
+    if open_sheets:
+        vertices, faces = joined(vertices, faces, JOINED)
+        faces = faces[~repeated(faces) & ~degenerate(vertices, faces)]
+        loose = sheets(faces)
+        thin, faces = faces[loose], faces[~loose]
+        turned = oriented(thin) if len(thin) else thin
+        if turned is None:
+            raise InputError(
+                "a sheet with one side only, or three that meet in an edge and cannot be turned alike", "sheets with two sides",
+                file=file, advice="Cut it where sheets meet, so that each has edges of its own there.",
+            )  # fmt: skip
+        corner = vertices[turned]
+        area = (
+            float(np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1).sum())
+            / 2.0
+        )
+        said += (f"{len(turned)} faces of {area:.4g} (file units squared) are sheets with water on both sides",)
+        thin = turned
+        if not len(faces):
+            return SoundMesh(vertices, faces, said, thin)
+    closed = repaired(vertices, faces, file) if repair else examined(vertices, faces, file)
+    joint = np.concatenate([closed.vertices, vertices]) if len(thin) else closed.vertices
+    return replace(
+        closed,
+        vertices=joint,
+        statements=(*said, *closed.statements),
+        sheets=thin + len(closed.vertices) if len(thin) else thin,
+    )
+
+
 def repaired(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
     """The mesh mended as far as that is safe, then examined like any other; the statements say what was done.
 
-    Vertices within 1e-6 of the size are joined; faces that lost their area or came twice go; faces are turned alike and
-    outward, which fills cavities; shells are united.
+    Vertices within 1e-6 of the size are joined; faces that lost their area or came twice go, both of a pair that look at
+    each other; faces are turned alike and outward, which fills cavities; shells are united.
 
     Raises
     ------
@@ -184,16 +258,21 @@ def repaired(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
     before = len(welded(vertices, faces)[0])
     vertices, faces = joined(vertices, faces, JOINED)
     _say(said, before - len(vertices), "vertices joined")
-    faces = faces[~repeated(faces)]
+    if len(faces):
+        faces = faces[~_membranes(faces)]
+        faces = faces[~repeated(faces)]
     if not len(faces):
         raise InputError(
             "no face with an area", "triangles of a closed surface", file=file, advice="Is the file damaged?"
         )
     _say(said, count - len(faces), "degenerate or duplicate faces dropped")
-    turned = oriented(faces)
+    # Where solids meet in an edge, turning faces alike would guess which belong together; wound in balance they need none.
+    turned = faces if edges(faces).shared and edges(faces).sound else oriented(faces)
     if turned is not None:
         _say(said, int(np.any(turned != faces, axis=1).sum()), "faces turned")
         faces = turned
+    if edges(faces).sound and edges(faces).shared:
+        vertices, faces = surface(_whole(vertices, faces, file))
     number, shell = shells(faces)
     inward = shell_volumes(vertices, faces, shell)[0] < 0.0
     if edges(faces).sound:
@@ -210,14 +289,27 @@ def repaired(vertices: Array, faces: Faces, file: Path) -> SoundMesh:
     )
 
 
+def _membranes(faces: Faces) -> NDArray[np.bool_]:
+    """Pairs of faces on the same corners that look at each other: walls between solids that were glued together."""
+    turned = np.stack([np.roll(faces, -k, axis=1) for k in range(3)])[np.argmin(faces, axis=1), np.arange(len(faces))]
+    count = int(faces.max()) + 1
+    key = (turned[:, 0] * count + turned[:, 1]) * count + turned[:, 2]
+    back = (turned[:, 0] * count + turned[:, 2]) * count + turned[:, 1]
+    return np.isin(key, back)
+
+
+def _whole(vertices: Array, faces: Faces, file: Path) -> Solid:
+    def fail(found: str, expected: str, advice: str) -> InputError:
+        return InputError(found, expected, file=file, advice=advice)
+
+    return as_solid(vertices, faces, fail)
+
+
 def _united(vertices: Array, faces: Faces, shell: Labels, count: int, file: Path) -> tuple[Array, Faces]:
     """What all shells enclose together."""
     from manifold3d import Manifold, OpType
 
-    def fail(found: str, expected: str, advice: str) -> InputError:
-        return InputError(found, expected, file=file, advice=advice)
-
-    made = [as_solid(vertices, faces[shell == k], fail) for k in range(count)]
+    made = [_whole(vertices, faces[shell == k], file) for k in range(count)]
     return surface(Manifold.batch_boolean(made, OpType.Add).simplify(0.0))
 
 

@@ -11,7 +11,9 @@ error of linear interpolation. K follows from the angles between facets: an edge
 bends each of its two triangles by t L / 2 across the edge (the normal cycle of Cohen-Steiner & Morvan, Restricted Delaunay
 triangulations and normal cycle, SoCG 2003). Together: the sum over edges of t L h1 h2 / 12, where h are the heights of both
 triangles over the edge. Exact for an inscribed prism to third order of t. The product of the heights, not the mean of
-their squares, is a choice: a facet much wider than its neighbour is nearly flat, as on a parallel middle body.
+their squares, is a choice: a facet much wider than its neighbour is nearly flat, as on a parallel middle body. One more
+than `FLATTER` times as wide is flat and has none of the bend, as the side of a box next to the first strip of its rounded
+edge: the edge then counts with the square of the smaller height.
 """
 
 from __future__ import annotations
@@ -107,25 +109,38 @@ class TriangleMesh:
         Of the body that the mesh stands for, m^3, where that is known.
     remade : callable, optional
         Meshes that body anew from its equations, with about so many faces; None where the mesh is all that is known.
+    sheets : (k, 3) array of int, optional
+        Faces of plates and walls without thickness, with water on both sides; they enclose nothing.
     integrals : MeshIntegrals
         Volume, centre, second moments, area and projected areas of the facets.
 
     Raises
     ------
     InputError
-        No faces, an index without its vertex, or nothing enclosed: faces that look inward, an open sheet.
+        No faces, an index without its vertex, or nothing enclosed though there are faces beside sheets.
     """
 
     vertices: Array
     faces: NDArray[np.int64]
     exact_volume: float | None = None
     remade: Callable[[int], TriangleMesh] | None = None
+    sheets: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
     integrals: MeshIntegrals = field(init=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "vertices", locked(self.vertices))
         object.__setattr__(self, "faces", locked(self.faces, np.int64))
+        object.__setattr__(self, "sheets", locked(self.sheets, np.int64))
         faces = self.faces
+        if not len(faces) and len(self.sheets):
+            corner = self.vertices[self.sheets]
+            twice = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+            centre = twice @ corner.mean(axis=1) / twice.sum()
+            both = mesh_integrals(self.vertices, self.sheets)
+            object.__setattr__(
+                self, "integrals", MeshIntegrals(0.0, centre, np.zeros((3, 3)), 2.0 * both.area, 2.0 * both.projected)
+            )
+            return
         if not len(faces):
             raise InputError("a mesh without faces", "triangles of a closed surface")
         if faces.min() < 0 or faces.max() >= len(self.vertices):
@@ -170,6 +185,7 @@ class TriangleMesh:
 
 
 SHARPEST = np.radians(30.0)
+FLATTER = 3.0
 
 
 def enclosed(corners: Array) -> float:
@@ -200,7 +216,8 @@ def facet_deficit(vertices: Array, faces: Faces) -> float:
     length = np.linalg.norm(along, axis=1)
     n, m = normal[one // 3], normal[other // 3]
     turn = np.arctan2(np.einsum("ij,ij->i", np.cross(n, m), along), length * np.einsum("ij,ij->i", n, m))
-    heights = twice[one // 3] * twice[other // 3]
+    lower, upper = (pick(twice[one // 3], twice[other // 3]) for pick in (np.minimum, np.maximum))
+    heights = np.where(upper > FLATTER * lower, lower**2, lower * upper)
     smooth = (np.abs(turn) <= SHARPEST) & (length > 0.0)
     return float(np.sum(turn[smooth] * heights[smooth] / length[smooth]) / 12.0)
 

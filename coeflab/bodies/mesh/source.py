@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from coeflab.bodies.mesh.file import load
-from coeflab.bodies.mesh.gates import examined, repaired
+from coeflab.bodies.mesh.gates import sound
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.core import declarations as takes
 from coeflab.core.axes import Frame
@@ -36,6 +36,10 @@ class MeshSource:
         Where the file's origin lies, m, FRD, from the datum.
     repair : bool
         Mend a mesh that is not sound.
+    fill : bool
+        Close its small holes.
+    sheets : bool
+        Take open surfaces as sheets with water on both sides.
     """
 
     file: Path
@@ -43,6 +47,8 @@ class MeshSource:
     rotation: Array
     origin: Array
     repair: bool = False
+    fill: bool = False
+    sheets: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "rotation", locked(self.rotation))
@@ -60,10 +66,9 @@ class MeshSource:
         InputError
             A file that is no sound mesh.
         """
-        raw = load(self.file)
-        sound = repaired(*raw, self.file) if self.repair else examined(*raw, self.file)
-        placed = self.unit * sound.vertices @ self.rotation.T + self.origin
-        return TriangleMesh(placed, sound.faces), sound.statements
+        found = sound(*load(self.file), self.file, repair=self.repair, fill=self.fill, open_sheets=self.sheets)
+        placed = self.unit * found.vertices @ self.rotation.T + self.origin
+        return TriangleMesh(placed, found.faces, sheets=found.sheets), found.statements
 
     def solids(self, points: Array) -> tuple[tuple[str, ...], NDArray[np.int64]]:
         """The named solids of a text STL, and which of them each point of its surface lies on; none of other files.
@@ -114,7 +119,7 @@ class MeshKeys(takes.Declaration):
     Attributes
     ----------
     path : str
-        STL, OBJ, PLY or GLB, from the folder of the body.toml.
+        STL, OBJ, PLY, GLB, STEP, URDF or SDF, from the folder of the body.toml.
     unit : str
         Of its numbers, such as m, mm or ft.
     axes : str or list of str
@@ -123,6 +128,10 @@ class MeshKeys(takes.Declaration):
         Where its origin lies, [x, y, z], m, FRD, from the datum; the datum itself unless given.
     repair : bool
         Mend a mesh that is not sound.
+    fill : bool
+        Close holes of up to 1 % of the surface each.
+    sheets : bool
+        Take open surfaces as sheets with water on both sides.
     """
 
     path: takes.Text
@@ -130,11 +139,15 @@ class MeshKeys(takes.Declaration):
     axes: Frame
     origin: takes.Point | None = None
     repair: takes.Flag = False
+    fill: takes.Flag = False
+    sheets: takes.Flag = False
 
     def source(self, folder: Path) -> MeshSource:
         """The file itself is not opened."""
         origin = np.zeros(3) if self.origin is None else self.origin
-        return MeshSource(folder / self.path, self.unit, self.axes.rotation, origin, self.repair)
+        return MeshSource(
+            folder / self.path, self.unit, self.axes.rotation, origin, self.repair, self.fill, self.sheets
+        )
 
 
 def ply(vertices: Array, faces: NDArray[np.int64]) -> bytes:

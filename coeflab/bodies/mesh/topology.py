@@ -33,14 +33,17 @@ class Edges:
     open : int
         With one face only.
     crowded : int
-        With more than two faces.
+        With more than two faces, not as many one way as the other.
     turned : int
         With two faces that both run the same way: one of them is turned over.
+    shared : int
+        With four or more faces, as many one way as the other: solids that meet in an edge, and nothing that spoils a surface.
     """
 
     open: int
     crowded: int
     turned: int
+    shared: int = 0
 
     @property
     def sound(self) -> bool:
@@ -147,13 +150,79 @@ def edges(faces: Faces) -> Edges:
         up, down = key[0::2], key[1::2]
         if np.all(up & 1 == 0) and np.all(down == up + 1) and np.all(up[1:] != up[:-1]):
             return Edges(0, 0, 0)
-    edge, inverse = np.unique(key >> 1, return_inverse=True)
+    inverse = np.unique(key >> 1, return_inverse=True)[1]
     uses = np.bincount(inverse)
     backward = np.bincount(inverse, weights=key & 1)
-    pairs = uses == 2
+    balanced = uses == 2 * backward
     return Edges(
-        int((uses == 1).sum()), int((uses > 2).sum()), int((pairs & (backward != 1)).sum()) if len(edge) else 0
+        int((uses == 1).sum()),
+        int(((uses > 2) & ~balanced).sum()),
+        int(((uses == 2) & ~balanced).sum()),
+        int(((uses > 2) & balanced).sum()),
     )
+
+
+def loops(faces: Faces) -> list[NDArray[np.int64]]:
+    """The rims of the holes of a surface wound alike: each the vertices of a closed loop, as faces that fill it run.
+
+    Rims that touch in a vertex are left out: which way they go on there is anyone's guess.
+    """
+    start, end = _directed(faces)
+    count = int(faces.max()) + 1
+    lone = ~np.isin(start * count + end, end * count + start)
+    after = dict(zip(end[lone].tolist(), start[lone].tolist(), strict=True))
+    if len(after) < int(lone.sum()):
+        return []
+    out = []
+    while after:
+        first, vertex = after.popitem()
+        ring = [first]
+        while vertex != first and vertex in after:
+            ring.append(vertex)
+            vertex = after.pop(vertex)
+        if vertex == first and len(ring) > 2:
+            out.append(np.array(ring))
+    return out
+
+
+def filled(vertices: Array, faces: Faces, share: float) -> tuple[Array, Faces, int]:
+    """Holes of less than a share of the surface closed by triangles about the middle of their rims, and how many."""
+    corner = vertices[faces]
+    whole = (
+        float(np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1).sum()) / 2.0
+    )
+    points, more, number = [vertices], [faces], 0
+    for ring in loops(faces):
+        rim = vertices[ring]
+        spokes, next_ones = rim - rim.mean(axis=0), np.roll(rim, -1, axis=0) - rim.mean(axis=0)
+        if float(np.linalg.norm(np.cross(spokes, next_ones), axis=1).sum()) / 2.0 > share * whole:
+            continue
+        number += 1
+        if len(ring) == 3:
+            more.append(ring[None])
+            continue
+        middle = sum(len(p) for p in points)
+        points.append(rim.mean(axis=0)[None])
+        more.append(np.column_stack([ring, np.roll(ring, -1), np.full(len(ring), middle)]))
+    return np.concatenate(points), np.concatenate(more), number
+
+
+def sheets(faces: Faces) -> Mask:
+    """Which faces are sheets: with an open edge, or with one once such faces are gone."""
+    out = np.zeros(len(faces), dtype=bool)
+    left = np.arange(len(faces))
+    while len(left):
+        start, end = _directed(faces[left])
+        count = int(faces.max()) + 1
+        _, inverse, uses = np.unique(
+            np.minimum(start, end) * count + np.maximum(start, end), return_inverse=True, return_counts=True
+        )
+        loose = np.any(uses[inverse].reshape(-1, 3) == 1, axis=1)
+        if not np.any(loose):
+            break
+        out[left[loose]] = True
+        left = left[~loose]
+    return out
 
 
 def shells(faces: Faces) -> tuple[int, Labels]:

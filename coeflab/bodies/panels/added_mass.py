@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.panels.influence import panels_of
+from coeflab.bodies.panels.influence import Panels, layer_slopes, panels_of, seen_by, velocities
 from coeflab.core.types import Array, brief
 from coeflab.law.transforms import moved
 
@@ -55,36 +55,126 @@ def memory_needed(count: int) -> int:
     return 4 * count**2 + WORKSPACE
 
 
-def panel_added_mass(corners: Array, point: Array, compiled: bool) -> PanelSolution:
+@dataclass(frozen=True, slots=True)
+class Wall:
+    """A plane beside the body, by images.
+
+    Attributes
+    ----------
+    point, normal : (3,) arrays
+        A point of the plane, m, and its unit normal.
+    factor : float
+        1: no flow through it, a bottom, or a free surface at zero frequency; -1: no potential on it, a free surface at
+        infinite frequency (Newman 1977, section 6.18).
+    """
+
+    point: Array
+    normal: Array
+    factor: float
+
+    def behind(self, points: Array) -> Array:
+        """Mirror points, (n, 3)."""
+        return np.asarray(points - 2.0 * ((points - self.point) @ self.normal)[:, None] * self.normal)
+
+    def distance(self, points: Array) -> float:
+        """Of the nearest of them, m; below zero where some lie on the other side than most."""
+        height = (points - self.point) @ self.normal
+        return float(np.min(height * np.sign(height.mean() or 1.0)))
+
+
+def panel_added_mass(
+    corners: Array, point: Array, compiled: bool, sheets: Array | None = None, wall: Wall | None = None
+) -> PanelSolution:
     """Added mass per density about a point.
 
     Parameters
     ----------
     corners : (n, 3, 3) array
-        Panel, corner, component, m; counter-clockwise seen from the fluid; the surface is closed.
+        Panel, corner, component, m; counter-clockwise seen from the fluid; the surface is closed. None where the body
+        is of sheets alone.
     point : (3,) array
         m.
     compiled : bool
         By numba, which must be installed; else by numpy. They agree to 1e-6.
+    sheets : (m, 3, 3) array, optional
+        Panels without thickness, water on both sides: dipoles, whose strength is the jump of the potential. They do not
+        reach into the closed surface.
+    wall : Wall, optional
+        The whole body lies on one side of it.
     """
     if compiled:
         from coeflab.bodies.panels.compiled import influence
     else:
         from coeflab.bodies.panels.influence import influence
-    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    thin = np.zeros((0, 3, 3)) if sheets is None else sheets
+    every = np.concatenate([corners, thin])
+    low, high = every.min(axis=(0, 1)), every.max(axis=(0, 1))
     middle, scale = (low + high) / 2.0, float(np.max(high - low)) / 2.0
-    panels = panels_of((corners - middle) / scale)
-    angles, layer = influence(panels)
-    # A constant potential must come back from a closed surface: its solid angles sum to 2 pi.
-    diagonal = 4.0 * np.pi - angles.sum(axis=1, dtype=np.float64)
-    potential, steps, residual = _solved(angles, diagonal, -_with_turning(layer, panels.centre))
-    motion = _with_turning(panels.normal, panels.centre)
-    raw = -(potential * panels.area[:, None]).T @ motion
+    panels, sheet = panels_of((corners - middle) / scale), panels_of((thin - middle) / scale)
+    near = None if wall is None else Wall((wall.point - middle) / scale, wall.normal, wall.factor)
+    if panels.count:
+        images = [] if near is None else [(near.behind(panels.centre), near.factor)]
+        angles, layers = influence(panels, images)
+        right = -_with_turning(layers[0], panels.centre)
+        for (points, factor), layer in zip(images, layers[1:], strict=True):
+            right -= factor * _with_turning(layer, points)
+        # A constant potential must come back from a closed surface: its solid angles sum to 2 pi.
+        diagonal = 4.0 * np.pi - angles.sum(axis=1, dtype=np.float64)
+    else:
+        angles, right, diagonal = np.zeros((0, 0), np.float32), np.zeros((0, 6)), np.zeros(0)
+    if sheet.count:
+        angles, right, diagonal = _with_sheets(panels, sheet, near, angles, right, diagonal)
+    potential, steps, residual = _solved(angles, diagonal, right)
+    area, normal = np.concatenate([panels.area, sheet.area]), np.concatenate([panels.normal, sheet.normal])
+    motion = _with_turning(normal, np.concatenate([panels.centre, sheet.centre]))
+    raw = -(potential * area[:, None]).T @ motion
     units = scale ** np.where(np.arange(6) < 3, 1.5, 2.5)
     matrix = moved((raw + raw.T) / 2.0 * np.outer(units, units), point - middle)
     asymmetry = float(np.max(np.abs(raw - raw.T)) / np.max(np.abs(raw)))
     converged = residual <= TOLERANCE
-    return PanelSolution(matrix, panels.count, asymmetry, steps, residual, converged)
+    return PanelSolution(matrix, len(every), asymmetry, steps, residual, converged)
+
+
+def _with_sheets(
+    panels: Panels, sheet: Panels, near: Wall | None, angles: NDArray[np.float32], right: Array, diagonal: Array
+) -> tuple[NDArray[np.float32], Array, Array]:
+    """The system with dipole panels: their columns, and a row each for the velocity through them.
+
+    The rows of sheets are multiplied by the inverse of their own block, so that its poor conditioning does not slow the
+    iteration down.
+    """
+    n, k = panels.count, sheet.count
+    velocity, slope = velocities(sheet.centre, sheet.normal, sheet), np.zeros((k, 6))
+    back, jump = np.zeros((n, k)), np.zeros((k, n))
+    if n:
+        back, jump = seen_by(panels.centre, sheet)[0], velocities(sheet.centre, sheet.normal, panels)
+        slope = _slope(sheet.centre, sheet.normal, panels)
+    if near is not None:
+        points = near.behind(sheet.centre)
+        # The derivative at a target is along the mirrored direction where the target is mirrored.
+        ways = sheet.normal - 2.0 * (sheet.normal @ near.normal)[:, None] * near.normal
+        velocity += near.factor * velocities(points, ways, sheet)
+        if n:
+            back += near.factor * seen_by(near.behind(panels.centre), sheet)[0]
+            jump += near.factor * velocities(points, ways, panels)
+            slope += near.factor * _slope(points, ways, panels)
+    own = -4.0 * np.pi * _with_turning(sheet.normal, sheet.centre) - slope
+    inverse = np.linalg.inv(velocity)
+    whole = np.zeros((n + k, n + k), dtype=np.float32)
+    whole[:n, :n], whole[:n, n:], whole[n:, :n] = angles, back, 2.0 * np.pi * inverse @ jump
+    # The sheets' unknowns keep the unit of the others.
+    return (
+        whole,
+        np.concatenate([right, 2.0 * np.pi * inverse @ own]),
+        np.concatenate([diagonal, np.full(k, 2.0 * np.pi)]),
+    )
+
+
+def _slope(targets: Array, ways: Array, panels: Panels) -> Array:
+    """(m, 6) derivative along a way of the potential of the layers of n and y x n."""
+    slope = layer_slopes(targets, ways, panels)
+    layer = seen_by(targets, panels)[1]
+    return np.hstack([slope, np.cross(ways, layer) + np.cross(targets, slope)])
 
 
 def _with_turning(vector: Array, at: Array) -> Array:

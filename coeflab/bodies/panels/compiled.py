@@ -6,12 +6,13 @@ Only imported where numba is installed and wanted. The machine code is kept betw
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from coeflab.bodies.panels.influence import REACH, Panels
+from coeflab.bodies.panels.influence import REACH, Panels, Seen
 from coeflab.core.types import Array
 
 
@@ -48,18 +49,21 @@ def _exact(x: float, y: float, z: float, t: Array) -> tuple[float, float]:
 
 
 def _fill(
-    centre: Array, spread: Array, triangles: Array, area: Array, reach: Array,
+    targets: Array, factor: float, centre: Array, spread: Array, triangles: Array, area: Array, reach: Array,
     angles: NDArray[np.float32], layer: Array,
 ) -> None:  # fmt: skip
-    """All rows; centre is (3, n), spread (6, n) with both vectors after each other."""
+    """All rows; targets and centre are (3, n), spread (6, n) with both vectors after each other.
+
+    A factor of zero is the panels' own: their angles are set, without those of a panel itself; others are added.
+    """
     cx, cy, cz = centre[0], centre[1], centre[2]
     ax, ay, az, bx, by, bz = spread[0], spread[1], spread[2], spread[3], spread[4], spread[5]
     nx, ny, nz = triangles[:, 9].copy(), triangles[:, 10].copy(), triangles[:, 11].copy()
     trace = ax * ax + ay * ay + az * az + bx * bx + by * by + bz * bz
     count = len(cx)
     for i in numba.prange(count):
-        x, y, z = cx[i], cy[i], cz[i]
-        row = np.empty(count)
+        x, y, z = targets[0, i], targets[1, i], targets[2, i]
+        row, angle = np.empty(count), np.empty(count)
         for j in range(count):
             dx, dy, dz = cx[j] - x, cy[j] - y, cz[j] - z
             inverse = 1.0 / (dx * dx + dy * dy + dz * dz)
@@ -68,11 +72,17 @@ def _fill(
             bend = (3.0 * along * inverse - trace[j]) * inverse
             row[j] = root * (1.0 + 0.5 * bend)
             height = dx * nx[j] + dy * ny[j] + dz * nz[j]
-            angles[i, j] = root * inverse * height * (1.0 + 2.5 * bend + trace[j] * inverse)
+            angle[j] = root * inverse * height * (1.0 + 2.5 * bend + trace[j] * inverse)
         for j in range(count):
             if (cx[j] - x) ** 2 + (cy[j] - y) ** 2 + (cz[j] - z) ** 2 < reach[j]:
-                angles[i, j], row[j] = _panel(x, y, z, triangles[j])
-        angles[i, i] = 0.0
+                angle[j], row[j] = _panel(x, y, z, triangles[j])
+        if factor == 0.0:
+            angle[i] = 0.0
+            for j in range(count):
+                angles[i, j] = angle[j]
+        else:
+            for j in range(count):
+                angles[i, j] += factor * angle[j]
         u, v, w = 0.0, 0.0, 0.0
         for j in range(count):
             u += row[j] * nx[j]
@@ -85,12 +95,15 @@ _panel = numba.njit(cache=True, error_model="numpy")(_exact)
 _filled = numba.njit(cache=True, parallel=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})(_fill)
 
 
-def influence(panels: Panels) -> tuple[NDArray[np.float32], Array]:
+def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.float32], list[Array]]:
     """As `coeflab.bodies.panels.influence.influence`."""
     count = panels.count
-    angles, layer = np.empty((count, count), dtype=np.float32), np.empty((count, 3))
+    angles, layers = np.empty((count, count), dtype=np.float32), []
     triangles = np.hstack([panels.corners.reshape(count, 9), panels.normal])
     spread = np.ascontiguousarray(panels.spread.transpose(0, 2, 1).reshape(6, count))
     centre = np.ascontiguousarray(panels.centre.T)
-    _filled(centre, spread, triangles, panels.area, (REACH * panels.size) ** 2, angles, layer)
-    return angles, layer
+    for points, factor in ((panels.centre, 0.0), *images):
+        layer, targets = np.empty((count, 3)), np.ascontiguousarray(points.T)
+        _filled(targets, factor, centre, spread, triangles, panels.area, (REACH * panels.size) ** 2, angles, layer)
+        layers.append(layer)
+    return angles, layers

@@ -10,6 +10,7 @@ Flat triangular panels on a closed surface, and what makes a surface unfit for t
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -101,28 +102,36 @@ def unfit_share(corners: Array) -> float:
     return float(area[giant | (longest**2 > NEEDLE**2 * 4.0 / np.sqrt(3.0) * area)].sum() / whole)
 
 
-def sharpness(vertices: Array, faces: Faces) -> float:
-    """Length of the edges at which the surface turns by more than 45 degrees, over the root of its area.
-
-    4.9 for a cube, 1.4 for a flat-ended cylinder six diameters long, 0 for a smooth body. Edges of more or fewer than two
-    faces are left out.
-    """
+def _sharp_edges(vertices: Array, faces: Faces) -> tuple[Faces, Faces, NDArray[np.bool_], Faces]:
+    """Half-edges of the edges of two faces, whether the surface turns there by more than 45 degrees, and those of one face."""
     corner = vertices[faces]
     normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    twice = np.linalg.norm(normal, axis=1)
-    unit = normal / np.maximum(twice, np.finfo(float).tiny)[:, None]
+    unit = normal / np.maximum(np.linalg.norm(normal, axis=1), np.finfo(float).tiny)[:, None]
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     key = np.minimum(start, end) * np.int64(len(vertices)) + np.maximum(start, end)
     order = np.argsort(key, kind="stable")
     _, first, members = np.unique(key[order], return_index=True, return_counts=True)
     one, other = order[first[members == 2]], order[first[members == 2] + 1]
     turned = np.einsum("ij,ij->i", unit[one // 3], unit[other // 3]) < SHARP
+    return one, other, turned, order[first[members == 1]]
+
+
+def sharpness(vertices: Array, faces: Faces) -> float:
+    """Length of the edges at which the surface turns by more than 45 degrees, over the root of its area.
+
+    4.9 for a cube, 1.4 for a flat-ended cylinder six diameters long, 0 for a smooth body. Edges of more or fewer than two
+    faces are left out.
+    """
+    one, _, turned, _ = _sharp_edges(vertices, faces)
+    corner = vertices[faces]
+    twice = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     length = np.linalg.norm(vertices[start[one]] - vertices[end[one]], axis=1)
     return float(length[turned].sum() / np.sqrt(twice.sum() / 2.0))
 
 
-def thin_share(panels: Panels) -> float:
-    """Share of the area where the body is thinner than the panel on it is large.
+def thickness(panels: Panels) -> Array:
+    """How thick the body is at each panel, (n,), m; infinite where that is more than the panel is large.
 
     There a panel looks away from another within its own size behind it; the potential jumps from one to the other and
     constant panels cannot follow.
@@ -137,8 +146,15 @@ def thin_share(panels: Panels) -> float:
     other = np.concatenate(near).astype(np.int64)
     opposed = np.einsum("ij,ij->i", panels.normal[panel], panels.normal[other]) < -0.5
     depth = np.einsum("ij,ij->i", panels.centre[panel] - panels.centre[other], panels.normal[panel])
-    thin = np.unique(panel[opposed & (depth > 0.0) & (depth < reach[panel])])
-    return float(panels.area[thin].sum() / panels.area.sum())
+    thin = opposed & (depth > 0.0) & (depth < reach[panel])
+    out = np.full(panels.count, np.inf)
+    np.minimum.at(out, panel[thin], depth[thin])
+    return out
+
+
+def thin_share(panels: Panels) -> float:
+    """Share of the area where the body is thinner than the panel on it is large."""
+    return float(panels.area[np.isfinite(thickness(panels))].sum() / panels.area.sum())
 
 
 def split_in_four(corners: Array) -> Array:
@@ -154,17 +170,71 @@ def bisected(corners: Array, count: int) -> Array:
     Neighbours need not share vertices; constant panels do not ask for it.
     """
     while len(corners) < count:
-        sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-        longest = sides.max(axis=1)
+        longest = _longest(corners)
         need = min(count - len(corners), len(corners))
-        chosen = longest >= max(np.sort(longest)[-need], 0.6 * longest.max())
-        kept, cut = corners[~chosen], corners[chosen]
-        first = sides[chosen].argmax(axis=1)
-        rows = np.arange(len(cut))
-        a, b, c = (cut[rows, (first + k) % 3] for k in range(3))
-        middle = (a + b) / 2.0
-        corners = np.concatenate([kept, np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+        corners = halved(corners, longest >= max(np.sort(longest)[-need], 0.6 * longest.max()))
     return corners
+
+
+def _longest(corners: Array) -> Array:
+    return np.asarray(np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1))
+
+
+def halved(corners: Array, chosen: NDArray[np.bool_]) -> Array:
+    """Chosen triangles cut through the middle of their longest sides, behind the others."""
+    kept, cut = corners[~chosen], corners[chosen]
+    first = np.linalg.norm(np.roll(cut, -1, axis=1) - cut, axis=2).argmax(axis=1)
+    rows = np.arange(len(cut))
+    a, b, c = (cut[rows, (first + k) % 3] for k in range(3))
+    middle = (a + b) / 2.0
+    return np.concatenate([kept, np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+
+
+FINEST, WIDENING = 0.25, 0.5
+
+
+def graded(corners: Array, count: int, lines: Array | None = None, thin: bool = True) -> Array:
+    """At most about ``count`` triangles on the same facets, smaller where the body is thin and along lines.
+
+    The size that is wanted at a panel is the thickness of the body there, and near a line a quarter of the general size
+    plus half the distance. Panels furthest above their wanted size are halved first.
+
+    Parameters
+    ----------
+    corners : (n, 3, 3) array
+    count : int
+    lines : (k, 3) array, optional
+        Points along sharp edges, rims or a wall's nearest line, m.
+    thin : bool
+        Look for thin parts; of sheets, which have no thickness, there are none.
+    """
+    from scipy.spatial import cKDTree
+
+    tree = None if lines is None or not len(lines) else cKDTree(lines)
+    general = side_of(float(panels_of(corners).area.sum()), count)
+    while len(corners) < count:
+        panels = panels_of(corners)
+        wanted = np.full(panels.count, 2.0 * general)
+        if tree is not None:
+            wanted = np.minimum(wanted, FINEST * general + WIDENING * tree.query(panels.centre)[0])
+        if thin:
+            wanted = np.minimum(wanted, np.maximum(thickness(panels), FINEST * general))
+        above = _longest(corners) / wanted
+        room = min(count - len(corners), panels.count)
+        corners = halved(corners, above >= max(np.sort(above)[-room], 0.7 * above.max()))
+    return corners
+
+
+def sharp_points(vertices: Array, faces: Faces, step: float) -> Array:
+    """Points along the edges at which a surface turns by more than 45 degrees, or ends, (k, 3), at most ``step`` apart, m."""
+    one, _, turned, rim = _sharp_edges(vertices, faces)
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    edge = np.concatenate([one[turned], rim])
+    a, b = vertices[start[edge]], vertices[end[edge]]
+    number = np.maximum(np.ceil(np.linalg.norm(b - a, axis=1) / step).astype(int), 1)
+    which = np.repeat(np.arange(len(a)), number + 1)
+    share = (np.arange(len(which)) - np.repeat(np.cumsum(number + 1) - number - 1, number + 1)) / number[which]
+    return np.asarray(a[which] + share[:, None] * (b - a)[which])
 
 
 REACH = 5.0
@@ -209,42 +279,160 @@ def exact_integrals(targets: Array, corners: Array, normals: Array) -> tuple[Arr
     return angle, inverse
 
 
-def influence(panels: Panels) -> tuple[NDArray[np.float32], Array]:
+Seen = tuple[Array, float]
+
+
+def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.float32], list[Array]]:
     """Solid angle of every panel from every centroid, and the single-layer potential of the normals.
+
+    An image behind a wall is the panel itself, seen from the target's mirror point: distances and heights over planes do
+    not change when both sides are mirrored.
 
     Parameters
     ----------
     panels : Panels
         About their middle and of unit size: squares of distances are taken from products of coordinates.
+    images : sequence of ((n, 3) array, float)
+        Mirror points of the centroids behind each wall, and the factor of what is seen from there.
 
     Returns
     -------
     angles : (n, n) array
-        Row: target; 0 on the diagonal. Worked out in double precision, kept in single.
-    layer : (n, 3) array
-        Integral of n / r over the surface, from each centroid.
+        Row: target; without the panel itself on the diagonal. Worked out in double precision, kept in single.
+    layers : list of (n, 3) arrays
+        Integral of n / r over the surface: from each centroid, and from each of the images without its factor.
     """
     count = panels.count
-    angles, layer = np.empty((count, count), dtype=np.float32), np.empty((count, 3))
+    seen: list[Seen] = [(panels.centre, 1.0), *images]
+    angles, layers = np.empty((count, count), dtype=np.float32), [np.empty((count, 3)) for _ in seen]
     far = _Far.of(panels)
     reach = (REACH * panels.size) ** 2
     step = max(1, BLOCK // count)
 
     def rows(start: int) -> None:
-        targets = panels.centre[start : start + step]
-        solid, inverse, square = far.seen_from(targets)
-        i, j = np.nonzero(square < reach)
-        for part in range(0, len(i), NEAR_BLOCK):
-            a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
-            solid[a, b], inverse[a, b] = exact_integrals(targets[a], panels.corners[b], panels.normal[b])
-        own = np.arange(len(targets))
-        solid[own, start + own] = 0.0
-        angles[start : start + step] = solid
-        layer[start : start + step] = inverse @ panels.normal
+        for k, (points, factor) in enumerate(seen):
+            targets = points[start : start + step]
+            solid, inverse, square = far.seen_from(targets)
+            i, j = np.nonzero(square < reach)
+            for part in range(0, len(i), NEAR_BLOCK):
+                a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
+                solid[a, b], inverse[a, b] = exact_integrals(targets[a], panels.corners[b], panels.normal[b])
+            if k == 0:
+                own = np.arange(len(targets))
+                solid[own, start + own] = 0.0
+                angles[start : start + step] = solid
+            else:
+                angles[start : start + step] += factor * solid
+            layers[k][start : start + step] = inverse @ panels.normal
 
     with ThreadPoolExecutor(os.cpu_count()) as threads:
         list(threads.map(rows, range(0, count, step)))
-    return angles, layer
+    return angles, layers
+
+
+def seen_by(targets: Array, panels: Panels) -> tuple[Array, Array]:
+    """Solid angle of every panel, (m, n), and the integral of n / r, (m, 3), from points that are no centroids of theirs."""
+    out, layer = np.empty((len(targets), panels.count)), np.empty((len(targets), 3))
+    far = _Far.of(panels)
+    step = max(1, BLOCK // panels.count)
+    for start in range(0, len(targets), step):
+        some = targets[start : start + step]
+        solid, inverse, square = far.seen_from(some)
+        i, j = np.nonzero(square < (REACH * panels.size) ** 2)
+        if len(i):
+            solid[i, j], inverse[i, j] = exact_integrals(some[i], panels.corners[j], panels.normal[j])
+        out[start : start + step], layer[start : start + step] = solid, inverse @ panels.normal
+    return out, layer
+
+
+def velocities(targets: Array, directions: Array, panels: Panels) -> Array:
+    """Derivative of the solid angle of every panel along a direction at each target, (m, n).
+
+    Near panels as vortex rings along their sides (Katz & Plotkin, Low-Speed Aerodynamics, 2001, 10.4.5); beyond `REACH`
+    three dipoles at the middles of the sides, which is exact to the second degree.
+
+    Parameters
+    ----------
+    targets, directions : (m, 3) arrays
+    panels : Panels
+    """
+    out = np.empty((len(targets), panels.count))
+    middles = (panels.corners + np.roll(panels.corners, -1, axis=1)) / 2.0
+    square = np.sum(panels.centre**2, axis=1)
+    step = max(1, BLOCK // panels.count)
+    for start in range(0, len(targets), step):
+        x, n = targets[start : start + step], directions[start : start + step]
+        facing = n @ panels.normal.T
+        total = np.zeros((len(x), panels.count))
+        for k in range(3):
+            y = middles[:, k]
+            away = np.maximum(np.sum(x**2, axis=1)[:, None] - 2.0 * x @ y.T + np.sum(y**2, axis=1), 1e-30)
+            along = n @ y.T - np.sum(n * x, axis=1)[:, None]
+            height = np.sum(panels.normal * y, axis=1) - x @ panels.normal.T
+            total += (3.0 * along * height / away - facing) / (away * np.sqrt(away))
+        total *= panels.area / 3.0
+        near = np.sum(x**2, axis=1)[:, None] - 2.0 * x @ panels.centre.T + square < (REACH * panels.size) ** 2
+        i, j = np.nonzero(near)
+        for part in range(0, len(i), NEAR_BLOCK):
+            a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
+            total[a, b] = np.einsum("ni,ni->n", _ring(x[a], panels.corners[b]), n[a])
+        out[start : start + step] = total
+    return out
+
+
+def _ring(targets: Array, corners: Array) -> Array:
+    """Gradient of the solid angle of triangle k at target k, (n, 3)."""
+    to = corners - targets[:, None]
+    r = np.linalg.norm(to, axis=2)
+    total = np.zeros_like(targets)
+    for k in range(3):
+        a, b, ra, rb = to[:, k - 1], to[:, k], r[:, k - 1], r[:, k]
+        below = ra * rb * (ra * rb + np.einsum("ni,ni->n", a, b))
+        total += np.cross(a, b) * ((ra + rb) / np.maximum(below, 1e-30))[:, None]
+    return total
+
+
+def layer_slopes(targets: Array, directions: Array, panels: Panels) -> Array:
+    """Derivative along a direction at each target of the integral of n / r over the panels, (m, 3).
+
+    The gradient of the integral of 1 / r of a flat panel: its solid angle along the normal, and along its plane the
+    logarithms of its sides, each along its outward normal (Hess & Smith 1967).
+    """
+    out = np.empty((len(targets), 3))
+    square = np.sum(panels.centre**2, axis=1)
+    middles = (panels.corners + np.roll(panels.corners, -1, axis=1)) / 2.0
+    step = max(1, BLOCK // panels.count)
+    for start in range(0, len(targets), step):
+        x, n = targets[start : start + step], directions[start : start + step]
+        total = np.zeros((len(x), panels.count))
+        for k in range(3):
+            y = middles[:, k]
+            away = np.maximum(np.sum(x**2, axis=1)[:, None] - 2.0 * x @ y.T + np.sum(y**2, axis=1), 1e-30)
+            total += (n @ y.T - np.sum(n * x, axis=1)[:, None]) / (away * np.sqrt(away))
+        total *= panels.area / 3.0
+        i, j = np.nonzero(
+            np.sum(x**2, axis=1)[:, None] - 2.0 * x @ panels.centre.T + square < (REACH * panels.size) ** 2
+        )
+        for part in range(0, len(i), NEAR_BLOCK):
+            a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
+            total[a, b] = np.einsum("ni,ni->n", _pull(x[a], panels.corners[b], panels.normal[b]), n[a])
+        out[start : start + step] = total @ panels.normal
+    return out
+
+
+def _pull(targets: Array, corners: Array, normals: Array) -> Array:
+    """Gradient of the integral of 1 / r of triangle k at target k, (n, 3)."""
+    angle, _ = exact_integrals(targets, corners, normals)
+    to = corners - targets[:, None]
+    r = np.linalg.norm(to, axis=2)
+    total = angle[:, None] * normals
+    for k in range(3):
+        side = to[:, k] - to[:, k - 1]
+        length = np.linalg.norm(side, axis=1)
+        gap = np.maximum(r[:, k - 1] + r[:, k] - length, 1e-14 * length)
+        share = np.log((r[:, k - 1] + r[:, k] + length) / gap) / length
+        total -= np.cross(side, normals) * share[:, None]
+    return total
 
 
 @brief

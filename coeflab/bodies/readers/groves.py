@@ -24,10 +24,11 @@ from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
 from coeflab.bodies.closed_forms import graded_nodes
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import lofted, meshed, united
-from coeflab.bodies.pieces import Piece, hull_piece
-from coeflab.bodies.shape import Revolution
+from coeflab.bodies.outline import Foil, Outline
+from coeflab.bodies.outlining import Trapezoid, radius_towards, round_hull, with_controls
+from coeflab.bodies.pieces import Control, Piece, hull_piece
+from coeflab.bodies.profiles import FOOT, LARGEST_RADIUS, MIDDLE_END, suboff_meridian, suboff_profile
 from coeflab.core.declarations import Declaration, Flag, declared
-from coeflab.core.errors import InputError
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array, brief
 
@@ -201,109 +202,17 @@ def plane_sections(stations: int, levels: int) -> Array:
 
 summary = "SUBOFF from the equations of Groves, Huang and Chang: bare hull, or with sail and stern planes"
 citations = ("groves1989",)
-FOOT = 0.3048
-LARGEST_RADIUS = 5.0 / 6.0
-BOW_END, MIDDLE_END, AFTERBODY_END, CAP_END = 3.333333, 10.645833, 13.979167, 14.291667
-CAP_RADIUS, K0, K1 = 0.1175, 10.0, 44.6244
-NODES, GRADING = 96, 4
 HULL_PANELS, FEWEST_HULL = 60_000, 64
 SAIL, PLANE = (48, 24, 12), (40, 20)
 TOWED_SAIL, TOWED_PLANE = (96, 16, 16), (80, 12)  # the sides are straight along the span: stations count
 PLANES = ("upper", "starboard", "lower", "port")  # each a quarter of a turn about x from the one before
 
-_X = Polynomial([0.0, 1.0])
-_BOW = (
-    1.126395101 * _X * (0.3 * _X - 1.0) ** 4
-    + 0.442874707 * _X**2 * (0.3 * _X - 1.0) ** 3
-    + 1.0
-    - (0.3 * _X - 1.0) ** 4 * (1.2 * _X + 1.0)
-)
-_R2, _RK = CAP_RADIUS**2, CAP_RADIUS * K0
-_AFTERBODY = Polynomial(
-    [
-        _R2,
-        0.0,
-        _RK,
-        20.0 - 20.0 * _R2 - 4.0 * _RK - K1 / 3.0,
-        -45.0 + 45.0 * _R2 + 6.0 * _RK + K1,
-        36.0 - 36.0 * _R2 - 4.0 * _RK - K1,
-        -10.0 + 10.0 * _R2 + _RK + K1 / 3.0,
-    ]
-)(Polynomial([AFTERBODY_END / 3.333333, -1.0 / 3.333333]))
-_CAP = _R2 * (1.0 - Polynomial([-44.733333, 3.2]) ** 2)
-
-
-def _bow(x: Array) -> tuple[Array, Array]:
-    """(R/Rmax)^2 and half its slope; the power 1/2.1 makes the slope infinite at the nose itself."""
-    p = np.clip(_BOW(x), 0.0, None)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        half = np.where(p > 0.0, p ** (1.0 / 1.05 - 1.0) * _BOW.deriv()(x) / 2.1, np.inf)
-    return p ** (1.0 / 1.05), half
-
-
-def _rest(x: Array, square: Polynomial) -> tuple[Array, Array]:
-    return np.clip(square(x), 0.0, None), square.deriv()(x) / 2.0
-
-
-def _piece(x: Array, end: float) -> tuple[Array, Array]:
-    if end == BOW_END:
-        return _bow(x)
-    square = {MIDDLE_END: Polynomial([1.0]), AFTERBODY_END: _AFTERBODY, CAP_END: _CAP}[end]
-    return _rest(x, square)
-
-
-def profile(x: Array) -> tuple[Array, Array]:
-    """R and R dR/dx at stations within the hull, ft."""
-    ends = (BOW_END, MIDDLE_END, AFTERBODY_END, CAP_END)
-    square, half = np.empty_like(x), np.empty_like(x)
-    for k, end in enumerate(ends):
-        here = np.searchsorted(ends, x).clip(max=3) == k
-        square[here], half[here] = _piece(x[here], end)
-    return LARGEST_RADIUS * np.sqrt(square), LARGEST_RADIUS**2 * half
-
-
-def radius(aft: float) -> float:
-    """Radius of the bare hull, m.
-
-    Parameters
-    ----------
-    aft : float
-        Distance aft of the nose, m, from 0 to 4.3561 (14.291667 ft).
-
-    Raises
-    ------
-    InputError
-        Ahead of the nose or aft of the tail.
-    """
-    x = aft / FOOT
-    if not -1e-12 <= x <= CAP_END + 1e-12:
-        raise InputError(f"x = {aft:g} m aft of the nose", f"0 to {CAP_END * FOOT:.4f} m, where the equations hold")
-    return float(FOOT * profile(np.array([x]))[0][0])
-
-
-def meridian(nodes: int = NODES) -> Revolution:
-    """The hull by Gauss-Legendre stations, ``nodes`` on each of the four pieces, graded to the ends of each."""
-    joints = (0.0, BOW_END, MIDDLE_END, AFTERBODY_END, CAP_END)
-    pieces = []
-    for start, end in pairwise(joints):
-        stations, weights = graded_nodes(start, end, nodes, GRADING)
-        pieces.append((stations, weights, *_piece(stations, end)))
-    x, weight, square, half = (np.concatenate(column) for column in zip(*pieces, strict=True))
-    return Revolution(
-        x=-FOOT * x,
-        weight=FOOT * weight,
-        radius=FOOT * LARGEST_RADIUS * np.sqrt(square),
-        radius_slope=-FOOT * LARGEST_RADIUS**2 * half,
-        axis=np.zeros(2),
-        length=FOOT * CAP_END,
-    )
-
 
 def appended(with_sail: bool, with_planes: bool) -> Configuration:
     """Integrals of the equations: the hull, and of sail and planes what stands outside it."""
-    hull = meridian()
-    parts: list[Appendage] = [sail(profile)] if with_sail else []
-    parts += [plane(profile)] * 4 if with_planes else []
+    hull = suboff_meridian()
+    parts: list[Appendage] = [sail(suboff_profile)] if with_sail else []
+    parts += [plane(suboff_profile)] * 4 if with_planes else []
     volume = hull.volume + FOOT**3 * sum(p.volume for p in parts)
     centre = hull.centre_of_volume
     if parts:
@@ -341,7 +250,7 @@ def mesh(with_sail: bool, with_planes: bool, hull_panels: int = HULL_PANELS) -> 
 
 def _whole(with_sail: bool, with_planes: bool, hull_panels: int) -> TriangleMesh:
     fine = np.sqrt(hull_panels / HULL_PANELS)
-    solids = [meshed(meridian(), hull_panels)]
+    solids = [meshed(suboff_meridian(), hull_panels)]
     if with_sail:
         solids.append(_solid(sail_sections(*_counts(SAIL, fine)), 0.0))
     if with_planes:
@@ -352,20 +261,59 @@ def _whole(with_sail: bool, with_planes: bool, hull_panels: int) -> TriangleMesh
 
 def pieces(with_sail: bool, with_planes: bool) -> tuple[Piece, ...]:
     """Hull, sail and planes, each closed; the roots of the appendages lie within the hull."""
-    hull = meridian()
+    hull = suboff_meridian()
     found = [hull_piece(hull, hull.integrals.wetted_surface, -FOOT * MIDDLE_END)]
     if with_sail:
         chord = FOOT * (SAIL_JOINTS[4] - SAIL_JOINTS[0])
-        found.append(Piece("sail", "sail", _sail, FOOT**2 * sail(profile).surface, chord))
+        found.append(Piece("sail", "sail", _sail, FOOT**2 * sail(suboff_profile).surface, chord))
     if with_planes:
-        own = plane(profile)
-        foot = float(_foot(profile, np.array([0.5]), np.zeros(1))[0])
+        own = plane(suboff_profile)
+        foot = float(_foot(suboff_profile, np.array([0.5]), np.zeros(1))[0])
         chord = FOOT * float(_chord(np.array((foot + TIP) / 2.0)))
         found += [
             Piece(f"plane_{name}", "fins", partial(_plane, turn), FOOT**2 * own.surface, chord)
             for turn, name in enumerate(PLANES)
         ]
     return tuple(found)
+
+
+def outline(with_sail: bool, with_planes: bool, controls: tuple[Control, ...] = ()) -> Outline:
+    """Hull, sail and planes as semi-empirical methods see them.
+
+    The sail is a straight foil from the hull's parallel middle body to its top; its tip chord leaves out as much of the
+    area as the cap cuts off.
+
+    Parameters
+    ----------
+    with_sail, with_planes : bool
+    controls : tuple of Control
+    """
+    hull = round_hull(suboff_meridian())
+    foils: list[Foil] = []
+    if with_sail:
+        nose, tail = SAIL_JOINTS[0], SAIL_JOINTS[4]
+        x, weight = (np.concatenate(v) for v in zip(
+            *(graded_nodes(*ends, APPENDAGE_NODES, APPENDAGE_GRADING) for ends in pairwise(SAIL_JOINTS)), strict=True))  # fmt: skip
+        chord, top = tail - nose, SIDE_TOP + HALF_THICKNESS / 2.0
+        area = float(weight @ (SIDE_TOP + sail_half_thickness(x)[0] / 2.0 - LARGEST_RADIUS))
+        tip_chord = 2.0 * area / (top - LARGEST_RADIUS) - chord
+        quarter = -FOOT * (nose + chord / 4.0)
+        root, tip = (np.array([quarter, 0.0, -FOOT * height]) for height in (LARGEST_RADIUS, top))
+        thickness = 2.0 * HALF_THICKNESS / chord
+        foils.append(Foil("sail", root, tip, FOOT * chord, FOOT * tip_chord, thickness, np.zeros(2)))
+    if with_planes:
+        chords, spread = (
+            [FOOT * float(_chord(np.array(y))) for y in (PLANE_FOOT, TIP)],
+            2.0 * float(_half(_eased(200)).max()),
+        )
+        flat = Trapezoid(FOOT * PLANE_FOOT, FOOT * TIP, (chords[0], chords[1]), (-FOOT * TRAILING_EDGE,) * 2)
+        for turn, name in enumerate(PLANES):
+            way = np.array([(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)][turn])
+            found = flat.foil(f"plane_{name}", way, np.zeros(2), spread, radius_towards(hull, way))
+            foils += [] if found is None else [found]
+    turned, left = with_controls(foils, controls)
+    whole = appended(with_sail, with_planes)
+    return Outline((hull,), turned, (), (), whole.wetted_surface or 0.0, whole.volume or 0.0, left)
 
 
 def _sail(panels: int) -> TriangleMesh:
@@ -434,5 +382,6 @@ def read(path: Path) -> Body:
     """
     file = declared(File, read_toml(path))
     with_sail, with_planes = file.hull.sail, file.hull.planes
-    shape = mesh(with_sail, with_planes) if with_sail or with_planes else meridian()
-    return file.shaped(path, shape, appended(with_sail, with_planes), pieces(with_sail, with_planes))
+    shape = mesh(with_sail, with_planes) if with_sail or with_planes else suboff_meridian()
+    seen = partial(outline, with_sail, with_planes)
+    return file.shaped(path, shape, appended(with_sail, with_planes), pieces(with_sail, with_planes), seen)

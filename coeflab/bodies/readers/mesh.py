@@ -122,6 +122,9 @@ def read(path: Path) -> Body:
     said += _require_volume(shape, source.unit, body.configurations[1:], toml.fail)
     return dataclasses.replace(
         body,
-        configurations=(computed(shape, statements + said), *body.configurations[1:]),
+        configurations=(
+            dataclasses.replace(body.configurations[0], title=computed(shape, statements + said).title),
+            *body.configurations[1:],
+        ),
         files=(*body.files, source.input_file(body.name)),
     )

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from coeflab.bodies.body import Body
-from coeflab.bodies.mesh.file import FORMATS, load
-from coeflab.bodies.mesh.gates import examined, repaired
+from coeflab.bodies.mesh.file import FORMATS, SELF_DESCRIBED, load
+from coeflab.bodies.mesh.gates import sound
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import computed, require_plausible
 from coeflab.bodies.readers import read_body
@@ -22,7 +22,9 @@ from coeflab.core.units import factor
 BODY, CAMPAIGN = "body.toml", "campaign.toml"
 
 
-def mesh_body(name: str, unit: str = "", axes: str = "", repair: bool = False) -> Body:
+def mesh_body(
+    name: str, unit: str = "", axes: str = "", repair: bool = False, fill: bool = False, sheets: bool = False
+) -> Body:
     """A body whose shape is a mesh.
 
     Parameters
@@ -30,9 +32,10 @@ def mesh_body(name: str, unit: str = "", axes: str = "", repair: bool = False) -
     name : str
         A body.toml, its folder, a shipped body, or a mesh file.
     unit, axes : str
-        Of a mesh file, which says neither; of nothing else.
-    repair : bool
-        Mend a mesh file that is not sound.
+        Of a mesh file, which says neither; of nothing else. A URDF or SDF is in m and, unless said, FLU; a STEP is in m as
+        it is read.
+    repair, fill, sheets : bool
+        Mend a mesh file that is not sound; close its small holes; take its open surfaces as sheets.
 
     Raises
     ------
@@ -42,15 +45,18 @@ def mesh_body(name: str, unit: str = "", axes: str = "", repair: bool = False) -
     path = located(name, "geometry")
     path = path / BODY if path.is_dir() else path
     if path.suffix.lower() == ".toml":
-        if unit or axes or repair:
+        if unit or axes or repair or fill or sheets:
             raise InputError(
-                "--unit, --axes or --repair",
+                "--unit, --axes, --repair, --fill or --sheets",
                 "a mesh file with them",
                 file=path,
                 advice="A body.toml says these itself.",
             )
         return read_body(path)
-    return _bare(path, _factor(unit, path), parse_axes(_declared(axes), file=path, key="--axes").rotation, repair)
+    own_unit, own_axes = SELF_DESCRIBED.get(path.suffix.lower().lstrip("."), ("", ""))
+    scale = _factor(unit or own_unit, path)
+    turn = parse_axes(_declared(axes or own_axes), file=path, key="--axes").rotation
+    return _bare(path, scale, turn, repair, fill, sheets)
 
 
 def names_body(name: str) -> bool:
@@ -87,10 +93,9 @@ def _declared(axes: str) -> Any:
     return words if len(words) == 3 else axes or None
 
 
-def _bare(path: Path, unit: float, turn: np.ndarray[Any, Any], repair: bool) -> Body:
-    raw = load(path)
-    sound = repaired(*raw, path) if repair else examined(*raw, path)
-    shape = TriangleMesh(unit * sound.vertices @ turn.T, sound.faces)
+def _bare(path: Path, unit: float, turn: np.ndarray[Any, Any], repair: bool, fill: bool, sheets: bool) -> Body:
+    found = sound(*load(path), path, repair=repair, fill=fill, open_sheets=sheets)
+    shape = TriangleMesh(unit * found.vertices @ turn.T, found.faces, sheets=found.sheets)
 
     def fail(found: str, expected: str, advice: str) -> InputError:
         return InputError(found, expected, file=path, column="--unit", advice=advice)
@@ -102,7 +107,7 @@ def _bare(path: Path, unit: float, turn: np.ndarray[Any, Any], repair: bool) -> 
         datum=Datum(f"origin of {path.name}"),
         reference_point=np.zeros(3),
         lengths={},
-        configurations=(computed(shape, sound.statements),),
+        configurations=(computed(shape, found.statements),),
         source=Source(path.name),
         files=(InputFile(path.name, sha256_of(path)),),
         shape=shape,

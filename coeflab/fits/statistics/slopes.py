@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from coeflab.core.types import Array, brief
-from coeflab.fits.statistics import origin_slope
+from coeflab.fits.statistics import origin_slope, slope_mixture
 from coeflab.fits.statistics.diagnostics import lack_of_fit, levels
 from coeflab.fits.statistics.least_squares import Index, aicc, factorise, solve
 from coeflab.fits.statistics.linear_model import bell_mccaffrey, hc_variance, t_factor
@@ -192,8 +192,8 @@ def determined(
 
 def of_all_rows(slope: OriginSlope, x: Array, y: Array, se: Array | None) -> OriginSlope:
     """The model with every row, wrong or not, as far as `determined` and `curve` ask for it."""
-    design = origin_slope.prepare(x, None if se is None else se**2 / float(np.median(se)) ** 2)
-    weights = origin_slope.estimate_many(design, y, deletions=False).weights[0]
+    design = slope_mixture.prepare(x, None if se is None else se**2 / float(np.median(se)) ** 2)
+    weights = slope_mixture.estimate_many(design, y, deletions=False).weights[0]
     return replace(slope, design=design, y=y, weights=weights)
 
 

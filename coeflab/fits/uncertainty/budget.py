@@ -21,7 +21,7 @@ from coeflab.core.types import Array, brief
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.uncertainty.grid_convergence import GridStudy, VariantStudy, gravest, grid_studies, variant_studies
 from coeflab.fits.uncertainty.propagation import STEP, Propagated, normal_draws, summary_of
-from coeflab.law.coefficient import Coefficient, CoefficientSet, transfer_matrix
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Parts, Status, transfer_matrix
 from coeflab.law.symbols import ANGULAR, MOMENTS, primed
 from coeflab.tables.campaign import NAMES, InputUncertainty
 from coeflab.tables.force_table import STUDIES, ForceTable
@@ -177,6 +177,7 @@ ALWAYS_OPEN = {
     "experiment": ("rig interference and blockage",),
     "literature": ("whatever the source left out",),
     "synthetic": (),
+    "estimate": ("scatter of the methods of estimates",),
 }
 REMAINS = {
     STUDIES["turbulence"]: ("turbulence model", "turbulence models not tried"),
@@ -414,7 +415,7 @@ def undeclared(wanted: Sequence[str], tables: Sequence[ForceTable], inputs: Sequ
     """Inputs that may act and were not assessed, by name; none where the tables are synthetic and declare none."""
     if _true_by_construction(tables):
         return []
-    computed = all(t.source.kind == "cfd" for t in tables)
+    computed = all(t.source.kind in ("cfd", "estimate") for t in tables)
     known = {p.name.split(" ")[0] for p in inputs}
     named = [n for n in wanted if not (computed and n in NOT_OF_A_COMPUTATION)]
     return [n.replace("_", " ") for n in named if n not in known]
@@ -436,6 +437,17 @@ def with_budget(fit: FitResult, found: Sequence[Budget]) -> FitResult:
             changed.append(replace(c, u95=b.u95, parts=replace(c.parts, input=outside)))
     wider = replace(among, coefficients=tuple(changed), covariance=covariance(among, tuple(mine.values())))
     return replace(fit, coefficients=wider)
+
+
+def as_estimates(fit: FitResult) -> FitResult:
+    """A fit to estimated forces: its values are estimates, and its intervals, which a smooth law makes small, say nothing."""
+    among = fit.coefficients
+    changed = tuple(
+        c if c.value is None else replace(c, u95=None, parts=Parts(), status=Status.ESTIMATE, origin="estimate")
+        for c in among.coefficients
+    )
+    unknown = np.full_like(among.covariance, np.nan)
+    return replace(fit, coefficients=replace(among, coefficients=changed, covariance=unknown))
 
 
 def covariance(among: CoefficientSet, found: Sequence[Budget]) -> Array:

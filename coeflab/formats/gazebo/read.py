@@ -22,8 +22,8 @@ from coeflab.formats.gazebo.law import DENSITIES, FORCES, VELOCITIES, GzLink, re
 from coeflab.formats.stated_file import LinkModel, link_file
 from coeflab.law.rigid_body import ideal_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.plausibility import Written, displaced, gravity, imperial, munk_twice, no_mass, water
 from coeflab.vehicle.second_order import FLU, SecondOrder
+from coeflab.vehicle.stated_numbers import Written, displaced, gravity, imperial, munk_twice, no_mass, water
 
 
 def collision_volume(link: Element | None, file: Path | str | None = None) -> float:

@@ -30,7 +30,7 @@ from coeflab.law.added_mass import AddedMass, potential_part
 from coeflab.law.rigid_body import MassProperties, ideal_quadratics
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.plausibility import SLUGS, Written, gravity, gyration, munk_twice, no_mass, water, weight
+from coeflab.vehicle.stated_numbers import SLUGS, Written, gravity, gyration, munk_twice, no_mass, water, weight
 
 summary = "MSS .m files with plain assignments: primed or SI derivatives, slug and foot units recognised by rho or g"
 citations = ("sname1950", "fossen2011", "mss")

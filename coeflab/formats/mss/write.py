@@ -19,6 +19,7 @@ from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
     expression,
     not_written,
+    propulsion,
     spelt,
     written_accelerations,
     written_changes,
@@ -71,6 +72,7 @@ def _head(function: str, parameters: ParameterFile) -> list[str]:
         "% Axes: x forward, y starboard, z down. Equations of motion with rigid-body MRB and CRB:",
         "%   (MRB + MA)*nu_dot + CRB*nu + g = tau + tau_control",
         "% tau contains -C_A(nu)*nu already (the Munk moment in Nv and Mw): do not add m2c(MA, nu).",
+        f"% {propulsion(parameters)}.",
         "%",
         "% Primes: Y = 1/2 rho U^2 L^2 Y', v' = v/U, r' = r L/U, U = |(u, v, w)|; a in a name is an absolute value,",
         "% h.Yvav that of v|v|.",
@@ -197,5 +199,6 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
     return (
         *written_changes(parameters, "the function", "h.ideal", "MA"),
         f"tau contains no weight and no buoyancy{'' if parameters.hydrostatics is None else f': {buoyant}'}",
+        propulsion(parameters),
         "r2 in the function is 1/2 rho L^2, r3 is 1/2 rho L^3 and so on; U is never below 1e-9 m/s",
     )

@@ -15,8 +15,8 @@ from coeflab.formats.stated_file import LinkModel, link_file
 from coeflab.formats.uuv_simulator.law import PLUGIN_DENSITY, SPACE, FossenLink, Xacro, read_fossen_link
 from coeflab.law.rigid_body import ideal_quadratics, momentum_quadratics
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.plausibility import Written, displaced, gravity, munk_twice, no_mass, water
 from coeflab.vehicle.second_order import SURGE, SecondOrder
+from coeflab.vehicle.stated_numbers import Written, displaced, gravity, munk_twice, no_mass, water
 
 summary = "uuv_simulator and DAVE: URDF or xacro with hydrodynamic_model fossen"
 citations = ("fossen2011", "uuv_simulator")

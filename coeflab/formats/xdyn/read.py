@@ -37,7 +37,7 @@ from coeflab.law.symbols import COMPONENTS, CONTROLS, LINEAR, MOTIONS, derivativ
 from coeflab.law.terms import parse_suffix
 from coeflab.law.transforms import force_transfer, moved
 from coeflab.vehicle.parameter_file import ParameterFile
-from coeflab.vehicle.plausibility import gravity
+from coeflab.vehicle.stated_numbers import gravity
 
 Product = tuple[tuple[str, int], ...]
 MOST = 4000

@@ -20,6 +20,7 @@ from coeflab.formats.export import missing_water
 from coeflab.formats.exported_law import (
     expression,
     not_written,
+    propulsion,
     spelt,
     written_changes,
     written_controls,
@@ -127,7 +128,8 @@ def render(parameters: ParameterFile) -> Mapping[str, bytes]:
         f"# {one_line(parameters.name)}, body: {one_line(parameters.body)}",
         f"# Body frame: x forward, y starboard, z down, origin at the {origin};",
         f"# the mesh frame is FRD from: {one_line(parameters.reference_point.datum)}",
-        f"# Totals: xdyn adds no C_A(nu) nu. {'Weight, buoyancy and propulsion are' if h is None else 'Propulsion is'} not in here.",
+        f"# Totals: xdyn adds no C_A(nu) nu.{' Weight and buoyancy are not in here.' if h is None else ''}",
+        f"# {propulsion(parameters)}",
         f"# Inertia of the water: {one_line(water.source)}",
         "rotations convention: [psi, theta', phi'']",
         "environmental constants:",
@@ -263,6 +265,7 @@ def changes(parameters: ParameterFile) -> tuple[str, ...]:
             parameters, "xdyn", "expressions ending in _ideal", "added mass about the body frame's origin"
         ),
         "velocities over the ground are used as those through the water; currents are for linear and quadratic damping only",
+        propulsion(parameters),
     ]
     if parameters.hydrostatics is not None:
         said.append(

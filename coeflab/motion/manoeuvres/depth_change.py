@@ -89,7 +89,7 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
         judged(
             Figure(name, value, unit, text, "ok" if value is not None else "not reached",
                    "" if value is not None else f"not within {t[-1]:g} s"),
-            trajectory, when, lacking,
+            trajectory, when, lacking, "q",
         )
         for name, value, unit, when, text in rows
     )  # fmt: skip

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
+from coeflab.core.files import named
 from coeflab.core.text.delimited import Cells, read_cells, require_unit
 from coeflab.core.text.toml import TomlFile, read_toml
 from coeflab.core.types import Array, brief, locked
@@ -441,6 +442,7 @@ def read_tuning_plan(path: Path) -> TuningPlan:
     InputError
         With file, line and key.
     """
+    path = named(path, "tune.toml")
     toml = read_toml(path)
     file = takes.declared(TuningFile, toml)
     parameters = read_parameter_file(file.tune.parameters)

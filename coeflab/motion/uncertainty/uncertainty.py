@@ -374,7 +374,7 @@ def uncertainty(
     exact, how = _at_the_file(setup, plan)
     if all(f.value is None for f in exact):
         return _stability_alone(
-            parameters, question, body, varied, members, undetermined_at_once(body, plan) or _reasons(exact)
+            parameters, question, body, varied, members, undetermined_at_once(body, plan, exact) or _reasons(exact)
         )
     still = unfelt(body, varied.symbols, _ordered(plan))
     felt = frozenset() if any(question.current) else still

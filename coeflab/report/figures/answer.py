@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, PathPatch, Polygon
+from matplotlib.patches import Circle, Patch, PathPatch, Polygon
 from matplotlib.path import Path
 
 from coeflab.core.table import coefficient, plus_minus
@@ -106,7 +106,7 @@ def slope_figure(sweep: Sweep, row: AnswerRow, published: str = "", at: float | 
         framed_legend(figure, handles, 6.0, HEIGHT - 4.0 - rows * ROW)
         panel = numbers(axes, series, across, quotient, factor)
         svg = svg_text(figure, "answer-slope", title, description)
-    caption = f"{name} is the value at |{sweep.variable}'| = 0. Points slope away where the force is not linear."
+    caption = f"{name} is the value at |{sweep.variable}'| = 0. A linear force puts the points on a horizontal line."
     wrong = ", ".join(sweep.labels[i] for i in sweep.wrong)
     caption += f" Without point {wrong}, which does not fit the others (cross)." if wrong else ""
     caption += f" {left_out} near zero {'lies' if left_out == 1 else 'lie'} outside the frame." if left_out else ""
@@ -304,52 +304,64 @@ def _drawing(
     return figure, axes
 
 
-SKETCH = 94.0
-HALF = WIDTH / 2.0
+SKETCH, LEVEL = 92.0, 56.0
 
 
 def axes_figure() -> Figure:
-    """Axes and signs: x forward, y to starboard, z down, turns to starboard and bow up positive; from above and from starboard."""
+    """Axes and signs in three views; a turn goes the shorter way from one axis to the next: y to z, z to x, x to y."""
     title = "Axes and signs"
     description = (
-        "From above: x, u and X forward, y, v and Y to starboard, r and N turn the bow to starboard. From starboard: x forward, z, w "
-        "and Z down, q and M turn the bow up."
+        "From above: x, u and X forward, y, v and Y to starboard, r and N turn the bow to starboard. From starboard: z, w and Z down, "
+        "q and M turn the bow up. From astern: p and K turn starboard down."
     )
     with settings():
         figure = Drawing(figsize=(WIDTH / POINTS, SKETCH / POINTS))
         axes = bare(figure, (0.0, 0.0, 1.0, 1.0))
         axes.set_xlim(0.0, WIDTH)
         axes.set_ylim(0.0, SKETCH)
-        _view(figure, axes, 0.0, "from above", "y, v, Y", "r, N", -1.0)
-        _view(figure, axes, HALF, "from starboard", "z, w, Z", "q, M", 1.0)
+        for left, name in ((1.0, "from above"), (90.0, "from starboard"), (180.0, "from astern")):
+            label(figure, left / WIDTH, (SKETCH - 9.0) / SKETCH, name, "left", color=COLOURS["muted"])
+        _body(axes, 30.0)
+        _body(axes, 119.0)
+        axes.add_patch(Circle((198.0, LEVEL), 8.0, facecolor=COLOURS["band"], alpha=0.35, linewidth=0))
+        axes.add_patch(Circle((198.0, LEVEL), 8.0, facecolor="none", edgecolor=COLOURS["muted"], linewidth=0.8))
+        _axes_pair(figure, axes, 30.0, 40.0, ("x, u, X", "y, v, Y", "r, N"), towards_down=True)
+        _axes_pair(figure, axes, 119.0, 40.0, ("x, u, X", "z, w, Z", "q, M"), towards_down=False)
+        _axes_pair(figure, axes, 198.0, 28.0, ("y, v, Y", "z, w, Z", "p, K"), towards_down=True)
         svg = svg_text(figure, "answer-axes", title, description)
     return Figure("answer-axes", svg, title, "Positive senses; forces are those of the fluid on the body.", description)
 
 
-def _view(figure: Drawing, axes: Axes, left: float, name: str, down: str, turn: str, sense: float) -> None:
-    """One view, the bow to the right: an axis ahead, one down, a turn, clockwise where ``sense`` is negative."""
-    x, y = left + 44.0, 52.0
-    long, deep = 34.0, 6.0
+def _body(axes: Axes, x: float) -> None:
+    """A hull about a place, the bow to the right."""
+    y, long, deep = LEVEL, 28.0, 5.5
     stern, bow = x - long, x + long
     body = Path(
-        [(bow, y), (bow, y + deep), (bow - 12.0, y + deep), (bow - 16.0, y + deep), (x - 12.0, y + deep), (stern + 10.0, y + deep),
-         (stern, y), (stern + 10.0, y - deep), (x - 12.0, y - deep), (bow - 16.0, y - deep), (bow - 12.0, y - deep), (bow, y - deep),
+        [(bow, y), (bow, y + deep), (bow - 10.0, y + deep), (bow - 14.0, y + deep), (x - 10.0, y + deep), (stern + 8.0, y + deep),
+         (stern, y), (stern + 8.0, y - deep), (x - 10.0, y - deep), (bow - 14.0, y - deep), (bow - 10.0, y - deep), (bow, y - deep),
          (bow, y)],
         [Path.MOVETO, Path.CURVE4, Path.CURVE4, Path.CURVE4, Path.LINETO, Path.CURVE3, Path.CURVE3, Path.CURVE3, Path.CURVE3,
          Path.LINETO, Path.CURVE4, Path.CURVE4, Path.CURVE4],
     )  # fmt: skip
     axes.add_patch(PathPatch(body, facecolor=COLOURS["band"], alpha=0.35, linewidth=0))
     axes.add_patch(PathPatch(body, facecolor="none", edgecolor=COLOURS["muted"], linewidth=0.8))
-    _arrow(axes, (x, y), (bow + 14.0, y))
-    _arrow(axes, (x, y), (x, y - 34.0))
-    label(figure, (bow + 3.0) / WIDTH, (y + 6.0) / SKETCH, "x, u, X", "left")
-    label(figure, (x + 5.0) / WIDTH, (y - 33.0) / SKETCH, down, "left")
-    label(figure, (x - long) / WIDTH, (SKETCH - 9.0) / SKETCH, name, "left", color=COLOURS["muted"])
-    angle = np.linspace(np.radians(8.0), np.radians(48.0), 21)
-    arc = np.column_stack([x + 26.0 * np.cos(angle), y + sense * 26.0 * np.sin(angle)])
+
+
+def _axes_pair(
+    figure: Drawing, axes: Axes, x: float, ahead: float, names: tuple[str, str, str], *, towards_down: bool
+) -> None:
+    """An axis to the right and one down, and between them the turn from one to the other."""
+    right, down, turn = names
+    y = LEVEL
+    _arrow(axes, (x, y), (x + ahead, y))
+    _arrow(axes, (x, y), (x, y - 40.0))
+    label(figure, (x + ahead + 6.0) / WIDTH, (y + 8.0) / SKETCH, right, "right")
+    label(figure, (x + 6.0) / WIDTH, (y - 45.0) / SKETCH, down, "left")
+    angle = -np.linspace(np.radians(20.0), np.radians(66.0), 21)[:: 1 if towards_down else -1]
+    arc = np.column_stack([x + 20.0 * np.cos(angle), y + 20.0 * np.sin(angle)])
     axes.add_artist(Line2D(*arc.T, color=COLOURS["a"], linewidth=1.2))
     _head(axes, arc[-1], arc[-1] - arc[-2], COLOURS["a"])
-    label(figure, (x + 26.0) / WIDTH, (y + sense * 18.0 - 3.0) / SKETCH, turn, "left", color=COLOURS["a"])
+    label(figure, (x + 20.0) / WIDTH, (y - 26.0) / SKETCH, turn, "left", color=COLOURS["a"])
 
 
 def _arrow(axes: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
@@ -371,7 +383,7 @@ TEXT, LETTERING = 126.0, 7.75
 
 def shares_figure(found: Acceptance) -> Figure:
     """Of every table of a publication the largest difference over what is allowed, as a bar; 1 is all of it."""
-    title = "Largest difference over what is allowed, by table"
+    title = "Largest difference over tolerance, by table"
     shares = [[abs(s) for r in t.rows if not np.isnan(s := share(r))] for t in found.tables]
     # Two decimals: further ones differ from one linear algebra to the next, and a page must not.
     largest = np.array([round(min(max(s, default=0.0), WIDEST), 2) for s in shares])
@@ -380,7 +392,7 @@ def shares_figure(found: Acceptance) -> Figure:
     across = (0.0, max(1.05, 1.05 * float(largest.max(initial=0.0))))
     with settings():
         figure, axes = _drawing(
-            TEXT, 32.0, 0, across=across, up=(0.4, n + 0.6), name_across="of what is allowed  [-]",
+            TEXT, 32.0, 0, across=across, up=(0.4, n + 0.6), name_across="of the tolerance  [-]",
             rows=[_cut(t.title) for t in found.tables],
             steps=2,
             size=LETTERING,
@@ -393,7 +405,7 @@ def shares_figure(found: Acceptance) -> Figure:
         axes.axvline(1.0, color=COLOURS["ink"], linewidth=1.2, linestyle=DOTTED, zorder=3)
         notes = [f"{t.title}: {s:.2f}" for t, s in zip(found.tables, largest, strict=True)]
         panel = numbers(
-            axes, [points("share", "share", largest, level, notes)], "of what is allowed  [-]", "table", bars="across"
+            axes, [points("share", "share", largest, level, notes)], "of the tolerance  [-]", "table", bars="across"
         )
         svg = svg_text(figure, "answer-shares", title, said)
     caption = "Right: numbers that hold, of all in that table. A number holds up to 1, the dotted line."

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from coeflab.core.types import Array
-from coeflab.law.symbols import CONTROLS
+from coeflab.law.symbols import ANGLE_NAMES, CONTROLS
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure, Series
 from coeflab.report.figures.panel import BOTTOM, LEFT, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
@@ -59,9 +59,11 @@ def track_figure(trajectory: Trajectory, anchor: str, length: float, vertical: b
         axes.plot(across[:1], up[:1], linestyle="none", marker="o", markersize=4.0, color=COLOURS["a"], zorder=4)
         if length > 0.0:
             _bodies(axes, trajectory, across, up, vertical, length)
-        marks = {"track": Line2D([], [], color=COLOURS["a"], linewidth=1.4, label="track")}
+        marks = {}
+        if np.any(~beyond[:-1] & ~beyond[1:]) or not np.any(beyond):
+            marks["track"] = Line2D([], [], color=COLOURS["a"], linewidth=1.4, label="track within the data")
         if np.any(beyond):
-            marks["beyond"] = Line2D([], [], label="beyond the data", **BEYOND)
+            marks["beyond"] = Line2D([], [], label="track beyond the data", **BEYOND)
         legend(figure, [tagged(mark, key) for key, mark in marks.items()], top)
         shown = numbers(axes, _places(trajectory, across, up, beyond), names[0], names[1])
         svg = svg_text(figure, anchor, title, description)
@@ -80,7 +82,7 @@ def _places(trajectory: Trajectory, across: Array, up: Array, beyond: NDArray[np
     every = np.unique(np.linspace(0, len(across) - 1, min(len(across), MOST_TOLD)).round().astype(int))
     out = []
     for key, name, rows in (
-        ("track", "track", every[~beyond[every]]),
+        ("track", "track within the data", every[~beyond[every]]),
         ("beyond", "track beyond the data", every[beyond[every]]),
     ):
         notes = [f"at {trajectory.time[i]:.4g} s, {trajectory.speed[i]:.3g} m/s" for i in rows]
@@ -123,10 +125,14 @@ def _outside(trajectory: Trajectory) -> NDArray[np.bool_]:
 def history_figures(trajectory: Trajectory, anchor: str, after: str = "") -> tuple[Figure, ...]:
     """Speeds, angles and rates that change, and the controls, each over time."""
     nu, angles = trajectory.velocity, np.degrees(trajectory.angles)
-    speeds = {"u": nu[:, 0], "v": nu[:, 1], "w": nu[:, 2], "V": trajectory.speed}
+    speeds = {"u ahead": nu[:, 0], "v to starboard": nu[:, 1], "w down": nu[:, 2], "speed V": trajectory.speed}
     turns = {"roll": angles[:, 0], "pitch": angles[:, 1], "heading": np.degrees(trajectory.heading)}
-    rates = {name: np.degrees(nu[:, 3 + i]) for i, name in enumerate("pqr")}
-    ordered = {n: np.degrees(c) for n, c in trajectory.controls.items() if n in CONTROLS or n.endswith(".tilt")}
+    rates = {name: np.degrees(nu[:, 3 + i]) for i, name in enumerate(("roll rate p", "pitch rate q", "yaw rate r"))}
+    ordered = {
+        ANGLE_NAMES.get(n, n.replace(".tilt", ", tilt")): np.degrees(c)
+        for n, c in trajectory.controls.items()
+        if n in CONTROLS or n.endswith(".tilt")
+    }
     groups: list[tuple[str, str, Mapping[str, Array], str]] = [
         ("speed", "speed  [m/s]", speeds, "Speeds through the water"),
         ("angle", "angle  [deg]", {**turns, **ordered}, "Attitude and control angles"),

@@ -23,7 +23,7 @@ from jinja2 import BaseLoader, Environment, StrictUndefined
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from coeflab.core.table import ABSENT, LARGEST_SHARE, coefficient, plus_minus, with_u95
+from coeflab.core.table import ABSENT, LARGEST_SHARE, as_printed, coefficient, plus_minus, with_u95
 from coeflab.law.symbols import primed
 from coeflab.report.document import Answer, AnswerRow, Axis, Document, Figure, Layer, Panel, Scene, Section, Series
 from coeflab.report.glossary import definitions_html, linked_html
@@ -206,11 +206,8 @@ def filename(text: str) -> str:
 
 def published(value: float) -> tuple[str, int]:
     """A published number without zeros behind its fourth decimal, and how many places it is short of six."""
-    shown = coefficient(value)
-    if "e" in shown:
-        return shown, 0
-    bare = shown[:-2] + shown[-2:].rstrip("0")
-    return bare, len(shown) - len(bare)
+    shown = as_printed(value)
+    return shown, 0 if "e" in shown else len(coefficient(value)) - len(shown)
 
 
 def rows_json(answer: Answer) -> str:

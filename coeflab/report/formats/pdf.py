@@ -12,7 +12,7 @@ from importlib.resources import files
 from typing import Any, Literal
 
 from coeflab.core.errors import OutputError
-from coeflab.core.table import Table, percent, plus_minus
+from coeflab.core.table import Table, percent, plus_minus, says_one
 from coeflab.core.version import VERSION
 from coeflab.law.symbols import primed
 from coeflab.report.answer import answer_table
@@ -214,6 +214,7 @@ def _table(table: Table, level: int) -> dict[str, Any]:
     title = _text(shortened(table.title, LONGEST_TITLE))
     if level >= DEEP and len(table.rows) > LONG:
         return {"elsewhere": True, "title": title, "count": len(table.rows)}
+    table = _with_room(table)
     columns = range(len(table.headers))
     units = {i for i in columns if table.headers[i] == "unit"}
     folds = [any(len(row[i]) > WHOLE and WORDY.search(row[i]) for row in table.rows) for i in columns]
@@ -232,6 +233,21 @@ def _table(table: Table, level: int) -> dict[str, Any]:
         "verdicts": [[text in ("fail", "warn") for text in row] for row in table.rows],
         "notes": [_text(n) for n in table.notes],
     }
+
+
+def _with_room(table: Table) -> Table:
+    """Without columns that say one thing in every row, where another has to fold; a note says it once."""
+    kept_whole = [i for i in range(len(table.headers)) if i == 0 or not says_one(table, i)]
+    if len(kept_whole) == len(table.headers) or not any(len(c) > WHOLE for row in table.rows for c in row):
+        return table
+    once = [i for i in range(len(table.headers)) if i not in kept_whole]
+    return replace(
+        table,
+        headers=tuple(table.headers[i] for i in kept_whole),
+        rows=tuple(tuple(row[i] for i in kept_whole) for row in table.rows),
+        left=frozenset(n for n, i in enumerate(kept_whole) if i in table.left),
+        notes=(*table.notes, *(f"{table.headers[i]}, in every row: {table.rows[0][i] or 'none'}." for i in once)),
+    )
 
 
 def _letters(table: Table) -> int:

@@ -25,7 +25,7 @@ from coeflab.report.figures.series import numbers, points, tagged
 from coeflab.report.figures.svg import COLOURS, settings, svg_text
 from coeflab.report.sections.conventions import published_conventions
 
-ACROSS = "difference over what is allowed  [-]"
+ACROSS = "difference / tolerance  [-]"
 EDGE, BEYOND = 1.28, 1.18
 HEAD, LEAST, ROW, MOST, LONGEST = 15.0, 13.0, 2.7, 80.0, 60
 INDENT = 16.0
@@ -39,8 +39,8 @@ MARKS: dict[Basis, dict[str, Any]] = {
 }  # fmt: skip
 OUTSIDE: dict[str, Any] = {"marker": "x", "markersize": 5.0, "markeredgecolor": COLOURS["ink"], "markeredgewidth": 1.3}
 CAPTION = (
-    "One mark a comparison, in the order of its table. At 0 ours is what it is held against, at -1 and 1 the whole allowance is used. A "
-    "number that may be at most some limit stands at its share of the limit."
+    "One mark for each comparison, in the order of its table: our difference from the reference over the tolerance. Marks between -1 and 1 "
+    "pass. For a number with an upper limit the mark is its share of the limit."
 )
 
 
@@ -54,11 +54,11 @@ def allowance_figure(found: Acceptance, anchor: str) -> Figure:
     """
     rows = [r for t in found.tables for r in t.rows]
     held = sum(r.holds for r in rows)
-    title = f"{held} of {len(rows)} comparisons within what is allowed"
+    title = f"{held} of {len(rows)} comparisons within the tolerance"
     heights = [_height(len(t.rows)) for t in found.tables]
     body = sum(heights) + HEAD * len(heights)
     description = (
-        "One strip a table, one mark a number at its difference over what is allowed: "
+        "One strip a table, one mark a number at its difference over the tolerance: "
         + "; ".join(f"{t.title}: {_count(t)}" for t in found.tables)
         + "."
     )
@@ -138,7 +138,7 @@ def _told(r: Compared) -> str:
     unit = "" if r.unit == "1" else f" {r.unit}"
     found = "no number" if r.found is None else f"{r.found:.6g}{unit}"
     against = f"{'at most ' if r.at_most else ''}{r.against:.6g}{unit}"
-    return f"{r.case}, {r.quantity}: held against {against} ({r.basis}), found {found}"
+    return f"{r.case}, {r.quantity}: reference {against} ({r.basis}), found {found}"
 
 
 def _scale(figure: Drawing) -> None:
@@ -174,7 +174,7 @@ def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
     sections = (
         verdict(found),
         *_section("figures", "Figures", figures=figures(found)),
-        Section("compared", "Every number and what it is held against", (DIFFERENCES,), subsections=tables),
+        Section("compared", "Every number and its reference", (DIFFERENCES,), subsections=tables),
         *_section("statements", "What to know", found.statements),
         *_section("parameter-files", "Parameter files", found.file_notes),
         *_errata(found),
@@ -186,13 +186,12 @@ def document(found: Acceptance, inputs: tuple[InputFile, ...] = ()) -> Document:
     return Document(found.title, SUBTITLE, sections, found.name, digest_of(inputs), works, answer=answer(found))
 
 
-SUBTITLE = "A publication reproduced: every number and what it is held against"
+SUBTITLE = "A publication reproduced: every number and its reference"
 DIFFERENCES = (
-    "Held against: a number that the paper prints only where the basis beside it says so. Difference: found less what it is "
-    "held against, as a share of the latter where a per cent sign stands. A number passes when the difference is no larger than "
-    "what is allowed."
+    "Reference: the paper prints it only where the column basis says so. Difference: found minus reference, or with a % sign its "
+    "share of the reference. A number passes when the difference is within the tolerance."
 )
-PROVENANCE = "The files below are known by the sha256 of their bytes."
+PROVENANCE = "The files below are identified by the sha256 of their bytes."
 
 
 def verdict(found: Acceptance) -> Section:
@@ -214,7 +213,7 @@ def headline(found: Acceptance) -> tuple[str, ...]:
     again = found.repeated
     first, second = acceptance_tables.headline(acceptance_tables.held(found))
     if again:
-        first += f" {sum(r.holds for r in again)} of {len(again)} comparisons meet numbers among them another way, and do not count."
+        first += f" {sum(r.holds for r in again)} of {len(again)} comparisons repeat one of these numbers in another way, and do not count."
     return first, second
 
 

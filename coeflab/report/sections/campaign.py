@@ -8,6 +8,7 @@ The figure of one budget: parts as bars, the largest on top.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,7 +20,7 @@ from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.fits.results.fitted_model import FittedModel, residuals_in_words
 from coeflab.fits.uncertainty.budget import Budget
-from coeflab.law.coefficient import COVERS
+from coeflab.law.coefficient import COVERS, Coefficient
 from coeflab.law.symbols import primed
 from coeflab.report.document import Figure, Section
 from coeflab.report.figures.estimator import estimator_figure
@@ -79,7 +80,10 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
         title = f"{title} ({fit.fit})"
     text = [line for t in mine for line in _about(t)]
     zero = zeros(study, fit.campaign, fit.coefficients.coefficients)
-    text += [line for line in (in_one_line(zero),) if line]
+    alone = [s for s in fit.sweeps if s.symbol not in {c.symbol for c in zero} and not s.by_symmetry]
+    if any(t.campaign == fit.campaign for t in study.plan.tows):
+        alone = [s for s in alone if s.symbol in study.plan.wanted]
+    text += [line for line in (in_one_line(zero), _in_the_table(fit, alone, zero)) if line]
     if "swept about" in fit.settings:
         text.append(
             f"Figures and estimators are about {fit.settings['swept about']}: the coefficients in the tables are about "
@@ -97,14 +101,19 @@ def campaign_section(study: Study, fit: FitResult, place: str, taken: set[str]) 
             if rate in t.varies and not _shown_before(study, fit)
         ),
         subsections=(
-            *(
-                _sweep_section(study, fit, s, anchor(f"{place} {s.symbol}", taken))
-                for s in fit.sweeps
-                if s.symbol not in {c.symbol for c in zero}
-            ),
+            *(_sweep_section(study, fit, s, anchor(f"{place} {s.symbol}", taken)) for s in alone),
             *(_model_section(m, anchor(f"{place} {m.response}", taken)) for m in distinct(fit.models)),
             *oscillation_sections(study, fit, lambda name: anchor(f"{place} {name}", taken)),
         ),
+    )
+
+
+def _in_the_table(fit: FitResult, alone: list[Sweep], zero: Sequence[Coefficient]) -> str:
+    """Slopes without a section: turned by symmetry, or of an own tow and not among those that the plan wants."""
+    said = {s.symbol for s in alone} | {c.symbol for c in zero}
+    left = [primed(s.symbol) for s in fit.sweeps if s.symbol not in said]
+    return (
+        f"In the table only, by symmetry from other points or not among those wanted: {listed(left)}." if left else ""
     )
 
 
@@ -279,7 +288,12 @@ def budget_sections(study: Study) -> tuple[Section, ...]:
         "So do the inputs that a campaign declares under [uncertainty]: angle, speed, calibration, reference point, length. A part that "
         "was not assessed is named, never zero.",
     )
-    wanted = [b for b in found if b.symbol.removesuffix("'") in study.plan.wanted]
+    turned = {(s.campaign, s.symbol) for f in study.fits for s in f.sweeps if s.by_symmetry}
+    wanted = [
+        b
+        for b in found
+        if b.symbol.removesuffix("'") in study.plan.wanted and (b.campaign, b.symbol.removesuffix("'")) not in turned
+    ]
     parts = tuple(
         Section(
             f"budget-{i}",
@@ -298,9 +312,9 @@ def tow_sections(study: Study) -> tuple[Section, ...]:
     if not found:
         return ()
     text: tuple[str, ...] = (
-        "Every wanted coefficient of each body that our own computations tow, a missing one with its reason; grid: its share of "
-        "the value by the grid study, which U95 holds.",
-        "E = S - D against U_V, ASME V&V 20. A verdict needs tests of the very body at steady angles; else E and U_V have none.",
+        "Coefficients of the bodies that we tow by CFD ourselves; a missing one says why. Grid: the part of U95 that the grid "
+        "study gives, in % of the value.",
+        "E = S - D is compared with U_V (ASME V&V 20). There is a verdict only where the same body was tested, at steady angles.",
     )
     with_values = [one for one in found if any(r.value is not None for r in one.rows)]
     text += tuple(_nothing(one) for one in found if one not in with_values)

@@ -22,10 +22,10 @@ FLIPS = {
 }
 OF_SHAPES = {"port-starboard": PORT_STARBOARD, "top-bottom": UP_DOWN}
 TEXT = (
-    "Each slope comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder, each by how well it explains "
-    "the points. No form or window is chosen and no published value enters: docs/slope_at_origin.md.",
-    f"U95 covers {COVERS}. random: scatter of the points; form: the rest; input: declared inputs and grid, and for a "
-    "term tied to a slope what that slope brings in. All in % of the value; a dash: not assessed, not in U95.",
+    "Each slope comes from one model of the whole sweep: line, v|v|, cubic and a smooth remainder, weighted by how well each explains "
+    "the points. Nobody chooses a form or a window, and no published value is used: docs/slope_at_origin.md.",
+    f"U95 covers {COVERS}. Its parts, in % of the value: random, the scatter of the points; form, the unknown shape of the curve; input, "
+    "the declared inputs and the grid, and for a term tied to a slope the uncertainty of that slope. A dash: not assessed, not in U95.",
 )
 
 
@@ -106,7 +106,7 @@ def _table(study: Study, campaign: str, body: str) -> Table:
     )  # fmt: skip
     open_parts = dict.fromkeys(name for b in study.budgets if b.campaign == campaign for name in b.unassessed)
     notes = [in_one_line(zero), f"Not in U95: {', '.join(open_parts)}." if open_parts else ""]
-    headers = ("", "value", "U95", "U95", "random", "form", "input", "n")
+    headers = ("", "value", "U95", "U95 %", "random", "form", "input", "n")
     title = f"{campaign}: {body.replace('_', ' ')}, primed"
     return Table(title, headers, rows, tuple(n for n in notes if n), frozenset({0}))
 

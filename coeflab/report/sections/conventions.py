@@ -222,8 +222,8 @@ def _ring(axes: Axes, middle: Array, first: Array, second: Array) -> None:
 
 TITLE = "Conventions used"
 AXES_ROWS = (
-    "Axes: x forward, y to starboard, z down, right-handed, fixed in the body. X, Y, Z, K, M, N are what the fluid "
-    "exerts on the body."
+    "Axes: x forward, y to starboard, z down, right-handed, fixed in the body. X, Y, Z, K, M, N are the forces and "
+    "moments of the fluid on the body."
 )
 ANGLES = (
     "Angles: v' = v/U = sin(beta), positive when the body moves to starboard; w' = w/U = sin(alpha) cos(beta), "
@@ -234,12 +234,12 @@ CONTROLS = (
     "a positive stern plane Z up (Zds' = -0.005603): Roddy (1990), Table 4, as in the sketch."
 )
 POTENTIAL = (
-    "Forces are those of steady motion: velocity derivatives contain their potential parts, the Munk moment among them. A "
-    "simulator that adds C_A(nu) nu must not count these twice."
+    "Forces are those of steady motion: velocity derivatives include their potential parts, such as the Munk moment. A "
+    "simulator that adds C_A(nu) nu must not count them twice."
 )
 REST = (
-    "Forces at zero angle need not vanish on a real model: every curve has a value at rest, and with points on both sides of zero "
-    "a term of the other parity."
+    "A real model may have a force at zero angle: every curve has a constant, and with points on both sides of zero an odd curve "
+    "has an even term too, and an even one an odd term."
 )
 
 
@@ -302,5 +302,5 @@ def _lengths(study: Study) -> str:
     named = " and ".join(lengths)
     return (
         f"Primes: Y' = Y / (1/2 rho U^2 L^2), N' = N / (1/2 rho U^2 L^3), r' = r L/U, with L = {named}. "
-        "Coefficients on another length differ; they are rescaled before they are compared."
+        "Coefficients made with another length are rescaled before they are compared."
     )

@@ -99,8 +99,8 @@ def _said(part: str, values: Array) -> str:
 
 TEXT = (
     "G_h = 1 - Nv' (Yr' - m') / [Yv' (Nr' - xG' m')] and G_v = 1 - Mw' (Zq' + m') / [Zw' (Mq' - xG' m')]: with controls fixed "
-    "positive is stable, negative unstable; where U95 holds zero, not determined.",
-    "U95 holds the derivatives, not mass and centre of gravity. G_v is the limit of high speed, without the restoring moment of "
+    "positive is stable, negative unstable; where the interval contains zero, not determined.",
+    "U95 is that of the derivatives; mass and centre of gravity are not in it. G_v is the limit of high speed, without the restoring moment of "
     "weight and buoyancy.",
     "Roots: eigenvalues of small motions about a straight course, speed held, by the force law and added mass of the file.",
 )
@@ -116,7 +116,6 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
     lacking = {p.name: p.conditions.speed for p in study.parameter_files.values() if p.hydrostatics is None}
     for verdict, places in sorted(said.items(), key=lambda item: ("unstable" not in item[0], item[0])):
         each = ", ".join(f"{name} ({', '.join(values)})" if with_values else name for name, values in places.items())
-        each += ", there is no U95" if "alone" in verdict else ""
         if FAST in verdict:
             speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
             each += f", at {speeds} m/s not determined, as BG is not known" if speeds else ""
@@ -174,7 +173,9 @@ def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
         stated = [c.symbol for c in found if c is not None and c.origin == "literature"]
         remarks = [f"{', '.join(stated)} from literature"] if stated else []
         remarks += [d.statement] if half is None else []
-        remarks.append(f"m' and xG' are not assessed: 1 % of m' moves it by {number(by_mass(parameters, d), 2)}")
+        remarks.append(
+            f"uncertainty of m' and xG' not in U95: 1 % of m' changes {index} by {number(by_mass(parameters, d), 2)}"
+        )
         out.append((parameters.name, index, number(d.value), number(half, 2), sense(d), "; ".join(remarks)))
     return out
 
@@ -187,7 +188,7 @@ def _shown(rows: list[tuple[str, ...]], study: Study) -> Table:
         return Table("Stability indices", headers, tuple(rows), (), frozenset({0, 1, 4, 5}))
     notes = tuple(dict.fromkeys(f"published: {source}" for _, source in printed if source))
     beside = [(*row[:4], value or ABSENT, *row[4:]) for row, (value, _) in zip(rows, printed, strict=True)]
-    told = ("published indices are made of the source's own derivatives and mass; no verdict", *notes)
+    told = ("published: computed from the derivatives and mass of the source; no verdict", *notes)
     return Table(
         "Stability indices", (*headers[:4], "published", *headers[4:]), tuple(beside), told, frozenset({0, 1, 5, 6})
     )
@@ -227,8 +228,8 @@ def _pairs(values: NDArray[np.complex128]) -> str:
 
 
 SIMULATED = (
-    "Each manoeuvre is computed from a parameter file of this study alone. A figure that needs motions beyond the data says so; one "
-    "that no coefficient of the file decides has no value.",
+    "Each manoeuvre is computed from one parameter file of this study. A figure that uses motions beyond the data is marked "
+    "extrapolated; one that the file does not determine has no value.",
 )
 SHOWN = ("track", "profile", "angle")  # of the drawings of a motion, in the core
 
@@ -264,10 +265,9 @@ def _manoeuvre(made: Simulation, anchor: str) -> Section:
 
 
 EXPORTED = (
-    "The files were read again and evaluated by the target's own force law, beside that of the parameter file, accelerations too. A "
-    "difference is what a simulation with that target has wrong.",
-    "Where a target adds -C_A(nu) nu itself, first-order derivatives are given to it less their potential part: nothing counts "
-    "twice.",
+    "Every written file is read again. Forces and accelerations by the target's own force law are compared with those of the "
+    "parameter file: a difference is the error of a simulation with that target.",
+    "A target that adds -C_A(nu) nu itself gets first-order derivatives without their potential part, so that nothing counts twice.",
 )
 
 
@@ -303,9 +303,9 @@ def summary(study: Study) -> Table:
         for made in study.exports
     )
     rows += tuple((r.parameters, r.target, "refused", ABSENT, ABSENT, "none") for r in study.refused)
-    headers = ("parameter file", "target", "loss", "worst of largest", "accelerations", "files")
+    headers = ("parameter file", "target", "loss", "largest difference in %", "accelerations", "files")
     notes = (
-        "worst of largest: largest difference of a force component or an acceleration over its largest value, both over the states that the loss of "
+        "Largest difference in %: of a force component or an acceleration over its largest value, both over the states that the loss of "
         f"each export names: what campaigns cover, and primes to {ASSUMED:g} either way of a motion that none covers",
     )
     return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4, 5}))

@@ -13,7 +13,7 @@ from coeflab.bodies.triangulation import Triangulation
 from coeflab.core.provenance import work
 from coeflab.core.table import ABSENT, Table, coefficient, number
 from coeflab.law.added_mass import AddedMass
-from coeflab.law.symbols import COMPONENTS
+from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.study.study import Study
 from coeflab.vehicle.inertia import water_inertia
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -89,6 +89,24 @@ def derivatives(found: Triangulation) -> Table:
         "that speak of the entry, over the recommended one; off the diagonal over the root of both diagonal entries"
     )
     return Table("Acceleration derivatives", headers, tuple(rows), (note, *remarks(found)))
+
+
+def near_walls(found: tuple[AddedMass, ...]) -> Table:
+    """Diagonal entries against the distance from a wall, with the numerical error, over those far from it."""
+    far, *near = found
+    rows = [("none", *(number(float(v)) for v in np.diag(far.matrix)), *[ABSENT] * 6)]
+    for w, n in zip(far.walls, near, strict=True):
+        own, free = np.diag(n.matrix), np.diag(far.matrix)
+        ratios = [f"{a / b:.3f}" if b > 0.0 else ABSENT for a, b in zip(own, free, strict=True)]
+        rows.append((f"{w.distance:g} m", *(number(float(v)) for v in own), *ratios))
+    names = [f"{c}{m}dot" for c, m in zip(COMPONENTS, MOTIONS, strict=True)]
+    notes = (
+        "distance from the reference point to the wall; kg and kg m^2, signs of added mass; ratios: over the value far from walls",
+        *(n.statements[0] for n in near),
+        *(s for s in far.statements if "error estimate" in s),
+    )
+    headers = ("distance", *names, *(f"{n} ratio" for n in names))
+    return Table(f"{far.body}: added mass near a wall", headers, tuple(rows), notes)
 
 
 def remarks(found: Triangulation) -> tuple[str, ...]:

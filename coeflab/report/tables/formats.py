@@ -33,13 +33,13 @@ def forces(loss: Loss) -> Table:
             _row(f"d{m}/dt", "rad/s^2" if m in "pqr" else "m/s^2", loss.accelerations, i) for i, m in enumerate(MOTIONS)
         ]
     notes = [
-        f"over {loss.grid}; steady motion, FRD, about the file's reference point; 0 is less than {LOSSLESS:g} of the largest; worst of "
-        "largest: both over these states"
+        f"At {loss.grid}; in steady motion, FRD, about the file's reference point.",
+        f"0: below {LOSSLESS:g} of the largest value.",
     ]
     if loss.accelerations is not None:
         notes.append(
-            "du/dt to dr/dt: accelerations of the file's rigid body in these states, and from rest under a push along each axis as "
-            "large as the file's largest force or moment; the target's with the added mass in its own files"
+            "du/dt to dr/dt: accelerations of the file's rigid body in these states, and from rest under a force along each axis as "
+            "large as the file's largest; those of the target use the added mass in its own files."
         )
     if loss.not_compared:
         notes.append(loss.not_compared)
@@ -52,7 +52,7 @@ def forces(loss: Loss) -> Table:
     notes += [f"not held: {what}" for what in loss.not_held]
     notes += [str(each) for each in loss.lost]
     notes += [f"changed: {what}" for what in loss.changes]
-    headers = ("", "unit", "largest", "worst difference", "rms difference", "worst of largest")
+    headers = ("", "unit", "largest value", "max. difference", "rms difference", "max. in %")
     return Table(
         f"Force law of {loss.target} against the parameter file", headers, tuple(rows), tuple(notes), frozenset({0, 1})
     )
@@ -75,17 +75,17 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
         for f in found
     )  # fmt: skip
     notes = [
-        "in % of the largest measured force of the component in that table; a set-up's own force at rest is taken off"
+        "In % of the largest measured force of the component in that table; the force that the set-up itself shows ahead is subtracted."
     ]
     if not controls:
         notes.append("points with a control off zero are left out: no force of controls is compared")
     notes += [
-        f"{f.component}, {f.table}: the law is not said to hold at {', '.join(f.beyond)}; it misses them by up to "
+        f"{f.component}, {f.table}: outside the range in which the law holds: {', '.join(f.beyond)}; largest difference there "
         f"{percent(f.worst_beyond / f.largest if f.largest else 0.0)}"
         for f in found
         if f.beyond
     ]
-    headers = ("", "table", "points", "worst", "rms", "where", "allowed", "")
+    headers = ("force", "table", "points", "largest", "rms", "where", "allowed", "verdict")
     return Table(
         f"{whose} against the measured points", headers, rows, tuple(notes), frozenset({0, 1, 5, 7}), ("where", "rms")
     )
@@ -117,7 +117,8 @@ def percent(share: float) -> str:
 
 def in_short(loss: Loss) -> str:
     """The loss on one line: what is not held, what else is lost, and the largest difference of a force and of an acceleration."""
-    said = [f"it has no {_some(loss.not_held, NAMED)}"] if loss.not_held else []
+    terms = [what.partition(" (")[0] for what in loss.not_held]
+    said = [f"no {_some(terms, NAMED)}"] if terms else []
     said += [_some([str(x) for x in loss.lost], 1)] if loss.lost else []
     found: list[tuple[int, float, Sequence[str]]] = [(*loss.forces.furthest, COMPONENTS)]
     if loss.accelerations is not None:

@@ -196,7 +196,18 @@ def coefficients(found: Comparison) -> Table:
         )
         for r in found.rows
     )  # fmt: skip
-    headers = ("", "first", "U95", "second", "U95", "difference", "combined", "ratio", "verdict", "why")
+    headers = (
+        "",
+        "first",
+        "U95 of first",
+        "second",
+        "U95 of second",
+        "difference",
+        "combined",
+        "ratio",
+        "verdict",
+        "why",
+    )
     title = f"{found.b} against {found.a}"
     return Table(
         title, headers, rows, () if found.models else found.statements, frozenset({0, 8, 9}), ("ratio", "combined")
@@ -232,9 +243,9 @@ def side_by_side(first: ParameterFile, others: Sequence[Comparison], names: Sequ
     """
     found: list[dict[str, Compared]] = [{r.symbol: r for r in c.rows} for c in others]
     own = {c.symbol: c for c in first.coefficients}
-    headers = ["", names[0], "U95"]
+    headers = ["", names[0], f"U95 of {names[0]}"]
     for name in names[1:]:
-        headers += [name, "U95", "diff. / combined", "verdict"]
+        headers += [name, f"U95 of {name}", "diff. / combined", "verdict"]
     rows = []
     for symbol in dict.fromkeys((*own, *(s for rows in found for s in rows))):
         here = own.get(symbol)

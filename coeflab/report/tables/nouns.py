@@ -67,7 +67,7 @@ def coefficients(several: Sequence[Coefficient], title: str = "Coefficients, pri
         )
         for c in several
     ]
-    headers = ("", "value", "U95", "U95", "random", "form", "input", "window", "n", "campaign", "estimator")
+    headers = ("", "value", "U95", "U95 %", "random", "form", "input", "window", "n", "campaign", "estimator")
     fitted = [c for c in several if c.u95 is not None and c.origin == "fit"]
     notes = DEFINED + (SCATTER_ONLY if any(c.parts.model_form is None for c in fitted) else ())
     notes += tuple(f"{s.replace('_', ' ')}: {s.advice}" for s in sorted({c.status for c in several}) if s.advice)
@@ -99,7 +99,7 @@ def terms(model: FittedModel) -> Table:
             )
         )
     title = f"{model.response} [{model.unit if model.unit != '1' else '-'}], {model.form}: {model.campaign}"
-    return Table(title, ("", "term", "value", "95 %", "95 %"), tuple(rows), model.statements, frozenset({0, 1}))
+    return Table(title, ("", "term", "value", "U95", "U95 %"), tuple(rows), model.statements, frozenset({0, 1}))
 
 
 def fit_tables(result: FitResult) -> tuple[Table, ...]:

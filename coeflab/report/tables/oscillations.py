@@ -46,7 +46,7 @@ def explained(fit: FitResult, others: Sequence[FitResult] = ()) -> Table:
     against = [*own, *beside_steady(fit, others)]
     rows = tuple(_explained(e) for e in against if e.against or np.isfinite(e.by_amplitude))
     notes = EXPLAINED + (STEADY if len(against) > len(own) else ())
-    headers = ("", "against", "at", "run", "U95", "slope", "difference", "by amplitude", "rest", "U95")
+    headers = ("", "against", "at", "run", "U95 of run", "slope", "difference", "by amplitude", "rest", "U95 of rest")
     title = f"What amplitude explains: {fit.campaign}"
     return Table(title, headers, rows, notes if rows else (), frozenset({0, 1}))
 
@@ -81,7 +81,18 @@ def _runs(o: Oscillation) -> Table:
     more = ("2nd", "3rd")[: max(len(o.runs[0].sizes) - 1, 0)]
     mean = "w'" if o.motion in ("heave", "pitch") else "v'"
     rate = primed(f"{o.symbol}dot")
-    headers = ("run", f"{o.variable}'", "omega'", "cycles", f"mean {mean}", symbol, "U95", rate, "U95", *more)
+    headers = (
+        "run",
+        f"{o.variable}'",
+        "omega'",
+        "cycles",
+        f"mean {mean}",
+        symbol,
+        f"U95 of {symbol}",
+        rate,
+        f"U95 of {rate}",
+        *more,
+    )
     notes = (
         "Equivalent linear coefficients of each run; U95 by the scatter of its cycles (Student). 2nd, 3rd: harmonics of the "
         "force over its fundamental. omega' = omega L/U.",

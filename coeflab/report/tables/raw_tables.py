@@ -87,7 +87,7 @@ def as_json(raw: RawTable, importer: str, proposed: Sequence[Proposal], shows: S
             "proposed": proposal.text, "certain": proposal.certain, "why": proposal.why,
         })  # fmt: skip
     said = {
-        key: {"value": list(s.value) if isinstance(s.value, tuple) else s.value, "place": s.place}
+        key: {"value": list(s.value) if isinstance(s.value, tuple) else s.value, "place": s.place, "offered": s.offered}
         for key, s in raw.stated.items()
     }
     return {
@@ -98,8 +98,11 @@ def as_json(raw: RawTable, importer: str, proposed: Sequence[Proposal], shows: S
 
 def stated(raw: RawTable) -> Table:
     """What the file says of keys of campaign.toml, with its places."""
-    rows = tuple((key, shortened(_text(s.value), 24), shortened(s.place, 28)) for key, s in raw.stated.items())
-    return Table("Stated by the file", ("key", "value", "where"), rows, (), frozenset({0, 1, 2}))
+    rows = tuple(
+        (key, shortened(_text(s.value), 24) + "?" * s.offered, shortened(s.place, 36)) for key, s in raw.stated.items()
+    )
+    notes = ("? words over the table, to be confirmed",) if any(s.offered for s in raw.stated.values()) else ()
+    return Table("Stated by the file", ("key", "value", "where"), rows, notes, frozenset({0, 1, 2}))
 
 
 def _text(value: object) -> str:

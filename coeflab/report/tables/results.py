@@ -6,7 +6,18 @@ import math
 from collections.abc import Sequence
 
 from coeflab.core.provenance import work
-from coeflab.core.table import ABSENT, Check, Table, coefficient, number, percent, plus_minus, probability, with_u95
+from coeflab.core.table import (
+    ABSENT,
+    Check,
+    Table,
+    as_printed,
+    coefficient,
+    number,
+    percent,
+    plus_minus,
+    probability,
+    with_u95,
+)
 from coeflab.core.wording import listed
 from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.coefficient import COVERS, Status
@@ -100,9 +111,8 @@ def verdicts(study: Study) -> Table:
             primed(c.coefficient.symbol),
             c.coefficient.campaign or ABSENT,
             *with_u95(c.coefficient.value, c.coefficient.u95),
-            coefficient(c.published),
-            coefficient(None if c.difference is None else abs(c.difference)),
-            coefficient(c.combined),
+            as_printed(c.published),
+            *with_u95(None if c.difference is None else abs(c.difference), c.combined),
             VERDICTS[c.passed],
             c.reference,
         )
@@ -141,7 +151,7 @@ def side_by_side(study: Study) -> Table:
                     *noun_tables.with_status(c),
                     percent(c.parts.random, c.value),
                     percent(c.parts.model_form, c.value),
-                    *(coefficient(published.get(k)) if k in published else ABSENT for k in columns),
+                    *(as_printed(published.get(k)) for k in columns),
                 )
             )
     names = tuple(f"{name}, read with {reading}" if name in twice else name for name, reading in columns)
@@ -159,7 +169,7 @@ def own_tow(found: Towed) -> Table:
     rows = []
     for r in found.rows:
         value, u95 = (r.missing, ABSENT) if r.missing else with_u95(r.value, r.u95)
-        rows.append((primed(r.symbol), value, u95, percent(r.u_grid, r.value), *map(coefficient, r.published)))
+        rows.append((primed(r.symbol), value, u95, percent(r.u_grid, r.value), *map(as_printed, r.published)))
     said: dict[str, list[str]] = {}
     for r in found.rows:
         said.setdefault(r.why, []).append(primed(r.symbol))
@@ -274,7 +284,7 @@ def estimators(sweep: Sweep) -> Table:
 def sensitivity(sweep: Sweep) -> Table:
     """The recommended value had the sweep ended sooner."""
     rows = tuple((_window(sweep, s.cap), *with_u95(s.value, s.u95), percent(s.u95, s.value)) for s in sweep.sensitivity)
-    headers = ("largest setting", "value", "U95", "U95")
+    headers = ("largest setting", "value", "U95", "U95 %")
     return Table(f"{primed(sweep.symbol)} by largest setting", headers, rows, (), frozenset({0}))
 
 
@@ -384,6 +394,12 @@ def inspected(table: ForceTable, most: int = 0) -> Table:
     ]
     if left_out:
         notes.insert(0, f"{len(left_out)} of {len(table)} rows are not shown; --rows 0 shows all")
+    spare = (headers[1],) if len(motions) > 1 or table.controls else ()
     return Table(
-        f"{table.name}: SI, FRD", tuple(headers), tuple(rows), ("(...) excluded from fits", *notes), frozenset({0})
+        f"{table.name}: SI, FRD",
+        tuple(headers),
+        tuple(rows),
+        ("(...) excluded from fits", *notes),
+        frozenset({0}),
+        spare,
     )

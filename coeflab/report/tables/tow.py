@@ -209,6 +209,8 @@ def covers(rows: Sequence[TowedRow]) -> str:
     """What U95 is of, and what it leaves out; empty where no derivative has one."""
     if not any(r.u95 is not None for r in rows):
         return ""
+    if all(r.coefficient is None or r.coefficient.origin == "estimate" for r in rows):
+        return "U95: 95 %, the scatter and the spread of the methods of estimates. No measurement and no CFD."
     said = "U95: 95 %, of the fit and the scatter of the runs about it."
     studied = [f"{primed(r.symbol)} {r.u_grid:.2g}" for r in rows if r.u_grid is not None]
     if studied:

@@ -88,7 +88,7 @@ def share_table(found: Importance) -> Table:
         f"{found.rows} rows. first: share of the variance that goes if the group is known; total: share that stays if all the "
         "others are.",
     )
-    headers = ("group", "from", "first", "95 %", "total", "95 %")
+    headers = ("group", "from", "first", "U95 of first", "total", "U95 of total")
     return Table(f"{found.figure}: where its variance comes from", headers, rows, notes, frozenset({0, 1}))
 
 
@@ -170,7 +170,7 @@ def overview(budgets: Sequence[Budget]) -> Table:
                 *(shares.get(n, ABSENT) for n in names), "; ".join(b.unassessed) or ABSENT,
             )
         )  # fmt: skip
-    headers = ("", "campaign", "value", "U95", "U95", *names, "not assessed")
+    headers = ("", "campaign", "value", "U95", "U95 %", *names, "not assessed")
     notes = (
         "Columns of parts: share of the variance. U95: root sum of squares of the parts, taken as independent. A dash: "
         "not assessed or not acting, never zero.",
@@ -271,7 +271,7 @@ def grids(budgets: Sequence[Budget]) -> Table:
         for g in found.values()
     )
     headers = (
-        "", "setting", "cells", "values", "order", "extrapolated", "factor", "95 %", "95 %", "convergence",
+        "", "setting", "cells", "values", "order", "extrapolated", "factor", "U95", "U95 %", "convergence",
     )  # fmt: skip
     said = tuple(f"{g.component} at {g.setting}: {g.convergence.statement}." for g in found.values())
     notes = ("Half-widths are those of the grid in use. SI units.", *said)

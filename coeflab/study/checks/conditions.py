@@ -66,13 +66,13 @@ def _sizes(t: ForceTable) -> Iterator[Check]:
 
 
 def _carried(t: ForceTable) -> Iterator[Check]:
-    """A balance that turns with its model and is said not to carry it."""
+    """A balance that turns with its model and is declared not to carry it: to be known, not to be warned of again."""
     turns = any(np.any(np.asarray(t.motion[m]) != 0.0) for m in ANGULAR)
     if turns and t.source.kind == "experiment" and not any(n.startswith(TAKEN_OUT) for n in t.notes):
         yield Check(
-            "conditions", f"{t.name} inertia", Severity.WARN, "contains_inertia = false in an experiment that turns",
-            "a balance on a rotating arm carries the model's inertia",
-            "If the forces contain it, Yr' and Nr' are wrong, often in sign: contains_inertia = true and [inertia] subtract it.",
+            "conditions", f"{t.name} inertia", Severity.NOTE, "declared: contains_inertia = false in an experiment that turns",
+            "forces from which the model's inertia was taken out",
+            "A balance on a rotating arm carries it. If the forces contain it, Yr' and Nr' are wrong, often in sign: contains_inertia = true and [inertia] subtract it.",
         )  # fmt: skip
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from coeflab.bodies.body import likeness
+from coeflab.bodies.mesh.particulars import likeness
 from coeflab.core.table import Check, Severity
 from coeflab.study.study import Study
 

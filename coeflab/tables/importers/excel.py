@@ -23,8 +23,9 @@ from coeflab.core.limits import SHEET_BYTES, SHEET_CELLS, SHEET_UNPACKED, TABLE_
 from coeflab.core.options import bounded, parse_options, text
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
-from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numeric, raw_columns, read_head
-from coeflab.tables.raw_table import RawTable
+from coeflab.tables.dialect import Cells, Head, Marks, Row, is_unit_row, numbered, numeric, raw_columns, read_head
+from coeflab.tables.raw_table import RawTable, SeveralError
+from coeflab.tables.words_above import words_above
 
 summary = "spreadsheets (xlsx, xls, ods): a sheet with its header row, formulas by their saved values"
 citations = ()
@@ -366,10 +367,12 @@ def _chosen(sheets: Mapping[str, list[list[Value]]], options: Options, path: Pat
         raise InputError(f"no sheet {shown(options.sheet)}", f"one of {known}", file=path)
     full = [name for name, rows in sheets.items() if sum(_filled(row) > 0 for row in rows) > 1]
     if len(full) != 1:
-        raise InputError(
+        several = SeveralError(
             f"{len(full) or 'no'} sheets with rows of numbers", "one, or the option sheet", file=path,
             advice=f"The sheets are {known}. Say which with --option sheet=NAME, or sheet = under [importer].",
         )  # fmt: skip
+        several.choices = tuple(full)
+        raise several
     return full[0]
 
 
@@ -391,7 +394,9 @@ def _body(rows: list[list[Value]], options: Options, path: Path) -> tuple[int, H
         if len(rows) < 2000
         else fits[0]
     )
-    if options.units == 0 and begin + 1 < len(rows) and is_unit_row([_text(v) for v in rows[begin]]):
+    below = [[_text(v) for v in row] for row in rows[begin + 1 : begin + 500] or rows[begin:]]
+    numbers = numbered(below, PLAIN)
+    if options.units == 0 and begin + 1 < len(rows) and is_unit_row([_text(v) for v in rows[begin]], numbers):
         begin += 1  # 1e-3 and the like over the data, read as numbers
     width = len(rows[0])
     above: list[Row] = []
@@ -404,7 +409,7 @@ def _body(rows: list[list[Value]], options: Options, path: Path) -> tuple[int, H
             raise InputError(
                 f"nothing in row {wanted}", f"names over the data, which begin in row {begin + 1}", file=path
             )
-    return begin, read_head(above, width, PLAIN, options.header, options.units)
+    return begin, read_head(above, width, PLAIN, numbers, options.header, options.units)
 
 
 def _kept(rows: list[list[Value]], begin: int, head: Head, options: Options, path: Path) -> tuple[list[int], list[str]]:
@@ -495,6 +500,9 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         if words:
             texts[k] = words
     columns, remarks = raw_columns(head, values, texts, met)
+    above = [
+        (i + 1, [_text(v) for v in rows[i]]) for i in range(min(begin, 200)) if i + 1 not in (head.line, head.unit_line)
+    ]
     dialect = {
         "file": kind,
         "sheet": name,
@@ -503,5 +511,6 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         "units": head.units_stand.replace("line", "row"),
     }
     return RawTable(
-        path, columns, head.line, np.array(lines), files=(path,), dialect=dialect, remarks=(*left, *errors, *remarks)
+        path, columns, head.line, np.array(lines), files=(path,), dialect=dialect, remarks=(*left, *errors, *remarks),
+        stated=words_above(above, PLAIN),
     )  # fmt: skip

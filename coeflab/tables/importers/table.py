@@ -280,6 +280,6 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     texts = {k: t for k, t in body.texts.items() if k in textual}
     columns, remarks = raw_columns(dialect.head, body.whole_columns(), texts, body.met)
     return RawTable(
-        path, columns, dialect.head.line, np.concatenate(body.lines), files=(path,), dialect=dialect.said,
+        path, columns, dialect.head.line, np.concatenate(body.lines), files=(path,), dialect=dialect.said, stated=dialect.stated,
         remarks=(*dialect.remarks, *_remarks(body), *remarks),
     )  # fmt: skip

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Protocol, runtime_checkable
 from coeflab.core.declarations import Declaration
 from coeflab.core.registry import Plugin, Registry
 from coeflab.core.types import brief
+from coeflab.law.coefficient import CoefficientSet
 from coeflab.tables.raw_table import RawTable, Run
 from coeflab.tank.jobs import Job, Step
 from coeflab.tank.tank import Tank
@@ -59,6 +60,8 @@ class TowSolver(Plugin, Protocol):
         ``table(tank, body, folder)``: the whole table at once, of a method that needs no runs of ours; a row bears the name of
         its condition in ``row_labels``, columns their plain name in ``means``, in SI, whole body, FRD. ``folder`` is that of the
         tow, in which ``jobs`` may have written what a person fills in.
+    known : callable or None
+        ``known(tank, body)``: coefficients with the U95 of the method itself, where rows cannot show it.
     """
 
     options: type[Declaration]
@@ -68,6 +71,7 @@ class TowSolver(Plugin, Protocol):
     resumed: Callable[[Job], tuple[tuple[Step, ...], float]] | None = None
     ended: Callable[[Job], tuple[tuple[str, ...], str]] | None = None
     table: Callable[[Tank, TowedBody, Path], RawTable] | None = None
+    known: Callable[[Tank, TowedBody], CoefficientSet] | None = None
 
     def installed(self) -> Installation:
         """What is installed here."""

@@ -144,8 +144,9 @@ const benchOf = (data) => {
     const out = { name: index.name, value, u95: null, why: "" }, bounded = cells.every((row) => row.every(Number.isFinite));
     const damping = [[index.symbols[0], slopeForce, 2 * Math.sqrt(cells[0][0])], [`${index.symbols[3]} - xG'm'`, b, 2 * Math.sqrt(cells[3][3])]];
     const driven = damping.find(([, size]) => size >= 0), open = bounded ? damping.find(([, size, half]) => Math.abs(size) <= half) : null;
-    if (!bounded) out.why = "no interval: a coefficient in it has no U95";
-    else if (open) out.why = `no interval: U95 of ${open[0]} includes zero`;
+    const bare = index.symbols.filter((_, i) => !Number.isFinite(cells[i][i]));
+    if (!bounded) out.why = `no U95: ${bare.length ? bare.join(", ") : index.symbols.join(", ")} ${bare.length === 1 ? "has" : "have"} none`;
+    else if (open) out.why = `no U95: U95 of ${open[0]} includes zero`;
     else {
       let variance = 0;
       g.forEach((x, i) => g.forEach((y, j) => { variance += x * cells[i][j] * y; }));
@@ -154,7 +155,7 @@ const benchOf = (data) => {
     if (driven) out.why = `${driven[0]} is not below zero: the sign of ${index.name} is no criterion`;
     const decided = !driven && (out.u95 === null || Math.abs(value) > out.u95);
     const words = `${value > 0 ? "stable" : "unstable"}${index.name === "G_v" ? " at high speed" : ""}`;
-    out.sense = decided ? words + (out.u95 === null ? " by its value alone" : "") : "not determined";
+    out.sense = decided ? words + (out.u95 === null ? ", no U95" : "") : "not determined";
     return out;
   };
 

@@ -1,7 +1,8 @@
 "use strict";
 // A zigzag by the fixed-step march of coeflab/motion: the same rates, steps, crossings and figures.
 const zigzagOf = (v, coefficients) => {
-  const NEAR = 1e-9, SLOWEST = 1e-9, FLAT = 1e-12, SLACK = 1e-6, MOVING = 1e-3, SECANTS = 8;
+  const NEAR = 1e-9, SLOWEST = 1e-9, FLAT = 1e-12, SLACK = 1e-6, MOVING = 1e-3, SECANTS = 8, UNCOVERED = "no data cover it";
+  const ANGLES = { dr: "rudder angle", ds: "stern plane angle", db: "bow plane angle" };
   const law = v.law, many = law.source.length, offset = 1 + law.powers.length, pool = new Float64Array(offset + 2 * many);
   const total = new Float64Array(9), angled = law.angled;
 
@@ -168,7 +169,7 @@ const zigzagOf = (v, coefficients) => {
     for (const name of [...names.slice(1).map((x) => `${x}'`), ...v.controls]) {
       if (spoken.has(name.replace("'", ""))) continue;
       const far = m.time.map((_, i) => Math.abs(valueOf(name, i)) > MOVING);
-      if (far.some(Boolean)) out.set(`${name}: no data cover it`, far);
+      if (far.some(Boolean)) out.set(`${name}: ${UNCOVERED}`, far);
     }
     out.set("astern", m.state.map((s) => s[7] < -SLACK * Math.max(Math.sqrt(s[7] ** 2 + s[8] ** 2 + s[9] ** 2), SLOWEST)));
     if (law.tabled.some(Boolean)) {
@@ -223,12 +224,15 @@ const zigzagOf = (v, coefficients) => {
   });
   const { out: flags } = flagsOf(m), missing = v.limits.map((l) => [l.rate, lacking(l)]);
   const turn = (missing.find(([rate]) => rate === "r") || ["", ""])[1];
+  const decisive = (names, rate) => names.filter((n) => !n.endsWith(UNCOVERED) || n === `${rate}': ${UNCOVERED}`);
   const judged = (name, value, unit, when) => {
     if (value === null) return { name, value, unit, status: "not reached", why: `not within ${Number(last.toPrecision(6))} s` };
     const names = [...flags].filter(([, f]) => f.some((x, i) => x && m.time[i] <= when)).map(([n]) => n);
     if (!names.length) return { name, value, unit, status: "ok", why: "" };
-    const beyond = `beyond the data: ${names.join(", ")}`;
-    if (turn && names.some((n) => !n.endsWith("no data cover it"))) return { name, value: null, unit, status: "not determined", why: `${beyond}; ${turn}` };
+    const bare = names.filter((n) => n.endsWith(UNCOVERED)), left = names.filter((n) => !n.endsWith(UNCOVERED));
+    const said = (all) => all.map((n) => ANGLES[n] || n).join(", ");
+    const beyond = [left.length ? `beyond the data in ${said(left)}` : "", bare.length ? `no data on ${said(bare.map((n) => n.slice(0, -2 - UNCOVERED.length)))}` : ""].filter(Boolean).join("; ");
+    if (turn && decisive(names, "r").length) return { name, value: null, unit, status: "not determined", why: `${beyond}; ${turn}` };
     return { name, value, unit, status: "extrapolated", why: beyond };
   };
   const psi = m.state.map((s) => s[13]), north = m.state.map((s) => s[0]), reached = (i) => (m.met[i] ? m.switches[i] : null);
@@ -244,9 +248,10 @@ const zigzagOf = (v, coefficients) => {
   figures.push(judged("reach", back, "s", back));
   figures.push(judged("period", third === null || back === null ? null : third - back, "s", third));
   let determined = Infinity, why = "";
-  for (const [, words] of missing) if (words && determined === Infinity) {
-    const times = [...flags].filter(([n]) => !n.endsWith("no data cover it")).map(([, f]) => f.indexOf(true)).filter((i) => i >= 0);
-    if (times.length) { determined = m.time[Math.min(...times)]; why = words; }
+  for (const [rate, words] of missing) if (words && determined === Infinity) {
+    const left = decisive([...flags].filter(([, f]) => f.includes(true)).map(([n]) => n), rate);
+    if (left.some((n) => n.endsWith(UNCOVERED))) { determined = 0; why = `no data on ${rate}'; ${words}`; }
+    else if (left.length) { determined = m.time[Math.min(...left.map((n) => flags.get(n).indexOf(true)))]; why = words; }
   }
   return { time: m.time, state: m.state, controls: m.controls, figures, determined, why, ended: m.ended, switches: m.switches };
 };

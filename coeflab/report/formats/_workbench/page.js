@@ -256,7 +256,7 @@ const mountBench = (root, data, source, prefix = "bench") => {
     return whole(w, h, "Track of the zigzag", sentences.join(" "), [`<rect x="0.5" y="0.5" width="${w - 1}" height="${h - 1}" fill="none" stroke="${colour.rule}"/>`, ...lines]);
   };
   const notKnown = () => `U95 of ${shown.unknown.map(plain).join(", ")} includes zero: the slope is not known, and the zigzag is that of its value only`;
-  const stopped = (run) => (run.determined > 0 ? `Stopped at ${short(run.determined, 4)} s: ${run.why}.` : `Not determined: the first orders leave the data. ${run.why[0].toUpperCase()}${run.why.slice(1)}.`);
+  const stopped = (run) => (run.determined > 0 ? `Stopped at ${short(run.determined, 4)} s: ${run.why}.` : `Not determined: ${run.why.startsWith("no data") ? "" : "the first orders leave the data; "}${run.why}.`);
   // As the report draws a track: east to the right, north up, one scale; the dot is the start.
   const trackFigure = () => {
     const w = widthOf(track), { motion, still } = shown, lines = [];
@@ -308,8 +308,8 @@ const mountBench = (root, data, source, prefix = "bench") => {
   const table = (caption, head, rows) => make("table", {}, make("caption", {}, caption), make("thead", {}, make("tr", {}, head.map((t, i) => make("th", { scope: "col", class: i ? "number" : false }, t)))),
     make("tbody", {}, rows.map((r) => make("tr", {}, r.map((c, i) => (i ? make("td", { class: "number" }, c) : make("th", { scope: "row" }, c)))))));
   // A sign without an interval is said with the reason, not as a finding.
-  const byValue = (x) => x.sense.endsWith(" by its value alone");
-  const senseOf = (x) => (byValue(x) ? `${x.sense.replace(" by its value alone", "")}, but ${x.why.replace("no interval: ", "").replaceAll("'", "′")}` : x.sense);
+  const byValue = (x) => x.sense.endsWith(", no U95");
+  const senseOf = (x) => (byValue(x) ? `${x.sense.replace(", no U95", "")}, but ${x.why.replace("no U95: ", "").replaceAll("'", "′")}` : x.sense);
   const show = () => {
     const s = current(), { row, before } = shown, edit = edits[state.index] || { limit: null, dropped: [], without: [] }, has = row.value !== null;
     viewLabels[0].textContent = `${s.component}′ over ${s.variable}′`;

@@ -1,0 +1,248 @@
+"""Added mass at vanishing panel size from two or three refinements, with an estimate of what is left.
+
+Richardson extrapolation (Roache 1998) with one of two orders that theory knows: 2 on a smooth body, 4/3 where a
+right-angled edge makes the potential grow as the power 2/3 of the distance from it. What three refinements show decides;
+on a body with edges it is 4/3 at the most, and what the other order would have given is within the estimate.
+What is left is estimated by the difference of the extrapolations from the finer and from the coarser pair. Were the true
+order p, that would be 2^p - 1 times the error when panels are halved: at least the error itself for every p from 1 on;
+below 1 the rest is made up for, and Roache's factor of 1.25 is kept. Two refinements show no order: his factor of 3 on
+the correction. It is never taken below a quarter of the correction,
+nor below a tenth of the largest of a diagonal entry, each over its size: differences can cross zero by chance. Of two
+refinements, which cannot tell, no entry has less than the median.
+
+How far the volume of panels is from that of the body they stand for, and what that may cost its added mass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.bodies.body import Body
+from coeflab.bodies.mesh.mesh import TriangleMesh, enclosed, facet_deficit
+from coeflab.core.types import Array, brief
+
+STRONGEST, SAME_BODY = 2.0, 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class VolumeGap:
+    """Volume of panels over that of the body, less one.
+
+    Attributes
+    ----------
+    finest : float
+        Of the finest panels as they are.
+    left : float
+        Of all panels, extrapolated as the square of their size: what no refinement of these panels takes away.
+    body : str
+        Whose volume that is, in words.
+    meshes : int
+        How many there were; one alone has no error estimate.
+    step : float
+        Of the second mesh, less that of the finest; 0 where there is one.
+    ratio : float
+        Of the panels' sizes in these two.
+    """
+
+    finest: float
+    left: float
+    body: str
+    meshes: int
+    step: float
+    ratio: float
+
+    def cost(self, matrix: Array) -> Array:
+        """(6, 6) what may be missing from an added mass: twice what is left of the volume, of the size of each entry.
+
+        Of a long spheroid that is too thin all over, the entry along x goes with the square of the volume, those across
+        with the volume itself; of one that is too small all over, the moments with its power 5/3.
+        """
+        root = np.sqrt(np.abs(np.diag(matrix)))
+        return np.asarray(STRONGEST * abs(self.left) * np.outer(root, root))
+
+    def hidden(self, matrix: Array, order: float | None) -> Array:
+        """(6, 6) what thinning may hide: with its edges a coarse mesh loses volume, against what its large panels add.
+
+        As `cost`, of the step in volume, and carried on as the extrapolation of this order carries differences.
+
+        Parameters
+        ----------
+        matrix : (6, 6) array
+        order : float or None
+            None where there is no extrapolation; 1 is taken then.
+        """
+        if self.meshes == 1:
+            return np.zeros((6, 6))
+        root = np.sqrt(np.abs(np.diag(matrix)))
+        carried = self.ratio ** (order or 1.0) - 1.0
+        return np.asarray(STRONGEST * abs(self.step) / carried * np.outer(root, root))
+
+    @property
+    def said(self) -> str:
+        """The same in words."""
+        out = f"volume of the finest panels {self.finest:+.2%} from {self.body}"
+        if self.meshes == 1:
+            return out
+        return f"{out}, {self.left:+.2%} once extrapolated: included in the error estimate"
+
+
+def volume_gap(body: Body, mesh: TriangleMesh, meshes: Sequence[Array]) -> VolumeGap:
+    """Hold panels against the volume of the body's equations; else as stated, within 5 %; else as its facets suggest.
+
+    Parameters
+    ----------
+    body : Body
+    mesh : TriangleMesh
+        The body's own, or one made of its shape.
+    meshes : sequence of (n, 3, 3) arrays
+        Panel, corner, component, m; the finest first.
+    """
+    volumes = [enclosed(corners) for corners in meshes]
+    whole, name = _whole(body, mesh)
+    step, ratio = 0.0, 1.0
+    if len(meshes) > 1:
+        step, ratio = (volumes[1] - volumes[0]) / whole, float(np.sqrt(len(meshes[0]) / len(meshes[1])))
+    finest = volumes[0] / whole - 1.0
+    left = finest - step / (ratio**2 - 1.0) if len(meshes) > 1 else finest
+    return VolumeGap(finest, left, name, len(meshes), step, ratio)
+
+
+def _whole(body: Body, mesh: TriangleMesh) -> tuple[float, str]:
+    if mesh.exact_volume is not None:
+        return mesh.exact_volume, "the body's by its equations"
+    # The first configuration is computed from the shape itself; the others were stated.
+    stated = [(abs(mesh.volume / c.volume - 1.0), c.volume, c.name) for c in body.configurations[1:] if c.volume]
+    if body.shape is mesh and stated:
+        off, volume, name = min(stated)
+        if off <= SAME_BODY:
+            return volume, f"that of {name}"
+    smooth = mesh.volume + facet_deficit(mesh.vertices, mesh.faces)
+    return smooth, "a smooth surface through the corners of its facets, estimated by the angles between these"
+
+
+SMOOTH, EDGED, SHEETED = 2.0, 4.0 / 3.0, 1.0
+BETWEEN, LOWEST = 1.25, 0.5
+LEAST_SHARE, LEAST_OF_WORST, ROUNDING = 0.25, 0.1, 1e-5
+SUBSTANTIAL, NOISE = 0.01, 1e-7
+SAFETY, TWO_ONLY, FINEST_ONLY = 1.25, 3.0, 3.0
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Refinement:
+    """What a sequence of panel counts says.
+
+    Attributes
+    ----------
+    matrix : (6, 6) array
+        Extrapolated, or of the most panels where the differences do not shrink.
+    error : (6, 6) array
+        Estimate for each entry; NaN from a single count.
+    observed : float or None
+        Order of three counts, over all entries; None from fewer.
+    used : float or None
+        Order of the extrapolation; None where there is none.
+    """
+
+    matrix: Array
+    error: Array
+    observed: float | None
+    used: float | None
+
+    @property
+    def void(self) -> NDArray[np.bool_]:
+        """(6,) bool: motions whose own entry is below its error.
+
+        So it is with a body of revolution turning about its axis: only the facets move water.
+        """
+        return np.asarray(np.diag(self.matrix) <= np.nan_to_num(np.diag(self.error)))
+
+    @property
+    def settled(self) -> Array:
+        """The matrix with zeros in the rows and columns of such motions, and for what is rounding."""
+        noise = np.abs(self.matrix) <= NOISE * _scale(self.matrix)
+        return np.where(noise | np.logical_or.outer(self.void, self.void), 0.0, self.matrix)
+
+
+def refined(matrices: Sequence[Array], counts: Sequence[int], edges: bool = False, sheets: bool = False) -> Refinement:
+    """Judge one to three matrices.
+
+    Parameters
+    ----------
+    matrices : sequence of (6, 6) arrays
+        About one point, from the most panels to the fewest.
+    counts : sequence of int
+        Panels of each.
+    edges : bool
+        Whether the body has sharp edges: the order is not 2 then, whatever three refinements show.
+    sheets : bool
+        Whether it has plates without thickness: at their rims the jump of the potential grows as the root of the distance,
+        and the order is 1.
+    """
+    most = SHEETED if sheets else EDGED if edges else SMOOTH
+    finest = matrices[0]
+    if len(matrices) == 1:
+        return Refinement(finest, np.full((6, 6), np.nan), None, None)
+    scale = _scale(finest)
+    # Sizes of panels go with the root of their number.
+    ratios = [float(np.sqrt(a / b)) for a, b in pairwise(counts)]
+    changes = [a - b for a, b in pairwise(matrices)]
+    if len(matrices) == 2:
+        used = most
+        correction = changes[0] / (ratios[0] ** used - 1.0)
+        limit = finest + correction
+        return Refinement(limit, _floored(TWO_ONLY * np.abs(correction), limit, scale, like_most=True), None, used)
+    # A motion that only facets resist would drown the order of the others.
+    live = np.abs(np.diag(changes[0])) < 0.5 * np.diag(finest)
+    if not np.any(live):
+        return Refinement(finest, _floored(FINEST_ONLY * np.abs(changes[0]), finest, scale), None, None)
+    shared = np.logical_and.outer(live, live)
+    gain = np.linalg.norm((changes[1] / scale)[shared]) / np.linalg.norm((changes[0] / scale)[shared])
+    observed = _order(float(gain), ratios)
+    if observed < LOWEST:
+        return Refinement(finest, _floored(FINEST_ONLY * np.abs(changes[0]), finest, scale), observed, None)
+    used = min(SMOOTH if observed >= BETWEEN else EDGED, most)
+    limit, coarser = (m + c / (r**used - 1.0) for m, c, r in zip(matrices, changes, ratios, strict=False))
+    spread = SAFETY * np.abs(limit - coarser) / (2.0 ** min(observed, 1.0) - 1.0)
+    error = np.maximum(spread, LEAST_SHARE * np.abs(limit - finest))
+    if edges and not sheets:
+        error = np.maximum(error, np.abs(limit - finest - changes[0] / (ratios[0] ** SMOOTH - 1.0)))
+    return Refinement(limit, _floored(error, limit, scale), observed, used)
+
+
+def _order(gain: float, ratios: Sequence[float]) -> float:
+    """Order at which the coarser of two differences is ``gain`` times the finer; within 12, beyond which it says nothing."""
+    from scipy.optimize import brentq
+
+    first, second = np.log(ratios)
+
+    def short(order: float) -> float:
+        return float(np.expm1(order * second) / -np.expm1(-order * first)) - gain
+
+    small, large = 1e-9, 12.0
+    if short(small) > 0.0:
+        return 0.0
+    return large if short(large) < 0.0 else float(brentq(short, small, large))
+
+
+def _floored(error: Array, limit: Array, scale: Array, like_most: bool = False) -> Array:
+    """Errors not below a share of the largest relative one of entries that matter, nor below the integrals' own."""
+    size = np.abs(np.diag(limit))
+    live = (size > SUBSTANTIAL * np.diag(scale)) & (np.diag(error) < size)
+    relative = np.diag(error)[live] / size[live]
+    least = LEAST_OF_WORST * float(np.max(relative, initial=0.0))
+    if like_most and len(relative):
+        least = max(least, float(np.median(relative)))
+    root = np.sqrt(size)
+    return np.maximum(np.maximum(error, least * np.outer(root, root)), ROUNDING * scale)
+
+
+def _scale(matrix: Array) -> Array:
+    """(6, 6) size of an entry of each unit: from the mean of the three masses and that of the three inertias."""
+    root = np.sqrt(np.abs(np.repeat([np.trace(matrix[:3, :3]), np.trace(matrix[3:, 3:])], 3)) / 3.0)
+    return np.asarray(np.outer(root, root))

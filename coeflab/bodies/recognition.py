@@ -1,0 +1,470 @@
+"""The outline of any shape; of a mesh by its sections across x.
+
+Cores of sections that overlap their neighbours are hulls, what stands out of them and is thin are foils, round walls are
+ring wings. Where these hold too little of the volume, or no hull is slender, the whole body is bluff. What is neither is
+said in ``left_out``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from coeflab.bodies.cuts import (
+    SKIN,
+    SPECK,
+    Bit,
+    Cuts,
+    Wall,
+    centre_of,
+    clusters_of,
+    cuts_of,
+    grown,
+    merged,
+    middle_at,
+    overlap,
+    reach,
+    tracks_of,
+    width,
+)  # fmt: skip
+from coeflab.bodies.mesh.mesh import TriangleMesh
+from coeflab.bodies.mesh.solids import mesh_outline, polygons
+from coeflab.bodies.outline import Bluff, Foil, Outline, RingWing, Sections
+from coeflab.bodies.outlining import SLENDER, of_parts, of_revolution, with_controls
+from coeflab.bodies.pieces import HULL, Control
+from coeflab.bodies.shape import Parts, Revolution, Shape
+from coeflab.core.types import Array
+
+KEPT = 8
+STATIONS, FINE = 96, 64  # along the body; along each group of appendages
+INSIDE = 1e-5  # of the length: where the end faces are cut
+MAIN, SHARE = 0.25, 0.7  # inscribed radius of a hull over the largest; volume that is recognised
+ENDS = 0.05  # of the largest section: thinner ends do not count as length
+BLUNT, SHORT = 0.5, 3.0  # both end faces over the largest section, with a length under so many diameters: a box
+SMALL, THICK = 0.1, 0.5  # span over the hull's radius; thickness over chord: more is bluff
+LEVELS, FEWEST = 12, 3
+MOST_HULLS, MOST_CLUSTERS = 4, 40  # more is a frame
+BENT = 0.25  # half the surface over the planform, less one: it is not flat
+LOOSE = 0.35  # area of the straight trapezoid over the planform, less one
+
+
+@lru_cache(KEPT)
+def outline_of(shape: Shape, controls: tuple[Control, ...] = ()) -> Outline:
+    """What semi-empirical methods see of a shape.
+
+    Parameters
+    ----------
+    shape : Shape
+    controls : tuple of Control
+        What turns of it.
+    """
+    if isinstance(shape, Revolution):
+        return of_revolution(shape)
+    if isinstance(shape, Parts):
+        return of_parts(shape, controls)
+    return of_mesh(shape, controls)
+
+
+def _ends(track: list[Bit], cuts: Cuts) -> tuple[float, float]:
+    """Where a hull begins and ends: at the mesh's ends, else halfway to the next station."""
+    first, last, x = track[0].step, track[-1].step, cuts.x
+    fore = x[0] if first == 0 else (x[first] + x[first - 1]) / 2.0
+    aft = x[-1] if last == len(x) - 1 else (x[last] + x[last + 1]) / 2.0
+    return float(fore), float(aft)
+
+
+def _hull(name: str, track: list[Bit], cuts: Cuts, gone: set[int]) -> Sections:
+    """Sections of a hull, with the corners that the opening rounded, without its appendages (``gone``, ids of bits)."""
+    rows = []
+    for bit in track:
+        polygon = bit.polygon
+        for other in cuts.rest[bit.step]:
+            around = grown(other.polygon, 1.5 * SKIN * bit.inscribed)
+            if id(other) not in gone and (around ^ bit.polygon).area() > 0.0:
+                polygon = polygon + (around ^ cuts.wholes[bit.step])
+        rings = polygons(polygon)
+        girth = sum(float(np.linalg.norm(np.roll(r, -1, axis=0) - r, axis=1).sum()) for r in rings[:1])
+        points = np.concatenate(rings)
+        rows.append((polygon.area(), *np.ptp(points, axis=0), girth, *centre_of(polygon)))
+    table = np.array(rows)
+    x = np.array([bit.x for bit in track])
+    fore, aft = _ends(track, cuts)
+    if fore > x[0]:
+        x, table = np.r_[fore, x], np.vstack([table[:1], table])
+    if aft < x[-1]:
+        x, table = np.r_[x, aft], np.vstack([table, table[-1:]])
+    area, breadth, depth = table[:, 0], table[:, 1], table[:, 2]
+    like = np.abs(breadth - depth) + np.abs(np.sqrt(4.0 * area / np.pi) - (breadth + depth) / 2.0)
+    straight = np.ptp(table[:, 4:6][area > 0.1 * area.max()], axis=0).max()
+    is_round = bool(np.median(like / breadth.max()) < 0.02 and straight < 0.02 * breadth.max())
+    return Sections(name, x, area, breadth, depth, table[:, 3], table[:, 4:6], is_round)
+
+
+@dataclass(slots=True)
+class _Appendage:
+    """What a cluster of bits measures."""
+
+    foil: Foil | None
+    bluff: Bluff
+    volume: float
+    bent: float
+
+
+def _words(way: Array) -> str:
+    """Where a direction points: upper, lower, starboard, port, or two of these."""
+    tall, wide = abs(way[1]) > 0.38, abs(way[0]) > 0.38  # sine of 22.5 deg
+    return "_".join(
+        word
+        for word, said in (
+            (("upper", "lower")[int(way[1] > 0.0)], tall),
+            (("port", "starboard")[int(way[0] > 0.0)], wide),
+        )
+        if said
+    )
+
+
+def _way(bits: list[Bit], stand: Array) -> tuple[Array, Array]:
+    """From where a cluster begins towards where it ends, and the point that its distances count from.
+
+    The direction runs through the middles of its sections at a quarter and three quarters of their height.
+    """
+    areas = np.array([bit.polygon.area() for bit in bits])
+    middle = np.average([centre_of(bit.polygon) for bit in bits], axis=0, weights=areas) - stand
+    way = (
+        middle
+        + stand
+        - np.average(
+            [bit.points[np.linalg.norm(bit.points - stand, axis=1).argmin()] for bit in bits], axis=0, weights=areas
+        )
+    )
+    for _ in range(3):
+        way = way / np.linalg.norm(way)
+        total = np.zeros(2)
+        for bit in bits:
+            s = (bit.points - stand) @ way
+            ends = [middle_at(bit.polygon, stand, way, float(s.min() + share * np.ptp(s))) for share in (0.25, 0.75)]
+            total += ends[1] - ends[0]
+        way = total if np.any(total) else way
+    way = way / np.linalg.norm(way)
+    return way, stand + middle - (middle @ way) * way
+
+
+def _stands_out(bit: Bit, cores: list[Bit]) -> bool:
+    """It reaches further from its hull than it is wide at its foot; a corner that the opening rounded does not."""
+    skin = SKIN * bit.inscribed
+    core = max(cores, key=lambda c: float((grown(bit.polygon, 3.0 * skin) ^ c.polygon).area()), default=None)
+    foot = 0.0 if core is None else float((grown(bit.polygon, 3.0 * skin) ^ core.polygon).area()) / (2.0 * skin)
+    if core is None or foot == 0.0:
+        return True
+    low, high = 0.0, float(np.ptp(bit.points, axis=0).max()) + 2.0 * skin
+    while high - low > 0.1 * high:
+        middle = (low + high) / 2.0
+        low, high = (low, middle) if (bit.polygon - grown(core.polygon, middle)).is_empty() else (middle, high)
+    return low > foot
+
+
+def _appendage(bits: list[Bit], hull: Sections, track: list[Bit]) -> _Appendage:
+    """A cluster as a foil, or as something bluff where it is thick."""
+    x = np.array([bit.x for bit in bits])
+    at = float(np.clip((x[0] + x[-1]) / 2.0, hull.x[-1], hull.x[0]))
+    stand = np.array([np.interp(at, hull.x[::-1], hull.centre[::-1, i]) for i in (0, 1)])
+    areas = np.array([bit.polygon.area() for bit in bits])
+    points = np.concatenate([bit.points for bit in bits])
+    way, origin = _way(bits, stand)
+    low, high = np.empty(len(bits)), np.empty(len(bits))
+    by_step = {bit.x: bit for bit in track}
+    for i, bit in enumerate(bits):
+        s = (bit.points - origin) @ way
+        low[i], high[i] = float(s.min()), float(s.max())
+        core = by_step.get(bit.x)
+        if core is not None and low[i] - (within := reach(core.polygon, origin, way)) < 0.2 * bit.inscribed:
+            low[i] = min(within, high[i])
+    volume = float(-np.trapezoid(areas, x)) if len(x) > 1 else 0.0
+    whole = np.ptp(points, axis=0)
+    half = np.array([(x[0] - x[-1]) / 2.0, *whole / 2.0])
+    middle = np.array([(x[0] + x[-1]) / 2.0, *((points.min(axis=0) + points.max(axis=0)) / 2.0)])
+    side = [float(-np.trapezoid([np.ptp(bit.points[:, i]) for bit in bits], x)) for i in (1, 0)]
+    shadow_x = float(areas.max()) if len(areas) else 0.0
+    place = _words(way)
+    bluff = Bluff(f"part_{place}", "mesh", middle, np.eye(3), half, np.array([shadow_x, *side]))
+    foil = _foil(f"foil_{place}", x, low, high, bits, origin, way) if len(x) > 4 else None
+    sides = (
+        np.array(
+            [
+                sum(float(np.linalg.norm(np.roll(r, -1, axis=0) - r, axis=1).sum()) for r in polygons(b.polygon))
+                for b in bits
+            ]
+        )
+        / 2.0
+    )
+    bent = float(np.trapezoid(sides, x) / np.trapezoid(high - low, x)) - 1.0 if foil is not None else 0.0
+    return _Appendage(foil, bluff, volume, bent)
+
+
+def _foil(name: str, x: Array, low: Array, high: Array, bits: list[Bit], origin: Array, way: Array) -> Foil | None:
+    """Straight edges through the planform between the foremost and the aftmost station at each level."""
+    tip, foot = float(high.max()), float(low.mean())
+    clean = max(foot, min(float(low.max()), foot + 0.5 * (tip - foot)))
+    levels = clean + (tip - clean) * (np.arange(LEVELS) + 0.5) / LEVELS * 0.95
+    edges = []
+    for level in levels:
+        inside = np.flatnonzero((low <= level + 1e-12) & (high >= level))
+        if not len(inside):
+            return None
+        edges.append((_edge(x, high, int(inside[0]), -1, level), _edge(x, high, int(inside[-1]), 1, level)))
+    fore, aft = (np.polynomial.Polynomial.fit(levels, np.array(edges)[:, i], 1) for i in (0, 1))
+    step = float(x[0] - x[-1]) / (len(x) - 1)
+    area = float(-np.trapezoid(high - low, x)) + step / 2.0 * float((high - low)[[0, -1]].sum())
+    root_chord, tip_chord = (max(float(fore(at) - aft(at)), 0.0) for at in (foot, tip))
+    if tip - foot <= 0.0 or root_chord + tip_chord <= 0.0:
+        return None
+    fit = 2.0 * area / ((root_chord + tip_chord) * (tip - foot))
+    if not 1.0 - LOOSE < fit < 1.0 + LOOSE:
+        return None
+    level = (foot + tip) / 2.0
+    chord = float(fore(level) - aft(level))
+    thickness = max(width(bit.polygon, origin, way, level) for bit in bits) / chord if chord > 0.0 else np.inf
+    root, end = (
+        np.array([float(fore(at)) - c / 4.0, *(origin + at * way)]) for at, c in ((foot, root_chord), (tip, tip_chord))
+    )
+    return Foil(name, root, end, fit * root_chord, fit * tip_chord, thickness, origin)
+
+
+def _edge(x: Array, high: Array, at: int, step: int, level: float) -> float:
+    """Where the tip line crosses a level beyond a station; past the last station half a step further."""
+    other = at + step
+    if not 0 <= other < len(x):
+        return float(x[at] - step * (x[0] - x[-1]) / (len(x) - 1) / 2.0)
+    if high[other] >= level or high[at] == high[other]:
+        return float(x[at])
+    return float(x[at] + (x[other] - x[at]) * (high[at] - level) / (high[at] - high[other]))
+
+
+def of_mesh(mesh: TriangleMesh, controls: tuple[Control, ...] = ()) -> Outline:
+    """Hulls, foils, ring wings and bluff parts of a closed mesh.
+
+    Parameters
+    ----------
+    mesh : TriangleMesh
+    controls : tuple of Control
+
+    Raises
+    ------
+    InputError
+        An open mesh.
+    """
+    fore, aft = float(mesh.vertices[:, 0].max()), float(mesh.vertices[:, 0].min())
+    cuts = cuts_of(mesh, _spaced(fore, aft, STATIONS))
+    tracks = tracks_of(cuts)
+    largest = max((bit.inscribed for track in tracks for bit in track), default=0.0)
+    main = [t for t in tracks if len(t) > 2 and max(bit.inscribed for bit in t) >= MAIN * largest]
+    slender = [t for t in main if _is_slender(t)]
+    rings, ring_volume = _rings(mesh, cuts)
+    if not slender and ring_volume > SHARE * mesh.volume:
+        return Outline((), (), rings, (), mesh.integrals.area, mesh.volume)
+    if not slender:
+        return _all_bluff(mesh, "no part of it is a slender hull")
+    if len(slender) > MOST_HULLS:
+        return _all_bluff(mesh, f"{len(slender)} long parts, as of a frame")
+    demoted = [bit for track in tracks if track not in slender for bit in track]
+    for bit in demoted:
+        cuts.rest[bit.step].append(bit)
+    for bits in cuts.rest:
+        for bit in bits:
+            bit.owner = -1
+    clusters = [(c, merged(c)) for c in clusters_of(cuts.rest)]
+    clusters = [(c, merged) for c, merged in clusters if _counts(merged, slender, _of(cuts.cores, slender))]
+    if len(clusters) > MOST_CLUSTERS:
+        return _all_bluff(mesh, f"{len(clusters)} parts stand out of it, as of a frame")
+    gone = {id(bit) for c, _ in clusters for bit in c}
+    rough = [merged for _, merged in clusters]
+    names = [HULL] if len(slender) == 1 else [f"{HULL}_{i + 1}" for i in range(len(slender))]
+    hulls = tuple(_hull(n, t, cuts, gone) for n, t in zip(names, slender, strict=True))
+    foils, bluff, volume, left = _appendages(mesh, cuts, rough, slender, hulls)
+    volume += ring_volume + sum(float(-np.trapezoid(h.area, h.x)) for h in hulls)
+    if volume < SHARE * mesh.volume:
+        return _all_bluff(mesh, f"hulls and foils hold {volume / mesh.volume:.0%} of its volume only")
+    turned, more = with_controls(foils, controls)
+    return Outline(hulls, turned, rings, bluff, mesh.integrals.area, mesh.volume, (*left, *more))
+
+
+def _of(cores: list[list[Bit]], tracks: list[list[Bit]]) -> list[list[Bit]]:
+    """The cores of these hulls only."""
+    known = {id(bit) for track in tracks for bit in track}
+    return [[bit for bit in here if id(bit) in known] for here in cores]
+
+
+def _spaced(fore: float, aft: float, count: int) -> Array:
+    """Falling stations just within both ends, dense at these."""
+    middle, half = (fore + aft) / 2.0, (fore - aft) / 2.0 * (1.0 - INSIDE)
+    return np.asarray(middle + half * np.cos(np.pi * np.arange(count + 1) / count))
+
+
+def _is_slender(track: list[Bit]) -> bool:
+    """Long, and no box: a short one with both ends blunt."""
+    area = np.array([bit.polygon.area() for bit in track])
+    full = np.flatnonzero(area > ENDS * area.max())[[0, -1]]
+    length, across = track[full[0]].x - track[full[-1]].x, np.sqrt(4.0 * area.max() / np.pi)
+    blunt = min(area[full]) > BLUNT * area.max()
+    return bool(length > (SHORT if blunt else SLENDER) * across)
+
+
+def _all_bluff(mesh: TriangleMesh, why: str) -> Outline:
+    """The whole body as one bluff part, with its silhouettes."""
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    views = [np.eye(3)[[i, j]] for i, j in ((1, 2), (2, 0), (0, 1))]
+    areas = np.array([mesh_outline(mesh.vertices, mesh.faces, view).area() for view in views])
+    whole = Bluff("body", "mesh", (low + high) / 2.0, np.eye(3), (high - low) / 2.0, areas)
+    return Outline(
+        (), (), (), (whole,), mesh.integrals.area, mesh.volume, (f"single parts: {why}, all of it is one bluff part",)
+    )
+
+
+def _nearest(track: list[Bit], x: float) -> Bit | None:
+    """The bit of a hull at a place, if it reaches there."""
+    spacing = max((a.x - b.x for a, b in pairwise(track)), default=0.0)
+    found = min(track, key=lambda bit: abs(bit.x - x))
+    return found if abs(found.x - x) <= spacing else None
+
+
+def _own_track(cluster: list[Bit], tracks: list[list[Bit]]) -> list[Bit]:
+    """The hull that a cluster stands on: the nearest over its stations."""
+    points = np.concatenate([bit.points for bit in cluster])
+    middle = (cluster[0].x + cluster[-1].x) / 2.0
+
+    def distance(track: list[Bit]) -> float:
+        bit = min(track, key=lambda b: abs(b.x - middle))
+        return float(np.linalg.norm(points - centre_of(bit.polygon), axis=1).min()) - bit.inscribed
+
+    return min(tracks, key=distance)
+
+
+def _counts(cluster: list[Bit], tracks: list[list[Bit]], cores: list[list[Bit]]) -> bool:
+    """Large enough, and it stands out of its hull where it is largest."""
+    largest = max(cluster, key=lambda bit: float(bit.polygon.area()))
+    track = _own_track(cluster, tracks)
+    if not _stands_out(largest, cores[largest.step]):
+        return False
+    size = max(float(np.linalg.norm(np.ptp(b.points, axis=0))) for b in cluster)
+    return size > SMALL * max(b.inscribed for b in track)
+
+
+def _appendages(
+    mesh: TriangleMesh, cuts: Cuts, rough: list[list[Bit]], tracks: list[list[Bit]], hulls: tuple[Sections, ...]
+) -> tuple[list[Foil], tuple[Bluff, ...], float, list[str]]:
+    """Each cluster by finer sections of its own."""
+    foils: list[Foil] = []
+    bluff: list[Bluff] = []
+    left: list[str] = []
+    volume = 0.0
+    for fore, aft in _ranges(cuts.x, [(c[0].step, c[-1].step) for c in rough]):
+        fine = cuts_of(mesh, np.linspace(fore, aft, FINE + 1) * 1.0)
+        for step, here in enumerate(fine.cores):
+            for bit in here:
+                of_hull = [
+                    n
+                    for t in tracks
+                    if (n := _nearest(t, bit.x)) is not None and overlap(bit, n) > 0.5 * bit.polygon.area()
+                ]
+                if not of_hull or bit.inscribed < 0.5 * min(n.inscribed for n in of_hull):
+                    fine.rest[step].append(bit)
+                    bit.core = False
+        kept = [[bit for bit in here if bit.core] for here in fine.cores]
+        cores = [bit for here in kept for bit in here]
+        for cluster in map(merged, clusters_of(fine.rest)):
+            if len(cluster) < FEWEST or not _counts(cluster, tracks, kept):
+                continue
+            if _joins(cluster, tracks):
+                y, z = centre_of(cluster[len(cluster) // 2].polygon)
+                ends = f"x = {cluster[0].x:.3g} to {cluster[-1].x:.3g} m at y = {y:.3g}, z = {z:.3g} m"
+                left.append(f"what joins two hulls, {ends}")
+                volume += float(-np.trapezoid([b.polygon.area() for b in cluster], [b.x for b in cluster]))
+                continue
+            track = _own_track(cluster, tracks)
+            near = [bit for bit in cores if (n := _nearest(track, bit.x)) is not None and overlap(bit, n) > 0.0]
+            found = _appendage(cluster, hulls[tracks.index(track)], near)
+            if found.volume < SPECK * SPECK * mesh.volume or (
+                found.foil is None and found.volume < SPECK * mesh.volume
+            ):
+                continue
+            volume += found.volume
+            if found.foil is not None and found.foil.thickness <= THICK:
+                foils.append(found.foil)
+                if found.bent > BENT:
+                    more = f"its planform leaves out {found.bent:.0%}"
+                    left.append(f"what stands across {found.foil.name} at x = {found.foil.root[0]:.3g} m: {more}")
+            else:
+                bluff.append(found.bluff)
+    return _numbered(foils), tuple(_numbered(bluff)), volume, left
+
+
+def _joins(cluster: list[Bit], tracks: list[list[Bit]]) -> bool:
+    """At some station it meets two hulls."""
+    for bit in cluster:
+        around = grown(bit.polygon, 3.0 * SKIN * bit.inscribed)
+        near = [n for t in tracks if (n := _nearest(t, bit.x)) is not None]
+        if sum((around ^ n.polygon).area() > 0.0 for n in near) > 1:
+            return True
+    return False
+
+
+def _ranges(x: Array, steps: list[tuple[int, int]]) -> list[tuple[float, float]]:
+    """Ranges of stations, one step wider, that overlap: as one."""
+    wide = sorted((max(first - 1, 0), min(last + 1, len(x) - 1)) for first, last in steps)
+    out: list[tuple[int, int]] = []
+    for first, last in wide:
+        if out and first <= out[-1][1] and last - out[-1][0] <= 1.5 * max(last - first, out[-1][1] - out[-1][0]):
+            out[-1] = out[-1][0], max(last, out[-1][1])
+        else:
+            out.append((first, last))
+    return [(float(x[a]), float(x[b])) for a, b in out]
+
+
+def _rings(mesh: TriangleMesh, cuts: Cuts) -> tuple[tuple[RingWing, ...], float]:
+    """Ring wings, each by finer sections of its own, and their volume."""
+    groups: list[list[Wall]] = []
+    for wall in cuts.walls:
+        for group in groups:
+            last = group[-1]
+            if (
+                abs(last.radius - wall.radius) < 0.2 * wall.radius
+                and np.linalg.norm(last.centre - wall.centre) < 0.2 * wall.radius
+            ):
+                group.append(wall)
+                break
+        else:
+            groups.append([wall])
+    found, volume = [], 0.0
+    for i, group in enumerate(groups):
+        at = [int(np.abs(cuts.x - wall.x).argmin()) for wall in group]
+        (fore, aft), *_ = _ranges(cuts.x, [(at[0], at[-1])])
+        step = (fore - aft) / FINE
+        fine = [w for w in cuts_of(mesh, np.linspace(fore, aft, FINE + 1)).walls if abs(w.radius - group[0].radius) < 0.4 * w.radius
+                and np.linalg.norm(w.centre - group[0].centre) < 0.4 * w.radius]  # fmt: skip
+        if len(fine) < 3:
+            continue
+        x = np.array([w.x for w in fine])
+        chord = float(x[0] - x[-1]) + step
+        quarter = float(x[0]) + step / 2.0 - chord / 4.0
+        radius = float(np.interp(quarter, x[::-1], [w.radius for w in reversed(fine)]))
+        centre = np.array([quarter, *np.mean([w.centre for w in fine], axis=0)])
+        thickness = max(w.thickness for w in fine)
+        volume += float(sum(2.0 * np.pi * w.radius * w.thickness for w in fine) * step)
+        found.append(
+            RingWing("ring" if len(groups) == 1 else f"ring_{i + 1}", centre, 2.0 * radius, chord, thickness / chord)
+        )
+    return tuple(found), volume
+
+
+def _numbered(parts: list[Any]) -> list[Any]:
+    """Names of their own, counted from fore to aft where several are called the same."""
+    out = []
+    names = [part.name for part in parts]
+    for i, part in enumerate(parts):
+        many = names.count(part.name) > 1
+        out.append(replace(part, name=f"{part.name}_{names[:i].count(part.name) + 1}") if many else part)
+    return out

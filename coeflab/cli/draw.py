@@ -1,0 +1,53 @@
+"""``coeflab draw``: a body in three views with its dimensions and particulars."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import typer
+
+from coeflab.cli import complete, show
+
+EXAMPLE = "coeflab draw myring_auv"
+
+
+def command(
+    body: str = typer.Argument(
+        ...,
+        metavar="BODY",
+        autocompletion=complete.bodies,
+        help="A body.toml, its folder, a shipped body, or a mesh file with --unit and --axes.",
+    ),
+    unit: str = typer.Option("", "--unit", metavar="UNIT", help="Of a mesh file: m, mm, in ..."),
+    axes: str = typer.Option("", "--axes", metavar="AXES", help="Of a mesh file: FRD, FLU, CFD or forward,port,up."),
+    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was done."),
+    out: Path | None = typer.Option(
+        None, "--out", metavar="FOLDER", help="Folder to write; the current one without it."
+    ),
+    force: bool = typer.Option(False, "--force", help="Replace files that differ."),
+) -> None:
+    """Draw a body in three views, and list its parts as estimates see them.
+
+    NAME.svg and NAME.png with dimensions, datum, reference point, centres, hinges and thrusters; particulars, hulls, foils, ring wings and bluff parts, and what of the body no estimate sees.
+    """
+    from coeflab.bodies.outlining import outline_table
+    from coeflab.bodies.simplify.source import mesh_body
+    from coeflab.core.errors import OutputError
+    from coeflab.core.files import write_all
+    from coeflab.report.figures.three_views import three_views
+    from coeflab.report.tables.added_mass import particulars
+
+    found = mesh_body(body, unit, axes, repair)
+    folder = Path() if out is None else out
+    stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in found.name)
+    files = {f"{stem}.{ending}": content for ending, content in three_views(found).items()}
+    for file, content in files.items():
+        path = folder / file
+        if not force and path.exists() and not (path.is_file() and path.read_bytes() == content):
+            raise OutputError(f"{path} exists and differs. Name another --out, or replace it with --force.")
+    outline = found.outline
+    show.table(particulars(found))
+    if outline is not None:
+        show.table(outline_table(outline))
+    for file, new in write_all(folder, files).items():
+        show.path(f"{folder / file}:", "written" if new else "unchanged")

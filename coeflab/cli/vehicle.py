@@ -1,0 +1,170 @@
+"""``coeflab vehicle``: from a shape and a mass to a vehicle that a simulator loads, by estimates."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from coeflab.cli import complete, show
+
+if TYPE_CHECKING:
+    from coeflab.study.study import Study
+
+
+EXAMPLE = 'coeflab vehicle hull.stl --unit mm --axes FLU --mass "46 kg" --to xdyn --accept-loss'
+
+
+def command(
+    body: str = typer.Argument(
+        ...,
+        metavar="BODY",
+        autocompletion=complete.bodies,
+        help="A mesh file with --unit and --axes, a body.toml, its folder, or a shipped body.",
+    ),
+    mass: str = typer.Option(
+        "", metavar="MASS", help='46, "46 kg"; default that of its file, else neutrally buoyant.', show_default=False
+    ),
+    cg: str = typer.Option(
+        "", metavar="X,Y,Z", help="Centre of gravity, m, FRD, from the datum or the mesh's origin.", show_default=False
+    ),
+    inertia: str = typer.Option(
+        "", metavar="IX,IY,IZ", help="About the centre of gravity, kg m^2.", show_default=False
+    ),
+    unit: str = typer.Option("", metavar="UNIT", help="Unit of a mesh file: m, mm, in ..."),
+    axes: str = typer.Option(
+        "", metavar="AXES", help="Axes of a mesh file: FRD, FLU, CFD, or three directions with commas."
+    ),
+    repair: bool = typer.Option(False, "--repair", help="Mend a mesh file that is not sound, and say what was mended."),
+    speed: str = typer.Option("", metavar="SPEED", help='Of reference, "1.5 m/s"; default 2 m/s.', show_default=False),
+    density: str = typer.Option(
+        "", metavar="DENSITY", help="Of the water; default fresh, 998.2 kg/m^3.", show_default=False
+    ),
+    length: str = typer.Option(
+        "", metavar="LENGTH", help="Of the primes; default that of its file, else over all.", show_default=False
+    ),
+    method: str = typer.Option(
+        "all", metavar="METHOD", autocompletion=complete.methods, help="Of added mass, as in coeflab added-mass."
+    ),
+    to: list[str] = typer.Option(
+        [], "--to", metavar="TARGET", autocompletion=complete.exporters, help="Export to it; may be given again."
+    ),
+    accept_loss: bool = typer.Option(False, "--accept-loss", help="Export although a target cannot hold everything."),
+    out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/BODY."),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Estimate a vehicle from its shape and mass, and move it.
+
+    Writes a parameter file, exports and a report: added mass, estimates with U95, a first turn and zigzag where its body.toml
+    gives [[control]] or [[thruster]], else a coast-down and what is missing. Exit code 1 when an export is refused.
+    """
+    from coeflab.core.files import write_all
+    from coeflab.workbench import checked, rendered
+    from coeflab.workbench.exports import refuse_unknown
+    from coeflab.workbench.vehicle import asked, from_shape, subject
+
+    with show.progress(json) as say:
+        say("reading the body")
+        found = subject(body, unit, axes, repair)
+        plan, stated = asked(found, mass, cg, inertia, speed, density, length, method, to, accept_loss)
+        refuse_unknown(plan.exports)
+        study = checked(from_shape(plan, found, stated, say), say)
+    folder = out if out is not None else Path("reports") / plan.name
+    show.step("drawing the report", json)
+    files = rendered(study)
+    changed = sum(write_all(folder, files).values())
+    paths = [folder / name for name in sorted(files)]
+    if json:
+        show.json_object({**as_json(study), "files": [str(p) for p in paths]})
+    else:
+        _print(study, folder, sorted(files), changed)
+    for refused in study.refused:
+        why = str(refused.why).replace('"export.accept_loss": ', "").replace("accept_loss = true", "--accept-loss")
+        show.error(f"error: {why}")
+    if study.failed:
+        raise typer.Exit(1)
+
+
+def _print(study: Study, folder: Path, names: list[str], changed: int) -> None:
+    from coeflab.cli.run import findings, written
+
+    summarise(study)
+    findings(study.checks)
+    written(folder, names, changed)
+    name = next(iter(study.parameter_files))
+    place = shlex.quote(str(folder / f"{name}.parameters.json"))
+    show.command_line("Next", f"coeflab merge {place} CAMPAIGN")
+
+
+def summarise(study: Study) -> None:
+    """The answer first, then estimates, motions, what is missing and what is assumed."""
+    from coeflab.report.sections import estimates as tables
+
+    shape, parameters = study.shape, next(iter(study.parameter_files.values()))
+    if shape is None:
+        return
+    show.sentence(tables.sentence(study))
+    show.text()
+    parts = shape.estimates.shares if show.whole() else None
+    show.table(tables.estimates_table(parameters, shape.carried, parts, few=not show.whole()))
+    show.table(tables.manoeuvre_table(study.manoeuvres, shape.carried))
+    show.table(tables.particulars_table(shape, parameters.added_mass))
+    for line in shape.missing:
+        show.marked("warn", line)
+
+
+def as_json(study: Study) -> dict[str, Any]:
+    """Particulars, estimates with what they are made of, manoeuvres, what is assumed and what is missing; SI and radians."""
+    from coeflab.cli.uncertainty import as_json as carried_json
+
+    shape, (name, parameters) = study.shape, next(iter(study.parameter_files.items()))
+    if shape is None:
+        return {}
+    c = shape.weighed.configuration
+    hull = parameters.added_mass
+    return {
+        "name": name,
+        "displacement": shape.conditions.density * (c.volume or 0.0),
+        "volume": c.volume,
+        "mass": None if c.mass is None else c.mass.mass,
+        "centre_of_buoyancy": None if c.centre_of_buoyancy is None else c.centre_of_buoyancy.tolist(),
+        "centre_of_gravity": None
+        if c.mass is None
+        else (c.mass.centre_of_gravity + shape.weighed.body.reference_point).tolist(),
+        "inertia_matrix": None if c.mass is None or c.mass.inertia_matrix is None else c.mass.inertia_matrix.tolist(),
+        "wetted_surface": c.wetted_surface,
+        "projected_areas": None if c.projected_areas is None else c.projected_areas.tolist(),
+        "reference_point": shape.weighed.body.reference_point.tolist(),
+        "added_mass": None if hull is None else {"method": hull.method, "matrix": hull.matrix.tolist()},
+        "assumed": list(shape.weighed.assumed),
+        "said": list(shape.said),
+        "missing": list(shape.missing),
+        "estimates": [
+            {
+                "symbol": k.symbol, "value": k.value, "u95": k.u95, "value_si": k.value_si, "unit_si": k.unit_si,
+                "status": str(k.status), "estimator": k.estimator,
+                "made_of": dict(shape.estimates.shares.get(k.symbol.removesuffix("'"), {})),
+            }
+            for k in parameters.coefficients
+        ],
+        "contributions": [
+            {
+                "part": k.part, "kind": k.kind, "method": k.method, "share": k.share, "citation": k.citation,
+                "place": k.place, "outside": k.outside or None,
+            }
+            for k in shape.estimates.contributions
+        ],
+        "notes": list(shape.estimates.notes),
+        "manoeuvres": [
+            {
+                "name": m.manoeuvre.name,
+                "figures": [{"name": f.name, "value": f.value, "unit": f.unit, "status": f.status} for f in m.figures],
+                "statements": list(m.statements),
+            }
+            for m in study.manoeuvres
+        ],
+        "uncertainty": [carried_json(k) for k in shape.carried],
+        "refused": [str(r.why) for r in study.refused],
+    }  # fmt: skip

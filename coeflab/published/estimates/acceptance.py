@@ -1,0 +1,227 @@
+"""Estimates from the shape against Roddy's measurements on SUBOFF, and beside others' estimates of REMUS, HUUV and THAUV.
+
+The outline of configurations 1 and 2 includes ring wing 1, whose edges are those of the program in Groves et al.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from coeflab.bodies.body import Body
+from coeflab.bodies.outline import RingWing
+from coeflab.bodies.readers import read_body
+from coeflab.core.errors import InputError
+from coeflab.core.files import shipped
+from coeflab.core.machine import one_thread
+from coeflab.core.table import Table
+from coeflab.core.types import brief
+from coeflab.estimates import Estimates, Water, estimated
+from coeflab.law.coefficient import Coefficient, CoefficientSet
+from coeflab.law.symbols import primed
+from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
+from coeflab.study.plan import read_plan
+from coeflab.vehicle.parameter_file import read_parameter_file
+from coeflab.vehicle.reference import Reference, read_references
+
+FOOT = 0.3048
+LEADING, TRAILING = (13.46990, 0.43004), (14.21661, 0.35659)  # ft aft of the nose, radius: Groves et al., DARPA2WINGS
+RING_THICKNESS = 0.10
+VISCOSITY = 1.05e-6  # m^2/s, fresh water of the density of the tests (998 kg/m^3, 18 deg C)
+MAIN = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr", "Zq", "Mq")
+# A plane tail is alike in both planes: its effect counts once.
+COPIES = {("Roddy configuration 1", "Zds"), ("Roddy configuration 1", "Mds")}
+INSIDE, WIDE, APART = 0.90, 0.50, 0.25
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One measured derivative.
+
+    Attributes
+    ----------
+    configuration, symbol : str
+    measured : float
+    found : Coefficient
+    counts : bool
+        Not a copy by symmetry of another row.
+    """
+
+    configuration: str
+    symbol: str
+    measured: float
+    found: Coefficient
+    counts: bool
+
+    @property
+    def value(self) -> float:
+        """The estimate."""
+        return float(self.found.value or 0.0)
+
+    @property
+    def ratio(self) -> float:
+        """Estimate over measurement."""
+        return self.value / self.measured
+
+    @property
+    def width(self) -> float:
+        """U95 of the estimate over its value."""
+        return float(self.found.u95 or 0.0) / abs(self.value)
+
+    @property
+    def inside(self) -> bool:
+        """Whether the measured value lies within the U95 of the estimate alone."""
+        return abs(self.value - self.measured) <= float(self.found.u95 or 0.0)
+
+
+def ring_wing() -> RingWing:
+    """Ring wing 1 of SUBOFF."""
+    edges = FOOT * np.array([LEADING, TRAILING])
+    quarter = 0.75 * edges[0] + 0.25 * edges[1]
+    chord = float(np.hypot(*(edges[1] - edges[0])))
+    return RingWing("ring wing 1", np.array([-quarter[0], 0.0, 0.0]), 2.0 * float(quarter[1]), chord, RING_THICKNESS)
+
+
+def suboff(name: str, with_ring: bool) -> Body:
+    """A shipped SUBOFF with its outline, and ring wing 1 on request.
+
+    Parameters
+    ----------
+    name : str
+        Of its folder.
+    with_ring : bool
+
+    Raises
+    ------
+    InputError
+        Its reader gives no outline.
+    """
+    body = read_body(Path(shipped("geometry")) / name / "body.toml")
+    seen = body.outline
+    if seen is None:
+        raise InputError(f"{name} without an outline", "a body whose reader knows its hull and fins")
+    whole = replace(seen, rings=(ring_wing(),) if with_ring else ())
+    return replace(body, outlined=lambda: whole)
+
+
+def rows() -> tuple[Row, ...]:
+    """Every measured derivative of configurations 3, 2 and 1, in that order."""
+    folder = Path(shipped("cfd_data")) / "suboff"
+    plan = read_plan(folder / "plan.toml")
+    if plan.conditions is None or plan.scaling is None:
+        raise InputError("a plan without conditions or scaling", "those of the tests", file=folder / "plan.toml")
+    water = Water(plan.conditions.density, VISCOSITY, plan.conditions.speed)
+    by_name = {r.name: r for r in read_references(folder / "published.toml")}
+    whole = estimated(replace(suboff("suboff_aff8", True), scaling=plan.scaling), water)
+    bare = estimated(replace(suboff("suboff_bare_hull", False), scaling=plan.scaling), water)
+    out = []
+    for name, made in (("3", bare), ("2", whole), ("1", whole)):
+        reference = by_name[f"Roddy configuration {name}"]
+        out += [
+            Row(name, s, v, made.coefficients[s], (reference.name, s) not in COPIES)
+            for s, v in _measured(reference).items()
+            if s in made.coefficients
+        ]
+    return tuple(out)
+
+
+def _measured(reference: Reference) -> dict[str, float]:
+    """Static, control and rotary derivatives as printed."""
+    found = {v.symbol: v.value for v in reference.values if v.value is not None}
+    for kind in reference.literature:
+        found |= {v.symbol: v.value for v in kind.values if v.value is not None and not v.symbol.endswith("dot")}
+    return found
+
+
+def table(found: tuple[Row, ...]) -> Table:
+    """Every derivative, the answer of the validation: 79 columns at most."""
+    cells = tuple(
+        (r.configuration, primed(r.symbol), f"{r.value:.5f}", f"{r.measured:.5f}", f"{r.ratio:.2f}", f"{100 * r.width:.0f} %",
+         ("inside" if r.inside else "outside") + ("" if r.counts else ", copy"))
+        for r in found
+    )  # fmt: skip
+    counted = [r for r in found if r.counts]
+    main = [r for r in counted if r.symbol in MAIN]
+    errors = [r.ratio - 1.0 for r in main]
+    worst = max(main, key=lambda r: abs(r.ratio - 1.0))
+    notes = (
+        f"{sum(r.inside for r in counted)} of {len(counted)} inside, median U95 {100 * np.median([r.width for r in counted]):.0f} %.",
+        f"Main derivatives: median |error| {100 * np.median(np.abs(errors)):.0f} %, mean signed error {100 * np.mean(errors):+.0f} %, "
+        f"worst {primed(worst.symbol)} of configuration {worst.configuration}, {100 * (worst.ratio - 1.0):+.0f} %.",
+        "Configuration 3: bare hull; 2 and 1: hull, sail, four planes, ring wing 1. copy: alike by symmetry, counts once.",
+    )
+    headers = ("config", "", "estimate", "measured", "ratio", "U95", "")
+    return Table(
+        "SUBOFF: estimates from the shape against Roddy's measurements", headers, cells, notes, frozenset({0, 1, 6})
+    )
+
+
+@one_thread()
+def acceptance() -> Acceptance:
+    """Rows, goals, and what has no verdict."""
+    found = rows()
+    counted = [r for r in found if r.counts]
+    main = [abs(r.ratio - 1.0) for r in counted if r.symbol in MAIN]
+    derivatives = tuple(
+        Compared(
+            f"configuration {r.configuration}", primed(r.symbol), "1", r.measured, r.value, float(r.found.u95 or 0.0),
+            Basis.PREDICTED,
+        )
+        for r in counted
+    )  # fmt: skip
+    goals = (
+        ("all", "share outside U95", 1.0 - INSIDE, 1.0 - sum(r.inside for r in counted) / len(counted)),
+        ("all", "median U95 over value", WIDE, float(np.median([r.width for r in counted]))),
+        ("main derivatives", "median |error|", APART, float(np.median(main))),
+    )
+    limits = tuple(
+        Compared(case, what, "1", limit, value, 1e-9, Basis.PREDICTED, at_most=True)
+        for case, what, limit, value in goals
+    )
+    source = "Roddy (1990), Table 4"
+    return Acceptance(
+        "estimates",
+        "Estimates from the shape against measurements on SUBOFF",
+        (
+            ComparedTable("goals", "Goals set for the estimates", limits, source),
+            ComparedTable("derivatives", "Derivatives, allowed: U95 of the estimate", derivatives, source, (
+                "Shares and constants were fixed before the comparison; none uses an error on SUBOFF.",)),
+        ),
+        (),
+        (*table(found).notes, *_beside()),
+        ("roddy1990", "groves1989", "whicker1958", "pitts1957", "hopkins1951", "allen1951"),
+        shown=(table(found),),
+    )  # fmt: skip
+
+
+def _beside() -> tuple[str, ...]:
+    """Vehicles whose numbers are others' estimates or CFD: no verdict."""
+    said = ["HUUV and THAUV: no verdict; their publications give no shape, and no derivatives of the HUUV."]
+    body = read_body(Path(shipped("geometry")) / "remus100" / "body.toml")
+    if body.outline is None:
+        return tuple(said)
+    theirs = read_parameter_file(Path(shipped("cfd_data")) / "remus100" / "remus100.parameters.json")
+    water = Water(theirs.conditions.density, VISCOSITY, theirs.conditions.speed)
+    ours = estimated(replace(body, scaling=theirs.scaling), water)
+    printed = {c.symbol.removesuffix("'"): c.value for c in theirs.coefficients}
+    pairs = {"Yv": "Yuv", "Nv": "Nuv", "Yr": "Yur", "Nr": "Nur", "Yv|v|": "Yv|v|", "Nr|r|": "Nr|r|"}
+    parts = [
+        f"{primed(s)} {_value(ours, s):.4f} for {printed[p]:.4f}"
+        for s, p in pairs.items()
+        if printed.get(p) is not None
+    ]
+    said.append(
+        "REMUS 100, no verdict: the bare hull here, beside Prestero's own estimates of the hull with its fins: "
+        + ", ".join(parts)
+        + "."
+    )
+    return tuple(said)
+
+
+def _value(made: Estimates, symbol: str) -> float:
+    among: CoefficientSet | Mapping[str, Coefficient] = made.coefficients
+    return float(among[symbol].value or 0.0) if symbol in made.coefficients else 0.0

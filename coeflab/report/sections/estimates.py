@@ -1,0 +1,356 @@
+"""Estimates in a report: a vehicle from its shape, which numbers are estimates, and what each does to the first manoeuvre."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from coeflab.core.table import ABSENT, Severity, Table, number, percent, with_u95
+from coeflab.core.wording import listed
+from coeflab.law.added_mass import AddedMass
+from coeflab.law.coefficient import Coefficient
+from coeflab.law.symbols import CONTROLS, derivative, primed
+from coeflab.motion.manoeuvre import Simulation
+from coeflab.motion.uncertainty.uncertainty import Carried, Importance, Spread
+from coeflab.report.document import Answer, AnswerRow, Chip, Figure, Section
+from coeflab.report.figures.motion import track_figures
+from coeflab.report.figures.uncertainty import bars
+from coeflab.report.tables import nouns as noun_tables
+from coeflab.report.tables.uncertainty import shown_unit
+from coeflab.study.study import FromShape, Study
+from coeflab.vehicle.derived import sense, stability
+from coeflab.vehicle.merge import Merged, estimates_of
+from coeflab.vehicle.parameter_file import ParameterFile
+
+SIX = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
+FIRST = (
+    "tactical diameter",
+    "advance",
+    "stopping time",
+)  # figures that a manoeuvre is known by, the first that is there
+OFF = "thrust off at time zero"  # what a coast-down says of itself
+ROUNDING, FINEST = 1e-6, 1e-9
+LEAST, TENTH, MOST_PARTS, LONGEST = 0.005, 0.1, 3, 160
+ESTIMATED = (
+    "Estimates from the shape alone by semi-empirical methods, U95 from the scatter that each source states and from the spread "
+    "between methods. A computation or a measurement replaces each: coeflab merge."
+)
+SHARES = (
+    "Shares of the variance that would go if that one number were known, over draws of all of them. The largest is the number that "
+    "is worth the next computation or test. Estimates of one method go together, so that the shares may add up to more than one."
+)
+
+
+def main_spread(carried: Sequence[Carried]) -> tuple[Spread, Importance] | None:
+    """The figure that the first manoeuvre is known by, with where its variance comes from; None where none has an interval."""
+    for c in carried:
+        found = {s.figure.name: s for s in c.spreads if s.status == "ok"}
+        shares = {i.figure: i for i in c.importances}
+        name = next((n for n in FIRST if n in found), None)
+        if name is not None:
+            return found[name], shares[name]
+    return None
+
+
+def particulars_table(shape: FromShape, hull: AddedMass | None = None) -> Table:
+    """Displacement, centres, areas, mass, inertia and added mass, with what is assumed in the notes."""
+    c, rho = shape.weighed.configuration, shape.conditions.density
+    rows = [("displacement", number(rho * (c.volume or 0.0)), "kg"), ("volume", number(c.volume, 5), "m^3")]
+    datum = shape.weighed.body.datum
+    if c.mass is not None:
+        rows.append(("mass", number(c.mass.mass), "kg"))
+    if c.centre_of_buoyancy is not None:
+        rows.append(("centre of buoyancy x, y, z", _three(c.centre_of_buoyancy), "m"))
+    if c.mass is not None:
+        rows.append(
+            ("centre of gravity x, y, z", _three(c.mass.centre_of_gravity + shape.weighed.body.reference_point), "m")
+        )
+        if c.mass.inertia_matrix is not None:
+            rows.append(("inertia x, y, z", _three(np.diag(c.mass.inertia_matrix)), "kg m^2"))
+    rows.append(("wetted surface", number(c.wetted_surface), "m^2"))
+    if c.projected_areas is not None:
+        rows.append(("projected areas along x, y, z", _three(c.projected_areas), "m^2"))
+    if hull is not None:
+        along, about = np.diag(hull.matrix)[:3], np.diag(hull.matrix)[3:]
+        rows += [("added mass along x, y, z", _three(along), "kg"), ("added inertia x, y, z", _three(about), "kg m^2")]
+    by = f"; added mass by {hull.method}" if hull is not None else ""
+    notes = (
+        f"points from the {datum}, FRD; inertia about {_three(shape.weighed.body.reference_point)} m{by}",
+        *shape.said,
+    )
+    return Table(
+        f"{shape.weighed.body.name}: particulars", ("", "value", "unit"), tuple(rows), notes, frozenset({0, 2})
+    )
+
+
+def _three(values: np.ndarray) -> str:
+    size = max(float(np.max(np.abs(values))), ROUNDING)
+    return ", ".join("0" if abs(float(v)) < ROUNDING * size + FINEST else number(float(v), 4) for v in values)
+
+
+def estimates_table(
+    parameters: ParameterFile,
+    carried: Sequence[Carried] = (),
+    parts: Mapping[str, Mapping[str, float]] | None = None,
+    few: bool = False,
+) -> Table:
+    """Every number of a file with its U95, whether it is an estimate, what it is made of, its share in the first figure.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    carried : sequence of Carried
+        The first manoeuvre's.
+    parts : mapping of symbol to mapping of part to value, optional
+        Of estimates.
+    few : bool
+        First-order slopes of the two planes, resistance and controls, and what has a tenth of the variance.
+    """
+    main = main_spread(carried)
+    shares = dict(main[1].known) if main is not None else {}
+    order = {primed(s): i for i, s in enumerate(SIX)}
+    valued = [c for c in parameters.coefficients if c.value is not None]
+    if few:
+        wanted = {*order, *(primed(s) for s in ("X0", "Xuu", "Xu|u|"))}
+        shown = [c for c in valued if c.symbol in wanted or shares.get(c.symbol, 0.0) >= TENTH or _controls(c)]
+        rest, valued = len(valued) - len(shown), shown
+    rows = tuple(
+        (
+            c.symbol, *with_u95(c.value, c.u95), percent(c.u95, c.value), _status(c),
+            *((f"{100.0 * shares[c.symbol]:.0f} %" if c.symbol in shares else "",) if main is not None else ()),
+            *((_made_of(c, parts),) if parts is not None else ()),
+        )
+        for c in sorted(valued, key=lambda c: (order.get(c.symbol, len(order)), len(derivative(c.symbol).factors)))
+    )  # fmt: skip
+    heads = (
+        "",
+        "value",
+        "U95",
+        "U95",
+        "status",
+        *((f"of {main[0].figure.name}",) if main is not None else ()),
+        *(("made of",) if parts is not None else ()),
+    )
+    left = frozenset({0, 4, *((len(heads) - 1,) if parts is not None else ())})
+    notes = (f"{rest} more; --wide shows all.",) if few and rest else ()
+    return Table(f"{parameters.name}: numbers and estimates", heads, rows, notes, left, ("made of",))
+
+
+def _controls(c: Coefficient) -> bool:
+    factors = derivative(c.symbol).factors
+    return len(factors) == 1 and factors[0] in CONTROLS and c.symbol[0] in "YZMN"
+
+
+def _status(c: Coefficient) -> str:
+    return "estimate" if c.status == "estimate" else c.campaign or str(c.status).replace("_", " ")
+
+
+def _made_of(c: Coefficient, parts: Mapping[str, Mapping[str, float]]) -> str:
+    """The kinds of contributions with their shares, the largest first."""
+    if c.status != "estimate" or not c.value:
+        return ""
+    kinds: dict[str, float] = {}
+    for name, value in parts.get(c.symbol.removesuffix("'"), {}).items():
+        kind = name.rpartition(", ")[2]
+        kinds[kind] = kinds.get(kind, 0.0) + value
+    largest = sorted(kinds.items(), key=lambda p: -abs(p[1]))
+    said = [f"{name} {100.0 * v / c.value:.0f} %" for name, v in largest if abs(v) >= 0.01 * abs(c.value)]
+    return ", ".join(said[:MOST_PARTS]) + (f" and {len(said) - MOST_PARTS} more" if len(said) > MOST_PARTS else "")
+
+
+def shares_figure(parameters: ParameterFile, carried: Sequence[Carried], anchor: str) -> Figure | None:
+    """Bars of what each number contributes to the variance of the first figure, estimates marked; None without an interval."""
+    main = main_spread(carried)
+    if main is None or not main[1].known:
+        return None
+    estimated = {c.symbol for c in estimates_of(parameters)}
+    known = tuple((f"{s} estimate" if s in estimated else s, v) for s, v in main[1].known if v >= LEAST)
+    return bars(replace(main[1], known=known, shares=()), anchor) if known else None
+
+
+def interval_in_words(carried: Sequence[Carried]) -> str:
+    """The first figure with its interval, for example ``tactical diameter 12.4 m (95 % 9 to 19), estimate``; empty without one."""
+    main = main_spread(carried)
+    if main is None or main[0].low is None or main[0].high is None or main[0].figure.value is None:
+        return ""
+    s, (factor, unit) = main[0], shown_unit(main[0].figure.unit)
+    return (
+        f"{s.figure.name} {(s.figure.value or 0.0) * factor:.2g}{f' {unit}' if unit else ''} "
+        f"(95 % {(s.low or 0.0) * factor:.2g} to {(s.high or 0.0) * factor:.2g}), estimate"
+    )
+
+
+def manoeuvre_table(moves: Sequence[Simulation], carried: Sequence[Carried]) -> Table:
+    """Figures of the first manoeuvres, with intervals where the uncertainty was carried through."""
+    bounds = {(c.question.manoeuvre, s.figure.name): s for c in carried for s in c.spreads if s.status == "ok"}
+    rows = []
+    for made in moves:
+        name = made.manoeuvre.name
+        called = "coast-down" if OFF in made.manoeuvre.statements else name.replace("_", " ")
+        for f in made.figures:
+            factor, unit = shown_unit(f.unit)
+            s = bounds.get((name, f.name))
+            ends = f"{(s.low or 0.0) * factor:.3g} to {(s.high or 0.0) * factor:.3g}" if s is not None else ABSENT
+            value = f.status if f.value is None else number(f.value * factor, 3)
+            if f.name != "lateral deviation":
+                rows.append((called, f.name, value, unit, ends))
+    notes = ("In the horizontal plane: heave, roll and pitch are held. Every number is an estimate.",)
+    return Table("First manoeuvres", ("", "figure", "value", "unit", "95 %"), tuple(rows), notes, frozenset({0, 1, 3}))
+
+
+def missing_table(shape: FromShape) -> Table:
+    """What is missing, one row each."""
+    return Table("Missing", ("",), tuple((m,) for m in shape.missing), (), frozenset({0}))
+
+
+def sentence(study: Study) -> str:
+    """What came out, in one sentence."""
+    shape, parameters = _shape(study), next(iter(study.parameter_files.values()))
+    found = estimates_of(parameters)
+    shares = sorted(abs(c.u95 / c.value) for c in found if c.u95 and c.value)
+    wide = f", median U95 {100.0 * shares[len(shares) // 2]:.0f} %" if shares else ""
+    c = shape.weighed.configuration
+    displaced = shape.conditions.density * (c.volume or 0.0)
+    mass = f"{c.mass.mass:.3g} kg in {displaced:.3g} kg of displacement" if c.mass else f"displaces {displaced:.3g} kg"
+    turn = interval_in_words(shape.carried)
+    rest = f"{mass}; {len(found)} estimates from the shape{wide}{f'; {turn}' if turn else ''}."
+    named = (f"{name}: {rest}" for name in (study.plan.title, study.plan.name, "Vehicle") if name)
+    return next((s for s in named if len(s) <= LONGEST), rest[:LONGEST])
+
+
+def _shape(study: Study) -> FromShape:
+    if study.shape is None:
+        raise TypeError("a study with tables has no shape of its own")
+    return study.shape
+
+
+def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
+    """The first page of a body alone: six slopes as estimates, the first manoeuvre, and what is missing."""
+    shape, parameters = _shape(study), next(iter(study.parameter_files.values()))
+    wanted = study.plan.wanted or SIX
+    rows = []
+    for symbol in wanted:
+        c = parameters.coefficient(symbol)
+        value, u95 = (c.value, c.u95) if c is not None else (None, None)
+        status = "" if value is not None else "no estimate"
+        rows.append(AnswerRow(symbol, value, u95, status, "estimates", anchor="coefficients"))
+    indices = stability(parameters)
+    held = (
+        f"{sense(indices[0]).partition(' at ')[0]}, {indices[0].name} = {indices[0].value:.2f}"
+        if indices
+        else "not determined"
+    )
+    turn = interval_in_words(shape.carried)
+    chips = (
+        Chip("Stability", f"{held}, estimate" if indices else held, Severity.NOTE, "stability"),
+        Chip("First manoeuvre", turn or "no interval", Severity.NOTE, "manoeuvres" if study.manoeuvres else ""),
+        Chip("Missing", f"{len(shape.missing)} things" if shape.missing else "nothing", Severity.WARN if shape.missing else Severity.PASS, "estimates"),
+        Chip("Exports", f"{len(study.exports)} made" if study.exports else "none planned", Severity.NOTE, "exports" if study.exports else ""),
+    )  # fmt: skip
+    by = f"Estimates by semi-empirical methods, no measurement; primes by {parameters.scaling.length_name} {parameters.scaling.length:.5g} m."
+    made = Answer(sentence(study), rows=tuple(rows), chips=chips, notes=(by, *shape.said[:2]))
+    if not drawn:
+        return made
+    first = next(iter(study.manoeuvres), None)
+    left = track_figures(first.trajectory, "answer-track", first.vehicle.length)[0] if first is not None else None
+    return replace(made, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"))
+
+
+def verdict_of_shape(study: Study) -> Section:
+    """What comes out of a shape alone, in short paragraphs."""
+    shape = _shape(study)
+    text = [sentence(study), *(f"{s[:1].upper()}{s[1:]}." for s in shape.said)]
+    if shape.missing:
+        text.append(f"Missing: {'; '.join(shape.missing)}.")
+    return Section("verdict", "Verdict", tuple(text))
+
+
+def estimates_sections(study: Study) -> tuple[Section, ...]:
+    """Particulars and estimates of a body alone."""
+    if study.shape is None:
+        return ()
+    shape, (name, parameters) = study.shape, next(iter(study.parameter_files.items()))
+    figure = shares_figure(parameters, shape.carried, f"shares-{name}"[:60].replace("_", "-"))
+    tables = [
+        particulars_table(shape, parameters.added_mass),
+        estimates_table(parameters, shape.carried, shape.estimates.shares),
+    ]
+    text = (ESTIMATED, SHARES) if figure is not None else (ESTIMATED,)
+    notes = tuple(f"{n[:1].upper()}{n[1:]}." for n in shape.estimates.notes)
+    missing = (
+        Section("missing", "Missing", tuple(f"{m[:1].upper()}{m[1:]}." for m in shape.missing))
+        if shape.missing
+        else None
+    )
+    outside = dict.fromkeys(
+        f"{c.part}, {c.kind} by {c.method}: {c.outside}." for c in shape.estimates.contributions if c.outside
+    )
+    works = Section("methods", "Methods of the estimates", (*notes, *outside), (_methods(shape),), appendix=True)
+    hull = parameters.added_mass
+    matrix = Section("added-mass-used", "Added mass", tables=(noun_tables.matrix(hull),)) if hull is not None else None
+    subsections = tuple(s for s in (missing, matrix, works) if s is not None)
+    return (
+        Section("coefficients", "Estimates", text, tuple(tables), (figure,) if figure is not None else (), subsections),
+    )
+
+
+def _methods(shape: FromShape) -> Table:
+    rows = tuple(
+        dict.fromkeys(
+            (c.part, c.kind, c.method, f"{100.0 * c.share:.0f} %", f"{c.citation}{f', {c.place}' if c.place else ''}")
+            for c in shape.estimates.contributions
+        )
+    )
+    heads = ("part", "of", "method", "U95", "source")
+    return Table("Contributions", heads, rows, (), frozenset({0, 1, 2, 4}))
+
+
+def merged_table(made: Merged) -> Table:
+    """What was replaced: before, after, and how far apart they are in the U95 of both."""
+    rows = []
+    for r in made.replaced:
+        before, after = (_value(c) for c in (r.before, r.after))
+        apart = ABSENT
+        if (
+            r.before
+            and r.after
+            and r.before.u95
+            and r.after.u95
+            and r.before.value is not None
+            and r.after.value is not None
+        ):
+            apart = f"{abs(r.after.value - r.before.value) / np.hypot(r.before.u95, r.after.u95):.2f}"
+        rows.append((r.symbol, before, after if r.after else "left out", apart))
+    left = ", ".join(c.symbol for c in made.estimates) or "none"
+    notes = (f"Still estimates: {left}.", "apart: difference over both U95; above 1 they disagree")
+    return Table(f"{made.parameters.name}: replaced", ("", "before", "now", "apart"), tuple(rows), notes)
+
+
+def _value(c: Coefficient | None) -> str:
+    if c is None:
+        return ABSENT
+    value, u95 = with_u95(c.value, c.u95)
+    return f"{value} +- {u95}" if c.u95 else value
+
+
+def replaced_section(made: Merged, carried: Sequence[Carried]) -> Section:
+    """What was replaced, which estimates remain, and what they contribute to the uncertainty of the turn."""
+    figure = shares_figure(made.parameters, carried, "shares")
+    main = main_spread(carried)
+    text = [ESTIMATED]
+    if main is not None:
+        estimated = {c.symbol for c in made.estimates}
+        own = [(symbol, v) for symbol, v in main[1].known if symbol in estimated]
+        words = interval_in_words(carried).removesuffix(", estimate")
+        which = (
+            f"Of the estimates still in it {listed([symbol for symbol, _ in own])} contribute, the largest "
+            f"{100.0 * max(v for _, v in own):.0f} % of its variance."
+            if own
+            else "No estimate still in it contributes."
+        )
+        text.append(f"{words[:1].upper()}{words[1:]}. {which}")
+        text.append(SHARES)
+    return Section("coefficients", "Estimates and what replaced them", tuple(text),
+                   (merged_table(made), estimates_table(made.parameters, carried)), (figure,) if figure else ())  # fmt: skip

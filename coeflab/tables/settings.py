@@ -1,0 +1,263 @@
+"""Keys of campaign.toml as a person types them, a file states them or an earlier import saved them."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from coeflab.core.axes import ANGLE_SIGNS, FRAMES, Axes, angle_sign, parse_axes
+from coeflab.core.declarations import POINT, numbers, one_of, text_of
+from coeflab.core.errors import InputError, shown, together
+from coeflab.core.provenance import TABLE_KINDS
+from coeflab.core.text.toml import read_toml
+from coeflab.core.units import quantity
+from coeflab.law.scaling import Scaling, doubtful_size, speaks_of_air
+from coeflab.tables.campaign import (
+    CENTRES,
+    CampaignAxes,
+    CampaignConditions,
+    CampaignHead,
+    InputUncertainty,
+    TableDeclaration,
+    TableSource,
+    TowedInertia,
+)  # fmt: skip
+from coeflab.tables.column_map import ColumnMap, read_column_map
+from coeflab.tables.raw_table import RawTable
+
+POINT_OF = "axes.reference_point"
+CONFIRMED = ("confirmed", "from ")
+_KINDS = {
+    "campaign": CampaignHead, "axes": CampaignAxes, "scaling": Scaling, "conditions": CampaignConditions,
+    "source": TableSource, "inertia": TowedInertia, "uncertainty": InputUncertainty, "table": TableDeclaration,
+}  # fmt: skip
+SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
+PLACES = ("FRAME", "POINT", "NAME", "SOURCE", "KIND", "SIGN", "SIDE")
+RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
+PLACE_WANTED = "x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum"
+_ALONG = re.compile(r"[-+]?\d+(?:\.\d*)?\s*[a-z]{1,4}")
+PLACE_KEYS = ("axes.reference_point", "inertia.centre_of_gravity", "table.arm_point", "table.reference_point")
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """A value of campaign.toml and where it comes from.
+
+    Attributes
+    ----------
+    value : object
+        As TOML holds it.
+    origin : str
+        For the comment beside it.
+    """
+
+    value: Any
+    origin: str
+
+
+Settings = Mapping[str, Setting]
+
+
+def _sign(name: str) -> Callable[[Any], Any]:
+    def read(said: Any) -> str:
+        formulas = {"+" if sign > 0 else "-": formula for formula, sign in ANGLE_SIGNS[name].items()}
+        text = formulas.get(str(said), said)
+        angle_sign(name, text)
+        return " ".join(str(text).split())
+
+    return read
+
+
+def _frame(said: Any) -> Any:
+    if isinstance(said, str) and said not in FRAMES:
+        listed = [word.strip(" \"'[]") for word in said.split(",")]
+        said = said.upper() if said.upper() in FRAMES else listed if len(listed) == 3 else said
+    parse_axes(said)
+    return said
+
+
+def _triple(read: Callable[[Any, Path], Any]) -> Callable[[Any], Any]:
+    def parsed(typed: Any) -> Any:
+        said = list(typed) if isinstance(typed, tuple) else typed
+        if isinstance(said, str):
+            inner = said.strip(" []()")
+            parts = inner.split("," if "," in inner else ";" if ";" in inner else None)
+            said = [_toml(part.strip(" \"'")) for part in parts]
+        try:
+            read(said, Path())
+        except InputError as why:
+            if not isinstance(typed, str):
+                raise
+            advice = "Write a decimal point." if len(said) > 3 and "." not in typed else why.advice
+            raise type(why)(shown(typed), why.expected, advice=advice) from None
+        return said
+
+    return parsed
+
+
+def _place(said: Any) -> Any:
+    """Three numbers, or x alone of a point on the axis: -2.1, -2.1 m, -2100 mm."""
+    if isinstance(said, (int, float)) and not isinstance(said, bool):
+        return _triple(POINT.read)([float(said), 0.0, 0.0])
+    if isinstance(said, str) and _ALONG.fullmatch(said.strip()):
+        return [quantity(said.strip(), "length"), 0.0, 0.0]
+    try:
+        return _triple(POINT.read)(said)
+    except InputError as why:
+        raise type(why)(why.found, PLACE_WANTED, advice=why.advice) from None
+
+
+def _flag(said: Any) -> bool:
+    words = {"yes": True, "y": True, "true": True, "no": False, "n": False, "false": False}
+    found = said if isinstance(said, bool) else words.get(str(said).casefold())
+    if found is None:
+        raise InputError(shown(said), "true or false")
+    return found
+
+
+def _measured(dimension: str) -> Callable[[Any], Any]:
+    def read(said: Any) -> Any:
+        if not quantity(said, dimension) > 0.0:
+            raise InputError(shown(said), f"a {dimension} above zero")
+        return said
+
+    return read
+
+
+def _one_of(*words: str) -> Callable[[Any], Any]:
+    return lambda said: one_of(*words).read(said, Path())
+
+
+READERS: dict[str, Callable[[Any], Any]] = {
+    "axes.frame": _frame,
+    "axes.alpha": _sign("alpha"),
+    "axes.beta": _sign("beta"),
+    **dict.fromkeys(PLACE_KEYS, _place),
+    "table.centre": _one_of(*CENTRES),
+    "inertia.inertia": _triple(numbers(3, "inertia", "three numbers [Ix, Iy, Iz]").read),
+    "inertia.mass": _measured("mass"),
+    "scaling.length": _measured("length"),
+    "conditions.density": _measured("density"),
+    "conditions.speed": _measured("speed"),
+    "table.contains_inertia": _flag,
+    "source.kind": _one_of(*TABLE_KINDS),
+    **dict.fromkeys(
+        ("axes.datum", "axes.datum_note", "scaling.length_name", "source.citation", "campaign.title", "campaign.body", "campaign.name"),
+        lambda said: str(text_of(said if isinstance(said, str) else json.dumps(said), Path())),
+    ),
+}  # fmt: skip
+
+
+def _toml(text: str) -> Any:
+    try:
+        return tomllib.loads(f"x = {text}")["x"]
+    except (tomllib.TOMLDecodeError, RecursionError):
+        return text
+
+
+def read_setting(key: str, text: Any) -> Any:
+    """A value of campaign.toml as a person types it: TOML, or bare words.
+
+    Raises
+    ------
+    InputError
+        No such key, or nothing that it takes.
+    """
+    section, _, name = key.partition(".")
+    if name not in SECTIONS.get(section, ()) or key in RESERVED:
+        known = [f"{section}.{n}" for n in SECTIONS.get(section, ()) if f"{section}.{n}" not in RESERVED]
+        expected = f"one of {', '.join(known or SECTIONS)}" + ("" if known else " with a key, such as axes.frame")
+        raise InputError(f"the key {shown(key)}", expected)
+    if text in PLACES:
+        raise InputError(shown(text), "a value in its place", column=key)
+    typed = _toml(text) if isinstance(text, str) and READERS.get(key) is not READERS["axes.datum"] else text
+    try:
+        return READERS.get(key, lambda said: said)(typed)
+    except InputError as why:
+        raise type(why)(why.found, why.expected, column=key, advice=why.advice) from None
+
+
+def stated_settings(raw: RawTable) -> dict[str, Setting]:
+    """What a file says of itself, as far as campaign.toml has keys for it.
+
+    A reference point is left out: a file counts it in its own axes from its own origin.
+    """
+    out = {}
+    for key, said in raw.stated.items():
+        section, _, name = key.partition(".")
+        if name in SECTIONS.get(section, ()) and key not in (*RESERVED, POINT_OF) and not said.offered:
+            plain = list(map(float, said.value)) if isinstance(said.value, tuple) else said.value
+            out[key] = Setting(plain, f"stated: {said.place}")
+    return out
+
+
+def doubtful_setting(raw: RawTable, settings: Settings, key: str) -> str:
+    """Why the number of a key is probably one in another unit; empty where it is a usual one, or the file states it."""
+    one = settings[key]
+    sizes = {"conditions.density": "density", "conditions.speed": "speed", "scaling.length": "length"}
+    if key not in sizes or one.origin.startswith("stated"):
+        return ""
+    texts = [
+        raw.path.name,
+        raw.dialect.get("importer", ""),
+        *(s.value for k, s in settings.items() if k.startswith(("campaign.", "source."))),
+    ]
+    return doubtful_size(key, quantity(one.value, sizes[key]), speaks_of_air(texts))
+
+
+def frame_of(settings: Settings) -> Axes | None:
+    """The axes of the file, where they are known."""
+    return parse_axes(settings["axes.frame"].value) if "axes.frame" in settings else None
+
+
+def saved_mapping(path: Path) -> tuple[dict[str, ColumnMap], dict[str, Setting], str, dict[str, Any]]:
+    """Columns, settings, importer and its options of a mapping.toml that an import wrote, or of a campaign.toml.
+
+    Raises
+    ------
+    InputError
+        All that is wrong with it, by line and key.
+    """
+    file = read_toml(path)
+    content = dict(file.content)
+    columns: dict[str, ColumnMap] = {}
+    settings: dict[str, Setting] = {}
+    complaints: list[InputError] = []
+    options = content.pop("importer", {})
+    named = content.pop("columns", {})
+    for name, text in named.items() if isinstance(named, dict) else ():
+        try:
+            columns[name] = read_column_map(text)
+        except InputError as why:
+            line = file.line(("columns", name))
+            complaints.append(InputError(why.found, why.expected, file=path, line=line, key=f"columns.{name}"))
+    importer = ""
+    for section, inner in content.items():
+        keys = inner[0] if isinstance(inner, list) and inner else inner
+        for name, said in keys.items() if isinstance(keys, dict) else {section: keys}.items():
+            key = f"{section}.{name}"
+            if key == "campaign.importer":
+                importer = str(said)
+            elif key not in RESERVED and section != "campaign":
+                try:
+                    settings[key] = Setting(read_setting(key, said), f"from {path.name}")
+                except InputError as why:
+                    complaints.append(file.fail(key, why.found, why.expected, why.advice))
+    if complaints:
+        raise together(complaints)
+    return columns, settings, importer, dict(options) if isinstance(options, dict) else {}
+
+
+def assumed(out: Path) -> dict[str, Setting]:
+    """Names without physics, by the folder that is written."""
+    name = out.resolve().name or "campaign"
+    return {
+        "campaign.name": Setting(name, "the folder's"),
+        "campaign.title": Setting(name, "for people; reports print it"),
+        "campaign.body": Setting(name, "the configuration of body.toml that the table is about"),
+    }

@@ -1,0 +1,251 @@
+"""Reading a tank.toml, and what a body is towed in without one."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+
+from coeflab.bodies.body import Body
+from coeflab.bodies.readers import read_body
+from coeflab.core import declarations as takes
+from coeflab.core.axes import Datum
+from coeflab.core.declarations import Declaration
+from coeflab.core.errors import InputError, shown, together
+from coeflab.core.registry import Registry
+from coeflab.core.text.toml import TomlFile, quoted, read_toml, value
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.tank import test_matrix
+from coeflab.tank.declaration import FRESH_WATER, MatrixKeys, TankFile
+from coeflab.tank.runners import RUNNERS
+from coeflab.tank.solvers import SOLVERS
+from coeflab.tank.tank import Tank
+from coeflab.tank.test_matrix import Sweeps
+from coeflab.tank.towed_body import TowedBody
+
+
+def declared_body(path: Path) -> Path | None:
+    """The body.toml that a tank.toml names, None where it names none.
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong with the file.
+    """
+    found = takes.declared(TankFile, read_toml(path)).tank.body
+    return None if found is None else _body_file(found)
+
+
+def _body_file(path: Path) -> Path:
+    return path / "body.toml" if path.is_dir() else path
+
+
+def read_tank(
+    path: Path, body: TowedBody | None = None, *, body_file: Path | None = None, solver: str = "", runner: str = ""
+) -> Tank:
+    """The tank of a tank.toml.
+
+    Parameters
+    ----------
+    path : Path
+        Paths inside resolve from its folder.
+    body : TowedBody, optional
+        Its mirrors and ends make the matrix; without one both sides of the whole body are towed.
+    body_file : Path, optional
+        The body.toml where the command line says it; required where the file does not.
+    solver, runner : str, optional
+        In the place of those that the file names.
+
+    Raises
+    ------
+    InputError
+        Everything that is wrong, by file, line and key.
+    """
+    return _tank(read_toml(path), body, body_file, solver, runner)
+
+
+def default_tank(body_file: Path, body: TowedBody, *, solver: str = "", runner: str = "") -> Tank:
+    """The tank of a body for which nobody wrote a tank.toml: that of `default_text`."""
+    text = default_text(body)
+    file = TomlFile(body_file.parent / "tank.toml", tomllib.loads(text), text)
+    return _tank(file, body, body_file, solver, runner)
+
+
+def default_text(surface: TowedBody, at: Conditions = FRESH_WATER) -> str:
+    """A commented tank.toml for a body: what applies unless somebody says otherwise.
+
+    What is commented out are the values that apply, and examples that hold for this body.
+
+    Parameters
+    ----------
+    surface : TowedBody
+        Its mirrors, ends and controls say what is run.
+    at : Conditions, optional
+        Fresh water of 20 deg C and 2 m/s unless given.
+    """
+    body = surface.body
+    scaling = _scaling(body) or Scaling(surface.length, "LOA")
+    sweeps = test_matrix.default_sweeps(surface, scaling.length)
+    conditions = test_matrix.conditions(sweeps, surface, at.speed, scaling.length)
+    angles = {
+        name: f"[{', '.join(quoted(f'{np.degrees(a):.4g} deg') for a in getattr(sweeps, name))}]"
+        for name in ("drift", "attack")
+    }
+    yaw = f"[{', '.join(f'{r:g}' for r in sweeps.yaw)}]"
+    drifts, arms = ([c.name for c in conditions if c.kind is kind and min(_sideways(c)) >= 0.0] for kind in _STUDIED)
+    controls = ", ".join(
+        f'{{ name = {quoted(name)}, angles = ["-10 deg", "-5 deg", "5 deg", "10 deg"] }}'
+        for name in dict.fromkeys(c.name for c in body.controls)
+    )
+    return f"""\
+# The virtual tow tank of {body.name}: coeflab tow {body.name} --matrix tank.toml --out runs/{body.name}
+[tank]
+name = {quoted(body.name)}
+solver = "openfoam"                  # external needs nothing installed; coeflab formats tow_solvers
+cores = 1                            # that one run takes
+# reference_point = {value([float(v) for v in body.reference_point])}   # of velocities and moments; the body's unless given
+# symmetry = false                   # tow both sides of the whole body, whatever its mirrors
+
+[conditions]
+speed = "{at.speed:g} m/s"
+density = "{at.density:g} kg/m^3"               # fresh water of 20 deg C, ITTC 7.5-02-01-03
+viscosity = "{at.viscosity:g} m^2/s"
+
+# [scaling]                          # of the primes; the body's unless given
+# length = "{scaling.length:.10g} m"
+# length_name = {quoted(scaling.length_name)}
+
+[matrix]                             # what is left out is what the six derivatives need of this body, as it stands here
+# drift = {angles["drift"]}   # v = U sin(drift); [] for none
+# attack = {angles["attack"]}   # w = U sin(attack){"; from drift by fourfold symmetry" * (not sweeps.attack)}
+# yaw = {yaw}   # r' = r L/U on a rotating arm
+# pitch = []   # q' = q L/U
+# combined = [{{ drift = "4 deg", yaw = {sweeps.yaw[-1] / 2.0:g} }}]
+# control = [{controls}]{"   # the body has no [[control]] that turns" * (not controls)}
+
+# [[study]]                          # a grid uncertainty for some conditions: three grids with medium
+# of = ["{drifts[min(1, len(drifts) - 1)]}", "{arms[min(1, len(arms) - 1)]}"]
+# grid = ["coarse", "fine"]          # cells 1.3 and 1/1.3 times the size; [[grid]] with name and size for others
+"""
+
+
+_STUDIED = (test_matrix.Kind.DRIFT, test_matrix.Kind.ARM)
+
+
+def _sideways(condition: test_matrix.TowCondition) -> tuple[float, float]:
+    return float(condition.velocity[1]), float(condition.rates[2])
+
+
+def _scaling(body: Body) -> Scaling | None:
+    """The body's own length of primes, else its length over all."""
+    if body.scaling is not None:
+        return body.scaling
+    return next(
+        (Scaling(length, name) for name, length in body.lengths.items() if "overall" in name or name == "LOA"), None
+    )
+
+
+def _tank(file: TomlFile, body: TowedBody | None, body_file: Path | None, solver: str, runner: str) -> Tank:
+    said = takes.declared(TankFile, file)
+    where = _where(file, said.tank.body, body_file)
+    own = read_body(where) if body is None else body.body
+    scaling = said.scaling or _scaling(own)
+    if scaling is None and body is not None:
+        scaling = Scaling(body.length, "LOA")
+    if scaling is None:
+        raise file.fail("scaling.length", "nothing", "a length", "Add [scaling] with length and length_name.")
+    towed = body if body is None or said.tank.symmetry else replace(body, mirrors=(False, False, False), fourfold=False)
+    speed = said.conditions.speed
+    sweeps = _sweeps(said.matrix, towed, scaling.length)
+    try:
+        matrix = test_matrix.conditions(sweeps, towed, speed, scaling.length)
+        matrix = test_matrix.with_studies(matrix, [study.made for study in said.study])
+    except InputError as why:
+        raise file.fail(why.column or "matrix", why.found, why.expected, why.advice) from None
+    chosen, carried_by = solver or said.tank.solver, runner or said.tank.runner
+    options = _options(file, "solver", SOLVERS, said.solver, chosen, "tank.solver" if not solver else "")
+    carrying = _options(file, "runner", RUNNERS, said.runner, carried_by, "tank.runner" if not runner else "")
+    point = own.reference_point if said.tank.reference_point is None else said.tank.reference_point
+    return Tank(
+        name=said.tank.name or own.name,
+        title=own.title or own.name if said.tank.title is None else said.tank.title,
+        body=where,
+        datum=Datum.named(own.datum.id, own.datum.note),
+        reference_point=point,
+        scaling=scaling,
+        conditions=Conditions(said.conditions.density, speed, said.conditions.viscosity),
+        matrix=matrix,
+        grids=said.grids,
+        solver=chosen,
+        options=options,
+        cores=said.tank.cores,
+        by_symmetry=test_matrix.stated(towed, sweeps),
+        symmetry=test_matrix.symmetries(towed),
+        runner=carried_by,
+        runner_options=carrying,
+    )
+
+
+def _where(file: TomlFile, named: Path | None, given: Path | None) -> Path:
+    """The body.toml, which the file and the command line may both name."""
+    if named is None and given is None:
+        raise file.fail("tank.body", "nothing", "the path of a body.toml, or a shipped name", "Add tank.body.")
+    if named is None or given is None:
+        return _body_file(cast(Path, given if named is None else named)).resolve()
+    one, other = _body_file(named).resolve(), _body_file(given).resolve()
+    if one != other:
+        raise file.fail("tank.body", shown(named), f"{shown(given)}, the body that is to be towed, or no key at all")
+    return one
+
+
+def _sweeps(said: MatrixKeys, body: TowedBody | None, length: float) -> Sweeps:
+    default = test_matrix.default_sweeps(body, length)
+    controls: dict[str, tuple[float, ...]] = {}
+    for one in said.control:
+        controls[one.symbol] = (*controls.get(one.symbol, ()), *one.angles)
+    return Sweeps(
+        drift=default.drift if said.drift is None else said.drift,
+        attack=default.attack if said.attack is None else said.attack,
+        yaw=default.yaw if said.yaw is None else said.yaw,
+        pitch=said.pitch,
+        combined=tuple((c.drift, c.attack, c.yaw, c.pitch) for c in said.combined),
+        controls=controls,
+        speeds=said.speeds,
+    )
+
+
+def _options(
+    file: TomlFile, section: str, plugins: Registry[Any], given: Mapping[str, Any], chosen: str, key: str
+) -> dict[str, Any]:
+    """What the declaration of the chosen plugin reads from ``[solver.NAME]``; tables of others are checked as well.
+
+    Raises
+    ------
+    InputError
+        A table of no plugin, or wrong keys in one.
+    PluginError
+        No such plugin.
+    """
+    known = plugins.names()
+    if chosen not in known and key:
+        raise file.fail(key, shown(chosen), f"one of {', '.join(known)}")
+    complaints, out = [], {}
+    for name in dict.fromkeys((*given, chosen)):
+        if name not in known and name != chosen:
+            complaints.append(file.fail(f"{section}.{name}", shown(name), f"one of {', '.join(known)}"))
+            continue
+        declaration: type[Declaration] = plugins.load(name).options
+        try:
+            read = takes.validated(declaration, given.get(name, {}), file.path, file.line, (section, name))
+        except InputError as why:
+            complaints += [why, *why.others]
+            continue
+        if name == chosen:
+            out = {f.name: getattr(read, f.name) for f in fields(cast(Any, read))}
+    if complaints:
+        raise together(complaints)
+    return out

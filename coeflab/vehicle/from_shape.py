@@ -1,0 +1,276 @@
+"""A vehicle from its shape and its mass: what is stated, what is assumed, and the estimates as one fit among others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coeflab.bodies.body import Body, Configuration
+from coeflab.bodies.pieces import Control
+from coeflab.bodies.shape import Parts, Revolution
+from coeflab.bodies.thrusters import Thruster
+from coeflab.core.errors import InputError, shown
+from coeflab.core.types import Array, brief, locked
+from coeflab.core.wording import listed
+from coeflab.estimates import Estimates
+from coeflab.fits.results.fit_result import FitResult
+from coeflab.law.rigid_body import MassProperties, about_another, inertia_doubt
+from coeflab.law.symbols import CONTROLS
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import (
+    CurveSegment,
+    ParameterCurve,
+    ParameterHydrostatics,
+    ParameterSurface,
+    ParameterThruster,
+)
+
+ESTIMATES = "estimates"  # what fit and campaign are called
+TRIMMED = 0.005  # of the displacement: less is what a scale reads
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Stated:
+    """What is said of a vehicle beside its shape; None where nothing is.
+
+    Attributes
+    ----------
+    mass : float or None
+        kg.
+    centre : (3,) array or None
+        Of gravity, m, FRD, from the body's datum.
+    inertia : (3, 3) array or None
+        About the centre of gravity, kg m^2.
+    """
+
+    mass: float | None = None
+    centre: NDArray[np.float64] | None = None
+    inertia: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("centre", "inertia"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, locked(getattr(self, name)))
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Weighed:
+    """A body with its mass in water.
+
+    Attributes
+    ----------
+    body : Body
+        With a configuration of its own name, which has volume, centre of buoyancy and mass.
+    said : tuple of str
+        Mass against displacement first, then what is assumed, one line each.
+    assumed : tuple of str
+        Which of ``mass``, ``centre`` and ``inertia`` nobody stated.
+    """
+
+    body: Body
+    said: tuple[str, ...]
+    assumed: tuple[str, ...]
+
+    @property
+    def configuration(self) -> Configuration:
+        """The one with the mass."""
+        return self.body.require(self.body.name)
+
+
+def weighed(body: Body, stated: Stated, density: float) -> Weighed:
+    """The body with mass, centre of gravity and inertia: those stated, else its file's, else assumed and said.
+
+    Parameters
+    ----------
+    body : Body
+    stated : Stated
+    density : float
+        Of the water, kg/m^3.
+
+    Raises
+    ------
+    InputError
+        No volume, or an inertia that no body has.
+    """
+    base = _floating(body)
+    if not base.volume or base.centre_of_buoyancy is None:
+        raise InputError(f"{body.name} without a volume", "a body with a shape", advice="Name a mesh or a body.toml.")
+    own = next((c.mass for c in reversed(body.configurations) if c.mass is not None), None)
+    displaced, assumed, said = density * base.volume, [], []
+    mass = stated.mass if stated.mass is not None else own.mass if own is not None else None
+    if mass is None:
+        mass = displaced
+        assumed.append("mass")
+        said.append(f"assumed: as heavy as the water that it displaces, {displaced:.4g} kg; --mass states another")
+    else:
+        said.append(_buoyed(mass, displaced, density))
+    buoyancy = base.centre_of_buoyancy - body.reference_point
+    centre = None if stated.centre is None else stated.centre - body.reference_point
+    if centre is None and own is not None and (own.centre is not None or own.mass_moment):
+        centre = own.centre_of_gravity
+    if centre is None:
+        centre = buoyancy
+        assumed.append("centre")
+        said.append("assumed: centre of gravity at the centre of buoyancy, so no righting moment; --cg states another")
+    turning = stated.inertia
+    if turning is None and own is not None and own.inertia_matrix is not None:
+        turning = about_another(own.inertia_matrix, own.mass, own.centre_of_gravity, np.zeros(3))
+    if turning is None:
+        water = spread_of(body, base)
+        turning = mass / displaced * density * (np.trace(water) * np.eye(3) - water)
+        assumed.append("inertia")
+        said.append("assumed: inertia of the displaced water, scaled to the mass; --inertia states another")
+    elif why := inertia_doubt(mass, np.zeros(3), turning):
+        raise InputError(why, "moments of inertia of a body about its centre of gravity", column="--inertia")
+    about = about_another(turning, mass, np.zeros(3), centre)
+    transverse = float(about[1, 1]) if np.isclose(about[1, 1], about[2, 2], rtol=1e-9) else None
+    made = MassProperties(mass, mass * float(centre[0]), transverse, centre, about)
+    vehicle = replace(base, name=body.name, title=body.title, mass=made)
+    others = tuple(c for c in body.configurations if c.name != body.name)
+    return Weighed(replace(body, configurations=(*others, vehicle)), tuple(said), tuple(assumed))
+
+
+def _floating(body: Body) -> Configuration:
+    """What the body displaces: of a printed configuration where it has mass and volume, with what only the shape tells."""
+    first = next((c for c in body.configurations if c.volume), None)
+    if first is None:
+        raise InputError(f"{body.name} without a volume", "a body with a shape", advice="Name a mesh or a body.toml.")
+    own = next((c for c in reversed(body.configurations) if c.mass is not None and c.volume), None)
+    if own is None or own is first:
+        return first
+    middle = own.centre_of_buoyancy if own.centre_of_buoyancy is not None else first.centre_of_buoyancy
+    return replace(
+        first, volume=own.volume, centre_of_buoyancy=middle, wetted_surface=own.wetted_surface or first.wetted_surface
+    )
+
+
+def _buoyed(mass: float, displaced: float, density: float) -> str:
+    over = mass - displaced
+    said = f"mass {mass:.4g} kg; the shape displaces {displaced:.4g} kg of water of {density:.5g} kg/m^3: "
+    if abs(over) <= TRIMMED * displaced:
+        return said + "neutrally buoyant within 0.5 %"
+    if over > 0.0:
+        return said + f"{over:.3g} kg too heavy ({100.0 * over / displaced:.1f} %), it sinks"
+    return said + f"{-over:.3g} kg of ballast to neutral ({-100.0 * over / displaced:.1f} %)"
+
+
+def spread_of(body: Body, configuration: Configuration) -> Array:
+    """(3, 3) integral of d d^T over the displaced volume about its centre, m^5."""
+    if configuration.second_moments is not None:
+        return np.array(configuration.second_moments)
+    shape = body.require_shape()
+    if isinstance(shape, Revolution):
+        area = np.pi * shape.radius**2 * shape.weight
+        along = float(area @ (shape.x - shape.centre_of_volume[0]) ** 2)
+        across = float(area @ shape.radius**2) / 4.0
+        return np.diag([along, across, across])
+    if isinstance(shape, Parts):
+        middle, out = shape.centre_of_volume, np.zeros((3, 3))
+        for p in shape.parts:
+            off = p.centre - middle
+            out += p.form.volume * (p.rotation @ np.diag(p.form.spread) @ p.rotation.T + np.outer(off, off))
+        return out
+    return np.array(shape.integrals.second_moments)
+
+
+def as_fit(estimates: Estimates, body: str) -> FitResult:
+    """The estimates as one fit of a campaign called ``estimates``, so that all that takes fits takes them.
+
+    Parameters
+    ----------
+    estimates : Estimates
+    body : str
+        Name of the body.
+    """
+    found = estimates.coefficients
+    mine = replace(
+        found, coefficients=tuple(replace(c, body=body, campaign=ESTIMATES) for c in found.coefficients), body=body
+    )
+    works = dict.fromkeys(k for c in estimates.contributions for k in c.citation.split(", ") if k)
+    methods = ", ".join(dict.fromkeys(c.method for c in estimates.contributions))
+    return FitResult(ESTIMATES, ESTIMATES, body, mine, (), tuple(works), {"methods": methods} if methods else {})
+
+
+def equipped(parameters: ParameterFile, body: Body, configuration: Configuration) -> ParameterFile:
+    """The file with buoyancy, thrusters and control surfaces of the body.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    body : Body
+    configuration : Configuration
+        With volume and centre of buoyancy.
+    """
+    point = np.array(parameters.reference_point.point)
+    update: dict[str, object] = {
+        "thrusters": tuple(_thruster(t, point) for t in body.thrusters),
+        "surfaces": _surfaces(body.controls),
+    }
+    if configuration.volume and configuration.centre_of_buoyancy is not None:
+        middle = tuple(float(v) for v in configuration.centre_of_buoyancy - point)
+        update["hydrostatics"] = ParameterHydrostatics(volume=configuration.volume, centre_of_buoyancy=middle)
+    return parameters.model_copy(update=update)
+
+
+def _thruster(t: Thruster, point: Array) -> ParameterThruster:
+    pairs = list(zip(t.curve[:-1], t.curve[1:], strict=True))
+    segments = []
+    for (low, start), (high, end) in pairs:
+        slope = (end - start) / (high - low)
+        segments.append(CurveSegment(low=low, high=high, coefficients=(float(start - slope * low), float(slope))))
+    curve = ParameterCurve(command=t.command, unit=t.unit, segments=tuple(segments))
+    place, axis = (tuple(float(v) for v in a) for a in (t.place - point, t.axis))
+    return ParameterThruster(name=t.name, position=place, direction=axis, curve=curve)
+
+
+def _surfaces(controls: Sequence[Control]) -> tuple[ParameterSurface, ...]:
+    """Limits of the angles that the law knows: of several hinges of one angle the narrowest."""
+    out = []
+    for name in CONTROLS:
+        limits = [c.limit for c in controls if c.name == name and c.limit is not None]
+        rates = [c.rate for c in controls if c.name == name and c.rate is not None]
+        if limits:
+            out.append(ParameterSurface(control=name, limit=min(limits), rate=min(rates, default=None)))
+    return tuple(out)
+
+
+def lacking(body: Body, parameters: ParameterFile, assumed: Sequence[str], turns: bool) -> tuple[str, ...]:
+    """What is missing for a manoeuvre under way, one line each with what to write.
+
+    Parameters
+    ----------
+    body : Body
+    parameters : ParameterFile
+    assumed : sequence of str
+        Of `Weighed`.
+    turns : bool
+        Whether something turns it, be it thrusters.
+    """
+    out = []
+    steered = {c.symbol.removesuffix("'")[1:] for c in parameters.coefficients if c.value is not None}
+    named = {c.name for c in body.controls}
+    if "dr" not in named and not turns:
+        out.append(
+            'no rudder: write [[control]] with name = "dr", parts, hinge, axis, limit and rate into its body.toml; none is invented'
+        )
+    elif "dr" in named and "dr" not in steered:
+        out.append("no effect of dr: none of its parts is a foil that an estimate knows")
+    if "dr" in named and not any(c.limit for c in body.controls if c.name == "dr"):
+        out.append("no limit and rate of dr: write both into its [[control]]; until then 15 deg are ordered, at once")
+    if strange := sorted(named - set(CONTROLS)):
+        out.append(
+            f"{listed([shown(n) for n in strange])}: no angle that a manoeuvre orders; those are {', '.join(CONTROLS)}"
+        )
+    if not body.thrusters:
+        out.append(
+            "no thruster: write [[thruster]] with name, place, axis and curve; a run ahead takes the thrust it needs"
+        )
+    options = {"mass": "--mass", "centre": "--cg", "inertia": "--inertia"}
+    if assumed:
+        out.append(f"not stated: {', '.join(options[a] for a in assumed)}")
+    return tuple(out)

@@ -1,0 +1,218 @@
+"""Numbers of one parameter file replaced by those of another, one by one: estimates by computations and measurements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coeflab.core.errors import InputError, ScalingMismatchError, shown
+from coeflab.core.types import brief
+from coeflab.core.version import VERSION
+from coeflab.law.added_mass import potential_part
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.law.symbols import derivative, primed
+from coeflab.vehicle.comparison import coefficient_set
+from coeflab.vehicle.force_law import points_of
+from coeflab.vehicle.parameter_file import SCHEMA_VERSION, ParameterFile
+from coeflab.vehicle.parameter_parts import ParameterCovariance
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Replaced:
+    """One coefficient that another file gives.
+
+    Attributes
+    ----------
+    symbol : str
+        With prime.
+    before : Coefficient or None
+        What the base had.
+    after : Coefficient or None
+        None where the base's term was left out, as a law of the other file takes its place.
+    """
+
+    symbol: str
+    before: Coefficient | None
+    after: Coefficient | None
+
+
+@brief
+@dataclass(frozen=True, slots=True)
+class Merged:
+    """A file of which some numbers came from another.
+
+    Attributes
+    ----------
+    parameters : ParameterFile
+    replaced : tuple of Replaced
+    """
+
+    parameters: ParameterFile
+    replaced: tuple[Replaced, ...]
+
+    @property
+    def estimates(self) -> tuple[Coefficient, ...]:
+        """What is still an estimate."""
+        return estimates_of(self.parameters)
+
+
+def estimates_of(parameters: ParameterFile) -> tuple[Coefficient, ...]:
+    """The coefficients of a file that are estimates."""
+    return tuple(c for c in parameters.coefficients if c.status is Status.ESTIMATE)
+
+
+def merged(base: ParameterFile, other: ParameterFile, name: str = "") -> Merged:
+    """The base with every number that the other has: converted to the base's length, moved to its reference point.
+
+    A force law is one: where the other gives terms of second or higher degree in some motions of a component, the base's
+    terms of second or higher degree in these motions are left out; so are estimates of such terms that take the law away from
+    the other's measured points. Covariance between both is zero.
+
+    Parameters
+    ----------
+    base, other : ParameterFile
+    name : str
+        Of the file; the base's unless given.
+
+    Raises
+    ------
+    ScalingMismatchError
+        Points measured from other datums.
+    InputError
+        Nothing to take.
+    """
+    ours, theirs = coefficient_set(base), coefficient_set(other)
+    if ours.datum != theirs.datum:
+        raise ScalingMismatchError(
+            f"{base.name} measures points from {shown(ours.datum.id)}, {other.name} from {shown(theirs.datum.id)}; "
+            "give the body.toml of the shape the datum of the tables, and the vehicle again."
+        )
+    theirs = theirs.to_length(ours.scaling).about(ours.reference_point)
+    taken = {
+        c.symbol: i
+        for i, c in enumerate(theirs.coefficients)
+        if c.value is not None and c.status is not Status.ESTIMATE
+    }
+    if not taken:
+        raise InputError(f"no number of {other.name} that is none of an estimate", "a fitted or measured coefficient")
+    curved = {_place(s) for s in taken} - {None}
+    entries: list[Entry] = []
+    replaced = []
+    for i, c in enumerate(ours.coefficients):
+        if c.symbol in taken:
+            j = taken[c.symbol]
+            entries.append((theirs.coefficients[j], 1, j))
+            replaced.append(Replaced(primed(c.symbol), c, theirs.coefficients[j]))
+        elif _place(c.symbol) in curved:
+            replaced.append(Replaced(primed(c.symbol), c, None))
+        else:
+            entries.append((c, 0, i))
+    for symbol, j in taken.items():
+        if symbol not in ours:
+            entries.append((theirs.coefficients[j], 1, j))
+            replaced.append(Replaced(primed(symbol), None, theirs.coefficients[j]))
+    made = _joined(base, other, (ours, theirs), entries, replaced, name)
+    for symbol in _against_points(made):
+        entries = [e for e in entries if e[0].symbol != symbol]
+        replaced.append(Replaced(primed(symbol), ours[symbol], None))
+        made = _joined(base, other, (ours, theirs), entries, replaced, name)
+    return Merged(made.model_copy(update={"law_at_points": points_of(made)}), tuple(replaced))
+
+
+Entry = tuple[Coefficient, int, int]  # a coefficient, from which of both files, and its row there
+
+
+def _joined(
+    base: ParameterFile, other: ParameterFile, both: tuple[CoefficientSet, CoefficientSet], entries: Sequence[Entry],
+    replaced: Sequence[Replaced], name: str,
+) -> ParameterFile:  # fmt: skip
+    covariance = np.zeros((len(entries), len(entries)))
+    for a, (_, source, i) in enumerate(entries):
+        for b, (_, other_source, j) in enumerate(entries):
+            if source == other_source:
+                covariance[a, b] = both[source].covariance[i, j]
+    void = np.isnan(np.diag(covariance))
+    covariance[void, :] = covariance[:, void] = np.nan
+    return _written(base, other, [e[0] for e in entries], covariance, replaced, name)
+
+
+def _against_points(made: ParameterFile) -> tuple[str, ...]:
+    """Estimated terms of second or higher degree that take the law away from measured points, component by component."""
+    out: list[str] = []
+    now = {(p.component, p.table): p.rms for p in points_of(made)}
+    for table in made.measured:
+        moves = {m.name for m in table.motion}
+        for component in dict.fromkeys(f.component for f in table.forces):
+            mine = [
+                c for c in estimates_of(made)
+                if (place := _place(c.symbol)) is not None and place[0] == component and place[1] <= moves
+            ]  # fmt: skip
+            if not mine or (component, table.table) not in now:
+                continue
+            without = made.model_copy(update={"coefficients": tuple(c for c in made.coefficients if c not in mine)})
+            then = {(p.component, p.table): p.rms for p in points_of(without)}
+            if then[component, table.table] < now[component, table.table]:
+                out += [c.symbol.removesuffix("'") for c in mine]
+    return tuple(dict.fromkeys(out))
+
+
+def _place(symbol: str) -> tuple[str, frozenset[str]] | None:
+    """Component and motions of a term of second or higher degree; None of others. X0 is a resistance with u^2."""
+    d = derivative(symbol)
+    if d.text == "X0":
+        return "X", frozenset("u")
+    return (d.component, frozenset(d.factors)) if len(d.factors) > 1 else None
+
+
+def _written(
+    base: ParameterFile, other: ParameterFile, chosen: Sequence[Coefficient], covariance: np.ndarray,
+    replaced: Sequence[Replaced], name: str,
+) -> ParameterFile:  # fmt: skip
+    at, hull = base.conditions, base.added_mass or other.added_mass
+    rows = []
+    for c in chosen:
+        bare = derivative(c.symbol)
+        si = None if c.value is None else c.value * base.scaling.unit(c.symbol, at.density, at.speed)
+        booked = hull is not None and c.value is not None and c.law != "rest"
+        potential = potential_part(c.symbol, hull, base.scaling, hull.density) if booked and hull is not None else None
+        rows.append(replace(c, symbol=primed(c.symbol), value_si=si, unit_si=bare.unit, potential=potential))
+    taken = [r.symbol for r in replaced if r.after is not None]
+    gone = [r.symbol for r in replaced if r.after is None]
+    notes = [f"from {other.name}: {', '.join(taken)}"]
+    notes += [f"estimates left out beside the law of {other.name}: {', '.join(gone)}"] if gone else []
+    same = np.allclose(base.reference_point.point, other.reference_point.point) and np.isclose(
+        other.conditions.density, at.density
+    )
+    content = {k: getattr(base, k) for k in type(base).model_fields}
+    mine, theirs = base.provenance, other.provenance
+    content |= {
+        "schema_version": SCHEMA_VERSION,
+        "name": name or base.name,
+        "coefficients": tuple(rows),
+        "covariance": ParameterCovariance(
+            symbols=tuple(c.symbol for c in rows),
+            matrix=tuple(tuple(None if np.isnan(v) else float(v) for v in row) for row in covariance),
+        ),
+        "added_mass": hull,
+        "mass": base.mass or other.mass,
+        "hydrostatics": base.hydrostatics or other.hydrostatics,
+        "thrusters": base.thrusters or other.thrusters,
+        "surfaces": base.surfaces or other.surfaces,
+        "models": (*base.models, *other.models),
+        "covered": (*base.covered, *other.covered),
+        "measured": (*base.measured, *(other.measured if same else ())),
+        "law_holds": (*base.law_holds, *(other.law_holds if same else ())),
+        "law_at_points": (),
+        "provenance": mine.model_copy(
+            update={
+                "coeflab_version": VERSION,
+                "inputs": tuple(dict.fromkeys((*mine.inputs, *theirs.inputs))),
+                "citations": tuple(dict.fromkeys((*mine.citations, *theirs.citations))),
+                "notes": tuple(dict.fromkeys((*mine.notes, *theirs.notes, *notes))),
+            }
+        ),
+    }
+    return ParameterFile(**content)

@@ -1,0 +1,363 @@
+"""From a shape and a mass to a vehicle: added mass, estimates, parameter file, exports, a first turn and zigzag."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coeflab import estimates as methods
+from coeflab.bodies.body import Body
+from coeflab.bodies.simplify.source import mesh_body
+from coeflab.bodies.triangulation import Triangulation
+from coeflab.core.errors import InputError, shown
+from coeflab.core.files import located
+from coeflab.core.machine import one_thread
+from coeflab.core.types import Array
+from coeflab.core.units import with_unit
+from coeflab.formats.export import PlannedExport
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.motion.approach import along, mirrored, yaw_acceleration
+from coeflab.motion.manoeuvre import Simulation
+from coeflab.motion.simulation import manoeuvres_of, moved, simulate
+from coeflab.motion.uncertainty.uncertainty import Carried, Question, uncertainty
+from coeflab.report.document import Document, Section, digest_of
+from coeflab.report.formats import REPORTERS
+from coeflab.report.sections.estimates import manoeuvre_table, replaced_section
+from coeflab.study.plan import DEFAULT_FITS, table_at
+from coeflab.study.study import FromShape, Plan, Study
+from coeflab.tank.declaration import FRESH_WATER
+from coeflab.vehicle.assemble import PlannedParameterFile, assemble
+from coeflab.vehicle.from_shape import ESTIMATES, Stated, as_fit, equipped, lacking, weighed
+from coeflab.vehicle.merge import Merged, estimates_of, merged
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file, refusals_told
+from coeflab.workbench.exports import exports_of, parameter_files_rendered
+from coeflab.workbench.hulls import added_masses
+
+NOTHING = Stated()
+Progress = Callable[[str], None]
+LEVEL = ("u", "v", "r")  # a first manoeuvre stays in the horizontal plane, whatever trim and weight are
+TURN, LIMIT = "turning_circle", float(np.radians(15.0))
+ROUNDING = 1e-9  # of the length: what lies on an axis but for its last digits
+MEMBERS, SEED = 100, 1
+REMAINING = 0.2  # of the speed, of a coast-down
+TURNS, LONGER = (
+    1.25,
+    2.5,
+)  # of the turn whose uncertainty is computed; time that it may take over that of the file's own
+
+
+@one_thread()
+def from_shape(plan: Plan, body: Body, stated: Stated = NOTHING, progress: Progress = lambda _: None) -> Study:
+    """The study of a body without tables; checks and files are left to what takes it.
+
+    Parameters
+    ----------
+    plan : Plan
+        Without tables: name, exports, manoeuvres, conditions, scaling.
+    body : Body
+        With a shape.
+    stated : Stated
+        What is known of its mass beside the body's file.
+    progress : callable
+        Takes what is being done, in words.
+
+    Raises
+    ------
+    InputError
+        No shape, no volume, a mass or an inertia that no body has, nothing that can be estimated.
+    """
+    shape = body.require_shape()
+    conditions, scaling = plan.conditions or FRESH_WATER, plan.scaling or body.scaling
+    conditions = replace(conditions, viscosity=conditions.viscosity or FRESH_WATER.viscosity)
+    said = list(_assumed(plan, conditions))
+    if scaling is None:
+        scaling = Scaling(shape.length, "length over all")
+    point = body.reference_point if plan.reference_point is None else plan.reference_point
+    body = replace(body, scaling=scaling, reference_point=point)
+    heavy = weighed(body, stated, conditions.density)
+    progress(f"added mass of {body.name}")
+    found = added_masses(heavy.body, conditions.density, plan.method, reproducible=True)
+    progress(f"estimates of {body.name}")
+    water = methods.Water(conditions.density, float(conditions.viscosity or 0.0), conditions.speed)
+    made = methods.estimated(heavy.body, water)
+    fit = as_fit(made, body.name)
+    files: dict[str, ParameterFile] = {}
+    hulls: dict[str, Triangulation] = {}
+    inputs = tuple(dict.fromkeys(([plan.file] if plan.file else []) + list(body.files)))
+    for group in plan.parameter_files or (PlannedParameterFile(stem(body.name), body.name, (ESTIMATES,), ()),):
+        taken = replace(group, body=body.name, campaigns=(ESTIMATES,))
+        with refusals_told(f"parameter_file.{group.name}"[:80]):
+            first = assemble(taken, plan.name, [fit], [], [], (), heavy.body, conditions, inputs, found)
+            notes = (*first.provenance.notes, *heavy.said, *said, *made.notes)
+            first = first.model_copy(update={"provenance": first.provenance.model_copy(update={"notes": notes})})
+            files[group.name] = equipped(first, heavy.body, heavy.configuration)
+        hulls[group.name] = found
+    exports, refused = exports_of(plan.exports, files.values(), progress)
+    vehicle = next(iter(files.values()))
+    planned = manoeuvres_of(plan.manoeuvres, files, progress)
+    moves, troubles = (planned, ()) if planned else first_manoeuvres(vehicle, progress)
+    carried, why = _carried(vehicle, moves, progress)
+    missing = (*lacking(heavy.body, vehicle, heavy.assumed, bool(_steered(vehicle))), *troubles, *why)
+    return Study(
+        plan=plan, tables=(), fits=(fit,), missing=(), body=heavy.body, references=(), comparisons=(),
+        parameter_files=files, hulls=hulls, inputs=inputs, exports=exports, refused=refused, manoeuvres=moves,
+        shape=FromShape(heavy, made, conditions, (*heavy.said, *said), missing, carried),
+    )  # fmt: skip
+
+
+def _assumed(plan: Plan, conditions: Conditions) -> tuple[str, ...]:
+    if plan.conditions is not None:
+        return ()
+    return (f"assumed: {conditions.speed:g} m/s in fresh water of 20 deg C, {conditions.density:g} kg/m^3",)
+
+
+def stem(name: str) -> str:
+    """A name that files can bear."""
+    return "".join(ch if ch.isalnum() or ch in "-_" else "_" for ch in name)[:80]
+
+
+def first_manoeuvres(
+    parameters: ParameterFile, progress: Progress = lambda _: None
+) -> tuple[tuple[Simulation, ...], tuple[str, ...]]:
+    """A turn and a zigzag in the horizontal plane, by the rudder or by two thrusters; else a coast-down.
+
+    Parameters
+    ----------
+    parameters : ParameterFile
+    progress : callable
+        Takes what is being done, in words.
+
+    Returns
+    -------
+    tuple of Simulation
+    tuple of str
+        What could not be moved, and why.
+    """
+    planned = _steered(parameters)
+    out, troubles = [], []
+    for name, options in planned or (("stop", {"astern": 0.0, "remaining": REMAINING}),):
+        try:
+            out.append(simulate(parameters, name, options, free=LEVEL))
+        except InputError as why:
+            troubles.append(f"no {name.replace('_', ' ')}: found {why.found}; expected {why.expected}")
+            continue
+        progress(f"simulated {name}")
+    return tuple(out), tuple(troubles)
+
+
+def _steered(parameters: ParameterFile) -> tuple[tuple[str, dict[str, Any]], ...]:
+    """Manoeuvres by what steers; none where nothing does."""
+    limit = next((s.limit for s in parameters.surfaces if s.control == "dr"), LIMIT)
+    acts = any(c.value and c.symbol.removesuffix("'") in ("Ndr", "Ydr") for c in parameters.coefficients)
+    if acts:
+        angle = min(LIMIT, limit)
+        return (TURN, {"rudder": angle}), ("zigzag", {"rudder": min(angle, float(np.radians(10.0)))})
+    pair = _pair(parameters)
+    if not pair:
+        return ()
+    words = tuple(f"{name}={command:g}" for name, command in pair.items())
+    return (TURN, {"commands": words}), ("zigzag", {"commands": words})
+
+
+def _pair(parameters: ParameterFile) -> dict[str, float]:
+    """Orders for two thrusters that mirror each other: the port one ahead at its most, the other off; empty without any."""
+    if len(parameters.thrusters) < 2:
+        return {}
+    try:
+        body = moved(parameters, TURN, LEVEL)
+        port = next(
+            t for t in body.thrusters if t.position[1] < 0.0 and abs(t.direction[0]) > 0.5 and t.tilt_axis is None
+        )
+        orders = {t.name: 0.0 for t in body.thrusters}
+        orders[port.name] = port.curve.high
+        turned = mirrored(body, orders)
+    except (InputError, StopIteration):
+        return {}
+    used = {port.name, *(name for name, command in turned.items() if command)}
+    nu: Array = along(body, 0.0)
+    return {n: v for n, v in orders.items() if n in used} if yaw_acceleration(body, orders, nu) else {}
+
+
+def _carried(
+    parameters: ParameterFile, moves: tuple[Simulation, ...], progress: Progress
+) -> tuple[tuple[Carried, ...], tuple[str, ...]]:
+    """The uncertainty of the estimates through the first manoeuvre."""
+    planned = _steered(parameters)
+    name, options = planned[0] if planned else ("stop", {"astern": 0.0, "remaining": REMAINING})
+    own = next((s for s in moves if s.manoeuvre.name == name), None)
+    if own is None:
+        return (), ()
+    progress(f"uncertainty of the {name.replace('_', ' ')}")
+    longest = max(LONGER * float(own.trajectory.time[-1]), 1.0)
+    options = {**options, "longest": longest / (2.0 if name == TURN else 1.0)} | (
+        {"turns": TURNS} if name == TURN else {}
+    )
+    try:
+        return (uncertainty(parameters, Question(name, options, MEMBERS, SEED, free=LEVEL)),), ()
+    except InputError as why:
+        return (), (f"no uncertainty of the {name.replace('_', ' ')}: found {why.found}; expected {why.expected}",)
+
+
+@one_thread()
+def replaced(
+    base: ParameterFile, other: ParameterFile, name: str = ""
+) -> tuple[Merged, tuple[Simulation, ...], tuple[Carried, ...]]:
+    """The base with the numbers of another file, its first manoeuvres, and what the estimates left in it do to them.
+
+    Parameters
+    ----------
+    base, other : ParameterFile
+    name : str
+        Of the merged file; the base's unless given.
+
+    Raises
+    ------
+    InputError, ScalingMismatchError
+        As of `coeflab.vehicle.merge.merged`.
+    """
+    made = merged(base, other, name)
+    moves, _ = first_manoeuvres(made.parameters)
+    carried, _ = _carried(made.parameters, moves, lambda _: None) if estimates_of(made.parameters) else ((), ())
+    return made, moves, carried
+
+
+def subject(name: str, unit: str = "", axes: str = "", repair: bool = False) -> Body:
+    """The body that a person names; of a bare mesh the reference point is its centre of buoyancy.
+
+    Parameters
+    ----------
+    name : str
+        A mesh file, a body.toml, its folder or a shipped body.
+    unit, axes : str
+        Of a mesh file.
+    repair : bool
+        Mend a mesh file that is not sound.
+
+    Raises
+    ------
+    InputError
+        As of `coeflab.bodies.simplify.source.mesh_body`.
+    """
+    body = mesh_body(name, unit, axes, repair)
+    middle = body.configurations[0].centre_of_buoyancy
+    bare = body.datum.id.startswith("origin of ") and not body.lengths
+    if not bare or middle is None:
+        return body
+    size = body.require_shape().length
+    return replace(body, reference_point=np.where(np.abs(middle) > ROUNDING * size, middle, 0.0))
+
+
+def asked(
+    body: Body, mass: str = "", cg: str = "", inertia: str = "", speed: str = "", density: str = "", length: str = "",
+    method: str = "all", to: Sequence[str] = (), accept_loss: bool = False,
+) -> tuple[Plan, Stated]:  # fmt: skip
+    """What a person asks for of a body, as a plan and what is stated of the mass; numbers in SI or with their unit.
+
+    Parameters
+    ----------
+    body : Body
+    mass, cg, inertia, speed, density, length : str
+        As typed; empty: not stated. ``cg`` and ``inertia`` are three numbers with commas between.
+    method : str
+        Of added mass.
+    to : sequence of str
+        Targets of exports.
+    accept_loss : bool
+        Of these.
+
+    Raises
+    ------
+    InputError
+        Not a number, not above zero, a unit of another kind; names the option.
+    """
+    weight = _positive(mass, "mass", "--mass") if mass else None
+    centre = _three(cg, "length", "--cg") if cg else None
+    turning = None if not inertia else np.diag(_three(inertia, "inertia", "--inertia"))
+    conditions = None
+    if speed or density:
+        conditions = Conditions(
+            _positive(density, "density", "--density") if density else FRESH_WATER.density,
+            _positive(speed, "speed", "--speed") if speed else FRESH_WATER.speed,
+            FRESH_WATER.viscosity,
+        )
+    scaling = Scaling(_positive(length, "length", "--length"), "length") if length else None
+    exports = tuple(PlannedExport(target, accept_loss) for target in dict.fromkeys(to))
+    title = body.title if body.title and not body.datum.id.endswith(body.title) else body.name
+    plan = Plan(stem(body.name), title, (), conditions=conditions, scaling=scaling, exports=exports, method=method)
+    return plan, Stated(weight, centre, turning)
+
+
+def _positive(text: str, dimension: str, option: str) -> float:
+    found = _number(text, dimension, option)
+    if not found > 0.0:
+        raise InputError(shown(text), f"a {dimension} above zero", column=option)
+    return found
+
+
+def _number(text: str, dimension: str, option: str) -> float:
+    try:
+        return with_unit(float(text), dimension)
+    except ValueError:
+        pass
+    try:
+        return with_unit(text, dimension)
+    except InputError as why:
+        raise type(why)(why.found, why.expected, column=option, advice=why.advice) from None
+
+
+def _three(text: str, dimension: str, option: str) -> Array:
+    words = [w.strip() for w in text.split(",")]
+    if len(words) != 3:
+        raise InputError(shown(text), "three numbers with commas between", column=option)
+    return np.array([_number(w, dimension, option) for w in words])
+
+
+def given_by(name: str, base: ParameterFile, run: Callable[[Plan], Study]) -> ParameterFile:
+    """A parameter file, or what the default fits make of a campaign about the base's reference point.
+
+    Parameters
+    ----------
+    name : str
+    base : ParameterFile
+    run : callable
+        `coeflab.workbench.run`.
+
+    Raises
+    ------
+    InputError
+        Neither.
+    """
+    path = Path(name)
+    if path.suffix.lower() == ".json":
+        return read_parameter_file(path)
+    campaign = table_at(located(name, "cfd_data"), DEFAULT_FITS)
+    plan = Plan(
+        stem(path.name), path.name, (campaign,), np.array(base.reference_point.point), base.reference_point.origin,
+        scaling=base.scaling, conditions=base.conditions,
+    )  # fmt: skip
+    return next(iter(run(plan).parameter_files.values()))
+
+
+@one_thread()
+def replaced_files(made: Merged, moves: Sequence[Simulation], carried: Sequence[Carried]) -> dict[str, bytes]:
+    """The merged parameter file with its tables, and a report of it, by name.
+
+    Parameters
+    ----------
+    made : Merged
+    moves : sequence of Simulation
+    carried : sequence of Carried
+        Of `replaced`.
+    """
+    p = made.parameters
+    moved_so = Section("manoeuvres", "First manoeuvres", tables=(manoeuvre_table(moves, carried),))
+    page = Document(p.name, f"Estimates of {p.body} and what replaced them", (replaced_section(made, carried), moved_so), p.name,
+                    digest_of(p.provenance.inputs))  # fmt: skip
+    files = parameter_files_rendered([p])
+    with REPORTERS.guarded("html"):
+        files.update(REPORTERS.load("html").render(page))
+    return files

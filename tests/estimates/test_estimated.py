@@ -1,0 +1,197 @@
+"""Estimates of whole bodies: symmetry, limits, reference point, derivatives against forces, uncertainty."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from coeflab.core.errors import InputError
+from coeflab.estimates import METHODS, Estimates, Water, estimated
+from coeflab.law.coefficient import Status
+from tests.estimates.bodies import (
+    DOWN,
+    LENGTH,
+    RING,
+    SAIL,
+    STARBOARD,
+    UP,
+    WATER,
+    body_of,
+    box,
+    estimates_of,
+    foil,
+    outline,
+    plain,
+    tail,
+)  # fmt: skip
+
+MIRROR = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+MOTION = np.array([
+    [3.0, 0.2, 0.1, 0.1, 0.05, 0.1], [3.0, -0.3, 0.0, 0.0, 0.0, 0.2], [0.0, 0.5, 0.2, 0.0, 0.1, 0.1],
+    [-1.0, 0.1, 0.1, 0.0, 0.1, 0.1],
+])  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def appended() -> Estimates:
+    return estimates_of(outline(SAIL, *tail(), rings=(RING,)))
+
+
+@pytest.fixture(scope="module")
+def cross() -> Estimates:
+    return estimates_of(outline(*tail()))
+
+
+def value(made: Estimates, symbol: str) -> float:
+    found = made.coefficients[symbol].value
+    assert found is not None
+    return found
+
+
+def test_all_six_of_both_planes_with_their_signs(appended: Estimates) -> None:
+    for symbol, sign in (("Yv", -1), ("Nv", -1), ("Nr", -1), ("Zw", -1), ("Mw", 1), ("Mq", -1), ("Kp", -1), ("X0", -1),
+                         ("Yv|v|", -1), ("Zw|w|", -1), ("Nr|r|", -1), ("Mq|q|", -1), ("Ydr", 1), ("Ndr", -1), ("Yr", 0), ("Zq", 0)):  # fmt: skip
+        c = appended.coefficients[symbol]
+        assert c.value is not None
+        assert c.u95 is not None
+        assert c.u95 > 0.0
+        assert np.sign(c.value) == sign or not sign, symbol
+        assert (c.status, c.origin, c.unit) == (Status.ESTIMATE, "estimate", "1")
+        assert c.citation
+    assert np.all(np.linalg.eigvalsh(appended.coefficients.covariance) > -1e-12)
+
+
+def test_a_cross_tail_is_alike_in_both_planes(cross: Estimates) -> None:
+    for side, down, sign in (("Yv", "Zw", 1), ("Nv", "Mw", -1), ("Yr", "Zq", -1), ("Nr", "Mq", 1), ("Yv|v|", "Zw|w|", 1),
+                             ("Nr|r|", "Mq|q|", 1), ("Yv|r|", "Zw|q|", 1), ("N|v|r", "M|w|q", 1), ("Xvv", "Xww", 1), ("Xvr", "Xwq", -1)):  # fmt: skip
+        assert value(cross, side) == pytest.approx(sign * value(cross, down), rel=1e-6), side
+
+
+def test_port_and_starboard_are_mirror_images(appended: Estimates) -> None:
+    assert appended.forces(MOTION * MIRROR, {}) == pytest.approx(appended.forces(MOTION, {}) * MIRROR, abs=1e-9)
+
+
+def test_an_upper_and_a_lower_sail_are_mirror_images() -> None:
+    flip = np.array([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
+    up, down = (estimates_of(outline(foil("sail", way, -1.2, 0.25, 0.45, 0.4), *tail())) for way in (UP, DOWN))
+    assert down.forces(MOTION * flip, {}) == pytest.approx(up.forces(MOTION, {}) * flip, abs=1e-9)
+
+
+def test_derivatives_are_slopes_of_the_forces(appended: Estimates) -> None:
+    speed, h = WATER.speed, 1e-6
+    for i, motion in enumerate("vwpqr", start=1):
+        for j, component in enumerate("XYZKMN"):
+            symbol = component + motion
+            if symbol not in appended.coefficients:
+                continue
+            nu = np.zeros((2, 6))
+            nu[:, 0] = speed
+            nu[:, i] = h, -h
+            force = appended.forces(nu, {})[:, j]
+            unit = appended.coefficients.scaling.unit(symbol, WATER.density, speed)
+            slope = (force[0] - force[1]) / (2 * h) / unit
+            assert value(appended, symbol) == pytest.approx(slope, rel=1e-4, abs=1e-9), symbol
+
+
+def test_quadratic_terms_make_up_the_rest_of_a_sweep(cross: Estimates) -> None:
+    drift = np.array([0.1, 0.3])
+    nu = np.zeros((2, 6))
+    nu[:, 1], nu[:, 0] = drift * WATER.speed, np.sqrt(1 - drift**2) * WATER.speed
+    unit = cross.coefficients.scaling.unit("Y", WATER.density, WATER.speed)
+    law = value(cross, "Yv") * drift + value(cross, "Yv|v|") * drift**2
+    assert cross.forces(nu, {})[:, 1] / unit == pytest.approx(law, rel=0.03)  # u is 5 % below U
+
+
+def test_coupled_terms_make_up_yaw_in_drift(cross: Estimates) -> None:
+    v, r = 0.2, 0.4
+    nu = np.array([[np.sqrt(1 - x**2) * WATER.speed, x * WATER.speed, 0, 0, 0, y * WATER.speed / LENGTH]
+                   for x, y in ((v, r), (v, 0), (0, r), (-v, r), (-v, 0))])  # fmt: skip
+    force = cross.forces(nu, {})[:, 1] / cross.coefficients.scaling.unit("Y", WATER.density, WATER.speed)
+    for both, alone, sign in ((0, 1, 1), (3, 4, -1)):
+        coupled = force[both] - force[alone] - force[2]
+        law = sign * value(cross, "Yv|r|") * v * r + value(cross, "Y|v|r") * v * r
+        assert law == pytest.approx(coupled, abs=0.5 * abs(coupled) + 1e-5)
+
+
+def test_another_reference_point_is_the_congruence_transform() -> None:
+    seen = outline(SAIL, *tail(), rings=(RING,))
+    here, there = estimates_of(seen), estimates_of(seen, (-1.0, 0.0, 0.0))
+    moved = here.coefficients.about(np.array([-1.0, 0.0, 0.0]))
+    for symbol in ("Yv", "Nv", "Kv", "Yr", "Nr", "Zw", "Mw", "Zq", "Mq", "Kp", "Kr"):
+        found = moved[symbol].value
+        assert found is not None
+        assert value(there, symbol) == pytest.approx(found, rel=1e-3, abs=2e-6), symbol
+        assert there.coefficients[symbol].u95 == pytest.approx(moved[symbol].u95, rel=0.02, abs=2e-6), symbol
+
+
+def test_shares_add_up(appended: Estimates) -> None:
+    for symbol, parts in appended.shares.items():
+        assert sum(parts.values()) == pytest.approx(value(appended, symbol), rel=1e-9, abs=1e-15)
+    assert "sail, fin lift" in appended.shares["Yv"]
+    assert "upper and lower behind sail, sidewash" in appended.shares["Yv"]
+
+
+def test_the_sail_takes_from_the_tail_in_drift_and_adds_in_yaw(appended: Estimates) -> None:
+    drift, yaw = (appended.shares[s]["upper and lower behind sail, sidewash"] for s in ("Yv", "Nr"))
+    assert drift > 0.0 > yaw
+
+
+def test_small_fins_vanish() -> None:
+    bare, small = estimates_of(outline()), estimates_of(outline(foil("dot", UP, -2.0, 0.25, 0.2501, 1e-4)))
+    for symbol in ("Yv", "Nv", "Yr", "Nr", "Zw", "Mq"):
+        assert value(small, symbol) == pytest.approx(value(bare, symbol), rel=1e-4)
+
+
+def test_a_wing_alone_is_whicker_and_fehlners() -> None:
+    halves = (foil("right", STARBOARD, 0.0, 0.0, 0.5, 0.5), foil("left", (-1.0, 0.0), 0.0, 0.0, 0.5, 0.5))
+    made = estimates_of(outline(*halves, hulls=()), (-0.125, 0.0, 0.0))
+    unit = 0.5 * WATER.density * WATER.speed * 0.5**2
+    nu = np.array([[3.0, 0.0, 1e-5, 0, 0, 0]])
+    slope = -made.forces(nu, {})[0, 2] / 1e-5 / (unit / 0.5**2) / 0.5
+    assert slope == pytest.approx(1.8 * np.pi * 2.0 / (np.sqrt(8.0) + 1.8), rel=1e-4)
+
+
+def test_boxes_have_drag_in_every_motion_and_more_when_they_are_apart() -> None:
+    near = estimates_of(outline(hulls=(), bluff=(box(),)), (0.0, 0.0, 0.0))
+    nu = np.eye(6)
+    drag = near.forces(nu, {})
+    assert np.all(np.diag(drag) < 0.0)
+    assert drag[0, 0] == pytest.approx(-0.5 * WATER.density * 1.05 * 0.25)
+    two = estimates_of(
+        outline(hulls=(), bluff=(box("a", (1.0, 0.0, 0.0)), box("b", (-1.0, 0.0, 0.0)))), (0.0, 0.0, 0.0)
+    )
+    assert two.forces(nu, {})[0, 0] == pytest.approx(1.5 * drag[0, 0])  # between shielded and open
+    assert two.forces(nu, {})[1, 1] == pytest.approx(2.0 * drag[1, 1])
+
+
+def test_alternatives_count_by_their_mean_and_widen_u95(cross: Estimates) -> None:
+    lifts = [c for c in cross.contributions if c.kind == "hull lift"]
+    assert len(lifts) == 3
+    yv = cross.coefficients.scaling.unit("Yv", WATER.density, WATER.speed)
+    nu = np.array([[WATER.speed, 1e-6, 0, 0, 0, 0]])
+    slopes = [c.forces(nu, {})[0, 1] / 1e-6 / yv for c in lifts]
+    parts = cross.coefficients["Yv"].parts
+    assert parts.model_form == pytest.approx((max(slopes) - min(slopes)) / np.sqrt(3.0), rel=1e-4)
+    assert parts.model_form
+    assert parts.input
+    assert cross.coefficients["Yv"].u95 == pytest.approx(np.hypot(parts.model_form, parts.input), rel=1e-9)
+
+
+def test_a_roughened_hull_drags_more() -> None:
+    rough = estimated(body_of(outline()), Water(998.0, 1e-6, 3.0, roughness=5e-4))
+    assert value(rough, "X0") < value(estimates_of(outline()), "X0")
+
+
+def test_what_cannot_be_estimated_is_said() -> None:
+    with pytest.raises(InputError, match="without an outline"):
+        estimated(plain(), WATER)
+    with pytest.raises(InputError, match="no hull, fin or bluff part"):
+        estimates_of(outline(hulls=()))
+    with pytest.raises(InputError, match="viscosity"):
+        Water(1000.0, 0.0, 1.0)
+
+
+def test_methods_are_listed() -> None:
+    assert {"friction", "form_drag", "crossflow", "hull_lift", "fins", "ring_wing", "bluff", "propeller"} <= set(
+        METHODS.names()
+    )

@@ -1,0 +1,96 @@
+"""SUBOFF: the outline with ring wing 1, the comparison with Roddy's measurements, and the tow tank's solver on it."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coeflab.core.files import shipped
+from coeflab.law.coefficient import Status
+from coeflab.published.estimates.acceptance import Row, acceptance, ring_wing, rows, table
+from coeflab.report.acceptance import Acceptance
+from coeflab.study.plan import table_at
+from coeflab.tables.reading import read_tables
+from coeflab.workbench import tow
+
+FOOT = 0.3048
+
+
+@pytest.fixture(scope="module")
+def found() -> tuple[Row, ...]:
+    return rows()
+
+
+@pytest.fixture(scope="module")
+def compared() -> Acceptance:
+    return acceptance()
+
+
+def test_ring_wing_1_stands_where_roddys_volumes_say() -> None:
+    # Table 1: configuration 6 less 3, 0.0648 ft^3 at 13.80 ft aft of the nose.
+    ring = ring_wing()
+    middle = -ring.centre[0] / FOOT + 0.25 * ring.chord / FOOT
+    assert middle == pytest.approx(13.80, abs=0.06)
+    section = 0.0648 / (np.pi * ring.diameter / FOOT) / (ring.chord / FOOT) ** 2 / ring.thickness
+    assert 0.4 < section < 0.8  # of thickness times chord
+
+
+def test_every_measured_derivative_once(found: tuple[Row, ...]) -> None:
+    assert [(r.configuration, r.symbol) for r in found] == [
+        *(("3", s) for s in ("Yv", "Nv", "Yr", "Nr")), *(("2", s) for s in ("Yv", "Nv", "Kv", "Ydr", "Ndr", "Yr", "Nr")),
+        *(("1", s) for s in ("Zw", "Mw", "Zds", "Mds", "Zq", "Mq")),
+    ]  # fmt: skip
+    assert {r.symbol for r in found if not r.counts} == {"Zds", "Mds"}
+    value = {(r.configuration, r.symbol): r.value for r in found}
+    assert value["1", "Zds"] == pytest.approx(-value["2", "Ydr"], rel=1e-6)
+    assert value["1", "Mds"] == pytest.approx(value["2", "Ndr"], rel=1e-6)
+
+
+def test_signs_are_those_measured(found: tuple[Row, ...]) -> None:
+    assert all(r.ratio > 0.0 for r in found)
+
+
+def test_a_row_is_inside_by_the_estimates_own_u95(found: tuple[Row, ...]) -> None:
+    one = found[0]
+    u95 = one.found.u95
+    assert u95 is not None
+    assert replace(one, measured=one.value + 0.99 * u95).inside
+    assert not replace(one, measured=one.value + 1.01 * u95).inside
+
+
+def test_goals_are_judged_and_printed(compared: Acceptance, found: tuple[Row, ...]) -> None:
+    goals, derivatives = compared.tables
+    assert [r.quantity for r in goals.rows] == ["share outside U95", "median U95 over value", "median |error|"]
+    counted = [r for r in found if r.counts]
+    outside = sum(not r.inside for r in counted) / len(counted)
+    assert goals.rows[0].found == pytest.approx(outside)
+    assert goals.rows[0].holds == (outside <= 0.1)
+    assert len(derivatives.rows) == len(counted)
+    shown = table(found)
+    assert "worst" in shown.notes[1]
+    assert "mean signed error" in shown.notes[1]
+
+
+@pytest.mark.slow
+def test_a_tow_by_estimates_from_table_to_report(tmp_path: Path) -> None:
+    shutil.copytree(Path(shipped("geometry")) / "tow_spheroid", tmp_path / "body")
+    made = tow.laid_out(*tow.read(tmp_path / "body", None, "estimate"), tmp_path / "tow")
+    assert made.jobs == ()
+    collected = tow.collected(made)
+    campaign = (tmp_path / "tow" / "campaign" / "campaign.toml").read_text()
+    assert 'kind = "estimate"' in campaign
+    assert "cfd" not in campaign
+    assert all(t.source.kind == "estimate" for t in read_tables(table_at(tmp_path / "tow" / "campaign")))
+    known = made.solver.known
+    assert known is not None
+    among = known(made.tank, made.body)
+    for row in collected.six:
+        assert row.coefficient is not None
+        assert row.coefficient.status is Status.ESTIMATE
+        assert row.value == pytest.approx(among[row.symbol].value, rel=0.02, abs=1e-5)
+        assert row.u95 == among[row.symbol].u95
+    assert any(f.name == "report.html" for f in collected.files)

@@ -1,0 +1,291 @@
+"""A vehicle from its shape and mass, with stated toy numbers in the place of estimates."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coeflab import estimates as methods
+from coeflab.bodies.body import Body
+from coeflab.bodies.pieces import Control
+from coeflab.bodies.readers import read_body
+from coeflab.bodies.thrusters import Thruster
+from coeflab.core.errors import InputError
+from coeflab.core.files import shipped
+from coeflab.core.text.toml import quoted
+from coeflab.estimates import Contribution, Estimates, Water
+from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
+from coeflab.report.answer import answer
+from coeflab.report.content import document
+from coeflab.report.sections.estimates import estimates_table, main_spread, manoeuvre_table, shares_figure
+from coeflab.study.plan import read_plan
+from coeflab.study.study import Plan, Study
+from coeflab.vehicle.force_law import full_force
+from coeflab.vehicle.from_shape import Stated, spread_of, weighed
+from coeflab.vehicle.merge import merged
+from coeflab.vehicle.parameter_file import ParameterFile, read_parameter_file
+from coeflab.workbench import run
+from coeflab.workbench.vehicle import asked, from_shape
+
+VALUES = {"Xu|u|": -0.004, "Yv": -0.03, "Nv": -0.012, "Yr": 0.005, "Nr": -0.006, "Yv|v|": -0.1, "Nr|r|": -0.003}
+RUDDER = {"Ydr": 0.008, "Ndr": -0.0035}
+SHARE = 0.4
+SHAPE = shipped("geometry") / "spheroid_example" / "body.toml"
+DISPLACED = 998.2 * np.pi / 6.0 * 3.0 * 0.5**2
+PLAN = Plan("toy", "Toy", (), method="ellipsoid")
+
+
+def toy(body: Body, water: Water) -> Estimates:
+    """Stated numbers, of the rudder where there is one."""
+    values = VALUES | (RUDDER if any(c.name == "dr" for c in body.controls) else {})
+    each = tuple(
+        Coefficient(s, v, SHARE * abs(v), Status.ESTIMATE, origin="estimate", estimator="stated by a test")
+        for s, v in values.items()
+    )
+    assert body.scaling is not None
+    found = CoefficientSet(each, np.diag([(c.u95 or 0.0) ** 2 / 4.0 for c in each]), body.scaling, body.reference_point,
+                           body.datum, body.name)  # fmt: skip
+    still = lambda nu, angles: np.zeros((len(nu), 6))  # noqa: E731
+    made = Contribution("hull", "toy force", "toy", still, SHARE, "lamb1932", "p. 1")
+    return Estimates(found, (made,), {s: {"hull, toy force": v} for s, v in values.items()}, still, ("toy numbers",))
+
+
+@pytest.fixture(autouse=True)
+def _toy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(methods, "estimated", toy)
+
+
+@pytest.fixture(scope="module")
+def bare() -> Body:
+    return read_body(SHAPE)
+
+
+@pytest.fixture(scope="module")
+def steered(bare: Body) -> Study:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(methods, "estimated", toy)
+        return from_shape(
+            PLAN, with_rudder(bare), Stated(390.0, np.array([0.0, 0.0, 0.02]), np.diag([10.0, 150.0, 150.0]))
+        )
+
+
+def with_rudder(body: Body, limit: float | None = np.radians(12.0)) -> Body:
+    hinge = Control("dr", ("hull",), np.array([-1.4, 0.0, 0.0]), np.array([0.0, 0.0, 1.0]), limit, np.radians(20.0))
+    return replace(body, controls=(hinge,))
+
+
+def pushed(name: str, y: float) -> Thruster:
+    curve = np.array([[-1000.0, -30.0], [0.0, 0.0], [1000.0, 60.0]])
+    return Thruster(name, np.array([-1.0, y, 0.0]), np.array([1.0, 0.0, 0.0]), curve, "speed", "rpm")
+
+
+def test_a_body_alone_gives_a_parameter_file_of_estimates(steered: Study, tmp_path: Path) -> None:
+    ((name, made),) = steered.parameter_files.items()
+    path = tmp_path / f"{name}.json"
+    path.write_bytes(made.to_json())
+    back = read_parameter_file(path)
+    assert back == made
+    assert back.schema_version == "1.5"
+    assert {(c.status, c.origin) for c in back.coefficients} == {(Status.ESTIMATE, "estimate")}
+    assert {c.symbol.removesuffix("'"): c.u95 for c in back.coefficients} == pytest.approx(
+        {s: SHARE * abs(v) for s, v in (VALUES | RUDDER).items()}
+    )
+    assert back.hydrostatics is not None
+    assert back.hydrostatics.volume == pytest.approx(DISPLACED / 998.2)
+    assert back.mass is not None
+    assert back.mass.centre is not None
+    assert back.mass.centre.tolist() == [0.0, 0.0, 0.02]
+    assert back.mass.inertia_matrix[2, 2] == pytest.approx(150.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("mass", "said"),
+    [(DISPLACED - 10.0, "10 kg of ballast to neutral"), (DISPLACED + 20.0, "20 kg too heavy"), (DISPLACED, "neutrally buoyant"),
+     (None, "as heavy as the water")],
+)  # fmt: skip
+def test_the_mass_is_compared_with_the_displacement(bare: Body, mass: float | None, said: str) -> None:
+    found = weighed(bare, Stated(mass), 998.2)
+    assert said in found.said[0]
+    assert ("mass" in found.assumed) == (mass is None)
+    assert {"centre", "inertia"} <= set(found.assumed)
+
+
+def test_the_inertia_of_displaced_water_is_that_of_the_spheroid(bare: Body) -> None:
+    a, b, volume = 1.5, 0.25, DISPLACED / 998.2
+    assert np.diag(spread_of(bare, bare.configurations[0])) == pytest.approx(
+        volume / 5.0 * np.array([a**2, b**2, b**2])
+    )
+    mass = weighed(bare, Stated(500.0), 998.2).configuration.mass
+    assert mass is not None
+    assert np.diag(mass.inertia_matrix) == pytest.approx(500.0 / 5.0 * np.array([2.0 * b**2, a**2 + b**2, a**2 + b**2]))
+
+
+def test_an_inertia_that_no_body_has_is_refused(bare: Body) -> None:
+    with pytest.raises(InputError, match="--inertia"):
+        weighed(bare, Stated(400.0, None, np.diag([1.0, 2.0, 9.0])), 998.2)
+
+
+def test_without_control_and_thruster_it_coasts_and_says_what_is_missing(bare: Body) -> None:
+    found = from_shape(PLAN, bare)
+    assert [m.manoeuvre.name for m in found.manoeuvres] == ["stop"]
+    assert "coast-down" in {row[0] for row in manoeuvre_table(found.manoeuvres, ()).rows}
+    assert found.shape is not None
+    missing = " ".join(found.shape.missing)
+    assert "no rudder: write [[control]]" in missing
+    assert "no thruster: write [[thruster]]" in missing
+    assert "--mass, --cg, --inertia" in missing
+    assert not any(c.symbol.startswith(("Ydr", "Ndr")) for p in found.parameter_files.values() for c in p.coefficients)
+
+
+def test_a_rudder_turns_it_within_its_limit(steered: Study) -> None:
+    turn, zigzag = steered.manoeuvres
+    assert (turn.manoeuvre.name, zigzag.manoeuvre.name) == ("turning_circle", "zigzag")
+    assert abs(turn.manoeuvre.phases[0].orders["dr"]) == pytest.approx(np.radians(12.0))
+    assert abs(zigzag.manoeuvre.phases[0].orders["dr"]) == pytest.approx(np.radians(10.0))
+    assert turn.vehicle.free == ("u", "v", "r")
+    assert not any("at once" in s for s in turn.statements)
+    shown = from_shape(PLAN, with_rudder(read_body(SHAPE), None))
+    assert shown.shape is not None
+    assert any(m.startswith("no limit and rate of dr") for m in shown.shape.missing)
+
+
+def test_two_thrusters_turn_it_too(bare: Body) -> None:
+    found = from_shape(PLAN, replace(bare, thrusters=(pushed("port", -0.3), pushed("starboard", 0.3))))
+    turn = found.manoeuvres[0]
+    assert turn.manoeuvre.phases[0].orders == {"port": 1000.0, "starboard": 0.0}
+    assert turn.trajectory.heading[-1] > 0.0
+    (made,) = found.parameter_files.values()
+    assert [made.thrusters[0].curve.at(c) for c in (-1000.0, -500.0, 500.0, 1000.0)] == pytest.approx(
+        [-30.0, -15.0, 30.0, 60.0]
+    )
+    assert not any("rudder" in m for m in found.shape.missing)
+
+
+def test_shares_of_the_turn_name_the_estimates(steered: Study) -> None:
+    assert steered.shape is not None
+    (made,) = steered.parameter_files.values()
+    main = main_spread(steered.shape.carried)
+    assert main is not None
+    assert main[0].figure.name == "tactical diameter"
+    assert main[0].low < main[0].figure.value < main[0].high
+    found = {row[0]: row for row in estimates_table(made, steered.shape.carried, steered.shape.estimates.shares).rows}
+    assert found["Nv'"][4] == "estimate"
+    assert found["Nv'"][-1] == "toy force 100 %"
+    figure = shares_figure(made, steered.shape.carried, "shares")
+    assert figure is not None
+    assert "Nr' estimate" in figure.description
+
+
+def test_the_answer_and_the_report_say_estimate(steered: Study) -> None:
+    first = answer(steered)
+    assert len(first.sentence) <= 160
+    assert "estimate" in first.sentence
+    assert first.slope is not None
+    assert first.forest is not None
+    page = document(steered, full=True)
+    sections = {s.anchor: s for s in page.sections}
+    assert sections["coefficients"].title == "Estimates"
+    assert "Each slope comes from one model" not in " ".join(sections["coefficients"].paragraphs)
+    assert any("kg of ballast" in p for p in sections["verdict"].paragraphs) or "too heavy" in " ".join(
+        sections["verdict"].paragraphs
+    )
+
+
+def test_a_plan_of_a_body_alone_runs(tmp_path: Path) -> None:
+    path = tmp_path / "plan.toml"
+    path.write_text(f'[study]\nname = "alone"\n[body]\npath = {quoted(str(SHAPE))}\n')
+    plan = replace(read_plan(path), method="ellipsoid")
+    found = run(plan)
+    assert list(found.parameter_files) == ["spheroid_example"]
+    assert found.shape is not None
+    assert found.checks
+    path.write_text('[study]\nname = "none"\n')
+    with pytest.raises(InputError, match=r"no \[\[table\]\].*\[body\]"):
+        read_plan(path)
+
+
+@pytest.mark.parametrize(
+    ("curve", "said"),
+    [("[[0, 0], [10, -1]]", "do not fall"), ("[[0, 0]]", "two points"), ("[[0, 0], [0, 5]]", "rising commands"),
+     ('[[0, 0], ["a", 5]]', "thruster")],
+)  # fmt: skip
+def test_a_curve_that_is_none_is_refused(tmp_path: Path, curve: str, said: str) -> None:
+    path = tmp_path / "body.toml"
+    more = f'[[thruster]]\nname = "main"\nplace = [-1.5, 0.0, 0.0]\naxis = [1, 0, 0]\ncurve = {curve}\n'
+    path.write_text(SHAPE.read_text() + more)
+    with pytest.raises(InputError, match=said) as refused:
+        read_body(path)
+    assert "body.toml" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("option", "text"),
+    [("mass", "-3"), ("mass", "46 m"), ("cg", "1,2"), ("inertia", "1,2,x"), ("speed", "0"), ("length", "long")],
+)
+def test_an_option_that_is_no_number_is_named(bare: Body, option: str, text: str) -> None:
+    with pytest.raises(InputError, match=f"--{option}"):
+        asked(bare, **{option: text})
+
+
+def fitted(base: ParameterFile, keep: dict[str, tuple[str, float]], **more: object) -> ParameterFile:
+    """A file of some numbers of another, as a fit would give them."""
+    content = json.loads(base.to_json())
+    rows = []
+    for c in content["coefficients"]:
+        if c["symbol"] in keep:
+            symbol, value = keep[c["symbol"]]
+            rows.append({**c, "symbol": symbol, "value": value, "u95": 0.001, "status": "ok", "origin": "fit",
+                         "campaign": "tow", "value_si": None, "potential": None})  # fmt: skip
+    content |= {"name": "tow", "coefficients": rows, "covariance": {"symbols": [], "matrix": []}, "added_mass": None}
+    return ParameterFile.model_validate_json(json.dumps(content | more))
+
+
+def test_estimates_that_take_the_law_off_measured_points_go(steered: Study) -> None:
+    """A fit that is straight in r over its arm: the estimated Nr|r| bends the law away from these points, Yv|v| touches none."""
+    (base,) = steered.parameter_files.values()
+    keep = {"Yr'": ("Yr'", 0.004), "Nr'": ("Nr'", -0.006)}
+    bare = fitted(base, keep)
+    r = np.array([-0.4, -0.2, 0.2, 0.4])
+    states = np.zeros((4, 6))
+    states[:, 0], states[:, 5] = base.conditions.speed, r
+    moment = full_force(bare)(states, np.zeros((4, 3)))[:, 5]
+    table = {
+        "table": "arm.csv", "campaign": "tow", "labels": ["1", "2", "3", "4"],
+        "motion": [{"name": "u", "values": states[:, 0].tolist()}, {"name": "r", "values": r.tolist()}],
+        "forces": [{"component": "N", "values": moment.tolist(), "at_rest": [0.0] * 4, "scatter": None}],
+    }  # fmt: skip
+    made = merged(base, fitted(base, keep, measured=[table]))
+    left = {c.symbol for c in made.estimates}
+    assert "Nr|r|'" not in left
+    assert "Yv|v|'" in left
+    assert [x.share for x in made.parameters.law_at_points if x.component == "N"] == pytest.approx([0.0], abs=1e-9)
+    assert "Nr|r|'" in {c.symbol for c in merged(base, bare).estimates}
+
+
+def test_a_fit_replaces_estimates_one_by_one(steered: Study) -> None:
+    (base,) = steered.parameter_files.values()
+    made = merged(
+        base, fitted(base, {"Yv'": ("Yv'", -0.025), "Nv'": ("Nv'", -0.014), "Yv|v|'": ("Yvvv'", -0.2)}), "both"
+    )
+    left = {c.symbol for c in made.estimates}
+    assert left == {"Xu|u|'", "Yr'", "Nr'", "Nr|r|'", "Ydr'", "Ndr'"}
+    assert [(r.symbol, r.after is None) for r in made.replaced] == [
+        ("Yv'", False), ("Nv'", False), ("Yv|v|'", True), ("Yvvv'", False),
+    ]  # fmt: skip
+    symbols = list(made.parameters.covariance.symbols)
+    matrix = np.array(made.parameters.covariance.matrix, dtype=float)
+    i, j = symbols.index("Yv'"), symbols.index("Nr'")
+    assert matrix[i, i] == pytest.approx(0.0005**2)
+    assert matrix[j, j] == pytest.approx((SHARE * 0.006 / 2.0) ** 2)
+    assert matrix[i, j] == 0.0
+    nv, before = made.parameters.coefficient("Nv"), base.coefficient("Nv")
+    assert nv is not None
+    assert before is not None
+    assert nv.potential == before.potential != 0.0
+    assert nv.value_si == pytest.approx(before.value_si * -0.014 / -0.012)
+    with pytest.raises(InputError, match="none of an estimate"):
+        merged(base, base)
