@@ -13,6 +13,7 @@ import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from queue import SimpleQueue
 
 import numpy as np
 from numpy.typing import NDArray
@@ -314,10 +315,15 @@ def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.f
     reach = (REACH * panels.size) ** 2
     step = max(1, BLOCK // count)
 
+    spare: SimpleQueue[Array] = SimpleQueue()
+    for _ in range(os.cpu_count() or 1):
+        spare.put(np.empty((6, step, count)))
+
     def rows(start: int) -> None:
+        work = spare.get()
         for k, (points, factor) in enumerate(seen):
             targets = points[start : start + step]
-            solid, inverse, square = far.seen_from(targets)
+            solid, inverse, square = far.seen_from(targets, work)
             i, j = np.nonzero(square < reach)
             for part in range(0, len(i), NEAR_BLOCK):
                 a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
@@ -329,6 +335,7 @@ def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.f
             else:
                 angles[start : start + step] += factor * solid
             layers[k][start : start + step] = inverse @ panels.normal
+        spare.put(work)
 
     with ThreadPoolExecutor(os.cpu_count()) as threads:
         list(threads.map(rows, range(0, count, step)))
@@ -468,32 +475,39 @@ class _Far:
         spread = np.hstack([quadratic, -2.0 * linear, np.sum(linear * c, axis=1)[:, None]]).T
         return cls(square, height, np.ascontiguousarray(spread), np.sum(panels.spread**2, axis=(0, 2)), panels.area)
 
-    def seen_from(self, targets: Array) -> tuple[Array, Array, Array]:
+    def seen_from(self, targets: Array, work: Array | None = None) -> tuple[Array, Array, Array]:
         """Solid angle, integral of 1 / r and square of the distance, (m, n) each.
 
         Taylor series of 1/r and 1/r^3 about the centroid up to the second moments; the height over a plane is the same
-        for all its points.
+        for all its points. The results lie in ``work``, (6, m or more, n), where that is given: memory that the system has
+        to hand out anew for every block costs more than the sums.
         """
-        one = np.ones((len(targets), 1))
+        m = len(targets)
+        if work is None:
+            work = np.empty((6, m, len(self.area)))
+        square, inverse, along, solid, root, height = (one[:m] for one in work)
+        one = np.ones((m, 1))
         lifted = np.hstack([targets, np.sum(targets**2, axis=1)[:, None], one])
         rows, columns = np.triu_indices(3)
-        square = lifted @ self.square
-        inverse = np.reciprocal(np.maximum(square, 1e-30))
-        along = np.hstack([targets[:, rows] * targets[:, columns], targets, one]) @ self.spread
+        np.matmul(lifted, self.square, out=square)
+        np.maximum(square, 1e-30, out=inverse)
+        np.reciprocal(inverse, out=inverse)
+        np.matmul(np.hstack([targets[:, rows] * targets[:, columns], targets, one]), self.spread, out=along)
         along *= inverse
         along -= self.trace
         along *= inverse
         # ``along`` is now M : grad grad (1/r) over 1/r, for second moments M; of 1/r^3 it is 5 times that plus 2 trace.
-        solid = along * 2.5
+        np.multiply(along, 2.5, out=solid)
         solid += 1.0
         along *= 0.5
         along += 1.0
-        root = np.sqrt(inverse)
+        np.sqrt(inverse, out=root)
         root *= self.area
         along *= root
         root *= inverse
         inverse *= self.trace
         solid += inverse
         solid *= root
-        solid *= lifted @ self.height
+        np.matmul(lifted, self.height, out=height)
+        solid *= height
         return solid, along, square
