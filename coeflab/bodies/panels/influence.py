@@ -13,6 +13,7 @@ import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from queue import SimpleQueue
 
 import numpy as np
 from numpy.typing import NDArray
@@ -258,24 +259,29 @@ def exact_integrals(targets: Array, corners: Array, normals: Array) -> tuple[Arr
     inverse : (n,) array
         Integral of 1 / r, m.
     """
-    to = corners - targets[:, None]
-    r = np.linalg.norm(to, axis=2)
-    height = np.einsum("ni,ni->n", to[:, 0], normals)
-    triple = np.einsum("ni,ni->n", to[:, 0], np.cross(to[:, 1], to[:, 2]))
-    below = r.prod(axis=1)
-    for k in range(3):
-        below += np.einsum("ni,ni->n", to[:, k], to[:, k - 1]) * r[:, k - 2]
-    flat = np.abs(height) <= 1e-12 * r.max(axis=1)
+    # By components: long arrays are several times as quick as short last axes.
+    x, y, z = targets.T
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = np.ascontiguousarray(corners.transpose(1, 2, 0)) - np.stack([x, y, z])
+    nx, ny, nz = np.ascontiguousarray(normals.T)
+    ra, rb, rc = (np.sqrt(u * u + v * v + w * w) for u, v, w in ((ax, ay, az), (bx, by, bz), (cx, cy, cz)))
+    height = ax * nx + ay * ny + az * nz
+    triple = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+    below = ra * rb * rc + (ax * bx + ay * by + az * bz) * rc
+    below += (bx * cx + by * cy + bz * cz) * ra + (cx * ax + cy * ay + cz * az) * rb
+    flat = np.abs(height) <= 1e-12 * np.maximum(np.maximum(ra, rb), rc)
     angle = np.where(flat, 0.0, 2.0 * np.arctan2(triple, below))
     inverse = -height * angle
-    for k in range(3):
-        a, ra, rb = to[:, k - 1], r[:, k - 1], r[:, k]
-        side = to[:, k] - a
-        length = np.linalg.norm(side, axis=1)
-        outward = np.einsum("ni,ni->n", a, np.cross(side, normals)) / length
+    for px, py, pz, rp, qx, qy, qz, rq in (
+        (ax, ay, az, ra, bx, by, bz, rb),
+        (bx, by, bz, rb, cx, cy, cz, rc),
+        (cx, cy, cz, rc, ax, ay, az, ra),
+    ):
+        sx, sy, sz = qx - px, qy - py, qz - pz
+        length = np.sqrt(sx * sx + sy * sy + sz * sz)
+        outward = px * (sy * nz - sz * ny) + py * (sz * nx - sx * nz) + pz * (sx * ny - sy * nx)
         # In line with a side, beyond or on it, its share vanishes but the logarithm does not exist.
-        gap = np.maximum(ra + rb - length, 1e-14 * length)
-        inverse += outward * np.log((ra + rb + length) / gap)
+        gap = np.maximum(rp + rq - length, 1e-14 * length)
+        inverse += outward / length * np.log((rp + rq + length) / gap)
     return angle, inverse
 
 
@@ -309,10 +315,15 @@ def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.f
     reach = (REACH * panels.size) ** 2
     step = max(1, BLOCK // count)
 
+    spare: SimpleQueue[Array] = SimpleQueue()
+    for _ in range(os.cpu_count() or 1):
+        spare.put(np.empty((6, step, count)))
+
     def rows(start: int) -> None:
+        work = spare.get()
         for k, (points, factor) in enumerate(seen):
             targets = points[start : start + step]
-            solid, inverse, square = far.seen_from(targets)
+            solid, inverse, square = far.seen_from(targets, work)
             i, j = np.nonzero(square < reach)
             for part in range(0, len(i), NEAR_BLOCK):
                 a, b = i[part : part + NEAR_BLOCK], j[part : part + NEAR_BLOCK]
@@ -324,6 +335,7 @@ def influence(panels: Panels, images: Sequence[Seen] = ()) -> tuple[NDArray[np.f
             else:
                 angles[start : start + step] += factor * solid
             layers[k][start : start + step] = inverse @ panels.normal
+        spare.put(work)
 
     with ThreadPoolExecutor(os.cpu_count()) as threads:
         list(threads.map(rows, range(0, count, step)))
@@ -438,52 +450,64 @@ def _pull(targets: Array, corners: Array, normals: Array) -> Array:
 @brief
 @dataclass(frozen=True, slots=True)
 class _Far:
-    """Panels as sources with their second moments; products with (x, |x|^2, 1) of the targets."""
+    """Panels as sources with their second moments; products with polynomials of the targets."""
 
     square: Array
     height: Array
-    spread: tuple[Array, Array]
+    spread: Array
     trace: Array
     area: Array
 
     @classmethod
     def of(cls, panels: Panels) -> _Far:
-        """Columns of the products."""
-        c, zero = panels.centre, np.zeros((panels.count, 1))
-        linear = [np.hstack([-v, zero, np.sum(v * c, axis=1)[:, None]]).T for v in (panels.normal, *panels.spread)]
-        square = np.hstack([-2.0 * c, zero + 1.0, np.sum(c**2, axis=1)[:, None]]).T
-        return cls(square, linear[0], (linear[1], linear[2]), np.sum(panels.spread**2, axis=(0, 2)), panels.area)
+        """Columns of the products.
 
-    def seen_from(self, targets: Array) -> tuple[Array, Array, Array]:
+        The square of the distance and the height over the plane are linear in (x, |x|^2, 1); the second moments along the
+        line of sight, thrice, quadratic in x.
+        """
+        c, zero = panels.centre, np.zeros((panels.count, 1))
+        height = np.hstack([-panels.normal, zero, np.sum(panels.normal * c, axis=1)[:, None]]).T
+        square = np.hstack([-2.0 * c, zero + 1.0, np.sum(c**2, axis=1)[:, None]]).T
+        moment = 3.0 * np.einsum("qni,qnj->nij", panels.spread, panels.spread)
+        linear = np.einsum("nij,nj->ni", moment, c)
+        rows, columns = np.triu_indices(3)
+        quadratic = moment[:, rows, columns] * np.where(rows == columns, 1.0, 2.0)
+        spread = np.hstack([quadratic, -2.0 * linear, np.sum(linear * c, axis=1)[:, None]]).T
+        return cls(square, height, np.ascontiguousarray(spread), np.sum(panels.spread**2, axis=(0, 2)), panels.area)
+
+    def seen_from(self, targets: Array, work: Array | None = None) -> tuple[Array, Array, Array]:
         """Solid angle, integral of 1 / r and square of the distance, (m, n) each.
 
         Taylor series of 1/r and 1/r^3 about the centroid up to the second moments; the height over a plane is the same
-        for all its points.
+        for all its points. The results lie in ``work``, (6, m or more, n), where that is given: memory that the system has
+        to hand out anew for every block costs more than the sums.
         """
-        one = np.ones((len(targets), 1))
+        m = len(targets)
+        if work is None:
+            work = np.empty((6, m, len(self.area)))
+        square, inverse, along, solid, root, height = (one[:m] for one in work)
+        one = np.ones((m, 1))
         lifted = np.hstack([targets, np.sum(targets**2, axis=1)[:, None], one])
-        square = lifted @ self.square
-        inverse = np.reciprocal(np.maximum(square, 1e-30))
-        along, across = lifted @ self.spread[0], lifted @ self.spread[1]
-        along *= along
-        across *= across
-        along += across
+        rows, columns = np.triu_indices(3)
+        np.matmul(lifted, self.square, out=square)
+        np.maximum(square, 1e-30, out=inverse)
+        np.reciprocal(inverse, out=inverse)
+        np.matmul(np.hstack([targets[:, rows] * targets[:, columns], targets, one]), self.spread, out=along)
         along *= inverse
-        along *= 3.0
         along -= self.trace
         along *= inverse
         # ``along`` is now M : grad grad (1/r) over 1/r, for second moments M; of 1/r^3 it is 5 times that plus 2 trace.
-        solid = self.trace * inverse
-        solid *= 2.0
-        solid += 5.0 * along
+        np.multiply(along, 2.5, out=solid)
+        solid += 1.0
         along *= 0.5
         along += 1.0
-        solid *= 0.5
-        solid += 1.0
-        root = np.sqrt(inverse)
+        np.sqrt(inverse, out=root)
         root *= self.area
         along *= root
+        root *= inverse
+        inverse *= self.trace
+        solid += inverse
         solid *= root
-        solid *= inverse
-        solid *= lifted @ self.height
+        np.matmul(lifted, self.height, out=height)
+        solid *= height
         return solid, along, square
