@@ -7,7 +7,8 @@ from importlib import import_module
 from pathlib import Path
 
 
-def _names(words: Iterable[str], begun: str) -> list[str]:
+def names(words: Iterable[str], begun: str) -> list[str]:
+    """Words that begin so, in order."""
     return sorted(word for word in words if word.startswith(begun))
 
 
@@ -18,12 +19,12 @@ def _or_paths(words: Iterable[str], begun: str) -> list[str]:
     ahead = begun[: len(begun) - len(start)]
     entries = [e for e in place.iterdir() if e.name.startswith(start)] if place.is_dir() else []
     found = [f"{ahead}{e.name}" + "/" * e.is_dir() for e in entries if start or not e.name.startswith(".")]
-    return [*_names(words, begun), *sorted(found)]
+    return [*names(words, begun), *sorted(found)]
 
 
 def _plugins(registry: str, begun: str) -> list[str]:
     package, _, name = registry.rpartition(".")
-    return _names(getattr(import_module(f"coeflab.{package}"), name).usable(), begun)
+    return names(getattr(import_module(f"coeflab.{package}"), name).usable(), begun)
 
 
 def _shipped(kind: str, file: str) -> list[str]:
@@ -36,7 +37,7 @@ def validations(incomplete: str) -> list[str]:
     """Shipped studies and publications."""
     from coeflab.published import validations as shipped_ones
 
-    return _names(shipped_ones(), incomplete)
+    return names(shipped_ones(), incomplete)
 
 
 def studies(incomplete: str) -> list[str]:
@@ -124,7 +125,7 @@ def runners(incomplete: str) -> list[str]:
 
 def methods(incomplete: str) -> list[str]:
     """Methods of added mass."""
-    return [*_names(("all", "strip:lamb"), incomplete), *_plugins("bodies.added_mass.ADDED_MASS", incomplete)]
+    return [*names(("all", "strip:lamb"), incomplete), *_plugins("bodies.added_mass.ADDED_MASS", incomplete)]
 
 
 def reports(incomplete: str) -> list[str]:
@@ -138,36 +139,29 @@ def formats(incomplete: str) -> list[str]:
     from coeflab.core.registry import registries
 
     kinds = [registry.package.rpartition(".")[2] for registry in registries()]
-    return _names({*kinds, *(name for registry in registries() for name in registry.usable())}, incomplete)
-
-
-def schemas(incomplete: str) -> list[str]:
-    """Kinds of files."""
-    from coeflab.cli.schema import KINDS
-
-    return _names(KINDS, incomplete)
+    return names({*kinds, *(name for registry in registries() for name in registry.usable())}, incomplete)
 
 
 def planes(incomplete: str) -> list[str]:
     """Planes of a motion."""
-    return _names(("horizontal", "vertical"), incomplete)
+    return names(("horizontal", "vertical"), incomplete)
 
 
 def tables(incomplete: str) -> list[str]:
     """Formats of a motion."""
-    return _names(("csv", "parquet"), incomplete)
+    return names(("csv", "parquet"), incomplete)
 
 
 def integrators(incomplete: str) -> list[str]:
     """Integrators."""
-    return _names(("adaptive", "rk4"), incomplete)
+    return names(("adaptive", "rk4"), incomplete)
 
 
 def kernels(incomplete: str) -> list[str]:
     """Kernels of many motions."""
-    return _names(("auto", "compiled", "numpy"), incomplete)
+    return names(("auto", "compiled", "numpy"), incomplete)
 
 
 def optimizers(incomplete: str) -> list[str]:
     """Sparse regressions."""
-    return _names(("stlsq", "sr3"), incomplete)
+    return names(("stlsq", "sr3"), incomplete)

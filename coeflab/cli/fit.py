@@ -223,7 +223,6 @@ def _diagnose(study: Study) -> None:
 
 
 def _print(study: Study, symbols: list[str], count: int) -> None:
-    from coeflab.cli.run import findings
     from coeflab.report.tables import models as model_tables
     from coeflab.report.tables import nouns as noun_tables
     from coeflab.report.tables import oscillations as oscillation_tables
@@ -248,7 +247,7 @@ def _print(study: Study, symbols: list[str], count: int) -> None:
         show.table(model_tables.campaigns(study.fits))
     for f in study.fits if count else ():
         show.table(tables.next_points(f, count))
-    findings(study.checks)
+    show.findings(study.checks)
 
 
 def _of_symbols(study: Study, symbols: list[str]) -> None:

@@ -186,7 +186,6 @@ def _body(name: str, unit: str, axes: str, repair: bool, density: float, json: b
 
 def _tables(table: str, json: bool, strict: bool, rows: int) -> None:
     from coeflab.cli.as_json import finding
-    from coeflab.cli.run import findings
     from coeflab.core.files import located
     from coeflab.core.table import Severity
     from coeflab.study.checks import data_gate
@@ -224,7 +223,7 @@ def _tables(table: str, json: bool, strict: bool, rows: int) -> None:
         )
     else:
         _print(read, rows)
-        findings(found)
+        show.findings(found)
     if strict and any(c.severity is Severity.WARN for c in found):
         raise typer.Exit(1)
 

@@ -31,7 +31,6 @@ def check(
 
     The exit code is 1 where a finding fails, and 2 where the file cannot be read, whatever its format.
     """
-    from coeflab.cli.run import findings
     from coeflab.core.errors import InputError
     from coeflab.formats.model_files import read_model_file
     from coeflab.report.tables import formats as model_file_tables
@@ -51,7 +50,7 @@ def check(
         })  # fmt: skip
     else:
         show.table(model_file_tables.contents(p, found.format))
-        findings(found.findings, notes=True)
+        show.findings(found.findings, notes=True)
     if not found.passed:
         raise typer.Exit(1)
 

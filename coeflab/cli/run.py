@@ -13,9 +13,6 @@ import typer
 from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from coeflab.core.table import Check
     from coeflab.report.document import Answer
     from coeflab.study.study import Plan, Study
 
@@ -79,22 +76,11 @@ def carry_out(plan: Plan, out: Path | None, as_json: bool, strict: bool = False)
         show.json_object(study_json(study, paths) | more)
     else:
         summarise(study)
-        written(folder, sorted(files), changed)
+        show.written(folder, sorted(files), changed)
     for refused in study.refused:
         show.error(f"error: {refused.why}")
     if study.failed or (strict and study.warned):
         raise typer.Exit(1)
-
-
-def written(folder: Path, names: Sequence[str], changed: int) -> None:
-    """Where the files are: pages and parameter files by name, of the others how many; all with ``--wide``."""
-    show.text(f"Written ({changed} of {len(names)} files changed):")
-    ranks = ((".html", ".pdf"), (".parameters.json",))
-    first = [n for ends in ranks for n in names if n.endswith(ends)] or list(names[:1])
-    for name in names if show.whole() else first:
-        show.path(folder / name)
-    if not show.whole() and len(names) > len(first):
-        show.path(folder, f"{len(names) - len(first)} more; --wide names them")
 
 
 def summarise(study: Study) -> None:
@@ -106,7 +92,7 @@ def summarise(study: Study) -> None:
         from coeflab.cli.vehicle import summarise as of_shape
 
         of_shape(study)
-        findings(study.checks)
+        show.findings(study.checks)
         return
     answered(answer(study, drawn=False))
     models = tuple(m for f in study.fits for m in f.models)
@@ -116,7 +102,7 @@ def summarise(study: Study) -> None:
         _tows(study)
         show.table(model_tables.quality(models))
         show.table(model_tables.campaigns(study.fits))
-    findings(study.checks)
+    show.findings(study.checks)
 
 
 def answered(found: Answer) -> None:
@@ -177,34 +163,3 @@ def _every_table(study: Study) -> None:
             show.text(f"{c.subject.split()[0]}: {c.statistic}. {c.comment}")
     for line in headline(held_of_study(study)) if any(c.passed is not None for c in study.comparisons) else ():
         show.text(line)
-
-
-def findings(found: Sequence[Check], *, notes: bool = False) -> None:
-    """Every failure and warning, those of one rule together, and notes where they are asked for; the rest is counted."""
-    from coeflab.core.table import Severity
-
-    counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
-    groups: dict[tuple[Severity, str, str, str], list[Check]] = {}
-    notes = notes or show.whole()
-    for severity in (Severity.FAIL, Severity.WARN, *((Severity.NOTE,) if notes else ())):
-        for c in found:
-            if c.severity is severity:
-                groups.setdefault((severity, c.name, c.rule, c.comment), []).append(c)
-    for (severity, name, rule, comment), same in groups.items():
-        about = name.replace("_", " ")
-        meant = comment if notes or severity is Severity.FAIL else _short(comment)
-        if len(same) == 1:
-            (c,) = same
-            show.marked(str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {meant}".rstrip())
-            continue
-        show.marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {meant}".rstrip())
-        for c in same:
-            show.text(f"        {c.subject}: {c.statistic}")
-    hint = {Severity.NOTE.value: " (--wide shows them)"} if counts[Severity.NOTE.value] and not notes else {}
-    show.text("Checks: " + ", ".join(f"{n} {name}{hint.get(name, '')}" for name, n in counts.items()) + ".")
-
-
-def _short(comment: str) -> str:
-    """The first sentence of what a finding means; all of it with ``--wide``."""
-    first, stop, _ = comment.partition(". ")
-    return comment if show.whole() else first + stop.rstrip()

@@ -28,7 +28,7 @@ def command(
     kind: str = typer.Argument(
         ...,
         metavar="KIND",
-        autocompletion=complete.schemas,
+        autocompletion=lambda incomplete: complete.names(KINDS, incomplete),
         help=f"{', '.join(list(KINDS)[:-1])} or {list(KINDS)[-1]}.",
     ),
 ) -> None:

@@ -17,8 +17,9 @@ from coeflab.report.printable import visible
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
+    from pathlib import Path
 
-    from coeflab.core.table import Line, Table
+    from coeflab.core.table import Check, Line, Table
 
 
 SLOW = 2.0
@@ -286,3 +287,45 @@ def _slow_status() -> Iterator[Callable[[str], None]]:
     finally:
         timer.cancel()
         status.stop()
+
+
+def written(folder: Path, names: Sequence[str], changed: int) -> None:
+    """Where the files are: pages and parameter files by name, of the others how many; all with ``--wide``."""
+    text(f"Written ({changed} of {len(names)} files changed):")
+    ranks = ((".html", ".pdf"), (".parameters.json",))
+    first = [n for ends in ranks for n in names if n.endswith(ends)] or list(names[:1])
+    for name in names if whole() else first:
+        path(folder / name)
+    if not whole() and len(names) > len(first):
+        path(folder, f"{len(names) - len(first)} more; --wide names them")
+
+
+def findings(found: Sequence[Check], *, notes: bool = False) -> None:
+    """Every failure and warning, those of one rule together, and notes where they are asked for; the rest is counted."""
+    from coeflab.core.table import Severity
+
+    counts = {s.value: sum(c.severity is s for c in found) for s in Severity}
+    groups: dict[tuple[Severity, str, str, str], list[Check]] = {}
+    notes = notes or whole()
+    for severity in (Severity.FAIL, Severity.WARN, *((Severity.NOTE,) if notes else ())):
+        for c in found:
+            if c.severity is severity:
+                groups.setdefault((severity, c.name, c.rule, c.comment), []).append(c)
+    for (severity, name, rule, comment), same in groups.items():
+        about = name.replace("_", " ")
+        meant = comment if notes or severity is Severity.FAIL else _short(comment)
+        if len(same) == 1:
+            (c,) = same
+            marked(str(severity), f"{about}, {c.subject}: {c.statistic}; expected {rule}. {meant}".rstrip())
+            continue
+        marked(str(severity), f"{about}, {len(same)} times: expected {rule}. {meant}".rstrip())
+        for c in same:
+            text(f"        {c.subject}: {c.statistic}")
+    hint = {Severity.NOTE.value: " (--wide shows them)"} if counts[Severity.NOTE.value] and not notes else {}
+    text("Checks: " + ", ".join(f"{n} {name}{hint.get(name, '')}" for name, n in counts.items()) + ".")
+
+
+def _short(comment: str) -> str:
+    """The first sentence of what a finding means; all of it with ``--wide``."""
+    first, stop, _ = comment.partition(". ")
+    return comment if whole() else first + stop.rstrip()

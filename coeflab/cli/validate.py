@@ -47,7 +47,6 @@ def command(
 
 
 def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
-    from coeflab.cli.run import written
     from coeflab.core.files import write_all
     from coeflab.published.documents import report_of
     from coeflab.published.documents import written as rendered
@@ -65,7 +64,7 @@ def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
         show.json_object({**acceptance(found), "files": [str(p) for p in paths]})
     else:
         _print(found)
-        written(folder, sorted(files), changed)
+        show.written(folder, sorted(files), changed)
     if not found.holds:
         raise typer.Exit(1)
 

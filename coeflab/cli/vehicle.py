@@ -88,11 +88,10 @@ def command(
 
 
 def _print(study: Study, folder: Path, names: list[str], changed: int) -> None:
-    from coeflab.cli.run import findings, written
 
     summarise(study)
-    findings(study.checks)
-    written(folder, names, changed)
+    show.findings(study.checks)
+    show.written(folder, names, changed)
     name = next(iter(study.parameter_files))
     place = shlex.quote(str(folder / f"{name}.parameters.json"))
     show.command_line("Next", f"coeflab merge {place} CAMPAIGN")

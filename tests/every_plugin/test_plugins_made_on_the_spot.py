@@ -20,6 +20,7 @@ PLANTED = {
     "importers": "from coeflab.tables.importers.csv import recognises, read\n",
     "bodies": "from coeflab.bodies.readers.particulars import read\n",
     "added_mass": "from coeflab.bodies.added_mass.ellipsoid import added_mass\npresets = {'twice': {}}\n",
+    "estimates": "from coeflab.estimates.friction import contributions\n",
     "fits": "from coeflab.fits.slope_at_origin import Options, fit\n",
     "exporters": "def render(parameters):\n    return {'planted.txt': parameters.name.encode()}\n",
     "parameter_importers": "reads = 'planted models'\n"
@@ -102,6 +103,7 @@ def test_new_plugins_need_no_edit_elsewhere(tmp_path: Path, write_campaign: Call
         ["inspect", str(body)],
         ["added-mass", "suboff_bare_hull", "--method", "planted:twice"],
         ["params", "check", str(model)],
+        ["vehicle", "remus100", "--json", "--out", str(tmp_path / "remus100")],
         ["simulate", str(vehicle), "--manoeuvre", "planted", "--simulator", "planted", "--free", "u,v,r"],
     ]
     done = subprocess.run(
@@ -117,6 +119,7 @@ def test_new_plugins_need_no_edit_elsewhere(tmp_path: Path, write_campaign: Call
     said = dict(zip((" ".join(line[:2]) for line in lines), done.stdout.split("== ")[1:], strict=True))
     for command, words in {
         f"inspect {body}": "next:", "added-mass suboff_bare_hull": "ellipsoid", "params check": "torpedo",
+        "vehicle remus100": '"planted"',
         f"simulate {vehicle}": "constant thrust of 18 N",
     }.items():  # fmt: skip
         (text,) = [t for c, t in said.items() if c.startswith(command)]
