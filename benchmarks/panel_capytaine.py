@@ -11,6 +11,7 @@ do not.
 from __future__ import annotations
 
 import json
+import os
 import resource
 import subprocess
 import sys
@@ -18,6 +19,7 @@ import tempfile
 import time
 from pathlib import Path
 
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
 import numpy as np
 
 from coeflab.bodies.added_mass.panel import _rectangle

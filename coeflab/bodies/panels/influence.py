@@ -239,7 +239,7 @@ def sharp_points(vertices: Array, faces: Faces, step: float) -> Array:
 
 
 REACH = 5.0
-BLOCK = 2**16
+BLOCK = 2**18
 NEAR_BLOCK = 2**15
 
 
