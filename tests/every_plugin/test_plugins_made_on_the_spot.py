@@ -20,7 +20,9 @@ PLANTED = {
     "importers": "from coeflab.tables.importers.csv import recognises, read\n",
     "bodies": "from coeflab.bodies.readers.particulars import read\n",
     "added_mass": "from coeflab.bodies.added_mass.ellipsoid import added_mass\npresets = {'twice': {}}\n",
-    "estimates": "from coeflab.estimates.friction import contributions\n",
+    "estimates": "from dataclasses import replace\nfrom coeflab.estimates import friction\n"
+    "def contributions(outline, water):\n"
+    "    return tuple(replace(c, method='planted') for c in friction.contributions(outline, water))\n",
     "fits": "from coeflab.fits.slope_at_origin import Options, fit\n",
     "exporters": "def render(parameters):\n    return {'planted.txt': parameters.name.encode()}\n",
     "parameter_importers": "reads = 'planted models'\n"
