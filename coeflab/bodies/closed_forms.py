@@ -353,8 +353,8 @@ def cylinder_with_ends(radius: float, length: float, density: float) -> Array:
 
     Notes
     -----
-    A monotone cubic in L / (L + D) between them, which ends at Lamb's disc and at sections. The table is good to 0.5 %
-    from half a diameter on: a quarter of the panels, extrapolated, would change axial and lateral mass by less than 1 %.
+    A monotone cubic in L / (L + D) between them, which ends at Lamb's disc and at sections. With a
+    quarter of the panels the worst entry of the table would change by 4.8 %, that of the box by 10.8 % (boxes of 10:1).
     """
     diameter = 2.0 * radius
     axial, lateral, turning = _cylinder_curves()(length / diameter)
