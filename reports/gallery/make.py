@@ -19,9 +19,12 @@ from coeflab.report.figures.svg import plain
 from coeflab.report.formats.pdf import page_pictures
 from coeflab.report.sections import acceptance as acceptance_document
 from coeflab.study.study import Study
+from coeflab.workbench import checked
+from coeflab.workbench.vehicle import asked, from_shape, subject
 
 HERE = Path(__file__).resolve().parent
-STUDIES = ("suboff", "huuv", "flyingfish", "thauv")
+VEHICLE = "myring_auv"
+STUDIES = ("suboff", "huuv", "flyingfish", "thauv", VEHICLE)
 PIXELS_AN_INCH = 84.0
 
 
@@ -44,13 +47,19 @@ def of_publication(found: Acceptance) -> dict[str, bytes]:
     return {f"{found.name}.svg": standalone(f) for f in acceptance_document.figures(found)[:1]}
 
 
+def of_shape() -> Study:
+    """A vehicle estimated from its shape, as ``coeflab vehicle myring_auv`` does."""
+    body = subject(VEHICLE)
+    return checked(from_shape(asked(body)[0], body))
+
+
 def made(name: str) -> Mapping[str, bytes]:
     """The files of one study by their paths below the gallery."""
-    found = studied(name)
+    found = of_shape() if name == VEHICLE else studied(name)
     document = report_of(found, short=True).document
     pages = {f"{name}/{k.replace('report', 'summary')}": v for k, v in written(document, ["html", "pdf"]).items()}
     (page,) = page_pictures(document, PIXELS_AN_INCH)
-    more = of_suboff(found) if isinstance(found, Study) else of_publication(found)
+    more = {} if name == VEHICLE else of_suboff(found) if isinstance(found, Study) else of_publication(found)
     return pages | {f"{name}/summary.png": page} | more
 
 

@@ -40,7 +40,7 @@ def test_angles_of_the_flow_and_of_controls() -> None:
     nu = np.array([2.0 * np.cos(0.25), 2.0 * sin(0.25), 0.0, 0.0, 0.0, 0.0])
     drift, rudder = outside_in_words(craft, nu, {"dr": 0.4})
     assert drift.startswith(f"asin(v/U) = {degrees(0.25):.2f} deg is outside")
-    assert rudder == "dr = 22.92 deg is outside the data, -17.19 to 17.19 deg."
+    assert rudder == "rudder angle = 22.92 deg is outside the data, -17.19 to 17.19 deg."
     assert outside_in_words(craft, nu * [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], {"dr": -0.3}) == ()
 
 

@@ -110,7 +110,13 @@ def bars(found: Importance, anchor: str) -> Figure:
             handles.append(Line2D([], [], color=COLOURS["ink"], linewidth=0.9, label="95 % of first order"))
         legend(figure, handles, height - LEGEND)
         svg = svg_text(figure, anchor, title, description)
-    return Figure(anchor, svg, title, f"{title}.", description, (shown,))
+    meant = (
+        "First-order and total Sobol indices of groups of correlated numbers."
+        if grouped
+        else "What share of the variance would go if this number were known exactly. The numbers are correlated, so that shares "
+        "may add up to more than one."
+    )
+    return Figure(anchor, svg, title, meant, description, (shown,))
 
 
 def _told(rows: list[Bar], own: str, top: float) -> list[Series]:

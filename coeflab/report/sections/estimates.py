@@ -249,7 +249,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
         Chip("Missing", f"{len(shape.missing)} things" if shape.missing else "nothing", Severity.WARN if shape.missing else Severity.PASS, "estimates"),
         Chip("Exports", f"{len(study.exports)} made" if study.exports else "none planned", Severity.NOTE, "exports" if study.exports else ""),
     )  # fmt: skip
-    by = f"Estimates by semi-empirical methods, no measurement; primes by {parameters.scaling.length_name} {parameters.scaling.length:.5g} m."
+    by = f"Estimates by semi-empirical methods, no measurement; primes made with {parameters.scaling.length_name} = {parameters.scaling.length:.5g} m."
     made = Answer(sentence(study), rows=tuple(rows), chips=chips, notes=(by, *shape.said[:2]))
     if not drawn:
         return made
