@@ -50,4 +50,4 @@ def command(
     if outline is not None:
         show.table(outline_table(outline))
     for file, new in write_all(folder, files).items():
-        show.path(f"{folder / file}:", "written" if new else "unchanged")
+        show.path(folder / file, "written" if new else "unchanged")

@@ -254,7 +254,7 @@ def test_a_ratio_over_an_interval_with_zero_has_none() -> None:
     found = [replace(b, parts=(*b.parts, BudgetPart("grid", abs(b.value), None))) for b in budgets_of(result, tables)]
     x = centre_of_pressure(with_budget(result, found).coefficients, result.campaign)[0]
     assert x.result is None
-    assert "denominator Yv'" in x.statement
+    assert "divides by Yv'" in x.statement
 
 
 def parameters(values: dict[str, tuple[float, float]], mass: bool = True) -> ParameterFile:
