@@ -29,6 +29,10 @@ settings.load_profile("unhurried")
 
 # Peak memory of a process itself in kB: ru_maxrss holds that of the process which it was forked from, too.
 PEAK_KILOBYTES = "int(next(line for line in open('/proc/self/status') if line.startswith('VmHWM')).split()[1])"
+FLAGS = [
+    "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-sync",
+    "--disable-component-update", "--no-first-run", "--disable-dev-shm-usage",
+]  # fmt: skip
 SECTIONS = {
     "campaign": 'title = "Synthetic"\nbody = "synthetic_body"',
     "axes": (
@@ -115,3 +119,45 @@ def suboff_document(suboff: Study) -> Document:
 def suboff_page(suboff_document: Document) -> bytes:
     """Its report as a page."""
     return REPORTERS.load("html").render(suboff_document)["report.html"]
+
+
+def _missing(why: str) -> None:
+    if os.environ.get("COEFLAB_FORBID_SKIPS"):
+        pytest.fail(why)
+    pytest.skip(why)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """One browser for all tests of a process, which has room for one loop of playwright only."""
+    path = shutil.which("chromium")
+    if path is None:
+        _missing("chromium is not installed")
+    try:
+        from playwright.sync_api import sync_playwright
+    except ImportError:
+        _missing("playwright is not installed")
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=path, args=FLAGS)
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def visit(browser: Any) -> Iterator[Callable[..., Any]]:
+    """Opens an address; the page remembers what it said and fetched."""
+    pages: list[Any] = []
+
+    def open_page(address: str, width: int = 1440, scheme: str = "light", **more: Any) -> Any:
+        page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme, **more)
+        page.heard, page.fetched = [], []
+        page.on("console", lambda message: page.heard.append(message.text))
+        page.on("pageerror", lambda error: page.heard.append(str(error)))
+        page.on("request", lambda request: page.fetched.append(request.url))
+        page.goto(address)
+        pages.append(page)
+        return page
+
+    yield open_page
+    for page in pages:
+        page.close()

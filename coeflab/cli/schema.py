@@ -24,11 +24,16 @@ KINDS = {
 }
 
 
+def kinds(incomplete: str) -> list[str]:
+    """Kinds of files that begin so."""
+    return complete.names(KINDS, incomplete)
+
+
 def command(
     kind: str = typer.Argument(
         ...,
         metavar="KIND",
-        autocompletion=lambda incomplete: complete.names(KINDS, incomplete),
+        autocompletion=kinds,
         help=f"{', '.join(list(KINDS)[:-1])} or {list(KINDS)[-1]}.",
     ),
 ) -> None:

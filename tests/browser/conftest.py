@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-
 import pytest
 
 from coeflab.core.files import shipped
@@ -15,32 +12,7 @@ from coeflab.tables.importers import PlannedTable
 from coeflab.workbench import run
 from tests.report.studies import ENDLESS, FULL, HOSTILE, small_study
 
-FLAGS = [
-    "--headless=new", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-sync",
-    "--disable-component-update", "--no-first-run", "--disable-dev-shm-usage",
-]  # fmt: skip
 NAMES = {"plain": "tow", "hostile": HOSTILE, "endless": ENDLESS}
-
-
-def _missing(why: str) -> None:
-    if os.environ.get("COEFLAB_FORBID_SKIPS"):
-        pytest.fail(why)
-    pytest.skip(why)
-
-
-@pytest.fixture(scope="session")
-def browser():
-    path = shutil.which("chromium")
-    if path is None:
-        _missing("chromium is not installed")
-    try:
-        from playwright.sync_api import sync_playwright
-    except ImportError:
-        _missing("playwright is not installed")
-    with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=path, args=FLAGS)
-        yield opened
-        opened.close()
 
 
 def _study(kind: str):
@@ -77,26 +49,6 @@ def written(tmp_path_factory, request):
         return known[kind]
 
     return address_of
-
-
-@pytest.fixture
-def visit(browser):
-    """Opens an address; the page remembers what it said and fetched."""
-    pages = []
-
-    def open_page(address: str, width: int = 1440, scheme: str = "light", **more):
-        page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme, **more)
-        page.heard, page.fetched = [], []
-        page.on("console", lambda message: page.heard.append(message.text))
-        page.on("pageerror", lambda error: page.heard.append(str(error)))
-        page.on("request", lambda request: page.fetched.append(request.url))
-        page.goto(address)
-        pages.append(page)
-        return page
-
-    yield open_page
-    for page in pages:
-        page.close()
 
 
 @pytest.fixture

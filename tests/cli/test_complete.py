@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.cli import complete
+from coeflab.cli import complete, schema
 from tests.cli.conftest import Run
 
 
@@ -24,7 +24,7 @@ from tests.cli.conftest import Run
         (complete.runners, "slu", ["slurm"]),
         (complete.reports, "html,pd", ["html,pdf"]),
         (complete.methods, "pan", ["panel"]),
-        (complete.schemas, "camp", ["campaign"]),
+        (schema.kinds, "camp", ["campaign"]),
     ],
 )
 def test_names_that_begin_so(offer, begun: str, offered: list[str]) -> None:

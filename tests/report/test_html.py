@@ -225,7 +225,8 @@ def test_the_validation_makes_a_page_of_moderate_size(suboff, suboff_document, s
     ]  # fmt: skip
     hulls = {h.body.name for h in study.hulls.values()}
     assert hulls == {"suboff_aff8", "suboff_bare_hull"}
-    planes, sketches, motions, first_page = 4, 3, 2 * 4, 3
+    planes, sketches, first_page = 4, 3, 3
+    motions = 4 * sum(not made.undetermined for made in study.manoeuvres)
     turning = sum(rate in t.varies for t in study.tables for rate in "qr")
     settings = len(study.tables) + turning  # of every table, and the local incidence of those that turn
     by_symmetry = [{c.symbol for c in zeros(study, f.campaign, f.coefficients.coefficients)} for f in study.fits]

@@ -18,7 +18,6 @@ from coeflab.tables.campaign import InputUncertainty
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics, ParameterSurface
 from coeflab.workbench import FITS
-from tests.browser.conftest import browser, visit  # noqa: F401  fixtures
 from tests.report.studies import small_table
 
 SCALING, AT = Scaling(2.0, "LOA"), Conditions(1000.0, 1.5)
@@ -113,7 +112,7 @@ def address(bench, tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def page(browser, address):  # noqa: F811
+def page(browser, address):
     """For tests that compute on it and leave it as it is."""
     opened = browser.new_page()
     opened.goto(address)
