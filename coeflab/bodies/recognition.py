@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from coeflab.bodies.cuts import (
     SKIN,
@@ -175,7 +176,7 @@ def _appendage(bits: list[Bit], hull: Sections, track: list[Bit]) -> _Appendage:
     areas = np.array([bit.polygon.area() for bit in bits])
     points = np.concatenate([bit.points for bit in bits])
     way, origin = _way(bits, stand)
-    low, high = np.empty(len(bits)), np.empty(len(bits))
+    low, high, on_hull = np.empty(len(bits)), np.empty(len(bits)), np.zeros(len(bits), dtype=bool)
     by_step = {bit.x: bit for bit in track}
     for i, bit in enumerate(bits):
         s = (bit.points - origin) @ way
@@ -183,6 +184,7 @@ def _appendage(bits: list[Bit], hull: Sections, track: list[Bit]) -> _Appendage:
         core = by_step.get(bit.x)
         if core is not None and low[i] - (within := reach(core.polygon, origin, way)) < 0.2 * bit.inscribed:
             low[i] = min(within, high[i])
+            on_hull[i] = True
     volume = float(-np.trapezoid(areas, x)) if len(x) > 1 else 0.0
     whole = np.ptp(points, axis=0)
     half = np.array([(x[0] - x[-1]) / 2.0, *whole / 2.0])
@@ -191,7 +193,7 @@ def _appendage(bits: list[Bit], hull: Sections, track: list[Bit]) -> _Appendage:
     shadow_x = float(areas.max()) if len(areas) else 0.0
     place = _words(way)
     bluff = Bluff(f"part_{place}", "mesh", middle, np.eye(3), half, np.array([shadow_x, *side]))
-    foil = _foil(f"foil_{place}", x, low, high, bits, origin, way) if len(x) > 4 else None
+    foil = _foil(f"foil_{place}", x, low, high, on_hull, bits, origin, way) if len(x) > 4 else None
     sides = (
         np.array(
             [
@@ -205,9 +207,11 @@ def _appendage(bits: list[Bit], hull: Sections, track: list[Bit]) -> _Appendage:
     return _Appendage(foil, bluff, volume, bent)
 
 
-def _foil(name: str, x: Array, low: Array, high: Array, bits: list[Bit], origin: Array, way: Array) -> Foil | None:
+def _foil(
+    name: str, x: Array, low: Array, high: Array, on_hull: NDArray[np.bool_], bits: list[Bit], origin: Array, way: Array
+) -> Foil | None:
     """Straight edges through the planform between the foremost and the aftmost station at each level."""
-    tip, foot = float(high.max()), float(low.mean())
+    tip, foot = float(high.max()), float(low[on_hull].mean() if on_hull.any() else low.min())
     clean = max(foot, min(float(low.max()), foot + 0.5 * (tip - foot)))
     levels = clean + (tip - clean) * (np.arange(LEVELS) + 0.5) / LEVELS * 0.95
     edges = []
@@ -215,7 +219,7 @@ def _foil(name: str, x: Array, low: Array, high: Array, bits: list[Bit], origin:
         inside = np.flatnonzero((low <= level + 1e-12) & (high >= level))
         if not len(inside):
             return None
-        edges.append((_edge(x, high, int(inside[0]), -1, level), _edge(x, high, int(inside[-1]), 1, level)))
+        edges.append((_edge(x, low, high, int(inside[0]), -1, level), _edge(x, low, high, int(inside[-1]), 1, level)))
     fore, aft = (np.polynomial.Polynomial.fit(levels, np.array(edges)[:, i], 1) for i in (0, 1))
     step = float(x[0] - x[-1]) / (len(x) - 1)
     area = float(-np.trapezoid(high - low, x)) + step / 2.0 * float((high - low)[[0, -1]].sum())
@@ -234,14 +238,15 @@ def _foil(name: str, x: Array, low: Array, high: Array, bits: list[Bit], origin:
     return Foil(name, root, end, fit * root_chord, fit * tip_chord, thickness, origin)
 
 
-def _edge(x: Array, high: Array, at: int, step: int, level: float) -> float:
-    """Where the tip line crosses a level beyond a station; past the last station half a step further."""
+def _edge(x: Array, low: Array, high: Array, at: int, step: int, level: float) -> float:
+    """Where the tip or the foot line crosses a level beyond a station; past the last station half a step further."""
     other = at + step
     if not 0 <= other < len(x):
         return float(x[at] - step * (x[0] - x[-1]) / (len(x) - 1) / 2.0)
-    if high[other] >= level or high[at] == high[other]:
+    line = low if low[other] > level else high
+    if (high[other] >= level and line is high) or line[at] == line[other]:
         return float(x[at])
-    return float(x[at] + (x[other] - x[at]) * (high[at] - level) / (high[at] - high[other]))
+    return float(x[at] + (x[other] - x[at]) * (line[at] - level) / (line[at] - line[other]))
 
 
 def of_mesh(mesh: TriangleMesh, controls: tuple[Control, ...] = ()) -> Outline:

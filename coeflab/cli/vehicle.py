@@ -111,7 +111,7 @@ def summarise(study: Study) -> None:
     show.table(tables.manoeuvre_table(study.manoeuvres, shape.carried))
     show.table(tables.particulars_table(shape, parameters.added_mass))
     for line in shape.missing:
-        show.marked("warn", line)
+        show.marked("lacks", line)
 
 
 def as_json(study: Study) -> dict[str, Any]:

@@ -156,7 +156,7 @@ def _buoyed(mass: float, displaced: float, density: float) -> str:
         return said + "neutrally buoyant within 0.5 %"
     if over > 0.0:
         return said + f"{over:.3g} kg too heavy ({100.0 * over / displaced:.1f} %), it sinks"
-    return said + f"{-over:.3g} kg of ballast to neutral ({-100.0 * over / displaced:.1f} %)"
+    return said + f"{-over:.3g} kg of ballast to neutral ({-100.0 * over / displaced:.1f} %), it rises"
 
 
 def spread_of(body: Body, configuration: Configuration) -> Array:
@@ -270,7 +270,14 @@ def lacking(body: Body, parameters: ParameterFile, assumed: Sequence[str], turns
         out.append(
             "no thruster: write [[thruster]] with name, place, axis and curve; a run ahead takes the thrust it needs"
         )
+    seen = body.outline
+    if seen is not None and seen.hulls and seen.bluff:
+        parts = listed([b.name for b in seen.bluff])
+        out.append(f"drag without lift: {parts}, taken as bluff; `coeflab draw` shows what the estimates see")
+    if seen is not None:
+        out += [f"not in the estimates: {line}" for line in seen.left_out]
     options = {"mass": "--mass", "centre": "--cg", "inertia": "--inertia"}
     if assumed:
-        out.append(f"not stated: {', '.join(options[a] for a in assumed)}")
+        rights = "; without --cg nothing rights it" if "centre" in assumed else ""
+        out.append(f"not stated: {', '.join(options[a] for a in assumed)}{rights}")
     return tuple(out)

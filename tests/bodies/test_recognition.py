@@ -131,3 +131,17 @@ def test_corners_of_a_box_hull_are_no_foils() -> None:
     found = of_mesh(meshed(box((1.2, 0.3, 0.2)) + box((0.2, 0.01, 0.2), (-0.4, 0.0, -0.2))))
     assert [f.name for f in found.foils] == ["foil_upper"]
     assert found.hulls[0].area[40] == pytest.approx(0.06, rel=0.01)
+
+
+def test_swept_wings_are_foils() -> None:
+    """Sections aft of the root begin far from the hull: exposed area of each within 3 % of that drawn, half span within 1 %."""
+    planform = [(-0.2, 0.6), (-0.3, 0.6), (-0.1, 0.0), (0.1, 0.0)]
+    half = CrossSection([planform]).extrude(0.012).translate((0.0, 0.0, -0.006))
+    solid = spindle(2.0, 0.11) + half + half.mirror((0.0, 1.0, 0.0))
+    seen = of_mesh(meshed(solid))
+    assert {f.name for f in seen.foils} == {"foil_port", "foil_starboard"}
+    assert seen.bluff == ()
+    for foil in seen.foils:
+        chord = 0.2 + (0.1 - 0.2) * 0.11 / 0.6
+        assert foil.area == pytest.approx(0.5 * (chord + 0.1) * (0.6 - 0.11), rel=0.03)
+        assert abs(foil.tip[1]) == pytest.approx(0.6, rel=0.01)

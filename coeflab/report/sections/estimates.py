@@ -247,7 +247,7 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
         Chip("Stability", f"{held}, estimate" if indices else held, Severity.NOTE, "stability"),
         Chip("First manoeuvre", turn or "no interval", Severity.NOTE, "manoeuvres" if study.manoeuvres else ""),
         Chip("Missing", f"{len(shape.missing)} things" if shape.missing else "nothing", Severity.WARN if shape.missing else Severity.PASS, "estimates"),
-        Chip("Exports", f"{len(study.exports)} made" if study.exports else "none planned", Severity.NOTE, "exports" if study.exports else ""),
+        _exports(study),
     )  # fmt: skip
     by = f"Estimates by semi-empirical methods, no measurement; primes made with {parameters.scaling.length_name} = {parameters.scaling.length:.5g} m."
     made = Answer(sentence(study), rows=tuple(rows), chips=chips, notes=(by, *shape.said[:2]))
@@ -256,6 +256,14 @@ def answer_of_shape(study: Study, *, drawn: bool = True) -> Answer:
     first = next(iter(study.manoeuvres), None)
     left = track_figures(first.trajectory, "answer-track", first.vehicle.length)[0] if first is not None else None
     return replace(made, slope=left, forest=shares_figure(parameters, shape.carried, "answer-shares"))
+
+
+def _exports(study: Study) -> Chip:
+    """How many exports were made, and how many refused."""
+    made, refused = len(study.exports), len(study.refused)
+    said = f"{made} made" if made else "" if refused else "none asked for"
+    said = ", ".join(filter(None, (said, f"{refused} refused" if refused else "")))
+    return Chip("Exports", said, Severity.WARN if refused else Severity.NOTE, "exports" if made else "")
 
 
 def verdict_of_shape(study: Study) -> Section:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from coeflab.core.table import Check, Severity
-from coeflab.law.coefficient import Coefficient
+from coeflab.law.coefficient import Coefficient, Status
 from coeflab.law.symbols import COMPONENTS, MOTIONS, primed
 from coeflab.study.study import Study
 from coeflab.vehicle.parameter_file import ParameterFile
@@ -46,6 +46,10 @@ def _signed(owner: str | None, c: Coefficient, source: str) -> Check | None:
     severity = Severity.PASS if good else Severity.FAIL if sure else Severity.WARN
     if good:
         comment = f"As expected: {NEGATIVE[symbol]}."
+    elif c.status is Status.ESTIMATE:
+        comment = (
+            "An estimate of parts that oppose each other, or of parts that are not seen: `coeflab draw` shows what is."
+        )
     elif source:
         comment = f"{source}Check its axes and the convention of its sign; {NEGATIVE[symbol]}."
     else:
