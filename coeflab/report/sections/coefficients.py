@@ -105,7 +105,7 @@ def _table(study: Study, campaign: str, body: str) -> Table:
         for c in shown
     )  # fmt: skip
     open_parts = dict.fromkeys(name for b in study.budgets if b.campaign == campaign for name in b.unassessed)
-    notes = [in_one_line(zero), f"Not in U95: {', '.join(open_parts)}." if open_parts else ""]
+    notes = [in_one_line(zero), f"Not in U95: {'; '.join(open_parts)}." if open_parts else ""]
     headers = ("", "value", "U95", "U95 %", "random", "form", "input", "n")
     title = f"{campaign}: {body.replace('_', ' ')}, primed"
     return Table(title, headers, rows, tuple(n for n in notes if n), frozenset({0}))
