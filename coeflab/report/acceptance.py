@@ -298,6 +298,9 @@ def share(r: Compared) -> float:
     return r.difference / r.tolerance
 
 
+WORST = "worst / tolerance"
+
+
 def overview(found: Acceptance) -> Table:
     """One row a table of the publication."""
     rows = tuple(
@@ -310,8 +313,8 @@ def overview(found: Acceptance) -> Table:
         )
         for t in found.tables
     )
-    notes = ("used: the largest difference in % of the tolerance; of a limit, the share that is reached",)
-    headers = ("what", "of the publication", "hold", "used", "verdict")
+    notes = (f"{WORST}: the largest difference in % of the tolerance; of a limit, the share that is reached",)
+    headers = ("what", "of the publication", "hold", WORST, "verdict")
     return Table("Tables of the publication", headers, rows, notes, frozenset({0, 1, 4}))
 
 
