@@ -13,7 +13,7 @@ from coeflab.cli.show import plain_lines
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import answer as first_page
 from coeflab.report.answer import answer, answer_table
-from coeflab.report.content import document
+from coeflab.report.content import document, verdict
 from coeflab.report.document import Answer, AnswerRow, Section
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, slope_figure
 from coeflab.report.sections import acceptance as acceptance_document
