@@ -75,8 +75,8 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
         for f in found
     )  # fmt: skip
     notes = [
-        "In % of the largest measured force of the component in that table. The force at zero angle and rate, an offset of the set-up, is "
-        "subtracted from the points."
+        "In % of the largest measured force of the component in that table. A force at zero angle and rate that the "
+        "law has no term for, an offset of the set-up, is subtracted from the points."
     ]
     if not controls:
         notes.append("points with a control off zero are left out: no force of controls is compared")
