@@ -192,6 +192,7 @@ def _block(table: Table, chosen: list[int], width: int) -> list[Line]:
 
 
 ABSENT = "-"
+LEAST_SHARE = 0.1  # per cent; the last digit that is printed
 LARGEST_SHARE = 1000.0  # per cent; beyond, the value is nothing beside its uncertainty
 TINY, HUGE, LONGEST = 5e-5, 1e6, 12  # of numbers with a fixed point, and their decimals
 
@@ -254,7 +255,7 @@ def plus_minus(value: float | None, u95: float | None, sign: str = "+-") -> str:
         The renderers of texts know ``+-``; where nothing is rendered it is the sign itself.
     """
     first, second = with_u95(value, u95)
-    return f"{first} {sign} {second}" if u95 is not None and isfinite(u95) else first
+    return f"{first} {sign} {second}" if u95 is not None and isfinite(u95) and u95 > 0.0 else first
 
 
 def percent(part: float | None, of: float | None) -> str:
@@ -262,6 +263,8 @@ def percent(part: float | None, of: float | None) -> str:
     if part is None or not of or isnan(part):
         return ABSENT
     share = 100.0 * abs(part / of)
+    if 0.0 < share < LEAST_SHARE / 2.0:
+        return f"< {LEAST_SHARE:g} %"
     return f"{share:.1f} %" if share <= LARGEST_SHARE else f"> {LARGEST_SHARE:.0f} %"
 
 

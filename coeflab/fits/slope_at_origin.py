@@ -247,6 +247,7 @@ def _coefficient(sweep: Sweep, citation: str) -> Coefficient:
         + (f", with the rest row of {sweep.borrowed}" if sweep.borrowed else "")
         + (f", not run: {sweep.by_symmetry} turned by symmetry" if sweep.by_symmetry else ""),
         window=sweep.window,
+        window_over=sweep.variable if sweep.target == "1" else "",
         n_points=int(sweep.used.sum()),
         citation=citation,
     )

@@ -238,19 +238,20 @@ def held_of_study(study: Study) -> Held:
     return {b: (sum(found.get(b, ())), len(found.get(b, ()))) for b in Basis}
 
 
-def headline(numbers: Held) -> tuple[str, str]:
-    """How many numbers hold by basis, and how many of them validate anything: two sentences."""
+def headline(numbers: Held) -> tuple[str, ...]:
+    """How many numbers hold by basis, and how many of them validate anything where not all do: one or two sentences."""
     every = [sum(pair[k] for pair in numbers.values()) for k in (0, 1)]
-    by_basis = ", ".join(f"{good} of {count} {b}" if count else f"0 {b}" for b, (good, count) in numbers.items())
-    first = f"{every[0]} of {every[1]} numbers within the tolerance: {by_basis}."
+    by_basis = "; ".join(f"{b}: {good} of {count}" for b, (good, count) in numbers.items() if count)
+    first = f"{every[0]} of {every[1]} numbers within the tolerance{f' ({by_basis})' if by_basis else ''}."
     good, count = (sum(pair[k] for b, pair in numbers.items() if b.validates) for k in (0, 1))
-    if count:
-        second = f"{count} of them are validation (predicted, or printed and recomputed); {good} of these hold."
-    else:
-        second = (
-            "Nothing here is validation: no number of the paper is predicted, and none that it prints is recomputed."
+    if not count:
+        return (
+            first,
+            "Nothing here is validation: no number of the paper is predicted, and none that it prints is recomputed.",
         )
-    return first, second
+    if count == every[1]:
+        return (first,)
+    return first, f"Only what is predicted, or printed and recomputed, is validation: {good} of {count} within."
 
 
 def tables(acceptance: Acceptance) -> tuple[Table, ...]:
@@ -297,6 +298,9 @@ def share(r: Compared) -> float:
     return r.difference / r.tolerance
 
 
+WORST = "worst / tolerance"
+
+
 def overview(found: Acceptance) -> Table:
     """One row a table of the publication."""
     rows = tuple(
@@ -309,8 +313,8 @@ def overview(found: Acceptance) -> Table:
         )
         for t in found.tables
     )
-    notes = ("used: the largest difference in % of the tolerance; of a limit, the share that is reached",)
-    headers = ("what", "of the publication", "hold", "used", "verdict")
+    notes = (f"{WORST}: the largest difference in % of the tolerance; of a limit, the share that is reached",)
+    headers = ("what", "of the publication", "hold", WORST, "verdict")
     return Table("Tables of the publication", headers, rows, notes, frozenset({0, 1, 4}))
 
 

@@ -17,7 +17,7 @@ from coeflab.fits.results.fit_result import FitResult, Sweep
 from coeflab.law.coefficient import Coefficient, CoefficientSet, Status
 from coeflab.law.scaling import Scaling
 from coeflab.law.symbols import derivative, primed
-from coeflab.report.acceptance import Acceptance, held, overview
+from coeflab.report.acceptance import WORST, Acceptance, held, overview
 from coeflab.report.document import Answer, AnswerRow, Chip, Figure
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, share_text, shares_figure, slope_figure
 from coeflab.report.figures.model import model_figures
@@ -395,12 +395,13 @@ def _of_publication(found: Acceptance) -> Answer:
     some = f"{count - good} of {count} numbers outside the tolerance"
     said = f"all {count} numbers within the tolerance" if good == count else some
     none = "none of them is validation: calibration and consistency only"
+    by = ", or ".join(b for b, (_, n) in held(found).items() if n and b.validates)
     said += (
-        f"; {'all' if valid == count else valid} of them are validation: predicted, or printed and recomputed"
+        f"; {f'all {count}' if valid == count else f'{valid} of the {count}'} are validation: {by}"
         if valid
         else f"; {none}"
     )
-    table = _narrow(overview(found), ("what", "hold", "used", "verdict"))
+    table = _narrow(overview(found), ("what", "hold", WORST, "verdict"))
     return Answer(f"{_short(found.title)}: {said}.", chips=_published_chips(found), table=table)
 
 

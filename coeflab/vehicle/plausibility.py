@@ -322,11 +322,11 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
     A point missed where the law is said to hold fails; points outside of that range are a warning that names them. So does a
     law that is no longer the one whose misses the file states.
     """
-    rule = "every point within 3 times the scatter of repeated runs + 5 % of the largest force"
     out = []
     stated = {(f.component, f.table): f for f in parameters.law_at_points}
     for f in points_of(parameters):
         largest = f.largest or 1.0
+        rule = f"every point within {100.0 * f.allowed / largest:.2g} % of the largest force: 3 times the scatter of repeated runs + 5 %"
         before = stated.get((f.component, f.table), f)
         if max(abs(f.rms - before.rms), abs(f.worst - before.worst)) > CHANGED * f.largest:
             now, then = (

@@ -74,7 +74,17 @@ def test_no_line_is_too_long_and_no_word_is_lost(table: Table, width: int) -> No
         assert set(row[i].split()) <= seen
 
 
-@pytest.mark.parametrize(("part", "of", "shown"), [(0.5, 1.0, "50.0 %"), (142.017, 1.0, "> 1000 %"), (1.0, 0.0, "-")])
+@pytest.mark.parametrize(
+    ("part", "of", "shown"),
+    [
+        (0.5, 1.0, "50.0 %"),
+        (142.017, 1.0, "> 1000 %"),
+        (1.6e-7, -0.0027, "< 0.1 %"),
+        (0.0, 1.0, "0.0 %"),
+        (5.1e-4, 1.0, "0.1 %"),
+        (1.0, 0.0, "-"),
+    ],
+)
 def test_a_share_has_no_more_digits_than_it_means(part: float, of: float, shown: str) -> None:
     assert percent(part, of) == shown
 

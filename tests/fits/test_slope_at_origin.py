@@ -17,6 +17,7 @@ from coeflab.fits.statistics.origin_slope import estimate
 from coeflab.fits.statistics.slope_mixture import estimate_many
 from coeflab.fits.statistics.slopes import Estimate
 from coeflab.law.coefficient import Status
+from coeflab.report.tables.nouns import window_text
 from coeflab.study.checks import coverage, significance
 from coeflab.study.study import Study
 from coeflab.tables.campaign import FILE, read_campaign
@@ -243,6 +244,15 @@ def test_planted_rotary_derivatives_come_back_from_a_rotating_arm() -> None:
     found = FITS.load("slope_at_origin").fit(both, both[0].scaling, {}).coefficients
     for symbol, value in {"Yv": -0.0065, "Nv": -0.0138, "Yr": 0.0007, "Nr": -0.0009}.items():
         assert found[symbol].value == pytest.approx(value, rel=1e-6)
+
+
+def test_the_window_of_a_force_at_rest_is_in_the_unit_of_its_sweep() -> None:
+    """X0' of a rotating arm had "5.73 .. 34.4 deg" for r' of 0.1 to 0.6."""
+    for table, rate in zip(tables("suboff_cfd_barehull"), (False, True), strict=True):
+        made = planted(table, X={"1": -1e-3})
+        c = FITS.load("slope_at_origin").fit([made], made.scaling, {}).coefficients["X0"]
+        assert c.window_is_rate is rate
+        assert window_text(c).endswith(" deg") is not rate
 
 
 def test_planted_rotary_derivatives_come_back_about_another_point() -> None:

@@ -13,7 +13,7 @@ from coeflab.cli.show import plain_lines
 from coeflab.law.coefficient import Coefficient, Status
 from coeflab.report import answer as first_page
 from coeflab.report.answer import answer, answer_table
-from coeflab.report.content import document
+from coeflab.report.content import document, verdict
 from coeflab.report.document import Answer, AnswerRow, Section
 from coeflab.report.figures.answer import axes_figure, forest_figure, renamed, slope_figure
 from coeflab.report.sections import acceptance as acceptance_document
@@ -269,13 +269,16 @@ def test_a_publication_has_its_tables_in_the_place_of_rows():
     made = answer(found(2.5))
     assert (
         made.sentence
-        == "Boat: 1 of 3 numbers outside the tolerance; 2 of them are validation: predicted, or printed and recomputed."
+        == "Boat: 1 of 3 numbers outside the tolerance; 2 of the 3 are validation: printed and recomputed."
     )
     assert made.rows == ()
     assert answer_table(made).rows == (("Turns", "2 of 3", "500 %", "fail"),)
     assert [c.severity.value for c in made.chips] == ["fail", "pass", "note", "note"]
     assert made.slope.anchor == "answer-figure"
     assert answer(found(2.05)).sentence.startswith("Boat: all 3 numbers within the tolerance;")
+    assert "arrow" in made.forest.caption
+    assert "Turns: 5.00" in made.forest.description
+    assert "arrow" not in answer(found(2.05)).forest.caption
 
 
 def test_long_names_are_cut_on_a_terminal_only():
@@ -296,6 +299,11 @@ def test_a_drawing_under_another_anchor_refers_to_itself():
 @pytest.mark.slow
 def test_suboff(suboff: Study):
     made = answer(suboff)
+    said = verdict(suboff).paragraphs
+    assert said[1] == "22 of 24 numbers within the tolerance (predicted: 7 of 9; printed and recomputed: 15 of 15)."
+    assert said[2].startswith("Predicted outside the tolerance, |E| > U_V: Kv' of suboff_cfd_barehull")
+    assert "this alone does not fail the study" in said[2]
+    assert said[-1].startswith("The study does not fail: ")
     assert (
         made.sentence
         == "DARPA SUBOFF re-analysed: all four static derivatives of Table 4 agree within U95; no rotating-arm data."

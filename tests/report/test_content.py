@@ -8,9 +8,10 @@ import pytest
 from coeflab.core.table import Check, Severity
 from coeflab.core.wording import Verbatim
 from coeflab.formats.export import Export
+from coeflab.law.coefficient import Parts, Status
 from coeflab.motion.simulation import simulate
 from coeflab.report.content import core, document, three_lines
-from coeflab.report.sections.coefficients import is_zero
+from coeflab.report.sections.coefficients import form_not_assessed, is_zero
 from coeflab.report.tables.results import works
 from tests.motion.vehicles import made as vehicle_file
 from tests.report.studies import FEW, FULL, HALF, HOSTILE, small_study
@@ -105,6 +106,21 @@ def test_what_is_zero_by_symmetry_has_one_line_and_no_section():
     campaign = next(s for s in flat(made.sections) if s.anchor == "campaign-tow")
     assert table.notes[0] in campaign.paragraphs
     assert [s.anchor for s in campaign.subsections] == ["campaign-tow-yv", "campaign-tow-nv"]
+
+
+def test_a_term_whose_form_is_not_assessed_is_named_below_the_core_table():
+    study = symmetric(1e-4, 1e-5)
+    fit = study.fits[0]
+    (*others, roll) = fit.coefficients.coefficients
+    tied = replace(roll, symbol="Yv|v|", status=Status.FORM_ASSUMED, parts=Parts(random=1e-5))
+    both = replace(fit.coefficients, coefficients=(*others, tied))
+    study = replace(study, fits=(replace(fit, coefficients=both, sweeps=fit.sweeps[:-1]),))
+    table = next(s for s in document(study).sections if s.anchor == "coefficients").tables[0]
+    said = [n for n in table.notes if "form is chosen" in n]
+    assert said == [
+        "U95 of Yv|v|': scatter, and the uncertainty of the slope, only. The form is chosen, its error is not assessed."
+    ]
+    assert form_not_assessed([replace(tied, parts=Parts(random=1e-5, model_form=0.0))]) == ""
 
 
 def test_a_measured_asymmetry_keeps_its_row_and_its_section():

@@ -124,6 +124,9 @@ def test_points_that_suboff_leaves_out_are_named_in_a_warning(suboff: Study) -> 
     warned = {c.subject: c.comment for c in found if c.severity is Severity.WARN}
     assert {s.split()[1] for s in warned} <= {"X", "K"}
     assert "80, 81" in warned["suboff_fully_appended X suboff_roddy_2/table.csv"]
+    # "worst 10 %, expected ... 5 %" read as a failure: the bound is 11 %.
+    rule = next(c.rule for c in found if c.subject == "suboff_fully_appended X suboff_roddy_2/table.csv")
+    assert rule == "every point within 11 % of the largest force: 3 times the scatter of repeated runs + 5 %"
 
 
 def test_a_refusal_names_what_is_not_held(tmp_path: Path) -> None:

@@ -183,7 +183,7 @@ REMAINS = {
     STUDIES["turbulence"]: ("turbulence model", "turbulence models not tried"),
     STUDIES["domain"]: ("domain and boundary conditions", "boundary conditions"),
 }  # what is open without a study, and with one
-COUPLED = "angle, coupled with the rate"
+COUPLED = "angle error in the rate sweep"
 NOT_OF_A_COMPUTATION = ("force", "moment")
 
 
@@ -351,7 +351,7 @@ def budget_of(
     if relative is not None:
         found["grid"] = relative * abs(value)
     elif "cfd" in kinds:
-        open_parts.append("grid" if study is None else f"grid: {study.convergence.convergence}")
+        open_parts.append("grid" if study is None else f"grid (study {study.convergence.convergence})")
     studies = tuple(variant_studies_of(tables, component) if variants is None else variants)
     found.update({s.name: s.relative * abs(value) for s in studies})
     found.update({p.name.replace("_", " "): p.linear for p in inputs if p.linear > 0.0})

@@ -149,9 +149,10 @@ def table(found: tuple[Row, ...]) -> Table:
     errors = [r.ratio - 1.0 for r in main]
     worst = max(main, key=lambda r: abs(r.ratio - 1.0))
     notes = (
-        f"{sum(r.inside for r in counted)} of {len(counted)} inside, median U95 {100 * np.median([r.width for r in counted]):.0f} %.",
+        f"{sum(r.inside for r in counted)} of {len(counted)} inside the U95 of the estimate, median U95 {100 * np.median([r.width for r in counted]):.0f} %.",
         f"Main derivatives: median |error| {100 * np.median(np.abs(errors)):.0f} %, mean signed error {100 * np.mean(errors):+.0f} %, "
         f"worst {primed(worst.symbol)} of configuration {worst.configuration}, {100 * (worst.ratio - 1.0):+.0f} %.",
+        goals(found),
         "Configuration 3: bare hull; 2 and 1: hull, sail, four planes, ring wing 1. copy: alike by symmetry, counts once.",
     )
     headers = ("config", "", "estimate", "measured", "ratio", "U95", "")
@@ -160,12 +161,29 @@ def table(found: tuple[Row, ...]) -> Table:
     )
 
 
+def goals(found: tuple[Row, ...]) -> str:
+    """What the project asks of the estimates, and whether they reach it; a goal is no measured number and does not count."""
+    counted = [r for r in found if r.counts]
+    share = sum(r.inside for r in counted) / len(counted)
+    wide = float(np.median([r.width for r in counted]))
+    apart = float(np.median([abs(r.ratio - 1.0) for r in counted if r.symbol in MAIN]))
+    each = (
+        ("inside", share, "at least", INSIDE, share >= INSIDE),
+        ("median U95", wide, "at most", WIDE, wide <= WIDE),
+        ("median |error| of the main ones", apart, "at most", APART, apart <= APART),
+    )
+    said = [
+        f"{what} {100 * value:.0f} %, goal {bound} {100 * limit:.0f} %, {'met' if met else 'missed'}"
+        for what, value, bound, limit, met in each
+    ]
+    return f"Goals of the project, not counted: {'; '.join(said)}."
+
+
 @one_thread()
 def acceptance() -> Acceptance:
-    """Rows, goals, and what has no verdict."""
+    """Rows, and what has no verdict; goals are statements."""
     found = rows()
     counted = [r for r in found if r.counts]
-    main = [abs(r.ratio - 1.0) for r in counted if r.symbol in MAIN]
     derivatives = tuple(
         Compared(
             f"configuration {r.configuration}", primed(r.symbol), "1", r.measured, r.value, float(r.found.u95 or 0.0),
@@ -173,21 +191,11 @@ def acceptance() -> Acceptance:
         )
         for r in counted
     )  # fmt: skip
-    goals = (
-        ("all", "share outside U95", 1.0 - INSIDE, 1.0 - sum(r.inside for r in counted) / len(counted)),
-        ("all", "median U95 over value", WIDE, float(np.median([r.width for r in counted]))),
-        ("main derivatives", "median |error|", APART, float(np.median(main))),
-    )
-    limits = tuple(
-        Compared(case, what, "1", limit, value, 1e-9, Basis.PREDICTED, at_most=True)
-        for case, what, limit, value in goals
-    )
     source = "Roddy (1990), Table 4"
     return Acceptance(
         "estimates",
-        "Estimates from the shape against measurements on SUBOFF",
+        "Estimates from the shape against SUBOFF tests",
         (
-            ComparedTable("goals", "Goals set for the estimates", limits, source),
             ComparedTable("derivatives", "Derivatives, allowed: U95 of the estimate", derivatives, source, (
                 "Shares and constants were fixed before the comparison; none uses an error on SUBOFF.",)),
         ),

@@ -379,6 +379,9 @@ def _head(axes: Axes, tip: Array, along: Array, colour: str) -> None:
 
 
 TEXT, LETTERING = 126.0, 7.75
+GOES_ON: dict[str, Any] = {
+    "linestyle": "none", "marker": ">", "markersize": 6.0, "color": COLOURS["b"], "markeredgewidth": 0.0, "zorder": 3,
+}  # fmt: skip
 
 
 def shares_figure(found: Acceptance) -> Figure:
@@ -386,9 +389,10 @@ def shares_figure(found: Acceptance) -> Figure:
     title = "Largest difference over tolerance, by table"
     shares = [[abs(s) for r in t.rows if not np.isnan(s := share(r))] for t in found.tables]
     # Two decimals: further ones differ from one linear algebra to the next, and a page must not.
-    largest = np.array([round(min(max(s, default=0.0), WIDEST), 2) for s in shares])
+    found_largest = [round(max(s, default=0.0), 2) for s in shares]
+    largest = np.minimum(found_largest, WIDEST)
     n = len(found.tables)
-    said = "; ".join(f"{t.title}: {s:.2f}" for t, s in zip(found.tables, largest, strict=True))
+    said = "; ".join(f"{t.title}: {s:.2f}" for t, s in zip(found.tables, found_largest, strict=True))
     across = (0.0, max(1.05, 1.05 * float(largest.max(initial=0.0))))
     with settings():
         figure, axes = _drawing(
@@ -402,13 +406,18 @@ def shares_figure(found: Acceptance) -> Figure:
         colours = [COLOURS["a"] if t.holds else COLOURS["b"] for t in found.tables]
         for k, s, colour in zip(level, largest, colours, strict=True):
             tagged(strokes(axes, ([0.0], [s]), ([k], [k]), color=colour, linewidth=5.0, zorder=2), "share")
+        cut = np.array([s > WIDEST for s in found_largest])
+        if np.any(cut):
+            tagged(axes.plot(largest[cut], level[cut], clip_on=False, **GOES_ON), "cut")
         axes.axvline(1.0, color=COLOURS["ink"], linewidth=1.2, linestyle=DOTTED, zorder=3)
-        notes = [f"{t.title}: {s:.2f}" for t, s in zip(found.tables, largest, strict=True)]
+        notes = [f"{t.title}: {s:.2f}" for t, s in zip(found.tables, found_largest, strict=True)]
         panel = numbers(
             axes, [points("share", "share", largest, level, notes)], "of the tolerance  [-]", "table", bars="across"
         )
         svg = svg_text(figure, "answer-shares", title, said)
     caption = "Right: numbers that hold, of all in that table. A number holds up to 1, the dotted line."
+    if np.any(cut):
+        caption += f" A bar with an arrow goes on beyond {WIDEST:g}: the table has its length."
     return Figure("answer-shares", svg, title, caption, said, (panel,))
 
 

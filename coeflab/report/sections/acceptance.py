@@ -211,10 +211,10 @@ def verdict(found: Acceptance) -> Section:
 def headline(found: Acceptance) -> tuple[str, ...]:
     """How many numbers hold by basis, each once, and how many of them validate anything."""
     again = found.repeated
-    first, second = acceptance_tables.headline(acceptance_tables.held(found))
+    first, *others = acceptance_tables.headline(acceptance_tables.held(found))
     if again:
         first += f" {sum(r.holds for r in again)} of {len(again)} comparisons repeat one of these numbers in another way, and do not count."
-    return first, second
+    return first, *others
 
 
 def figures(found: Acceptance) -> tuple[Figure, ...]:

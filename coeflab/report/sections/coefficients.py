@@ -74,6 +74,15 @@ def in_one_line(found: Sequence[Coefficient]) -> str:
     return f"Zero by symmetry, and zero within U95: {listed([primed(c.symbol) for c in found])}; none is beyond {most:.1e}."
 
 
+def form_not_assessed(found: Sequence[Coefficient]) -> str:
+    """Which intervals hold no error of the form, in one line; empty where all do."""
+    without = [c for c in found if c.status is Status.FORM_ASSUMED and c.u95 is not None and c.parts.model_form is None]
+    if not without:
+        return ""
+    named = listed([primed(c.symbol) for c in without])
+    return f"U95 of {named}: scatter, and the uncertainty of the slope, only. The form is chosen, its error is not assessed."
+
+
 def coefficients_section(study: Study) -> Section:
     """What was found, by campaign; every column of it in the appendix."""
     text: tuple[str, ...] = TEXT
@@ -105,7 +114,7 @@ def _table(study: Study, campaign: str, body: str) -> Table:
         for c in shown
     )  # fmt: skip
     open_parts = dict.fromkeys(name for b in study.budgets if b.campaign == campaign for name in b.unassessed)
-    notes = [in_one_line(zero), f"Not in U95: {', '.join(open_parts)}." if open_parts else ""]
+    notes = [in_one_line(zero), form_not_assessed(shown), f"Not in U95: {'; '.join(open_parts)}." if open_parts else ""]
     headers = ("", "value", "U95", "U95 %", "random", "form", "input", "n")
     title = f"{campaign}: {body.replace('_', ' ')}, primed"
     return Table(title, headers, rows, tuple(n for n in notes if n), frozenset({0}))

@@ -305,8 +305,8 @@ def summary(study: Study) -> Table:
     rows += tuple((r.parameters, r.target, "refused", ABSENT, ABSENT, "none") for r in study.refused)
     headers = ("parameter file", "target", "loss", "largest difference in %", "accelerations", "files")
     notes = (
-        "Largest difference in %: of a force component or an acceleration over its largest value, both over the states that the loss of "
-        f"each export names: what campaigns cover, and primes to {ASSUMED:g} either way of a motion that none covers",
+        "Largest difference in %: of a force component or an acceleration between parameter file and export, over its largest value. "
+        f"States tried: the ranges of the campaigns; from -{ASSUMED:g} to {ASSUMED:g} (primed) for a motion that no campaign varies.",
     )
     return Table("Exports of this study", headers, rows, notes, frozenset({0, 1, 2, 4, 5}))
 

@@ -75,7 +75,8 @@ def at_points(found: Sequence[LawAtPoints], whose: str, *, controls: bool = True
         for f in found
     )  # fmt: skip
     notes = [
-        "In % of the largest measured force of the component in that table; the force that the set-up itself shows ahead is subtracted."
+        "In % of the largest measured force of the component in that table. A force at zero angle and rate that the "
+        "law has no term for, an offset of the set-up, is subtracted from the points."
     ]
     if not controls:
         notes.append("points with a control off zero are left out: no force of controls is compared")
@@ -97,7 +98,7 @@ def at_points_verdict(f: LawAtPoints) -> str:
         return "too small to judge"
     if f.missed:
         return f"misses {len(f.missed)}"
-    return f"{len(f.beyond)} beyond" if f.beyond else "holds"
+    return f"{len(f.beyond)} outside the range of the law" if f.beyond else "holds"
 
 
 def _row(name: str, unit: str, found: Apart, i: int) -> tuple[str, ...]:
