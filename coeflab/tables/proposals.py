@@ -6,7 +6,7 @@ Proposals are confirmed by a person, evidence is shown to one: nothing here deci
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -41,6 +41,10 @@ ALLOWED = {
     "length": "R", "density": "density",
 }  # fmt: skip
 TURN = "counts about the z axis of the frame: z down, r > 0 turns to starboard; z up (CFD, FLU), to port"
+TURNS = {("p", True): "heels to starboard", ("p", False): "heels to port", ("q", True): "lifts the bow",
+         ("q", False): "lowers the bow", ("r", True): "turns the bow to starboard", ("r", False): "turns the bow to port"}  # fmt: skip
+OF_RATE = {"p": ("", "K"), "q": ("Z", "M"), "r": ("Y", "N")}  # force and moment that a rate moves first
+STILL = 0.1  # of the span of Y or N: a span of Z or M that is none
 CLEAR = 0.8  # correlation beyond which a slope has a sign
 _SAID = {
     "X": "fx forcex xforce surgeforce longitudinalforce axialforce laengskraft langskraft kraftlangs kraftlaengs kraftx xkraft widerstandskraft forcelongitudinale effortlongitudinal fxtotal",
@@ -279,13 +283,58 @@ class Evidence:
     key, value : str
         What of campaign.toml follows from it for a slender body; empty where nothing does.
     against : str
-        The rate whose sign it contradicts; empty where it contradicts none.
+        The rate whose sign or axis it contradicts; empty where it contradicts none.
+    instead : str
+        The rate of the file that turns about the axis whose force and moment vary; empty where the axis is not contradicted.
     """
 
     text: str
     key: str = ""
     value: str = ""
     against: str = ""
+    instead: str = ""
+
+
+def turn_of(said: ColumnMap, frame: Axes) -> str:
+    """What a positive number in a column of a rate does to the body, such as turns the bow to port."""
+    axis = frame.rotation[:, ANGULAR.index(said.name)]
+    i = int(np.argmax(np.abs(axis)))
+    return TURNS[ANGULAR[i], (float(axis[i]) > 0.0) != said.negative]
+
+
+def _about_another_axis(data: Mapping[str, Array], frame: Axes) -> Iterator[Evidence]:
+    """Rates about an axis whose own force and moment rest while those of the other plane vary."""
+    for rate in (m for m in ANGULAR if m in data and np.any(np.nan_to_num(data[m]))):
+        about = ANGULAR[int(np.argmax(np.abs(frame.rotation[:, ANGULAR.index(rate)])))]
+        if about == rate == "p":
+            continue  # roll moves Y and N too, and K is seldom measured
+        for other in (m for m in ("q", "r") if m != about):
+            found = [c for c in OF_RATE[other] if _varies(data, c, rate, frame)]
+            pairs = [(own, c) for own, c in zip(OF_RATE[about], OF_RATE[other], strict=True) if own]
+            if not found or any(_span(data, own, frame) > STILL * _span(data, c, frame) for own, c in pairs):
+                continue
+            instead = ANGULAR[int(np.argmax(np.abs(frame.rotation[ANGULAR.index(other)])))]
+            axes = [("forward", "aft"), ("starboard", "port"), ("down", "up")][ANGULAR.index(about)]
+            points = axes[float(frame.rotation[ANGULAR.index(about), ANGULAR.index(rate)]) < 0.0]
+            named = {"p": "roll", "q": "pitch", "r": "yaw"}
+            yield Evidence(
+                f"{rate} counts about the {'xyz'[ANGULAR.index(rate)]} axis of the frame, which points {points}: {named[about]}. "
+                f"But {' and '.join(found)} of the body vary and {' and '.join(own for own, _ in pairs)} "
+                f"{'does' if len(pairs) == 1 else 'do'} not: {named[other]}, which is {instead} in this frame",
+                against=rate, instead=instead,
+            )  # fmt: skip
+            break
+
+
+def _varies(data: Mapping[str, Array], component: str, rate: str, frame: Axes) -> bool:
+    values = _frd(data, component, frame)
+    return values is not None and trend(values, data, rate) != 0
+
+
+def _span(data: Mapping[str, Array], component: str, frame: Axes) -> float:
+    values = _frd(data, component, frame)
+    known = np.empty(0) if values is None else values[np.isfinite(values)]
+    return float(np.ptp(known)) if known.size else 0.0
 
 
 def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Evidence, ...]:
@@ -331,7 +380,9 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
                     f"{component} and {rate} have the same sign: no damping of a slender body; one of them has the "
                     f'other sign (-{rate} or -{component}), or the force contains inertia', against=rate * (rate in ANGULAR)
                 ))  # fmt: skip
-    if "r" in data and np.any(np.nan_to_num(data["r"])):
+    crossed = list(_about_another_axis(data, frame)) if frame else []
+    out += crossed
+    if "r" in data and np.any(np.nan_to_num(data["r"])) and not any(e.against == "r" for e in crossed):
         up = float(frame.rotation[2][2]) if frame else 0.0
         turn = f"r > 0 turns to {'starboard' if up > 0 else 'port'}: it {TURN.partition(':')[0]}"
         out += [Evidence(turn if up else f"r {TURN}")]
@@ -350,7 +401,7 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
 
 
 def _frd(data: Mapping[str, Array], component: str, frame: Axes) -> Array | None:
-    group = next(g for g in (COMPONENTS[:3], COMPONENTS[3:], LINEAR) if component in g)
+    group = next(g for g in (COMPONENTS[:3], COMPONENTS[3:], LINEAR, ANGULAR) if component in g)
     row = frame.rotation[group.index(component)]
     own = group[int(np.argmax(np.abs(row)))]
     return data[own] * float(row[group.index(own)]) if own in data else None

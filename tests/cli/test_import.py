@@ -281,6 +281,50 @@ def test_a_rate_whose_sign_the_numbers_contradict_stays_open(tmp_path: Path) -> 
         assert table_of(tmp_path / "out").motion["r"].tolist() == [sign * x for x in (-0.4, -0.2, 0.2, 0.4)]
 
 
+ARM = "r' (-),Fx,Fz,Mz\n0.1,-77,-15,48\n0.2,-78,-31,100\n0.3,-80,-50,160\n0.4,-81,-69,222\n"
+
+
+@pytest.mark.parametrize(("answer", "sign"), [("n", -1.0), ("y", 1.0)])
+def test_a_rate_is_judged_again_once_the_axes_are_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: str, sign: float
+) -> None:
+    """Forces without a unit, so that only the answers make N and r comparable; and z up, where r > 0 turns to port."""
+    file = tmp_path / "arm.csv"
+    file.write_text(ARM)
+    answers = ["X [N]", "Y [N]", "N [N*m]", "FLU", answer, "midship", "4 LOA", "998.2, 2", "no", "cfd, nobody"]
+    done = answered(monkeypatch, answers, "import", file, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    assert "Does r' > 0 turn the bow to port?" in done.output
+    assert table_of(tmp_path / "out").motion["r"].tolist() == pytest.approx(
+        [sign * -0.5 * x for x in (0.1, 0.2, 0.3, 0.4)]
+    )
+    units = ("--map", "Fx=X [N]", "--map", "Fz=Y [N]", "--map", "Mz=N [N*m]")
+    monkeypatch.undo()
+    lines = refused(invoke("import", file, "--out", tmp_path / "two", "--yes", *units, *sets(axes__frame="FLU")))
+    assert lines[1].strip() == """--map "r'=-r' [-]" or --map "r'=r' [-]\""""
+    assert "keeps it: r' > 0 turns the bow to port" in " ".join(" ".join(lines).split())
+
+
+def test_a_rate_about_an_axis_whose_forces_rest_is_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With y up, r is pitch about z to starboard; Y and N vary, so that yaw is meant, q of the file, even where --map says r."""
+    file = tmp_path / "arm.csv"
+    file.write_text(ARM)
+    units = ("--map", "Fx=X [N]", "--map", "Fz=Z [N]", "--map", "Mz=M [N*m]")
+    up = sets(axes__frame="forward,up,starboard", table__contains_inertia="no")
+    for said in ((), ("--map", "r'=r'")):
+        lines = refused(invoke("import", file, "--out", tmp_path / "out", "--yes", *units, *said, *up))
+        assert lines[1].strip().startswith("""--map "r'=-q' [-]" or --map "r'=q' [-]\"""")
+        text = " ".join(" ".join(lines).split())
+        assert "points starboard: pitch. But Y and N of the body vary and Z and M do not: yaw, which is q" in text
+    done = invoke("import", file, "--out", tmp_path / "out", "--yes", *units, "--map", "r'=-q'", *up)
+    assert done.exit_code == 0, done.output
+    assert table_of(tmp_path / "out").motion["r"].tolist() == pytest.approx([0.05, 0.1, 0.15, 0.2])
+    assert not np.any(table_of(tmp_path / "out").motion["q"])
+    done = answered(monkeypatch, ["n", ""], "import", file, "--out", tmp_path / "asked", *units, *up)
+    assert done.exit_code == 0, done.output
+    assert table_of(tmp_path / "asked").motion["r"].tolist() == pytest.approx([0.05, 0.1, 0.15, 0.2])
+
+
 @pytest.mark.parametrize(("arguments", "said"), [
     (("--set", "axes.reference_point=L/2"), 'found "L/2"'),
     (("--set", "axes.reference_point=-1,2,0,0"), 'found "-1,2,0,0"; expected x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum. Write a decimal point.'),
