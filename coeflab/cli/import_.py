@@ -476,7 +476,11 @@ def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
     opened = _with_sizes(found.open)
     whole = [(column, offer) for column, offer in opened if offer.whole]
     if whole:
-        show.sentence("Proposed by name and unit: " + "; ".join(f"{c.name} = {o.text}" for c, o in whole) + ".")
+        show.sentence(
+            "Proposed by name and unit: "
+            + "; ".join(f"{c.name} = {o.text}" + f" ({o.note})" * bool(o.note) for c, o in whole)
+            + "."
+        )
         if typer.confirm("  All of them right?", default=None):
             out = {column.name: read_column_map(offer.text) for column, offer in whole}
     for column, offer in opened:

@@ -32,6 +32,7 @@ from coeflab.tables.column_map import (
 )
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.words_above import BODY_AXES
 
 OPEN = "?"
 UNKNOWN = "no known name"
@@ -78,11 +79,12 @@ _SAID = {
     "db": "bowplane bowplaneangle deltab",
     "cells": "cells ncells cellcount meshcells numberofcells elements gridcells zellen",
     "point": "run runno runnumber runid case caseno casename test testno testid point pointno id no nr number "
-    "versuch versuchsnr messung messpunkt fahrt fall lauf lfd lfdnr essai numero",
+    "versuch versuchsnr versnr messung messpunkt fahrt fall lauf lfd lfdnr essai numero",
     "ignore": "comment comments remark remarks note notes bemerkung bemerkungen kommentar commentaire remarque remarques date datum time zeit heure uhrzeit "
     "iteration iterations residual residuals",
 }
 NAMES = {word: name for name, words in _SAID.items() for word in words.split()}
+SYMBOLS = {"alpha": ("α",), "beta": ("β",), "U": ("V", "Vm", "VM", "v0", "V0"), "density": ("ρ",), "dr": ("δ", "δr")}
 COEFFICIENTS = {
     **{f"c{c.casefold()}": c for c in COMPONENTS},
     **dict(zip(("cmx", "cmy", "cmz"), MOMENTS, strict=True)),
@@ -110,11 +112,14 @@ class Proposal:
         What it rests on.
     certain : bool
         The format itself fixes it, or the file uses coeflab's own names and a unit.
+    note : str
+        What a person should read beside it.
     """
 
     text: str
     why: str
     certain: bool = False
+    note: str = ""
 
     @property
     def whole(self) -> bool:
@@ -202,12 +207,20 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
         return f"{prefix}{wind}{prime}", f"its name, {TURNED.format(ACROSS[wind])}{also}", False
     single = {c.casefold(): c for c in COMPONENTS} if prime or error else {}
     single |= {c: c for c in (*LINEAR, *ANGULAR)} if prime else {}
-    name = NAMES.get(bare) or single.get(bare) or (COEFFICIENTS.get(bare, "") if not prime else "")
+    name = NAMES.get(bare) or _with_symbol(own) or single.get(bare) or (COEFFICIENTS.get(bare, "") if not prime else "")
     if not name:
         return "", UNKNOWN, False
     if error and name not in COMPONENTS:
         return "", UNKNOWN, False
     return f"{prefix}{name}{prime}", "its name", False
+
+
+def _with_symbol(own: str) -> str:
+    """Of a name with its symbol behind it, ``Driftwinkel β``, where both say the same."""
+    word, _, symbol = own.rpartition(" ")
+    name = NAMES.get(folded(word), "")
+    same = {*SYMBOLS.get(name, ()), name} - {""}
+    return name if symbol.strip("()[], ") in same else ""
 
 
 def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: tuple[object, object]) -> Proposal:
@@ -250,6 +263,7 @@ def proposals(raw: RawTable) -> tuple[Proposal, ...]:
     for column in raw.columns:
         one = proposed(column, stated)
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
+        one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
         said = read_column_map(one.text.partition(" [")[0]) if one.text else None
         if said is not None and said.name not in ("label", "ignore"):
             if said.name == "point" and (said.plain in taken or _repeats(column)):
@@ -266,6 +280,18 @@ def proposals(raw: RawTable) -> tuple[Proposal, ...]:
             out[i] = Proposal(f"U [{column.unit}]", "its unit, beside an angle or a radius")
             taken["U"] = column.name
     return tuple(out)
+
+
+def _along_the_body(one: Proposal, column: RawColumn, place: str) -> Proposal:
+    """A resistance as X of the body, reversed where it is above zero, for words over the table say body axes."""
+    if not one.text.removeprefix("se_").startswith("drag") or "coefficient" in one.text or one.certain:
+        return one
+    known = column.values[np.isfinite(column.values)]
+    positive = bool(known.size) and float(np.median(known)) > 0.0
+    error = one.text.startswith("se_")
+    text = one.text.replace("drag", "-X" if positive and not error else "X", 1)
+    note = f"X of the body{', reversed' if positive and not error else ''}: {place}; {one.text} if it is along the flow"
+    return Proposal(text, f"{one.why.partition(', along the flow')[0]}, {note}", note=note)
 
 
 def _repeats(column: RawColumn) -> bool:

@@ -16,11 +16,12 @@ from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.units import quantity
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import CENTRES
-from coeflab.tables.column_map import ROLES, ColumnMap, read_column_map
+from coeflab.tables.column_map import ROLES, ColumnMap, read_column_map, unturned
 from coeflab.tables.mapping import Assigned, another_density, assigned, entry_of, error_of, fault, known_as, with_unit
 from coeflab.tables.proposals import OPEN, Evidence, Proposal, astern, evidence, proposals, turn_of
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.settings import POINT_OF, Settings, frame_of
+from coeflab.tables.words_above import BODY_AXES
 
 FRAMES_ASKED = (
     "Axes of the forces: FRD (x forward, y starboard, z down), FLU (x forward, y port, z up), CFD (x aft, y starboard, "
@@ -238,7 +239,8 @@ def understood(
         complaints = (why, *why.others)
         columns = tuple(_possible(raw, said_of))
     frame = frame_of(settings)
-    shows = tuple(_against(e, settings) for e in evidence(columns, frame))
+    warned = {unturned(c.column.name, c.said) for c in columns} if BODY_AXES in raw.stated else set()
+    shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
     names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
     asked = questions(raw, columns, settings, shows, names)
     if frame and (back := astern(columns, frame)):
