@@ -96,6 +96,7 @@ COEFFICIENTS = {
 TURNED = "{} the flow, turned to body axes by the alpha and beta of each row"
 UNITS = {"grad": "deg", "grd": "deg", "deg.": "deg", "sec": "s", "degree": "deg", "degrees": "deg", "°": "deg", "1/s": "rad/s", "s^-1": "rad/s", "n.m": "N*m",
          "n-m": "N*m", "knots": "kn", "kts": "kn", "newton": "N", "newtons": "N", "°/s": "deg/s"}  # fmt: skip
+_THOUSAND = re.compile(r"([XYZKMN])['\u2032\u2019]?[\s_]*[x*×·]?[\s_]*(?:1000|1e3|10\^3)")
 _MONITOR = re.compile(r"(?i)\b(?:monitor|report|plot)\b(?:\s*\d+)?")
 _ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
 
@@ -137,6 +138,8 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         What the file says of itself; ``coefficients.area`` and ``coefficients.length`` complete a coefficient.
     """
     name, why, certain = _name(column)
+    if not name and column.unit in ("", "-", "1") and (m := _THOUSAND.fullmatch(column.name.strip())):
+        return Proposal(f"{m[1]}' [1e-3]", f"its name: 1000 {m[1]}', a prime by the campaign's length")
     if not name:
         if column.is_text:
             return Proposal("label", "text")

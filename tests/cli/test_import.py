@@ -388,6 +388,19 @@ def test_inspect_of_what_no_importer_knows(tmp_path: Path) -> None:
     assert "one of" in refused(invoke("inspect", tmp_path / "noise.bin", "--as", "csv"))[0]
 
 
+def test_a_text_that_no_importer_knows_is_offered_as_a_table(tmp_path: Path) -> None:
+    file = tmp_path / "sweep.dat"
+    names = "   RUN   ALPHA     X1000     Z1000     M1000"
+    numbers = "".join(f"  {100 + a:4d} {a:7.2f} {-2.6:9.3f} {0.3 * a:9.3f} {-0.1 * a:9.3f}\n" for a in range(-4, 5))
+    file.write_text(f"  SUB-X  BODY AXES X FWD, Y PORT{'!' * 80}\n\n{names}\n         (DEG)\n  -----------\n{numbers}")
+    lines = refused(invoke("import", file, "--out", tmp_path / "out"))
+    assert "expected --as table if it is a table of text, else --as one of cfx, " in lines[0]
+    assert "--option header=NUMBER" in lines[0]
+    assert lines[1:] == (f"   1  {'  SUB-X  BODY AXES X FWD, Y PORT':!<70}", f"   3  {names}", "   4           (DEG)")
+    done = invoke("inspect", file, "--as", "table", "--option", "header=3")
+    assert done.exit_code == 0, done.output
+
+
 def test_inspect_of_a_run_whose_condition_nobody_states(stub: Path, tmp_path: Path) -> None:
     folder = write_run(tmp_path / "alone", {"X": 13.0, "Y": 2.0})
     done = invoke("inspect", folder)
