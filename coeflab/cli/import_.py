@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from coeflab.tables.conditions import NoConditionError
     from coeflab.tables.force_table import ForceTable
     from coeflab.tables.proposals import Proposal
-    from coeflab.tables.questions import Group, Question, Understood
+    from coeflab.tables.questions import Doubt, Group, Question, Understood
     from coeflab.tables.raw_table import RawColumn, RawTable, SeveralError
     from coeflab.tables.settings import Setting
 
@@ -369,8 +369,9 @@ def _asked(
     answers = {**said, **_asked_columns(raw, found)}
     settings = dict(settings)
     shown = {e.text for e in found.shows}
+    judged = set(said)
     while True:
-        now = understood(raw, answers, settings, yes)
+        now = understood(raw, answers, settings, yes, judged)
         fresh = [e for e in now.shows if e.text not in shown]
         _listed("The numbers show", [e.text for e in fresh])
         shown |= {e.text for e in now.shows}
@@ -379,6 +380,11 @@ def _asked(
         if against and not typer.confirm(f"  Keep {against[0]} as declared?", default=None):
             del settings[against[0]]
             continue
+        if now.doubts and "axes.frame" in settings:
+            one_doubt = now.doubts[0]
+            judged.add(one_doubt.column.name)
+            answers[one_doubt.column.name] = _judged(one_doubt)
+            continue
         if not now.questions:
             return now.mapping, settings
         one = now.questions[0]
@@ -386,6 +392,16 @@ def _asked(
             settings[one.key] = _taken(one, one.default)
         else:
             settings |= _typed(raw, settings, together_with(one, now.questions) or alone(one))
+
+
+def _judged(doubt: Doubt) -> ColumnMap:
+    """What a rate is that the numbers contradict, as a person judges its sign."""
+    name = doubt.column.name
+    show.sentence(f'Column "{name}": {doubt.why}.')
+    turn = doubt.turns.replace("s ", " ", 1)
+    if typer.confirm(f"  Does {name} > 0 {turn}?", default=None):
+        return doubt.said
+    return replace(doubt.said, negative=not doubt.said.negative)
 
 
 def _typed(raw: RawTable, settings: Mapping[str, Setting], asked: Group) -> dict[str, Setting]:
@@ -455,17 +471,19 @@ def _primed(column: RawColumn, offer: Proposal) -> str:
 def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
     from coeflab.tables.column_map import read_column_map
     from coeflab.tables.mapping import error_of, with_unit
-    from coeflab.tables.proposals import Proposal
 
     out: dict[str, ColumnMap] = {}
-    doubts = {column.name: (column, Proposal(str(said), why)) for column, said, why in found.doubts}
     opened = _with_sizes(found.open)
-    whole = [(column, offer) for column, offer in opened if offer.whole and column.name not in doubts]
+    whole = [(column, offer) for column, offer in opened if offer.whole]
     if whole:
-        show.sentence("Proposed by name and unit: " + "; ".join(f"{c.name} = {o.text}" for c, o in whole) + ".")
+        show.sentence(
+            "Proposed by name and unit: "
+            + "; ".join(f"{c.name} = {o.text}" + f" ({o.note})" * bool(o.note) for c, o in whole)
+            + "."
+        )
         if typer.confirm("  All of them right?", default=None):
             out = {column.name: read_column_map(offer.text) for column, offer in whole}
-    for column, offer in ({c.name: (c, o) for c, o in opened} | doubts).values():
+    for column, offer in opened:
         if column.name in out or error_of(column, out):
             continue
         hint = f"{offer.text}: {offer.why}" if offer.text else offer.why

@@ -19,6 +19,7 @@ from coeflab.tables.column_map import EXAMPLES, PER, WORDS, ColumnMap, read_colu
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.to_frd import BLANK, Columns, force_table, speed_of_rows
+from coeflab.tables.words_above import BODY_AXES
 
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
 REMARKS = 5
@@ -406,7 +407,8 @@ def mapped_table(raw: RawTable, campaign: Campaign, table: TableDeclaration) -> 
         replace(e, reason=e.reason.replace(BLANK, "no number in the source")) if e.component and not e.uncertain else e
         for e in out.exclusions
     )
-    warned = [text for one in known if (text := unturned(one.column.name, one.said))]
+    body = BODY_AXES in raw.stated
+    warned = [text for one in known if not body and (text := unturned(one.column.name, one.said))]
     said = [*warned, *_left_out(raw, known), *raw.remarks]
     more = [f"{len(said) - REMARKS} more remarks; coeflab inspect lists them"] if len(said) > REMARKS else []
     cells = next((one.values[rows] for one in known if one.said.name == "cells"), None)

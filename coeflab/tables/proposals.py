@@ -6,7 +6,7 @@ Proposals are confirmed by a person, evidence is shown to one: nothing here deci
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,6 +32,7 @@ from coeflab.tables.column_map import (
 )
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.words_above import BODY_AXES
 
 OPEN = "?"
 UNKNOWN = "no known name"
@@ -41,6 +42,10 @@ ALLOWED = {
     "length": "R", "density": "density",
 }  # fmt: skip
 TURN = "counts about the z axis of the frame: z down, r > 0 turns to starboard; z up (CFD, FLU), to port"
+TURNS = {("p", True): "heels to starboard", ("p", False): "heels to port", ("q", True): "lifts the bow",
+         ("q", False): "lowers the bow", ("r", True): "turns the bow to starboard", ("r", False): "turns the bow to port"}  # fmt: skip
+OF_RATE = {"p": ("", "K"), "q": ("Z", "M"), "r": ("Y", "N")}  # force and moment that a rate moves first
+STILL = 0.1  # of the span of Y or N: a span of Z or M that is none
 CLEAR = 0.8  # correlation beyond which a slope has a sign
 _SAID = {
     "X": "fx forcex xforce surgeforce longitudinalforce axialforce laengskraft langskraft kraftlangs kraftlaengs kraftx xkraft widerstandskraft forcelongitudinale effortlongitudinal fxtotal",
@@ -74,11 +79,12 @@ _SAID = {
     "db": "bowplane bowplaneangle deltab",
     "cells": "cells ncells cellcount meshcells numberofcells elements gridcells zellen",
     "point": "run runno runnumber runid case caseno casename test testno testid point pointno id no nr number "
-    "versuch versuchsnr messung messpunkt fahrt fall lauf lfd lfdnr essai numero",
+    "versuch versuchsnr versnr messung messpunkt fahrt fall lauf lfd lfdnr essai numero",
     "ignore": "comment comments remark remarks note notes bemerkung bemerkungen kommentar commentaire remarque remarques date datum time zeit heure uhrzeit "
     "iteration iterations residual residuals",
 }
 NAMES = {word: name for name, words in _SAID.items() for word in words.split()}
+SYMBOLS = {"alpha": ("α",), "beta": ("β",), "U": ("V", "Vm", "VM", "v0", "V0"), "density": ("ρ",), "dr": ("δ", "δr")}
 COEFFICIENTS = {
     **{f"c{c.casefold()}": c for c in COMPONENTS},
     **dict(zip(("cmx", "cmy", "cmz"), MOMENTS, strict=True)),
@@ -90,6 +96,7 @@ COEFFICIENTS = {
 TURNED = "{} the flow, turned to body axes by the alpha and beta of each row"
 UNITS = {"grad": "deg", "grd": "deg", "deg.": "deg", "sec": "s", "degree": "deg", "degrees": "deg", "°": "deg", "1/s": "rad/s", "s^-1": "rad/s", "n.m": "N*m",
          "n-m": "N*m", "knots": "kn", "kts": "kn", "newton": "N", "newtons": "N", "°/s": "deg/s"}  # fmt: skip
+_THOUSAND = re.compile(r"([XYZKMN])['\u2032\u2019]?[\s_]*[x*×·]?[\s_]*(?:1000|1e3|10\^3)")
 _MONITOR = re.compile(r"(?i)\b(?:monitor|report|plot)\b(?:\s*\d+)?")
 _ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
 
@@ -106,11 +113,14 @@ class Proposal:
         What it rests on.
     certain : bool
         The format itself fixes it, or the file uses coeflab's own names and a unit.
+    note : str
+        What a person should read beside it.
     """
 
     text: str
     why: str
     certain: bool = False
+    note: str = ""
 
     @property
     def whole(self) -> bool:
@@ -128,6 +138,8 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         What the file says of itself; ``coefficients.area`` and ``coefficients.length`` complete a coefficient.
     """
     name, why, certain = _name(column)
+    if not name and column.unit in ("", "-", "1") and (m := _THOUSAND.fullmatch(column.name.strip())):
+        return Proposal(f"{m[1]}' [1e-3]", f"its name: 1000 {m[1]}', a prime by the campaign's length")
     if not name:
         if column.is_text:
             return Proposal("label", "text")
@@ -198,12 +210,20 @@ def _whole_name(column: RawColumn) -> tuple[str, str, bool]:
         return f"{prefix}{wind}{prime}", f"its name, {TURNED.format(ACROSS[wind])}{also}", False
     single = {c.casefold(): c for c in COMPONENTS} if prime or error else {}
     single |= {c: c for c in (*LINEAR, *ANGULAR)} if prime else {}
-    name = NAMES.get(bare) or single.get(bare) or (COEFFICIENTS.get(bare, "") if not prime else "")
+    name = NAMES.get(bare) or _with_symbol(own) or single.get(bare) or (COEFFICIENTS.get(bare, "") if not prime else "")
     if not name:
         return "", UNKNOWN, False
     if error and name not in COMPONENTS:
         return "", UNKNOWN, False
     return f"{prefix}{name}{prime}", "its name", False
+
+
+def _with_symbol(own: str) -> str:
+    """Of a name with its symbol behind it, ``Driftwinkel β``, where both say the same."""
+    word, _, symbol = own.rpartition(" ")
+    name = NAMES.get(folded(word), "")
+    same = {*SYMBOLS.get(name, ()), name} - {""}
+    return name if symbol.strip("()[], ") in same else ""
 
 
 def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: tuple[object, object]) -> Proposal:
@@ -246,6 +266,7 @@ def proposals(raw: RawTable) -> tuple[Proposal, ...]:
     for column in raw.columns:
         one = proposed(column, stated)
         one = replace(one, certain=False) if offered and "coefficient" in one.text else one
+        one = _along_the_body(one, column, raw.stated[BODY_AXES].place) if BODY_AXES in raw.stated else one
         said = read_column_map(one.text.partition(" [")[0]) if one.text else None
         if said is not None and said.name not in ("label", "ignore"):
             if said.name == "point" and (said.plain in taken or _repeats(column)):
@@ -264,6 +285,18 @@ def proposals(raw: RawTable) -> tuple[Proposal, ...]:
     return tuple(out)
 
 
+def _along_the_body(one: Proposal, column: RawColumn, place: str) -> Proposal:
+    """A resistance as X of the body, reversed where it is above zero, for words over the table say body axes."""
+    if not one.text.removeprefix("se_").startswith("drag") or "coefficient" in one.text or one.certain:
+        return one
+    known = column.values[np.isfinite(column.values)]
+    positive = bool(known.size) and float(np.median(known)) > 0.0
+    error = one.text.startswith("se_")
+    text = one.text.replace("drag", "-X" if positive and not error else "X", 1)
+    note = f"X of the body{', reversed' if positive and not error else ''}: {place}; {one.text} if it is along the flow"
+    return Proposal(text, f"{one.why.partition(', along the flow')[0]}, {note}", note=note)
+
+
 def _repeats(column: RawColumn) -> bool:
     cells = column.texts or tuple(column.values.tolist())
     return len(set(cells)) < len(cells)
@@ -279,13 +312,58 @@ class Evidence:
     key, value : str
         What of campaign.toml follows from it for a slender body; empty where nothing does.
     against : str
-        The rate whose sign it contradicts; empty where it contradicts none.
+        The rate whose sign or axis it contradicts; empty where it contradicts none.
+    instead : str
+        The rate of the file that turns about the axis whose force and moment vary; empty where the axis is not contradicted.
     """
 
     text: str
     key: str = ""
     value: str = ""
     against: str = ""
+    instead: str = ""
+
+
+def turn_of(said: ColumnMap, frame: Axes) -> str:
+    """What a positive number in a column of a rate does to the body, such as turns the bow to port."""
+    axis = frame.rotation[:, ANGULAR.index(said.name)]
+    i = int(np.argmax(np.abs(axis)))
+    return TURNS[ANGULAR[i], (float(axis[i]) > 0.0) != said.negative]
+
+
+def _about_another_axis(data: Mapping[str, Array], frame: Axes) -> Iterator[Evidence]:
+    """Rates about an axis whose own force and moment rest while those of the other plane vary."""
+    for rate in (m for m in ANGULAR if m in data and np.any(np.nan_to_num(data[m]))):
+        about = ANGULAR[int(np.argmax(np.abs(frame.rotation[:, ANGULAR.index(rate)])))]
+        if about == rate == "p":
+            continue  # roll moves Y and N too, and K is seldom measured
+        for other in (m for m in ("q", "r") if m != about):
+            found = [c for c in OF_RATE[other] if _varies(data, c, rate, frame)]
+            pairs = [(own, c) for own, c in zip(OF_RATE[about], OF_RATE[other], strict=True) if own]
+            if not found or any(_span(data, own, frame) > STILL * _span(data, c, frame) for own, c in pairs):
+                continue
+            instead = ANGULAR[int(np.argmax(np.abs(frame.rotation[ANGULAR.index(other)])))]
+            axes = [("forward", "aft"), ("starboard", "port"), ("down", "up")][ANGULAR.index(about)]
+            points = axes[float(frame.rotation[ANGULAR.index(about), ANGULAR.index(rate)]) < 0.0]
+            named = {"p": "roll", "q": "pitch", "r": "yaw"}
+            yield Evidence(
+                f"{rate} counts about the {'xyz'[ANGULAR.index(rate)]} axis of the frame, which points {points}: {named[about]}. "
+                f"But {' and '.join(found)} of the body vary and {' and '.join(own for own, _ in pairs)} "
+                f"{'does' if len(pairs) == 1 else 'do'} not: {named[other]}, which is {instead} in this frame",
+                against=rate, instead=instead,
+            )  # fmt: skip
+            break
+
+
+def _varies(data: Mapping[str, Array], component: str, rate: str, frame: Axes) -> bool:
+    values = _frd(data, component, frame)
+    return values is not None and trend(values, data, rate) != 0
+
+
+def _span(data: Mapping[str, Array], component: str, frame: Axes) -> float:
+    values = _frd(data, component, frame)
+    known = np.empty(0) if values is None else values[np.isfinite(values)]
+    return float(np.ptp(known)) if known.size else 0.0
 
 
 def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Evidence, ...]:
@@ -331,7 +409,9 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
                     f"{component} and {rate} have the same sign: no damping of a slender body; one of them has the "
                     f'other sign (-{rate} or -{component}), or the force contains inertia', against=rate * (rate in ANGULAR)
                 ))  # fmt: skip
-    if "r" in data and np.any(np.nan_to_num(data["r"])):
+    crossed = list(_about_another_axis(data, frame)) if frame else []
+    out += crossed
+    if "r" in data and np.any(np.nan_to_num(data["r"])) and not any(e.against == "r" for e in crossed):
         up = float(frame.rotation[2][2]) if frame else 0.0
         turn = f"r > 0 turns to {'starboard' if up > 0 else 'port'}: it {TURN.partition(':')[0]}"
         out += [Evidence(turn if up else f"r {TURN}")]
@@ -350,7 +430,7 @@ def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Ev
 
 
 def _frd(data: Mapping[str, Array], component: str, frame: Axes) -> Array | None:
-    group = next(g for g in (COMPONENTS[:3], COMPONENTS[3:], LINEAR) if component in g)
+    group = next(g for g in (COMPONENTS[:3], COMPONENTS[3:], LINEAR, ANGULAR) if component in g)
     row = frame.rotation[group.index(component)]
     own = group[int(np.argmax(np.abs(row)))]
     return data[own] * float(row[group.index(own)]) if own in data else None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,11 +16,12 @@ from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.units import quantity
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import CENTRES
-from coeflab.tables.column_map import ROLES, ColumnMap, read_column_map
+from coeflab.tables.column_map import ROLES, ColumnMap, read_column_map, unturned
 from coeflab.tables.mapping import Assigned, another_density, assigned, entry_of, error_of, fault, known_as, with_unit
-from coeflab.tables.proposals import OPEN, Evidence, Proposal, astern, evidence, proposals
+from coeflab.tables.proposals import OPEN, Evidence, Proposal, astern, evidence, proposals, turn_of
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.settings import POINT_OF, Settings, frame_of
+from coeflab.tables.words_above import BODY_AXES
 
 FRAMES_ASKED = (
     "Axes of the forces: FRD (x forward, y starboard, z down), FLU (x forward, y port, z up), CFD (x aft, y starboard, "
@@ -147,6 +148,29 @@ def _offered(q: Question, raw: RawTable) -> Question:
 
 
 @dataclass(frozen=True, slots=True)
+class Doubt:
+    """A rate that the numbers contradict.
+
+    Attributes
+    ----------
+    column : RawColumn
+    said : ColumnMap
+        What it is by now, or, where its axis is contradicted, the rate about the other axis.
+    why : str
+    turns : str
+        What a positive number of the column does if it is what is said; empty while the axes are not known.
+    another : bool
+        The axis is contradicted, not the sign.
+    """
+
+    column: RawColumn
+    said: ColumnMap
+    why: str
+    turns: str = ""
+    another: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Understood:
     """How far a file is understood.
 
@@ -164,8 +188,8 @@ class Understood:
     questions : tuple of Question
     complaints : tuple of InputError
         What is said of columns and cannot be.
-    doubts : tuple of (RawColumn, ColumnMap, str)
-        Rates whose sign the numbers contradict and of which no person said what they are, with the reason.
+    doubts : tuple of Doubt
+        Rates whose sign the numbers contradict and that no person has judged, and rates about another axis than the forces say.
     """
 
     proposals: tuple[Proposal, ...]
@@ -175,10 +199,13 @@ class Understood:
     shows: tuple[Evidence, ...]
     questions: tuple[Question, ...]
     complaints: tuple[InputError, ...] = ()
-    doubts: tuple[tuple[RawColumn, ColumnMap, str], ...] = ()
+    doubts: tuple[Doubt, ...] = ()
 
 
-def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, accept: bool = False) -> Understood:
+def understood(
+    raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, accept: bool = False,
+    judged: Collection[str] | None = None,
+) -> Understood:  # fmt: skip
     """What of a file is settled, what is open, and what its numbers show.
 
     Parameters
@@ -189,6 +216,8 @@ def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings,
     settings : mapping of str to Setting
     accept : bool
         Take whole proposals as confirmed.
+    judged : collection of str, optional
+        Columns whose sign a person has settled, by default all of ``said``.
     """
     offers = proposals(raw)
     mapping: dict[str, ColumnMap] = {}
@@ -210,7 +239,8 @@ def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings,
         complaints = (why, *why.others)
         columns = tuple(_possible(raw, said_of))
     frame = frame_of(settings)
-    shows = tuple(_against(e, settings) for e in evidence(columns, frame))
+    warned = {unturned(c.column.name, c.said) for c in columns} if BODY_AXES in raw.stated else set()
+    shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
     names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
     asked = questions(raw, columns, settings, shows, names)
     if frame and (back := astern(columns, frame)):
@@ -218,11 +248,18 @@ def understood(raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings,
     if "conditions.density" in settings:
         other = another_density(raw, columns, quantity(settings["conditions.density"].value, "density"))
         complaints += (other,) if other else ()
+    settled = set(said if judged is None else judged)
     doubts = [
-        (one.column, one.said, e.text) for e in shows for one in columns
-        if e.against and one.said.name == e.against and not set(said) & {one.column.name, *known_as(one.column)}
+        _doubt(one, e, frame) for e in shows for one in columns
+        if e.against and one.said.name == e.against and not one.said.error
+        and (e.instead or not settled & {one.column.name, *known_as(one.column)})
     ]  # fmt: skip
     return Understood(offers, mapping, tuple(still), columns, shows, asked, complaints, tuple(doubts))
+
+
+def _doubt(one: Assigned, shows: Evidence, frame: Axes | None) -> Doubt:
+    said = replace(one.said, name=shows.instead, negative=False) if shows.instead else one.said
+    return Doubt(one.column, said, shows.text, turn_of(said, frame) if frame else "", bool(shows.instead))
 
 
 def _against(shows: Evidence, settings: Settings) -> Evidence:
@@ -271,10 +308,14 @@ def open_points(found: Understood, accept: bool = False) -> tuple[tuple[str, str
         Leave out questions whose answer follows from evidence.
     """
     out = []
-    for column, said, why in found.doubts:
-        ways = [argument("--map", column.name, str(replace(said, negative=turned))) for turned in (True, False)]
-        out.append((" or ".join(ways), f"{why}. The first turns its sign, the second keeps it"))
-    doubted = [column.name for column, _, _ in found.doubts]
+    for d in found.doubts:
+        ways = [argument("--map", d.column.name, str(replace(d.said, negative=turned))) for turned in (True, False)]
+        if d.another:
+            which = f"The second {d.turns} where {d.column.name} > 0, the first the other way"
+        else:
+            which = "The first turns its sign, the second keeps it" + f": {d.column.name} > 0 {d.turns}" * bool(d.turns)
+        out.append((" or ".join(ways), f"{d.why}. {which}"))
+    doubted = [d.column.name for d in found.doubts]
     for column, offer in found.open:
         if column.name in doubted:
             continue

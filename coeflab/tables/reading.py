@@ -23,6 +23,7 @@ from coeflab.tables.runs import find_runs
 Progress = Callable[[str], None]
 GENERAL = "table"  # any delimited text: those of one tool come first
 MATRIX = "matrix"  # in the column of studies: a row of none
+FIRST, CUT = 3, 70  # lines of an unknown text that are shown, and letters of each
 OF_RUNS = ("names", "run_list", "state")
 
 
@@ -75,9 +76,38 @@ def importer_of(path: Path, name: str = "") -> str:
         return find_runs(path)[0]
     if len(known) == 1:
         return known[0]
+    if not known and (begin := _first_lines(path)):
+        others = ", ".join(n for n in readers if n != GENERAL)
+        unread = InputError(
+            "a text that no importer knows by its content", f"--as {GENERAL} if it is a table of text, else --as one of {others}",
+            file=path, advice="Where its names are not found, their line is --option header=NUMBER. Its first lines:",
+        )  # fmt: skip
+        unread.example = "\n".join(f"  {number:2d}  {text}" for number, text in begin)
+        raise unread
     found = f"something that {' and '.join(known)} read" if known else "nothing that an importer knows by its content"
     each = "; ".join(f"{n}: {IMPORTERS.load(n).reads or IMPORTERS.load(n).summary}" for n in known or readers)
     raise InputError(found, f"--as {' or --as '.join(known or readers)}", file=path, advice=f"{each}.")
+
+
+def _first_lines(path: Path) -> list[tuple[int, str]]:
+    """The first lines of a text that are not blank, by their numbers and cut; none of what is no text."""
+    try:
+        with path.open("rb") as stream:
+            sample = stream.read(1 << 14)
+    except OSError:
+        return []
+    for encoding in ("utf-8-sig", "cp1252"):
+        try:
+            text = sample.decode(encoding, "strict" if len(sample) < 1 << 14 else "ignore")
+            break
+        except UnicodeDecodeError:
+            continue
+    else:
+        return []
+    lines = [(n, line.expandtabs().rstrip()) for n, line in enumerate(text.splitlines(), start=1) if line.strip()][
+        :FIRST
+    ]
+    return [(n, line[:CUT]) for n, line in lines] if all(line.isprintable() for _, line in lines) else []
 
 
 def read_raw(

@@ -32,6 +32,11 @@ _SAID = re.compile(
     r"(?P<number>[-+]?\d[\d.,' ]*(?:[eE][-+]?\d+)?)\s*[\[(]?(?P<unit>(?:[^\W\d]|[°µ])[^\s,;=\[\])]*)?"
 )
 LONGEST = 500
+BODY_AXES = "forces.axes"  # no key of campaign.toml: the words say that forces count along the body
+_BODY = re.compile(
+    r"(?i)\b(?:k(?:ö|oe|o)rper|schiffs|boots|modell)fest|\b(?:body|ship|hull|vessel)[- ]?(?:fixed|axes|axis|frame)\b"
+    r"|\brep[èe]re\s+(?:li[ée]|du\s+(?:corps|navire))\b|\baxes\s+li[ée]s\b"
+)
 
 
 def _number(text: str, marks: Marks) -> float | None:
@@ -54,6 +59,13 @@ def _pairs(cells: Sequence[str]) -> Iterable[str]:
             yield f"{name.rstrip(' =:')} = {number} {unit}"
 
 
+def _around(text: str, found: re.Match[str]) -> str:
+    """The part between commas that holds what was found."""
+    begin = max(text.rfind(mark, 0, found.start()) for mark in ",;:") + 1
+    ends = [at for mark in ",;:" if (at := text.find(mark, found.end())) >= 0]
+    return " ".join(text[begin : min(ends, default=len(text))].split())
+
+
 def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
     """What rows over the names of a table say of keys of campaign.toml.
 
@@ -68,11 +80,13 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
     -------
     dict of str to Stated
         Offered: somebody has to confirm them. In SI. A key that two lines say differently is left out, and so is a single
-        letter without a unit that fits.
+        letter without a unit that fits. `BODY_AXES` where the words say that forces count along the body.
     """
     found: dict[str, Stated] = {}
     twice: set[str] = set()
     for line, cells in rows:
+        if (whole := " ".join(c for c in cells if c)[:LONGEST]) and (body := _BODY.search(whole)):
+            found.setdefault(BODY_AXES, Stated("body", f'line {line}: "{_around(whole, body)}"', offered=True))
         for text in dict.fromkeys(t[:LONGEST] for t in _pairs(cells)):
             for m in _SAID.finditer(text):
                 words = m["name"].split()

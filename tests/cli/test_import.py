@@ -281,6 +281,50 @@ def test_a_rate_whose_sign_the_numbers_contradict_stays_open(tmp_path: Path) -> 
         assert table_of(tmp_path / "out").motion["r"].tolist() == [sign * x for x in (-0.4, -0.2, 0.2, 0.4)]
 
 
+ARM = "r' (-),Fx,Fz,Mz\n0.1,-77,-15,48\n0.2,-78,-31,100\n0.3,-80,-50,160\n0.4,-81,-69,222\n"
+
+
+@pytest.mark.parametrize(("answer", "sign"), [("n", -1.0), ("y", 1.0)])
+def test_a_rate_is_judged_again_once_the_axes_are_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: str, sign: float
+) -> None:
+    """Forces without a unit, so that only the answers make N and r comparable; and z up, where r > 0 turns to port."""
+    file = tmp_path / "arm.csv"
+    file.write_text(ARM)
+    answers = ["X [N]", "Y [N]", "N [N*m]", "FLU", answer, "midship", "4 LOA", "998.2, 2", "no", "cfd, nobody"]
+    done = answered(monkeypatch, answers, "import", file, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    assert "Does r' > 0 turn the bow to port?" in done.output
+    assert table_of(tmp_path / "out").motion["r"].tolist() == pytest.approx(
+        [sign * -0.5 * x for x in (0.1, 0.2, 0.3, 0.4)]
+    )
+    units = ("--map", "Fx=X [N]", "--map", "Fz=Y [N]", "--map", "Mz=N [N*m]")
+    monkeypatch.undo()
+    lines = refused(invoke("import", file, "--out", tmp_path / "two", "--yes", *units, *sets(axes__frame="FLU")))
+    assert lines[1].strip() == """--map "r'=-r' [-]" or --map "r'=r' [-]\""""
+    assert "keeps it: r' > 0 turns the bow to port" in " ".join(" ".join(lines).split())
+
+
+def test_a_rate_about_an_axis_whose_forces_rest_is_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With y up, r is pitch about z to starboard; Y and N vary, so that yaw is meant, q of the file, even where --map says r."""
+    file = tmp_path / "arm.csv"
+    file.write_text(ARM)
+    units = ("--map", "Fx=X [N]", "--map", "Fz=Z [N]", "--map", "Mz=M [N*m]")
+    up = sets(axes__frame="forward,up,starboard", table__contains_inertia="no")
+    for said in ((), ("--map", "r'=r'")):
+        lines = refused(invoke("import", file, "--out", tmp_path / "out", "--yes", *units, *said, *up))
+        assert lines[1].strip().startswith("""--map "r'=-q' [-]" or --map "r'=q' [-]\"""")
+        text = " ".join(" ".join(lines).split())
+        assert "points starboard: pitch. But Y and N of the body vary and Z and M do not: yaw, which is q" in text
+    done = invoke("import", file, "--out", tmp_path / "out", "--yes", *units, "--map", "r'=-q'", *up)
+    assert done.exit_code == 0, done.output
+    assert table_of(tmp_path / "out").motion["r"].tolist() == pytest.approx([0.05, 0.1, 0.15, 0.2])
+    assert not np.any(table_of(tmp_path / "out").motion["q"])
+    done = answered(monkeypatch, ["n", ""], "import", file, "--out", tmp_path / "asked", *units, *up)
+    assert done.exit_code == 0, done.output
+    assert table_of(tmp_path / "asked").motion["r"].tolist() == pytest.approx([0.05, 0.1, 0.15, 0.2])
+
+
 @pytest.mark.parametrize(("arguments", "said"), [
     (("--set", "axes.reference_point=L/2"), 'found "L/2"'),
     (("--set", "axes.reference_point=-1,2,0,0"), 'found "-1,2,0,0"; expected x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum. Write a decimal point.'),
@@ -342,6 +386,19 @@ def test_inspect_of_what_no_importer_knows(tmp_path: Path) -> None:
     assert "found nothing that an importer knows by its content; expected --as" in lines[0]
     assert "table" in lines[0]
     assert "one of" in refused(invoke("inspect", tmp_path / "noise.bin", "--as", "csv"))[0]
+
+
+def test_a_text_that_no_importer_knows_is_offered_as_a_table(tmp_path: Path) -> None:
+    file = tmp_path / "sweep.dat"
+    names = "   RUN   ALPHA     X1000     Z1000     M1000"
+    numbers = "".join(f"  {100 + a:4d} {a:7.2f} {-2.6:9.3f} {0.3 * a:9.3f} {-0.1 * a:9.3f}\n" for a in range(-4, 5))
+    file.write_text(f"  SUB-X  BODY AXES X FWD, Y PORT{'!' * 80}\n\n{names}\n         (DEG)\n  -----------\n{numbers}")
+    lines = refused(invoke("import", file, "--out", tmp_path / "out"))
+    assert "expected --as table if it is a table of text, else --as one of cfx, " in lines[0]
+    assert "--option header=NUMBER" in lines[0]
+    assert lines[1:] == (f"   1  {'  SUB-X  BODY AXES X FWD, Y PORT':!<70}", f"   3  {names}", "   4           (DEG)")
+    done = invoke("inspect", file, "--as", "table", "--option", "header=3")
+    assert done.exit_code == 0, done.output
 
 
 def test_inspect_of_a_run_whose_condition_nobody_states(stub: Path, tmp_path: Path) -> None:

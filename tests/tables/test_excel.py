@@ -130,6 +130,29 @@ def test_words_among_rows_and_a_second_table(tmp_path: Path) -> None:
     assert "row 4: words" in raw(noted, {}).remarks[0]
 
 
+TANK = [
+    ("Nr", "beta", "Fy", "Mz"), (1.0, "-8,0", "54,05", "1,796"), (2.0, "0,0", "-1,3", "n. a."), ("Nach der Mittagspause neu genullt",),
+    (3.0, "8,0", "-53,9", "-1,802"), ("", "Pause"), (4.0, "10,0", "-70", "-2,1"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("header", [0, 1])
+def test_a_remark_among_the_rows_and_numbers_as_text_with_a_comma(tmp_path: Path, header: int) -> None:
+    """As the CSV of the same sheet is read."""
+    table = raw(workbook(tmp_path / "a.xlsx", s=rows(*TANK)), {"header": header})
+    np.testing.assert_array_equal(table.column("beta").values, [-8.0, 0.0, 8.0, 10.0])
+    np.testing.assert_array_equal(table.column("Fy").values, [54.05, -1.3, -53.9, -70.0])
+    np.testing.assert_array_equal(table.column("Mz").values, [1.796, np.nan, -1.802, -2.1])
+    assert list(table.lines) == [2, 3, 5, 7]
+    assert table.remarks[0].startswith('row 4: a remark among the rows ("Nach der Mittagspause')
+    assert "10 cells hold numbers as text with a decimal comma, first B2; read as numbers" in table.remarks
+
+
+def test_a_text_that_may_have_a_mark_of_thousands_stays_text(tmp_path: Path) -> None:
+    path = workbook(tmp_path / "a.xlsx", s=rows(("a", "b"), (1.0, "1,025"), (2.0, "2,125"), (3.0, 4.0)))
+    np.testing.assert_array_equal(raw(path, {}).column("b").values, [np.nan, np.nan, 4.0])
+
+
 def test_hostile_workbooks_are_refused_before_they_are_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(excel, "SHEET_UNPACKED", 4 << 20)
     far = workbook(

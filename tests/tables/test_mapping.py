@@ -20,8 +20,9 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.mapping import assigned, with_unit
 from coeflab.tables.proposals import evidence, proposals, proposed
+from coeflab.tables.questions import understood
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.reading import importer_of, read_tables, recognised
+from coeflab.tables.reading import importer_of, read_raw, read_tables, recognised
 from tests.conftest import SECTIONS
 from tests.tables.raw_files import NAME, plain_stub, raw
 
@@ -430,6 +431,34 @@ def test_a_capital_v_is_the_speed_beside_an_angle_or_a_radius_alone() -> None:
     ) == ("", "no known name")
     assert offer(("se_Fx Monitor", "N"))[1] == "no known name; N: se_X, se_Y, se_Z, or ignore"
     assert "z up (CFD, FLU), to port" in offer(("yaw rate", "deg/s"))[1]
+
+
+@pytest.mark.parametrize(("name", "unit", "what"), [
+    ("Driftwinkel β", "°", "beta [deg]"), ("Geschw. V", "m/s", "U [m/s]"), ("Querkraft Y", "N", "Y [N]"), ("Querkraft X", "N", ""),
+    ("Geschw. v", "m/s", ""), ("Anstellwinkel β", "deg", ""), ("Drehrate r", "deg/s", "r [deg/s]"),
+    ("Z1000", "", "Z' [1e-3]"), ("N' x 1000", "-", "N' [1e-3]"), ("Z1000", "N", ""),
+])  # fmt: skip
+def test_a_name_with_its_symbol_behind_it(name: str, unit: str, what: str) -> None:
+    assert proposed(RawColumn(name, unit, np.array([1.0, 2.0]))).text == what
+
+
+@pytest.mark.parametrize("words", [
+    "Kräfte im körperfesten System, Momente um Hauptspant", "forces, body-fixed", "Forces in body axes", "efforts, repère lié",
+])  # fmt: skip
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_resistance_under_words_of_body_axes_is_x_of_the_body(tmp_path: Path, words: str, sign: float) -> None:
+    file = tmp_path / "tank.csv"
+    rows = "".join(f"{b};{sign * (50 + b * b)};{12 * b}\n" for b in (-4, -2, 0, 2, 4))
+    file.write_text(f"{words};;\n;;\nDriftwinkel;Widerstand;Querkraft\n[deg];[N];[N]\n{rows}", encoding="utf-8")
+    table = read_raw(file, "table")
+    offers = proposals(table)
+    assert [o.text for o in offers] == ["beta [deg]", "-X [N]" if sign > 0 else "X [N]", "Y [N]"]
+    assert offers[1].note.startswith("X of the body" + ", reversed" * (sign > 0) + ': line 1: "')
+    assert offers[1].note.endswith("; drag [N] if it is along the flow")
+    shows = understood(table, {}, {}).shows
+    assert not any("its name is that of drag" in e.text for e in shows)
+    file.write_text(file.read_text(encoding="utf-8").replace(words, "Schleppversuche"), encoding="utf-8")
+    assert proposals(read_raw(file, "table"))[1].text == "drag [N]"
 
 
 @pytest.mark.parametrize("frame", ["FRD", "CFD", "FLU"])

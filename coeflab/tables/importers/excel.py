@@ -41,7 +41,10 @@ _REPEATED = re.compile(rb"""table:number-(?:rows|columns)-repeated\s*=\s*["']([0
 _CHUNK = 1 << 20
 Cell = str | float
 Value = Any  # what calamine hands out: str, float, int, bool, date, time, datetime, timedelta
-PLAIN = Marks()
+PLAIN, COMMA = Marks(), Marks(",")
+_COMMA = re.compile(
+    r"[-+\u2212]?(?:0,[0-9]+|[0-9]+,(?:[0-9]{1,2}|[0-9]{4,})(?:[eE][-+]?[0-9]+)?)"
+)  # no mark of thousands
 _BROKEN = (
     LookupError,
     expat.ExpatError, zipfile.BadZipFile, zlib.error, LZMAError, EOFError, ValueError, NotImplementedError, RuntimeError, struct.error, IndexError,
@@ -348,6 +351,24 @@ def _filled(row: Sequence[Value]) -> int:
     return sum(_is_number(v) for v in row) + numeric([v.strip() for v in row if isinstance(v, str)], PLAIN)
 
 
+def _read_texts(rows: list[list[Value]]) -> tuple[list[list[Value]], list[str]]:
+    """Numbers that cells hold as text with a decimal comma, as numbers, where the sheet has none with a point."""
+    texts = [v.strip() for row in rows for v in row if isinstance(v, str)]
+    with_comma = sum(_COMMA.fullmatch(t) is not None for t in texts)
+    if not with_comma or with_comma <= sum("." in t and bool(PLAIN.number(t)) for t in texts):
+        return rows, []
+    out, found = [list(row) for row in rows], list[str]()
+    for i, row in enumerate(rows):
+        for k, value in enumerate(row):
+            number = COMMA.number(value.strip()) if isinstance(value, str) and "," in value else None
+            if number is not None and math.isfinite(number):
+                out[i][k] = number
+                found.append(_place(i + 1, k))
+    many = len(found)
+    said = f"{many} cell{'s hold numbers' * (many > 1) or ' holds a number'} as text with a decimal comma, first {found[0]}; read as numbers"
+    return out, [said]
+
+
 def _place(row: int, column: int) -> str:
     letters, k = "", column + 1
     while k:
@@ -416,6 +437,7 @@ def _kept(rows: list[list[Value]], begin: int, head: Head, options: Options, pat
     """Indices of the rows of data, and what is said of the others."""
     kept: list[int] = []
     remarks: list[str] = []
+    numbers = numbered([[_text(v) for v in row] for row in rows[begin:] if _filled(row)], PLAIN)
     for i in range(begin, len(rows)):
         row = rows[i]
         if not any(v != "" for v in row):
@@ -429,6 +451,9 @@ def _kept(rows: list[list[Value]], begin: int, head: Head, options: Options, pat
                 f"row {i + 1}: words ({shown(' '.join(t for t in map(_text, row) if t))}); left out with what follows"
             )
             break
+        elif 2 * sum(rows[i][k] != "" for k in numbers) < len(numbers):
+            said = shown(" ".join(t for t in map(_text, row) if t))
+            remarks.append(f"row {i + 1}: a remark among the rows ({said}); left out")
         elif options.header > 0:
             remarks.append(f"row {i + 1}: words; the table of row {head.line} ends there")
             break
@@ -486,7 +511,8 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
     if path.stat().st_size > SHEET_BYTES:
         raise _refused(f"{path.stat().st_size:,} bytes", path, f"at most {SHEET_BYTES:,}", "Save the table as CSV.")
     errors = _checked(path, kind)
-    sheets = _sheets(path)
+    read = {name: _read_texts(rows) for name, rows in _sheets(path).items()}
+    sheets = {name: rows for name, (rows, _) in read.items()}
     name = _chosen(sheets, given, path)
     rows = sheets[name]
     begin, head = _body(rows, given, path)
@@ -511,6 +537,6 @@ def raw(path: Path, options: Mapping[str, Any]) -> RawTable:
         "units": head.units_stand.replace("line", "row"),
     }
     return RawTable(
-        path, columns, head.line, np.array(lines), files=(path,), dialect=dialect, remarks=(*left, *errors, *remarks),
+        path, columns, head.line, np.array(lines), files=(path,), dialect=dialect, remarks=(*left, *errors, *read[name][1], *remarks),
         stated=words_above(above, PLAIN),
     )  # fmt: skip
