@@ -388,7 +388,7 @@ class Strips:
     matrix : (6, 6) array
         Added mass over the density about the origin of the coordinates; nothing along x.
     volume : float
-        Of the sections, m^3, to be held against that of the mesh.
+        Of the sections, m^3, to be compared with that of the mesh.
     ellipses, rectangles, others : int
         Sections by how they were done; the others by boundary elements.
     trapped : float

@@ -221,7 +221,7 @@ class Triangulation:
         return self._symmetric(replace(found, statements=(caution, *found.statements)) if caution else found)
 
     def _caution(self, found: AddedMass) -> str:
-        """What must be said first: none is good, or the parts that it is of were not held against their mesh."""
+        """What must be said first: none is good, or the parts that it is of were not compared with their mesh."""
         parts = self._unchecked(found)
         if parts is not None and parts.rough:
             return CAUTION_PARTS.format(found.method, "; ".join(parts.rough))

@@ -144,7 +144,7 @@ def added_mass(body: Body, density: float, options: Mapping[str, Any] | None = N
     -----
     Length (of the parts that displace water) and volume are the body's; breadth over depth is the root of the ratio of
     its second moments of volume along y and z, and the centre is its centre of volume. A body that is a single ellipsoid is taken as it is, in its own pose, and the result is exact, unless it stands for a mesh.
-    Of any other the misfit is told (`coeflab.bodies.added_mass.ellipsoid`); where it is over a tenth the result is rough.
+    Of any other the misfit is stated (`coeflab.bodies.added_mass.ellipsoid`); where it is over a tenth the result is rough.
     Lamb, Hydrodynamics (1932), sections 114-115 and 121 a.
     """
     parse_options(NoOptions, options or {}, "ellipsoid")

@@ -64,7 +64,7 @@ def like_one_plate(mesh: TriangleMesh) -> Part | None:
 
     Notes
     -----
-    See `coeflab.bodies.simplify.part_forms.likeness`. Bodies that are plainly not thin are told by their second moments of volume
+    See `coeflab.bodies.simplify.part_forms.likeness`. Bodies that are plainly not thin are recognised by their second moments of volume
     alone, without a cut; of more than 20,000 faces a decimated copy is looked at.
     """
     smallest, middle, _ = np.sqrt(np.clip(np.linalg.eigvalsh(mesh.integrals.second_moments), 0.0, None))

@@ -2,9 +2,9 @@
 
 Faces of an OBJ whose corners do not exist, by line.
 
-What a mesh file says of itself, held against its size before anything is loaded: STL, OBJ and PLY.
+What a mesh file says of itself, compared with its size before anything is loaded: STL, OBJ and PLY.
 
-What a GLB says of itself, held against its size before anything is loaded.
+What a GLB says of itself, compared with its size before anything is loaded.
 """
 
 from __future__ import annotations

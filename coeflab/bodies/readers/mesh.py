@@ -103,7 +103,7 @@ def read(path: Path) -> Body:
     ``[mesh]`` holds ``path`` (from the folder of the body.toml), ``unit``, ``axes`` (``"FRD"``, ``"FLU"``, ``"CFD"`` or
     three directions), ``origin`` (where the file's origin lies, m, FRD, from the datum; the datum itself unless given)
     and ``repair`` (false). ``length``, ``breadth`` and ``depth`` under ``[particulars]``, and the volume of a
-    ``[[configuration]]``, are what the mesh is held against.
+    ``[[configuration]]``, are what the mesh is compared with.
 
     A text STL of several named solids that close one surface keeps these names as the patches of a towed body.
 
