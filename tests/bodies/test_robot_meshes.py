@@ -155,7 +155,6 @@ def step_block(x: float, y: float, z: float) -> str:
 
 
 def test_a_step_in_mm_is_read_in_m(tmp_path: Path) -> None:
-    pytest.importorskip("cascadio")
     vertices, faces = load(written(tmp_path, "block.step", step_block(300.0, 200.0, 100.0)))
     assert mesh_integrals(vertices, faces).volume == pytest.approx(0.006, rel=1e-6)
     assert vertices.max(axis=0) == pytest.approx([0.3, 0.2, 0.1], rel=1e-6)
