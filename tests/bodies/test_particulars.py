@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from coeflab.bodies.body import mass_from_primes
+from coeflab.bodies.body_file import mass_from_primes
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.law.rigid_body import MassProperties

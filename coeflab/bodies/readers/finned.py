@@ -15,7 +15,8 @@ from typing import Annotated, ClassVar
 
 import numpy as np
 
-from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
+from coeflab.bodies.body import Body, Configuration
+from coeflab.bodies.body_file import ShapedBodyFile
 from coeflab.bodies.mesh.mesh import TriangleMesh, enclosed
 from coeflab.bodies.mesh.meshing import lofted, surface_of, united
 from coeflab.bodies.mesh.particulars import computed

@@ -20,7 +20,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
+from coeflab.bodies.body import Body, Configuration
+from coeflab.bodies.body_file import ShapedBodyFile
 from coeflab.bodies.closed_forms import graded_nodes
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.meshing import lofted, meshed, united

@@ -10,7 +10,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
+from coeflab.bodies.body import Body, Configuration
+from coeflab.bodies.body_file import ShapedBodyFile
 from coeflab.bodies.mesh.mesh import TriangleMesh
 from coeflab.bodies.mesh.particulars import UNITS, computed, likely_unit, require_plausible
 from coeflab.bodies.mesh.source import MeshKeys

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
-from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
+from coeflab.bodies.body import Body, Configuration
+from coeflab.bodies.body_file import ShapedBodyFile
 from coeflab.bodies.pieces import hull_piece
 from coeflab.bodies.profiles import Myring
 from coeflab.core.declarations import declared

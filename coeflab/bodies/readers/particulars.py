@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from coeflab.bodies.body import Body, BodyFile
+from coeflab.bodies.body import Body
+from coeflab.bodies.body_file import BodyFile
 from coeflab.core.declarations import declared
 from coeflab.core.text.toml import read_toml
 

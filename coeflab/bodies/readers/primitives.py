@@ -9,7 +9,8 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
-from coeflab.bodies.body import Body, Configuration, ShapedBodyFile
+from coeflab.bodies.body import Body, Configuration
+from coeflab.bodies.body_file import ShapedBodyFile
 from coeflab.bodies.mesh.meshing import surface_of
 from coeflab.bodies.mesh.source import MeshKeys, MeshSource
 from coeflab.bodies.pieces import part_pieces
