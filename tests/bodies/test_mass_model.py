@@ -69,6 +69,18 @@ def test_cylinder_and_parallel_axis(tmp_path: Path) -> None:
     assert mass.inertia_matrix == pytest.approx(np.diag(own + 12.0 * 0.1**2 * np.array([0.0, 1.0, 1.0])))
 
 
+def test_two_points_turn_about_their_common_centre(tmp_path: Path) -> None:
+    """Masses 3 and 1 at distance d: m1 m2 / (m1 + m2) d^2 about every axis across, and its product of inertia."""
+    points = "".join(
+        f'[[mass]]\nname = "{name}"\nmass = {mass}\ncentre = {at}\n'
+        for name, mass, at in (("a", 3.0, [0.2, 0.0, 0.0]), ("b", 1.0, [-0.1, 0.0, 0.4]))
+    )
+    found = model(tmp_path, points)
+    d = np.array([0.3, 0.0, -0.4])
+    assert found.centre == pytest.approx([0.125, 0.0, 0.1])
+    assert found.inertia == pytest.approx(0.75 * (d @ d * np.eye(3) - np.outer(d, d)), abs=1e-12)
+
+
 def test_a_turned_cylinder_turns_its_inertia(tmp_path: Path) -> None:
     found = model(tmp_path, ROD + 'rotation = ["0 deg", "0 deg", "90 deg"]\n')
     slender = 12.0 * (0.05**2 / 4.0 + 0.4**2 / 12.0)
