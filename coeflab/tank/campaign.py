@@ -281,8 +281,10 @@ def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, lis
     controls = [c for c in dict.fromkeys(k for r in group for k in r.condition.controls) if c in LONG_CONTROLS]
     given = {c for r in group if r.summary for c in r.summary.means if c in REPORTED[r.condition.half]}
     components = [c for c in COMPONENTS if c in given]
+    # A run of a few iterations has means and no standard error yet: its numbers wait, so that finished rows keep theirs.
+    judged = [r for r in group if r.counts] or group
     with_errors = [
-        c for c in components if all(_error(r, c) > 0.0 for r in group if r.summary and c in r.summary.means)
+        c for c in components if all(_error(r, c) > 0.0 for r in judged if r.summary and c in r.summary.means)
     ]
     patches = list(dict.fromkeys(p for r in group if r.summary for p in r.summary.patches if p[0] in components))
     has_cells = any(_cells(r) for r in group)
@@ -302,6 +304,7 @@ def _table(group: Sequence[TowedRun], origin: str) -> tuple[bytes, dict[str, lis
     for r in group:
         c, s = r.condition, r.summary
         means = s.means if s is not None else {}
+        means = {x: mean for x, mean in means.items() if x not in with_errors or _error(r, x) > 0.0}
         known = REPORTED[c.half]
         doubtful = [x for x in components if not r.counts or x not in means or x not in known]
         cells = [c.name, *(_exact(_motion(r, m)) for m in motions), *(_exact(c.controls.get(k, 0.0)) for k in controls)]

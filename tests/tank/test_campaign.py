@@ -66,6 +66,23 @@ def written(folder: Path, tank: Tank, mirrors: str, runs: list[TowedRun]) -> dic
     return {t.name.partition("/")[2]: t for t in read_tables(table_at(out))}
 
 
+def test_a_run_that_has_just_begun_takes_no_standard_error_from_finished_rows(tmp_path: Path) -> None:
+    tank = tank_of(tmp_path, "y")
+    runs = towed(tank)
+    begun = next(i for i, r in enumerate(runs) if r.condition.kind is Kind.DRIFT)
+    summary = runs[begun].summary
+    assert summary is not None
+    runs[begun] = replace(
+        runs[begun], state=JobState.RUNNING, summary=replace(summary, status=Convergence.TOO_SHORT, errors={})
+    )
+    table = written(tmp_path, tank, "y", runs)["drift.csv"]
+    row = table.labels.index(runs[begun].condition.name)
+    others = [i for i in range(len(table)) if i != row]
+    for component in ("Y", "N"):
+        assert np.all(table.errors[component][others] > 0.0)
+        assert not table.usable[component][row]
+
+
 def test_tables_read_as_any_other_and_hold_what_was_towed(tmp_path: Path) -> None:
     tank = tank_of(tmp_path, "y")
     tables = written(tmp_path, tank, "y", towed(tank))
