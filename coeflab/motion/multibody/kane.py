@@ -50,7 +50,7 @@ class Pose:
 
 
 def cross(a: Array, b: Array) -> Array:
-    """a x b along the last axis, several times quicker than numpy's on a few vectors."""
+    """Product a x b along the last axis, several times quicker than numpy's on a few vectors."""
     ax, ay, az, bx, by, bz = a[..., 0], a[..., 1], a[..., 2], b[..., 0], b[..., 1], b[..., 2]
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
 
