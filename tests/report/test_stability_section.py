@@ -71,9 +71,7 @@ def test_an_index_is_stable_unstable_or_not_determined_by_its_interval(values, h
 
 def test_derivatives_of_the_literature_are_named_beside_measured_ones():
     file = made()
-    measured = tuple(
-        c.model_copy(update={"origin": "fit"}) if c.symbol in ("Yv'", "Nv'") else c for c in file.coefficients
-    )
+    measured = tuple(replace(c, origin="fit") if c.symbol in ("Yv'", "Nv'") else c for c in file.coefficients)
     (said,) = in_words(with_files(file.model_copy(update={"coefficients": measured})))
     assert said.endswith(" From literature: Yr', Nr'.")
     assert "literature" not in in_words(with_files(file))[0]
