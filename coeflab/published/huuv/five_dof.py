@@ -349,10 +349,10 @@ def steady(huuv: FiveDof, delta: Array, tau: Array, start: Array) -> tuple[Array
 
         def left(x: Array, angle: float = angle, push: Array = push) -> Array:
             nu = np.array([[x[0], x[1], x[2], 0.0, x[4]]])
-            return unbalanced(huuv, nu, x[3:4], np.array([angle]), push[None, :])[0]
+            return np.asarray(unbalanced(huuv, nu, x[3:4], np.array([angle]), push[None, :])[0])
 
         def moving(y: Array, angle: float = angle, push: Array = push) -> Array:
-            return rates(huuv, np.array([[*y, 0.0]]), np.array([angle]), push[None, :])[0, :6]
+            return np.asarray(rates(huuv, np.array([[*y, 0.0]]), np.array([angle]), push[None, :])[0, :6])
 
         solved = root(left, start[i], tol=1e-12)
         if np.max(np.abs(left(solved.x))) > 1e-8 * max(float(np.max(np.abs(push))), 1.0):

@@ -46,7 +46,7 @@ SETTLED = 1e-4  # m/s; two hundred times that in deg
 SETS = (
     ("stated masses", "stated"),
     ("those of the assumed geometry", "geometry"),
-    ("its m_x and m_y, and C_m and C_S moved", "moved"),
+    ("its m_x, m_y; C_m, C_S moved", "moved"),
 )
 STRAIGHT = tuple(np.arange(20.0, 101.0, 10.0))
 SOURCE_1 = "equations 1-17, 23-27"
@@ -92,7 +92,7 @@ def moving_rows(five: FiveDof, dives: Mapping[float, Dive]) -> tuple[ComparedTab
 def _row(
     case: str, what: str, unit: str, against: float, found: float, tolerance: float, relative: bool = False
 ) -> Compared:
-    return Compared(case, what, unit, against, found, tolerance, Basis.CONSISTENCY, relative)
+    return Compared(case, what, unit, float(against), float(found), tolerance, Basis.CONSISTENCY, relative)
 
 
 def _by_hand(five: FiveDof) -> ComparedTable:
@@ -171,17 +171,17 @@ def _geometry(five: FiveDof) -> ComparedTable:
     own = [plate_added_mass(f.chord, f.span, five.density) for f, _ in plates]
     normal = sum(float(m[2, 2]) * ahead for m, (_, ahead) in zip(own, plates, strict=True))
     height = float(parts[1].centre[2])
-    found = (
-        ("equation 28", "m_x", "kg", by_hand["m_x"], matrix[0, 0]),
-        ("equation 29", "m_y", "kg", by_hand["m_y"], matrix[1, 1]),
-        ("equation 30", "m_z, and 0.1 of the mast", "kg", by_hand["m_z"] + 0.1 * standing, matrix[2, 2]),
-        ("equation 31", "J_y, and the plates' own", "kg m^2", by_hand["J_y"] + sum(float(m[4, 4]) for m in own), matrix[4, 4]),
-        ("equation 32", "J_z", "kg m^2", by_hand["J_z"], matrix[5, 5]),
-        ("equation 33", "m_zq from the elevators", "kg m", -normal, matrix[2, 4]),
-        ("equation 33", "m_yr, all alike fore and aft", "kg m", 0.0, matrix[1, 5]),
-        ("equation 1, row 1, column 4", "m_x z of the mast", "kg m", standing * height, matrix[0, 4]),
-    )  # fmt: skip
-    rows = tuple(_row(*what, float(one), 1e-9, bool(what[3])) for *what, one in found)  # type: ignore[arg-type]
+    j_y = by_hand["J_y"] + sum(float(m[4, 4]) for m in own)
+    rows = (
+        _row("equation 28", "m_x", "kg", by_hand["m_x"], matrix[0, 0], EXACT),
+        _row("equation 29", "m_y", "kg", by_hand["m_y"], matrix[1, 1], EXACT),
+        _row("equation 30", "m_z, and 0.1 of the mast", "kg", by_hand["m_z"] + 0.1 * standing, matrix[2, 2], EXACT),
+        _row("equation 31", "J_y, and the plates' own", "kg m^2", j_y, matrix[4, 4], EXACT),
+        _row("equation 32", "J_z", "kg m^2", by_hand["J_z"], matrix[5, 5], EXACT),
+        _row("equation 33", "m_zq from the elevators", "kg m", -normal, matrix[2, 4], EXACT),
+        _row("equation 33", "m_yr, all alike fore and aft", "kg m", 0.0, matrix[1, 5], EXACT),
+        _row("equation 1, row 1, column 4", "m_x z of the mast", "kg m", standing * height, matrix[0, 4], EXACT),
+    )
     c = five.level.constants
     printed = c["m"] / 20.0
     return ComparedTable(
@@ -311,7 +311,7 @@ def _turns(five: FiveDof) -> ComparedTable:
 
 def _departure(label: str, found: Array, turns: Turns) -> str:
     """Root mean square from the printed simulation, in words."""
-    reached = np.isfinite(found).all(axis=1)
+    reached = np.asarray(np.isfinite(found).all(axis=1))
     u, beta, radius = np.sqrt(np.mean((found[reached] - turns.figures[reached]) ** 2, axis=0))
     return (
         f"Fig. 17 b, d, f with {label}: rms {u:.2g} m/s, {np.degrees(beta):.2g} deg, {radius:.2g} m in {np.sum(reached)} of "
