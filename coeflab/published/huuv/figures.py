@@ -115,75 +115,79 @@ def tuning_figures(huuv: Huuv, halves: dict[str, Tuning]) -> Iterator[tuple[str,
     yield "huuv_forces", forces_figure(huuv, halves)
 
 
+TALL = 76.0  # points of a panel
 SEEN = 60.0  # s of the dives
 ASSUMED = "Assumed laws of five_dof.toml: the paper prints no number of this figure."
 
 
 def paper_figures(five: FiveDof, dives: Mapping[float, Dive]) -> Iterator[tuple[str, Figure]]:
-    """Figs. 7, 12, 13, 15, 16, and 18 beside 17; then what the paper has no figure of: two sets of masses, and a dive."""
+    """Figs. 7, 12, 13, 15, 16, and 18 beside 17; then what the paper has no figure of, turns with other masses."""
     shape = assumed_body().require_shape()
     if isinstance(shape, Parts):
         yield "huuv_fig07", body_figure("HUUV, Fig. 7, radii and fins assumed", shape, None, "huuv-fig07")
-    yield "huuv_fig12_13", attack_figure(five)
-    yield "huuv_fig15", elevator_figure(five)
-    yield "huuv_fig16", rates_figure(five)
+    yield "huuv_fig12_13_16", laws_over_attack_and_rates(five)
+    yield "huuv_fig15", elevator_figure(five, dives)
     yield "huuv_fig17_18", speeds_figure(five)
     yield "huuv_masses", masses_figure(five)
-    yield "huuv_dive", dive_figure(dives)
 
 
-def attack_figure(five: FiveDof) -> Figure:
-    """Drag over attack at three drifts, lift and pitching moment (Figs. 12 and 13)."""
-    end = float(np.degrees(five.level.chosen["largest_drift"]))
-    x = np.linspace(-end, end, FINE)
+def laws_over_attack_and_rates(five: FiveDof) -> Figure:
+    """Drag over attack at three drifts, lift, pitching moment, and moments against the rates (Figs. 12, 13 and 16)."""
+    end, fastest = float(np.degrees(five.level.chosen["largest_drift"])), five.level.chosen["largest_rate"]
+    x, rate = np.linspace(-end, end, FINE), np.linspace(-fastest, fastest, FINE)
     attack = np.radians(x)
     drags = [(drift, hull_laws(five, attack, np.full(FINE, np.radians(drift)))["C_D"]) for drift in (0.0, 12.5, 25.0)]
     laws = hull_laws(five, attack, np.zeros(FINE))
+    pitching, yawing = turning_laws(five, rate, rate)
     across = "attack alpha  [deg]"
     plots = [
-        Plot("drag / V^2  [N/(m/s)^2]", across, tuple(Trace(f"beta {d:g} deg", x, y, i) for i, (d, y) in enumerate(drags)), is_scaled=False),
-        Plot("lift / V^2  [N/(m/s)^2]", across, (Trace("beta 0 deg", x, laws["C_L"], 0),), is_scaled=False),
-        Plot("pitch moment / V^2  [N m/(m/s)^2]", across, (Trace("beta 0 deg", x, -laws["C_m alpha"], 0),)),
+        Plot("drag / V^2  [N/(m/s)^2]", across, tuple(Trace(f"beta {d:g} deg", x, y, i) for i, (d, y) in enumerate(drags)), TALL, is_scaled=False),
+        Plot("lift / V^2  [N/(m/s)^2]", across, (Trace("beta 0 deg", x, laws["C_L"], 0),), TALL, is_scaled=False),
+        Plot("M / V^2  [N m/(m/s)^2]", across, (Trace("beta 0 deg", x, -laws["C_m alpha"], 0),), TALL),
+        Plot("moment  [N m]", "rate of rotation  [rad/s]", (Trace("M_mq, pitch", rate, pitching, 3), Trace("M_mr, yaw", rate, yawing, -1)), TALL),
     ]  # fmt: skip
     caption = (
-        f"{ASSUMED} Drag is C_D(alpha) + C_D(beta) - C_D(0), the caption of Fig. 12 less what it counts twice. The moment is positive "
-        "nose up and without the Munk moment, which C_A adds. C_S and C_m over beta, Fig. 14: see the figure of the three laws."
+        f"{ASSUMED} Drag is C_D(alpha) + C_D(beta) - C_D(0), the caption of Fig. 12 less what it counts twice. M is positive nose up "
+        "and without the Munk moment, which C_A adds. M_mr is chosen with the steady turns, which do not determine it; M_mq is half of "
+        "it, as the paper doubled M_mr alone. Fig. 14, C_S and C_m over beta: see the figure over sideslip."
     )
     return laws_figure(
-        "huuv-fig12-13", "Figs. 12 and 13: drag, lift and pitching moment over attack", caption,
-        "Three panels over the angle of attack: even curves of drag, odd curves of lift and moment.", plots,
+        "huuv-fig12-13-16", "Figs. 12, 13 and 16: forces over attack, moments over rates", caption,
+        "Four panels: even curves of drag, odd curves of lift and moment over attack; odd curves of moments over rates.", plots,
     )  # fmt: skip
 
 
-def elevator_figure(five: FiveDof) -> Figure:
-    """The elevators' coefficients over their angle (Figs. 6 and 15)."""
+def elevator_figure(five: FiveDof, dives: Mapping[float, Dive]) -> Figure:
+    """The elevators' coefficients over their angle (Figs. 6 and 15), and what a deflection does in time."""
     end = float(np.degrees(five.constants["largest_angle"]))
     x = np.linspace(-end, end, FINE)
-    names = ("drag C_D  [1]", "lift C_L  [1]", "moment C_M  [1]")
+    names = ("drag C_D", "lift C_L", "moment C_M")
+    laws = zip(names, elevator_laws(five, np.radians(x)), strict=True)
     plots = [
-        Plot(name, "elevator delta at alpha = 0  [deg]", (Trace("elevators", x, y, 0),), 90.0, is_scaled=k == 2)
-        for k, (name, y) in enumerate(zip(names, elevator_laws(five, np.radians(x)), strict=True))
+        Plot(
+            "coefficients  [1]",
+            "elevator delta at alpha = 0  [deg]",
+            tuple(Trace(n, x, y, i) for i, (n, y) in enumerate(laws)),
+            TALL,
+        )
     ]
+    motions = (("depth  [m]", "depth", 1.0), ("pitch  [deg]", "pitch", 180.0 / np.pi))
+    for k, (name, key, factor) in enumerate(motions):
+        traces = (
+            Trace(f"delta {angle:+g} deg", d.time[seen], factor * getattr(d, key)[seen], i)
+            for i, (angle, d) in enumerate(dives.items())
+            for seen in [d.time <= SEEN]
+        )
+        plots.append(Plot(name, "time  [s]", tuple(traces), TALL, is_scaled=k == 1))
     caption = (
-        f"{ASSUMED} Those of the synthetic elevator table, over delta - alpha; by the area of both, {five.constants['area']:g} m^2, the "
-        f"moment also by {five.constants['length']:g} m, about the axis of rotation. A positive angle turns the leading edge down."
+        f"{ASSUMED} Above, those of the synthetic elevator table, over delta - alpha; by the area of both, {five.constants['area']:g} m^2, "
+        f"the moment also by {five.constants['length']:g} m, about the axis of rotation. A positive angle turns the leading edge down. "
+        f"Below, no figure of the paper: from {five.level.chosen['speed']:g} m/s, both thrusters at 60 %, simulated with the parameter "
+        "file huuv_5dof.parameters.json."
     )
     return laws_figure(
-        "huuv-fig15", "Fig. 15: the elevators' drag, lift and moment", caption,
-        "Three panels over the elevator angle: an even curve of drag, odd curves of lift and moment.", plots,
-    )  # fmt: skip
-
-
-def rates_figure(five: FiveDof) -> Figure:
-    """Moments against the rates of pitch and yaw (Fig. 16)."""
-    end = five.level.chosen["largest_rate"]
-    x = np.linspace(-end, end, FINE)
-    pitching, yawing = turning_laws(five, x, x)
-    traces = (Trace("M_mq, pitch", x, pitching, 0), Trace("M_mr, yaw", x, yawing, 1))
-    caption = f"{ASSUMED} M_mr is chosen with the steady turns, which do not determine it; M_mq is half of it, as the paper doubled M_mr alone."
-    return laws_figure(
-        "huuv-fig16", "Fig. 16: moments against the rates of pitch and yaw", caption,
-        "Two odd curves over the rate of rotation.", [Plot("moment  [N m]", "rate of rotation  [rad/s]", traces)],
+        "huuv-fig15", "Fig. 15: the elevators, and a start with them deflected", caption,
+        "An even curve of drag, odd curves of lift and moment over the elevator angle; depth and pitch over time for three angles.", plots,
     )  # fmt: skip
 
 
@@ -245,7 +249,7 @@ def masses_figure(five: FiveDof) -> Figure:
             name, "turn of Fig. 17, by left then right thruster",
             (Trace("printed, simulation", at, turns.figures[:, k] * scale[k], -1, "filled"),
              *(Trace(label, at[seen], y[seen], i, "hollow") for i, (label, found) in enumerate(sets)
-               for y in [found[:, k] * scale[k]] for seen in [np.isfinite(y)])),
+               for y in [found[:, k] * scale[k]] for seen in [np.isfinite(y)])), TALL,
             is_scaled=k == 2,
         )
         for k, name in enumerate(names)
@@ -258,24 +262,4 @@ def masses_figure(five: FiveDof) -> Figure:
     return laws_figure(
         "huuv-masses", "Turns with the stated masses and with those of the assumed geometry", caption,
         "Three panels over the 28 turns: printed points, and those of three sets of masses.", plots,
-    )  # fmt: skip
-
-
-def dive_figure(dives: Mapping[float, Dive]) -> Figure:
-    """Depth, pitch and speed after the elevators are deflected."""
-    plots = [
-        Plot(
-            name, "time  [s]",
-            tuple(Trace(f"elevators {angle:+g} deg", d.time[d.time <= SEEN], factor * getattr(d, key)[d.time <= SEEN], i) for i, (angle, d) in enumerate(dives.items())),
-            is_scaled=k == 2,
-        )
-        for k, (name, key, factor) in enumerate((("depth  [m]", "depth", 1.0), ("pitch  [deg]", "pitch", 180.0 / np.pi), ("u  [m/s]", "speed", 1.0)))
-    ]  # fmt: skip
-    caption = (
-        "From 0.8 m/s, both thrusters at 60 %: simulated with the parameter file huuv_5dof.parameters.json. Assumed vertical laws, no "
-        "published motion: the paper's own dive is in an earlier article."
-    )
-    return laws_figure(
-        "huuv-dive", "Five degrees of freedom: a start with the elevators deflected", caption,
-        "Three panels over time: depth, pitch and speed for several elevator angles.", plots,
     )  # fmt: skip
