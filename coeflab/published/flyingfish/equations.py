@@ -6,8 +6,6 @@ says which reading is meant.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from coeflab.core.types import Array
@@ -102,37 +100,49 @@ def aerial_wrench(thrust: Array, torque: Array, arm: float, as_printed: bool = F
     )
 
 
-def dash(force: Callable[[float], float], mass: float, start: float, distance: float) -> tuple[float, float]:
-    """Time and speed after a distance on a straight line under a force of the speed alone, by quadrature over the speed.
+def dash(drive: float, linear: float, quadratic: float, mass: float, distance: float) -> tuple[float, float]:
+    """Time and speed after a distance on a straight line from rest under a constant force against the damping, in closed form.
+
+    m ds/dt = F - a s - b s^2 is a Riccati equation with constant factors: s tends to the larger root of its right side.
 
     Parameters
     ----------
-    force : callable
-        N, of the speed along the line.
-    mass : float
-        kg.
-    start, distance : float
-        m/s and m, along the line. The force must not vanish on the way.
+    drive, linear, quadratic : float
+        F > 0 in N, a in N s/m, b > 0 in N s^2/m^2.
+    mass, distance : float
+        kg and m.
     """
-    from scipy.integrate import quad
     from scipy.optimize import brentq
 
-    sign = 1.0 if force(start) > 0.0 else -1.0
-    most = max(1.0, abs(start))
-    while sign * force(start + sign * most) <= 0.0:
-        most /= 2.0
+    spread = float(np.sqrt(linear**2 + 4.0 * quadratic * drive))
+    fast, other = (-linear + spread) / (2.0 * quadratic), (-linear - spread) / (2.0 * quadratic)
+    rate, share = spread / mass, fast / other
 
-    def covered(speed: float) -> float:
-        return float(quad(lambda s: mass * s / force(s), start, speed, epsabs=1e-13, epsrel=1e-12, limit=200)[0])
+    def covered(time: float) -> float:
+        return float(fast * time + mass / quadratic * np.log((1.0 - share * np.exp(-rate * time)) / (1.0 - share)))
 
-    end = float(brentq(lambda s: covered(s) - distance, start, start + sign * most, xtol=1e-14, rtol=1e-14))
-    time = float(quad(lambda s: mass / force(s), start, end, epsabs=1e-13, epsrel=1e-12, limit=200)[0])
-    return time, end
+    longest = distance / fast + 1.0 / rate
+    while covered(longest) < distance:
+        longest *= 2.0
+    time = float(brentq(lambda t: covered(t) - distance, 0.0, longest, xtol=1e-14, rtol=1e-14))
+    faded = share * float(np.exp(-rate * time))
+    return time, float((fast - other * faded) / (1.0 - faded))
 
 
-def rise(force: Callable[[float], float], mass: float, start: float) -> tuple[float, float]:
-    """Time and height until a craft that is slowed down stands, by quadrature; parameters as of `dash`."""
+def rise(brake: float, linear: float, quadratic: float, mass: float, start: float) -> tuple[float, float]:
+    """Time and height until a craft that is slowed down stands, by quadrature over the speed.
+
+    Parameters
+    ----------
+    brake, linear, quadratic, mass : float
+        m ds/dt = -(F + a s + b s^2); as of `dash`.
+    start : float
+        m/s.
+    """
     from scipy.integrate import quad
 
-    time = quad(lambda s: mass / force(s), start, 0.0, epsabs=1e-13, epsrel=1e-12)[0]
-    return float(time), float(quad(lambda s: mass * s / force(s), start, 0.0, epsabs=1e-13, epsrel=1e-12)[0])
+    def slowed(s: float) -> float:
+        return mass / (brake + linear * s + quadratic * s**2)
+
+    time = quad(slowed, 0.0, start, epsabs=1e-13, epsrel=1e-12)[0]
+    return float(time), float(quad(lambda s: s * slowed(s), 0.0, start, epsabs=1e-13, epsrel=1e-12)[0])

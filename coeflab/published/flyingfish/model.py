@@ -257,6 +257,22 @@ EQUATIONS = (
 )
 
 
+def unknowns_of(
+    fish: FlyingFish, row: int, *, near: bool = True, given: tuple[int, ...] = (), fastest: float | None = None
+) -> list[Unknown]:
+    """Tilts and rotor speeds with their bounds and the rule of selection; parameters as of `trim`."""
+    printed = np.concatenate([fish.angles[row], fish.speeds[row]])
+    limit = fish.largest_speed if fastest is None else fastest
+    turn = np.radians(DEGREE)
+    unknowns = []
+    for i, name in enumerate(UNKNOWNS):
+        u = Unknown(name, "rad", -np.pi, np.pi, turn, weight=0.0) if i < 4 else Unknown(name, "rpm", 0.0, limit, RPM)
+        if near:
+            u = Unknown(name, u.unit, u.low, u.high, u.scale, target=float(printed[i]))
+        unknowns.append(u.at(float(printed[i])) if i in given else u)
+    return unknowns
+
+
 def trim(
     fish: FlyingFish,
     constants: Array,
@@ -288,15 +304,7 @@ def trim(
     fastest : float, optional
         Largest rotor speed, rpm; that of the data where None.
     """
-    printed = np.concatenate([fish.angles[row], fish.speeds[row]])
-    limit = fish.largest_speed if fastest is None else fastest
-    turn = np.radians(DEGREE)
-    unknowns = []
-    for i, name in enumerate(UNKNOWNS):
-        u = Unknown(name, "rad", -np.pi, np.pi, turn, weight=0.0) if i < 4 else Unknown(name, "rpm", 0.0, limit, RPM)
-        if near:
-            u = Unknown(name, u.unit, u.low, u.high, u.scale, target=float(printed[i]))
-        unknowns.append(u.at(float(printed[i])) if i in given else u)
+    unknowns = unknowns_of(fish, row, near=near, given=given, fastest=fastest)
 
     def residuals(x: Array) -> Array:
         motion = fish.motion[row : row + 1]
