@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 
@@ -141,22 +142,14 @@ def _stopped(part: Trajectory, row: int, name: str) -> Trajectory:
 
 def _joined(parts: Sequence[Trajectory], manoeuvre: Manoeuvre, stretches: int) -> Trajectory:
     """All stretches in one; the row at the surface belongs to the medium that begins there."""
-    time, where, turned, first = 0.0, np.zeros(3), 0.0, 0
-    shifted: list[dict[str, Array]] = []
-    reached: list[float | None] = []
-    for number, part in enumerate(parts):
-        kept = slice(None, -1) if number + 1 < len(parts) else slice(None)
-        shifted.append(
-            {
-                "time": part.time[kept] + time, "position": part.position[kept] + where, "attitude": part.attitude[kept],
-                "velocity": part.velocity[kept], "heading": part.heading[kept] + turned, "phase": part.phase[kept] + first,
-            }
-        )  # fmt: skip
-        reached += [None if t is None else t + time for t in part.reached]
-        time, where = time + float(part.time[-1]), where + part.position[-1]
-        turned, first = turned + float(part.heading[-1]), first + len(part.phases)
-    columns = {name: np.concatenate([s[name] for s in shifted]) for name in shifted[0]}
-    ends = [len(s["time"]) for s in shifted]
+    kept = [slice(None, -1) if number + 1 < len(parts) else slice(None) for number in range(len(parts))]
+    pairs = list(zip(parts, kept, strict=True))
+    begin = np.concatenate([[0.0], np.cumsum([p.time[-1] for p in parts])])
+    place = np.vstack([np.zeros(3), np.cumsum([p.position[-1] for p in parts], axis=0)])
+    turned = np.concatenate([[0.0], np.cumsum([p.heading[-1] for p in parts])])
+    first = np.concatenate([[0], np.cumsum([len(p.phases) for p in parts])])
+    reached = [None if t is None else t + float(begin[i]) for i, p in enumerate(parts) for t in p.reached]
+    counts = [len(p.time[k]) for p, k in pairs]
     last = parts[-1]
     said = [s for p in parts for s in p.statements]
     if last.ended is Ended.COMPLETE and len(parts) < stretches:
@@ -165,21 +158,26 @@ def _joined(parts: Sequence[Trajectory], manoeuvre: Manoeuvre, stretches: int) -
         )
     names = [p.name for p in manoeuvre.phases]
     return Trajectory(
-        **columns,
-        controls=_filled([p.controls for p in parts], ends, 0.0),
+        time=np.concatenate([p.time[k] + begin[i] for i, (p, k) in enumerate(pairs)]),
+        position=np.concatenate([p.position[k] + place[i] for i, (p, k) in enumerate(pairs)]),
+        attitude=np.concatenate([p.attitude[k] for p, k in pairs]),
+        velocity=np.concatenate([p.velocity[k] for p, k in pairs]),
+        heading=np.concatenate([p.heading[k] + turned[i] for i, (p, k) in enumerate(pairs)]),
+        phase=np.concatenate([p.phase[k] + first[i] for i, (p, k) in enumerate(pairs)]),
+        controls=_filled([p.controls for p in parts], counts),
         phases=tuple(names),
         reached=(*reached, *(None for _ in names[len(reached) :])),
-        outside=_filled([p.outside for p in parts], ends, False),
+        outside={name: x > 0.0 for name, x in _filled([p.outside for p in parts], counts).items()},
         ended=last.ended,
         why=last.why,
         statements=tuple(dict.fromkeys(said)),
     )  # fmt: skip
 
 
-def _filled(parts: Sequence[Mapping[str, Array]], ends: Sequence[int], none: float | bool) -> dict[str, Array]:
-    """Columns of all stretches; zero, or no flag, where one has no such column."""
+def _filled(parts: Sequence[Mapping[str, Any]], counts: Sequence[int]) -> dict[str, Array]:
+    """Columns of all stretches; zero where one has no such column."""
     names = dict.fromkeys(name for p in parts for name in p)
     return {
-        name: np.concatenate([p[name][:n] if name in p else np.full(n, none) for p, n in zip(parts, ends, strict=True)])
+        name: np.concatenate([p[name][:n] if name in p else np.zeros(n) for p, n in zip(parts, counts, strict=True)])
         for name in names
     }

@@ -213,7 +213,7 @@ def _law(load: str, thruster: ParameterThruster, design: Array, values: Array) -
         left = values - columns @ found
         variance = float(left @ left) / freedom
         spread = np.sqrt(variance * np.diag(np.linalg.inv(columns.T @ columns)))
-        return found, float(stdtrit(freedom, 0.975)) * spread, float(np.sqrt(variance))
+        return np.asarray(found, dtype=np.float64), float(stdtrit(freedom, 0.975)) * spread, float(np.sqrt(variance))
 
     value, u95, scatter = fitted(design / scale)
     rest, rest_u95, _ = fitted(np.column_stack([design / scale, np.ones(len(values))]))

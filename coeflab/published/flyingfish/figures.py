@@ -23,6 +23,7 @@ from coeflab.tables.reading import read_tables
 
 ALONG = "motion of Table 1  [-]"
 FINE = 57
+DRAWN = 6  # decimals of a metre: a level track is level
 
 
 def figures(craft: Craft, nearest: ComparedTable) -> tuple[tuple[str, Figure], ...]:
@@ -139,7 +140,7 @@ def _damping(fish: FlyingFish, medium: Medium) -> Figure:
         for i, (name, k) in enumerate(zip(names, part, strict=True)):
             x = np.asarray(table.motion["uvwpqr"[k]])
             alone = x != 0.0
-            si = np.linspace(float(x.min()), float(x.max()), FINE)
+            si = np.linspace(float(x.min()), float(x.max()), 2 * FINE - 1)
             factor = 1.0 if unit == "N" else np.degrees(1.0)
             traces.append(Trace(name, factor * si, -(linear[k] + quadratic[k] * np.abs(si)) * si, i))
             points = np.asarray(table.forces["XYZKMN"[k]])[alone]
@@ -198,7 +199,7 @@ def _bench(medium: Medium, test: BenchTest) -> Figure:
 def _tracks(found: Mapping[int, Trajectory], shown: Sequence[tuple[int, int]]) -> tuple[Plot, Plot]:
     """Depth and distance east over distance north; motions and their styles."""
     depth, east = (
-        tuple(Trace(f"motion {k}", found[k].position[:, 0], found[k].position[:, axis], style) for k, style in shown)
+        tuple(Trace(f"motion {k}", *np.round(found[k].position[:, (0, axis)].T, DRAWN), style) for k, style in shown)
         for axis in (2, 1)
     )
     return Plot("depth  [m]", "north  [m]", depth, 100.0, is_scaled=False), Plot("east  [m]", "north  [m]", east, 70.0)
@@ -257,7 +258,7 @@ def _surface(found: Trajectory) -> Figure:
     depth = float(found.position[int(np.argmin(np.abs(time - (found.reached[0] or 0.0)))), 2])
     up = -np.asarray(found.velocity)[:, 2]
     media = (("under water", found.phase == 0, 0), ("in air", found.phase == 1, 1))
-    plots = []
+    plots: list[Plot] = []
     for name, values in (("height over the surface  [m]", above + depth), ("speed up  [m/s]", up)):
         traces = tuple(Trace(medium, time[at], values[at], style) for medium, at, style in media)
         plots.append(Plot(name, "time  [s]", traces, 100.0, is_scaled=len(plots) == 1))

@@ -369,7 +369,7 @@ def surface(c: Craft) -> ComparedTable:
     rows = (
         Compared("out of the water", "time", "s", time, out, CROSSED, Basis.CONSISTENCY),
         Compared("out of the water", "speed up", "m/s", speed, at(out), CROSSED, Basis.CONSISTENCY),
-        Compared("back at the surface", "time after that", "s", up + down, None if None in (out, again) else again - out,
+        Compared("back at the surface", "time after that", "s", up + down, None if out is None or again is None else again - out,
                  CROSSED, Basis.CONSISTENCY),
         Compared("back at the surface", "speed up", "m/s", -back, at(again), CROSSED, Basis.CONSISTENCY),
     )  # fmt: skip
