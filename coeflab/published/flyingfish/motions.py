@@ -87,8 +87,8 @@ def commands(point: Array) -> dict[str, float]:
     return speeds | {f"rotor{name}.tilt": float(point[i]) for i, name in enumerate(ROTORS)}
 
 
-def craft(fish: FlyingFish) -> Craft:
-    """Vehicles and trims; the constants are those of the data, as in the parameter files."""
+def craft(fish: FlyingFish, rows: int | None = None) -> Craft:
+    """Vehicles, and trims of the first rows or of all; the constants are those of the data, as in the parameter files."""
     constants = np.array([fish.constants[name] for name in CONSTANTS])
     water, air = (vehicle(flyingfish_file(fish, medium)) for medium in MEDIA)
 
@@ -100,7 +100,14 @@ def craft(fish: FlyingFish) -> Craft:
 
         return _nearest(fish, row, left)
 
-    return Craft(fish, constants, water, air, np.array([by_equations(row) for row in range(len(fish.motion))]))
+    count = len(fish.motion) if rows is None else rows
+    return Craft(fish, constants, water, air, np.array([by_equations(row) for row in range(count)]).reshape(-1, 8))
+
+
+def without_trims(fish: FlyingFish) -> tuple[ComparedTable, ...]:
+    """The tables that take a fraction of a second."""
+    c = craft(fish, 0)
+    return equations(c, "water"), equations(c, "air"), third(fish), surface(c)
 
 
 def compared(c: Craft) -> tuple[ComparedTable, ...]:
