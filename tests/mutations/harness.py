@@ -36,6 +36,7 @@ from coeflab.motion.glider.glide import GlideRun
 from coeflab.motion.glider.glider import Glider, gliders_at, read_glider
 from coeflab.motion.simulators import SIMULATORS
 from coeflab.published.flyingfish import acceptance as flyingfish
+from coeflab.published.flyingfish import motions
 from coeflab.published.flyingfish.model import FlyingFish, calibrated, read_flyingfish
 from coeflab.published.huuv import turns as huuv
 from coeflab.published.huuv.five_dof import FiveDof, read_five_dof
@@ -215,7 +216,10 @@ def validate_flyingfish(fish: FlyingFish, file: ParameterFile | None = None) -> 
     """All but the searches for trims."""
     constants = calibrated(fish.rotors, fish.motion, fish.angles, fish.speeds)
     made = flyingfish_file(fish) if file is None else file
-    tables = (*flyingfish.implied(fish, constants), *flyingfish.carried(fish, made), flyingfish.air(fish))
+    tables = (
+        *flyingfish.implied(fish, constants), *flyingfish.carried(fish, made), flyingfish.air(fish),
+        *motions.without_trims(fish),
+    )  # fmt: skip
     return of_tables(tables, plausibility(made))
 
 

@@ -13,10 +13,12 @@ import numpy as np
 from coeflab.core.files import shipped
 from coeflab.law import rigid_body
 from coeflab.law.rigid_body import momentum_quadratics, weighed
-from coeflab.motion import dynamics, steady_state
+from coeflab.motion import dynamics, media, steady_state
 from coeflab.motion.glider import motion as glider_motion
 from coeflab.motion.glider.glider import Glider
+from coeflab.motion.integrators.adaptive import _Phase
 from coeflab.published import parameter_files
+from coeflab.published.flyingfish import equations as aerial
 from coeflab.published.flyingfish import model as flyingfish_model
 from coeflab.published.flyingfish.model import FlyingFish
 from coeflab.published.huuv import five_dof, five_dof_file
@@ -176,6 +178,37 @@ FLYINGFISH = (
     (
         "sign of the Coriolis forces of the mass, m v x r",
         fish_law(momentum_quadratics, "out[:3, 3:, :] -= ", "out[:3, 3:, :] += "),
+    ),
+    ("sign of v r in equation 7", fish_law(aerial.body_rates, "x / mass + v * r", "x / mass - v * r")),
+    ("sign of u q in equation 9", fish_law(aerial.body_rates, "+ u * q", "- u * q")),
+    ("sign of (I_z - I_y) q r in equation 10", fish_law(aerial.body_rates, "(k - (iz - iy)", "(k + (iz - iy)")),
+    ("sign of (I_x - I_y) p q in equation 12", fish_law(aerial.body_rates, "(n + (ix - iy)", "(n - (ix - iy)")),
+    ("weight +5 % in equations 7 to 9", fish_law(aerial.body_rates, "g = gravity * ", "g = 1.05 * gravity * ")),
+    ("sign of the righting moment in equation 23", fish_law(aerial.body_rates, "+ righting * st", "- righting * st")),
+    (
+        "sign of cos phi sin psi in equation 1",
+        fish_law(aerial.earth_rates, "(cf * sp - cp * sf * st)", "(cf * sp + cp * sf * st)"),
+    ),
+    (
+        "sign of r cos phi tan theta in equation 4",
+        fish_law(aerial.earth_rates, "+ r * cf * st / ct", "- r * cf * st / ct"),
+    ),
+    (
+        "thrust in air down, equation 31 as printed",
+        fish_law(aerial.aerial_wrench, "if as_printed else -1.0", "if as_printed else 1.0"),
+    ),
+    ("sign of the pitch moment in equation 33", fish_law(aerial.aerial_wrench, "(t3 - t4) * arm", "(t4 - t3) * arm")),
+    ("thrust factor in air +5 %", of_fish(lambda f: replace(f, rotor_air=scaled(f.rotor_air, (0, 1), TWENTIETH)))),
+    ("torque factor in air +5 %", of_fish(lambda f: replace(f, rotor_air=scaled(f.rotor_air, (1, 1), TWENTIETH)))),
+    ("damping in air +5 %", of_fish(lambda f: replace(f, air=f.air * TWENTIETH))),
+    ("air with the forces of water", fish_law(media.through_media, "media[phases[0].medium], start", "vehicle, start")),
+    (
+        "change of medium at the end of a step",
+        fish_law(_Phase.move, "now = float(brentq(", "_ = float(brentq("),
+    ),
+    (
+        "speed lost at the surface",
+        fish_law(media.through_media, "velocity=part.velocity[-1]", "velocity=0.95 * part.velocity[-1]"),
     ),
 )
 
@@ -414,7 +447,7 @@ def _fish_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Ver
     for name, size in (("linear", 6), ("quadratic", 6), ("thrust", 2), ("torque", 2)):
         yield from ((f"{name}[{k}]", rotors(name, k, factor)) for k in range(size) if getattr(fish().rotors, name)[k])
     yield from ((name, constant(name, factor)) for name in fish().constants)
-    for name, value in (("air", fish().air), ("arms", fish().arms)):
+    for name, value in (("air", fish().air), ("rotor_air", fish().rotor_air), ("arms", fish().arms)):
         for at in np.argwhere(value).tolist():
             yield (
                 f"{name}{at}",
