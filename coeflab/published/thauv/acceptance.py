@@ -249,7 +249,7 @@ def _left_out(gliders: dict[str, Flown]) -> ComparedTable:
 def _constants(gliders: dict[str, Flown]) -> ComparedTable:
     """The calibration once more: what the vehicle files state comes from nowhere else."""
     g, found = gliders["01"].run.glider, calibrated(_known(gliders))
-    ahead = [g.body.moments(*_dive(g, stage).setting)[0] for stage in ("1", "2")]
+    ahead = [g.body.moments(*_dive(g, stage).setting[:2])[0] for stage in ("1", "2")]
     stated = (g.body.munk, g.mass.moment_below, *ahead)
     rows = tuple(
         Compared(

@@ -136,7 +136,7 @@ def steady(glider: Glider, glides: Sequence[SteadyGlide]) -> Table:
         f"Angles of attack searched: {low:.4g} to {high:.4g} deg. Growth: largest real part of the eigenvalues, 1/s."
     ]
     for phase in glider.phases:
-        count = sum((g.net_mass, g.position) == phase.setting for g in glides)
+        count = sum((g.net_mass, g.position) == phase.setting[:2] for g in glides)
         if count != 1:
             notes.append(f"{phase.name}: {count or 'no'} steady glide{'s' if count > 1 else ''} ahead.")
     return Table(
