@@ -274,6 +274,18 @@ class Glider:
         ahead, below = self.body.moments(0.0, 0.0)
         return self.masses.rest_place(ahead / self.gravity, below / self.gravity)
 
+    def rolled(self, angle: float) -> Glider:
+        """The same with the roller at an angle, rad, in every phase.
+
+        Raises
+        ------
+        InputError
+            The file holds the vertical plane alone.
+        """
+        if self.space is None:
+            raise InputError(f"{self.name} without a roller", "[masses], [lateral] and [thrusters]", column="roller")
+        return replace(self, phases=tuple(replace(p, roller=angle) for p in self.phases))
+
     def manoeuvre(self, cycles: int) -> Manoeuvre:
         """The phases, flown several times, from rest, level, at the surface, neutral."""
         phases = tuple(p.ordered for p in self.phases) * cycles
