@@ -33,7 +33,7 @@ from coeflab.motion.glider.motion import GliderBody, Leg, Rates, Setting
 
 Force = Annotated[float, takes.number_in("force")]
 IN_SPACE = ("north", "depth", "east", "q0", "q1", "q2", "q3", "P1", "P2", "P3", "H1", "H2", "H3")
-STEPS, FOUND = 12, 1e-9
+STEPS, FOUND, NUDGE = 12, 1e-9, 1e-5
 STILL = Setting(0.0, 0.0)
 
 
@@ -222,8 +222,8 @@ def state_of(body: SpaceBody, setting: Setting, nu: Array, phi: float, theta: fl
     return np.array([0.0, 0.0, 0.0, *turned, *(body.matrix(setting.position) @ nu)])
 
 
-def unexplained_power_in_space(body: SpaceBody, setting: Setting, states: Array) -> tuple[float, float]:
-    """What `rates_in_space` do that no force explains: power, W, and velocity over ground, m/s; zero for the right equations.
+def unexplained_in_space(body: SpaceBody, setting: Setting, states: Array) -> tuple[float, float, float]:
+    """What `rates_in_space` do without a cause: power, W, velocity over ground, m/s, and rotation, rad/s; zero if right.
 
     Parameters
     ----------
@@ -234,7 +234,7 @@ def unexplained_power_in_space(body: SpaceBody, setting: Setting, states: Array)
         phi, theta, rad, u v w, m/s, p q r, rad/s.
     """
     of, lever, weight = rates_in_space(body, Leg(0.0, 1.0, setting, STILL)), body.moments(setting), body.plane.gravity
-    apart, drift = 0.0, 0.0
+    apart = drift = spun = 0.0
     for phi, theta, *moving in states.tolist():
         nu = np.array(moving)
         y = state_of(body, setting, nu, phi, theta)
@@ -249,7 +249,10 @@ def unexplained_power_in_space(body: SpaceBody, setting: Setting, states: Array)
         level = nu[0] * math.cos(theta) + math.sin(theta) * (sway * math.sin(phi) + heave * math.cos(phi))
         across = sway * math.cos(phi) - heave * math.sin(phi)
         drift = max(drift, float(np.hypot(np.hypot(rate[0] - level, rate[2] - across), rate[1] - nu[:3] @ down)))
-    return float(apart), drift
+        turned = rotation(y[3:7])
+        moved = (rotation(y[3:7] + NUDGE * rate[3:7]) - rotation(y[3:7] - NUDGE * rate[3:7])) / (2.0 * NUDGE)
+        spun = max(spun, float(np.max(np.abs(moved - turned @ skew(nu[3:])))))
+    return float(apart), drift, spun
 
 
 @brief
