@@ -297,3 +297,10 @@ def test_a_glider_of_the_vertical_plane_takes_no_roller() -> None:
     phase = replace(flat.phases[0], roller=0.3).ordered
     with pytest.raises(InputError, match="roller"):
         simulate(flat, Manoeuvre("one", (phase,), np.zeros(6)), {})
+
+
+def test_net_mass_follows_the_stroke() -> None:
+    """Equations 20 and 25: the engine's rate is u0 times the pistons', u0 = 2 rho pi r^2."""
+    assert GLIDER.engine.rate == pytest.approx(2.0 * MASSES.ballast(1.0) * GLIDER.sliding_mass.rate, rel=1e-4)
+    for phase in GLIDER.phases:
+        assert MASSES.stroke(phase.net_mass) == pytest.approx(phase.position, rel=1e-4)

@@ -148,6 +148,16 @@ def test_printed_points_are_those_of_the_text(thauv: Acceptance) -> None:
     assert any("1 and 7" in s and "5 and 6" in s for s in thauv.statements)
 
 
+def test_the_masses_in_plan(thauv: Acceptance) -> None:
+    """Figure 2: the roller in the right hull, pistons to both sides, what is left where their moments put it."""
+    upper, _ = dict(thauv.figures)["masses"].panels
+    at = {s.name: (list(s.x), list(s.y)) for s in upper.series}
+    assert at["pistons"][0] == pytest.approx([0.25, -0.25], abs=1e-3)
+    assert at["roller"][0] == pytest.approx([0.25], abs=1e-3)
+    assert at["the rest"][0] == pytest.approx([-1.04 * 0.25 / 64.29], abs=1e-3)
+    assert at["centre of gravity"] == (pytest.approx([0.0], abs=1e-3), pytest.approx([-0.000257], abs=1e-3))
+
+
 def test_the_roller_s_picture_is_equation_4(thauv: Acceptance) -> None:
     _, lower = dict(thauv.figures)["masses"].panels
     across, down = lower.series
