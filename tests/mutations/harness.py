@@ -45,6 +45,8 @@ from coeflab.published.huuv.five_dof_rows import stated_rows
 from coeflab.published.huuv.model import Huuv, parameter_file, read_huuv
 from coeflab.published.parameter_files import flyingfish_file
 from coeflab.published.thauv import acceptance as thauv
+from coeflab.published.thauv import in_space
+from coeflab.published.thauv.in_space import FlownSpiral
 from coeflab.report.acceptance import Compared, ComparedTable
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
@@ -281,6 +283,18 @@ def validate_thauv(change: Callable[[Glider], Glider] | None = None, cases: tupl
             flown(g if change is None else read_back(change(g))) if again else unmutated_flight(i)
         )
     return of_tables(thauv.compared(made))
+
+
+@cache
+def unmutated_spiral() -> FlownSpiral:
+    return in_space.flown_spiral(gliders()[1])
+
+
+def validate_thauv_in_space(change: Callable[[Glider], Glider] | None = None) -> Verdicts:
+    """What the vertical plane does not hold, of case 02; its spiral flies again where the glider is changed."""
+    glider = gliders()[1] if change is None else read_back(change(gliders()[1]))
+    flown_again = unmutated_spiral() if change is None else in_space.flown_spiral(glider)
+    return of_tables(in_space.compared_in_space(glider, flown_again))
 
 
 # ---- SUBOFF --------------------------------------------------------------------------------------------------------

@@ -15,7 +15,10 @@ from coeflab.law import rigid_body
 from coeflab.law.rigid_body import momentum_quadratics, weighed
 from coeflab.motion import dynamics, media, steady_state
 from coeflab.motion.glider import motion as glider_motion
+from coeflab.motion.glider import space
 from coeflab.motion.glider.glider import Glider
+from coeflab.motion.glider.masses import MassModel
+from coeflab.motion.glider.space import SpaceBody
 from coeflab.motion.integrators.adaptive import _Phase
 from coeflab.published import parameter_files
 from coeflab.published.flyingfish import equations as aerial
@@ -38,6 +41,7 @@ from tests.mutations.harness import (
     validate_huuv,
     validate_remus,
     validate_thauv,
+    validate_thauv_in_space,
 )
 
 TENTH, TWENTIETH, FLIP = 1.1, 1.05, -1.0
@@ -103,6 +107,21 @@ def glider_law(old: str, new: str) -> Callable[[Suboff], Verdicts]:
     return lambda _: in_place_of(glider_motion.rates, old, new, lambda: validate_thauv(unchanged, (0,)))
 
 
+def in_space_law(function: Any, old: str, new: str) -> Callable[[Suboff], Verdicts]:
+    """Another law of masses or of the motion in space."""
+    return lambda _: in_place_of(function, old, new, validate_thauv_in_space)
+
+
+def in_space(change: Callable[[MassModel], MassModel]) -> Callable[[Suboff], Verdicts]:
+    """Other masses."""
+
+    def changed(g: Glider) -> Glider:
+        assert g.masses is not None
+        return replace(g, masses=change(g.masses))
+
+    return lambda _: refusals(lambda: validate_thauv_in_space(changed))
+
+
 THAUV = (
     ("sign of -m3 v3 q in equation 17", glider_law("-p3 * q - net_mass", "p3 * q - net_mass")),
     ("sign of m1 v1 q in equation 18, as printed", glider_law("p1 * q + net_mass", "-p1 * q + net_mass")),
@@ -117,6 +136,39 @@ THAUV = (
     ("angle of Table 3 in radians", glider(lambda g: replace(g, polar=replace(g.polar, angle_unit="rad")))),
     ("Munk moment already in the polar", glider(lambda g: replace(g, polar=replace(g.polar, contains_munk=True)))),
     ("g +5 %", glider(lambda g: replace(g, gravity=g.gravity * TWENTIETH))),
+    (
+        "a piston counts twice in equation 2",
+        in_space_law(MassModel.centre_of_gravity, "self.piston * right", "2.0 * self.piston * right"),
+    ),
+    ("sign of R sin(gamma) in equation 4", in_space_law(MassModel.roller_place, "y + arm * sin", "y - arm * sin")),
+    ("sign of R (1 - cos(gamma)) in equation 4", in_space_law(MassModel.roller_place, "z - (arm", "z + (arm")),
+    ("water of equation 5 +5 %", in_space_law(MassModel.ballast, "self.density * pi", "1.05 * self.density * pi")),
+    ("sign of 2 m_b in equation 6", in_space_law(MassModel.displaced, "self.total - 2.0", "self.total + 2.0")),
+    ("sign of equation 7", in_space_law(MassModel.centre_of_buoyancy, "-self.ballast", "self.ballast")),
+    (
+        "sign of the attitude's rate in equation 10",
+        in_space_law(space.rates_in_space, "-b * p - c * q - d * r", "b * p + c * q + d * r"),
+    ),
+    ("handedness of R in equation 8", in_space_law(space.rotation, "2.0 * (b * c - a * d)", "2.0 * (b * c + a * d)")),
+    ("sign of P x w in equation 13", in_space_law(space.pushed, "np.cross(p, turn)", "np.cross(turn, p)")),
+    ("sign of H x w in equation 12", in_space_law(space.pushed, "np.cross(h, turn)", "np.cross(turn, h)")),
+    ("sign of M v x v in equation 12", in_space_law(space.pushed, "np.cross(p, v)", "np.cross(v, p)")),
+    ("sign of the net weight in equation 13", in_space_law(space.pushed, "+ setting.net_mass", "- setting.net_mass")),
+    (
+        "sign of the masses' moment in equation 12",
+        in_space_law(space.pushed, "np.cross(body.moments(setting), down)", "np.cross(down, body.moments(setting))"),
+    ),
+    ("sign of the side force", in_space_law(SpaceBody.water, "side = -s.K_S", "side = s.K_S")),
+    ("sign of the yaw moment of sideslip", in_space_law(SpaceBody.water, "s.K_Y * beta", "-s.K_Y * beta")),
+    ("sign of the yaw damping", in_space_law(SpaceBody.water, "- s.yaw_damping", "+ s.yaw_damping")),
+    ("lift +5 % in space", in_space_law(SpaceBody.water, "lift = (polar", "lift = 1.05 * (polar")),
+    ("drag +5 % in space", in_space_law(SpaceBody.water, "drag = (polar", "drag = 1.05 * (polar")),
+    (
+        "thrusters exchanged",
+        in_space_law(SpaceBody.thrust, "setting.left - setting.right", "setting.right - setting.left"),
+    ),
+    ("roller's mass +5 %", in_space(lambda m: replace(m, roller=m.roller * TWENTIETH))),
+    ("radius of the pistons +5 %", in_space(lambda m: replace(m, piston_radius=m.piston_radius * TWENTIETH))),
 )
 
 
@@ -419,7 +471,8 @@ def unchanged(study: str, suboff_study: Suboff | None) -> Verdicts:
     """A validation as it is."""
     match study:
         case "thauv":
-            return validate_thauv(lambda g: g)
+            plane, turned = validate_thauv(lambda g: g), validate_thauv_in_space()
+            return Verdicts({**plane.rows, **turned.rows}, plane.checks)
         case "flyingfish":
             return validate_flyingfish(fish())
         case "huuv":
