@@ -22,65 +22,35 @@ import sympy as sp  # type: ignore[import-untyped]
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array
 from coeflab.motion.multibody.chain import Base, Chain, Link
+from coeflab.motion.multibody.composite import (
+    Body,
+    Step,
+    about_origin,
+    blocks,
+    inward,
+    joined,
+    momentum,
+    moved_in,
+    scaled,
+)  # fmt: skip
 from coeflab.motion.multibody.tape import (
-    ZERO, ClosedForm, Function, Parameter, Square, Tape, Vector, Wrench, cross, number, plus, product, right_angled,
-    symbols_of, times, transposed,
+    ZERO,
+    ClosedForm,
+    Parameter,
+    Square,
+    Tape,
+    Vector,
+    Wrench,
+    cross,
+    number,
+    plus,
+    right_angled,
+    symbols_of,
+    times,
+    transposed,
 )  # fmt: skip
 
 Say = Callable[[str], None]
-
-
-class Body(NamedTuple):
-    """A rigid body with its water, in its own axes; for links those of the joint frame.
-
-    ``mass`` is a scalar, ``inertia`` and the blocks of ``added`` (A, B, D: p = A v + B w, L = B^T v + D w) are about the centre
-    of mass; strips have a start, an axis, a length and 1/2 rho C_D d L.
-    """
-
-    mass: Any
-    centre: Vector
-    inertia: Square
-    added: tuple[Square, Square, Square] | None
-    displaced: Any
-    lifted: Vector
-    strips: tuple[tuple[Vector, Vector, Any, Any], ...]
-
-
-class Step(NamedTuple):
-    """From a parent's axes to a joint frame: origin there, K Rz(theta)."""
-
-    shift: Vector
-    fixed: Square
-    cos: Any
-    sin: Any
-    turns: bool
-
-    def inward(self, t: Tape, v: Sequence[Any]) -> Vector:
-        """A vector of the joint frame in the parent's axes."""
-        turned = t.vector((self.cos * v[0] - self.sin * v[1], self.sin * v[0] + self.cos * v[1], v[2]))
-        return t.vector(times(self.fixed, turned))
-
-    def outward(self, t: Tape, v: Sequence[Any]) -> Vector:
-        """A vector of the parent in the joint frame's axes."""
-        x, y, z = t.vector(times(transposed(self.fixed), v))
-        return t.vector((self.cos * x + self.sin * y, self.cos * y - self.sin * x, z))
-
-    def symmetric_inward(self, t: Tape, m: Square) -> Square:
-        """A symmetric (3, 3) of the joint frame in the parent's axes."""
-        c, s = self.cos, self.sin
-        cc, cs = t.name(c * c), t.name(c * s)
-        (xx, xy, xz), (_, yy, yz), (_, _, zz) = m
-        gap = t.name(xx - yy)
-        low = t.name(yy + cc * gap - 2 * cs * xy)
-        across = t.name(cs * gap + (2 * cc - 1) * xy)
-        ux, uy = t.name(c * xz - s * yz), t.name(s * xz + c * yz)
-        turned = [[low, across, ux], [across, t.name(xx + yy - low), uy], [ux, uy, zz]]
-        return product(t, product(t, self.fixed, turned), transposed(self.fixed))
-
-    def square_inward(self, t: Tape, m: Square) -> Square:
-        """Any (3, 3) of the joint frame in the parent's axes."""
-        rows = transposed([list(self.inward(t, column)) for column in transposed(m)])
-        return [list(self.inward(t, row)) for row in rows]
 
 
 class _Numbers:
@@ -92,7 +62,7 @@ class _Numbers:
     def __call__(self, name: str, value: float, unit: str, said: str) -> Any:
         if not self.symbols or value == 0.0:
             return number(value)
-        self.found.append(Parameter(sp.Symbol(name, real=True), float(value), unit, said))
+        self.found.append(Parameter(sp.Symbol(name), float(value), unit, said))
         return self.found[-1].symbol
 
     def vector(self, name: str, values: Array, said: str) -> Vector:
@@ -228,31 +198,34 @@ class Derivation:
         for k in range(self.n, 0, -1):
             t.stage = f"inertia of link {k} and what it carries"
             step = steps[k - 1]
-            whole = _joined(t, _about_origin(t, self.bodies[k]), whole)
-            force = _momentum(t, whole, step.turns)
+            whole = joined(t, about_origin(t, self.bodies[k]), whole)
+            force = momentum(whole, step.turns)
             out[5 + k, 5 + k] = force[1][2] if step.turns else force[0][2]
             for j in range(k, 0, -1):
-                force = _inward(t, steps[j - 1], force)
+                force = inward(t, steps[j - 1], force)
                 if j > 1:
                     out[4 + j, 5 + k] = out[5 + k, 4 + j] = force[1][2] if steps[j - 2].turns else force[0][2]
             for i, e in enumerate((*force[0], *force[1])):
                 out[i, 5 + k] = out[5 + k, i] = e
-            whole = _moved_in(t, step, whole)
+            whole = moved_in(t, step, whole)
         t.stage = "inertia of the vehicle with its arm"
-        whole = _joined(t, _about_origin(t, self.bodies[0]), whole)
-        a, b, d = _blocks(whole)
+        whole = joined(t, about_origin(t, self.bodies[0]), whole)
+        a, b, d = blocks(whole)
         for i in range(3):
             for j in range(3):
                 out[i, j], out[3 + i, 3 + j] = a[i][j], d[i][j]
                 out[i, 3 + j] = out[3 + j, i] = b[i][j]
         return out
 
-    def motion(self, t: Tape, steps: list[Step], current: bool, still: bool) -> list[_Motion]:
-        """How every joint frame moves, the vehicle first (equations 9 to 12 where no speed changes)."""
+    def motion(
+        self, t: Tape, steps: list[Step], current: bool, still: bool, changes: Sequence[Any] = ()
+    ) -> list[_Motion]:
+        """How every joint frame moves, the vehicle first (equations 9 to 12); no speed changes unless ``changes`` says how."""
         t.stage = "velocity of the vehicle"
         v, w = self.speeds[:3], self.speeds[3:6]
-        a: Sequence[Any] = ZERO if still else t.vector(cross(w, v))
-        alpha: Sequence[Any] = ZERO
+        faster = changes or [sp.S.Zero] * (6 + self.n)
+        a: Sequence[Any] = ZERO if still else t.vector(plus(faster[:3], cross(w, v)))
+        alpha: Sequence[Any] = tuple(faster[3:6])
         if current:
             v = [t.name(x - c) for x, c in zip(v, self.current, strict=True)]
         out = []
@@ -262,18 +235,18 @@ class Derivation:
             if k == self.n:
                 break
             t.stage = f"velocity of link {k + 1}"
-            step, rate = steps[k], self.speeds[6 + k]
+            step, rate, more = steps[k], self.speeds[6 + k], faster[6 + k]
             v = list(step.outward(t, t.vector(plus(v, cross(w, step.shift)))))
             if turning is not None:
                 a = step.outward(t, t.vector(plus(a, times(turning, step.shift))))
                 alpha = step.outward(t, alpha)
             w = list(step.outward(t, w))
             if step.turns:
-                alpha = (t.name(alpha[0] + w[1] * rate), t.name(alpha[1] - w[0] * rate), alpha[2])
+                alpha = (t.name(alpha[0] + w[1] * rate), t.name(alpha[1] - w[0] * rate), t.name(alpha[2] + more))
                 w[2] = t.name(w[2] + rate)
             else:
                 twice = t.name(2 * rate)
-                a = (t.name(a[0] + w[1] * twice), t.name(a[1] - w[0] * twice), a[2])
+                a = (t.name(a[0] + w[1] * twice), t.name(a[1] - w[0] * twice), t.name(a[2] + more))
                 v[2] = t.name(v[2] + rate)
         return out
 
@@ -293,7 +266,7 @@ class Derivation:
             t.stage = f"forces on link {k} and what it carries"
             force, moment = t.vector(force), t.vector(moment)
             out[5 + k] = moment[2] if steps[k - 1].turns else force[2]
-            force, moment = _inward(t, steps[k - 1], (force, moment))
+            force, moment = inward(t, steps[k - 1], (force, moment))
             more, turning = wrenches[k - 1]
             force, moment = plus(force, more), plus(moment, turning)
         t.stage = "forces on the vehicle with its arm"
@@ -330,11 +303,11 @@ class Derivation:
             t.stage = f"forces of a field on link {k}" if k else "forces of a field on the vehicle"
             amount, lever = sp.S.Zero, ZERO
             if "mass" in kinds:
-                amount, lever = body.mass, _scaled(body.mass, body.centre)
+                amount, lever = body.mass, scaled(body.mass, body.centre)
             if "displaced" in kinds:
-                amount, lever = amount - body.displaced, plus(lever, _scaled(-body.displaced, body.lifted))
+                amount, lever = amount - body.displaced, plus(lever, scaled(-body.displaced, body.lifted))
             amount, lever = t.name(amount), t.vector(lever)
-            out.append((t.vector(_scaled(amount, along)), t.vector(cross(lever, along))))
+            out.append((t.vector(scaled(amount, along)), t.vector(cross(lever, along))))
         return out
 
     def drags(self, t: Tape, moving: list[_Motion]) -> list[Wrench]:
@@ -370,20 +343,8 @@ class _Motion(NamedTuple):
     turning: Square | None
 
 
-class _Whole(NamedTuple):
-    """Inertia about the origin of the axes it stands in.
-
-    ``mass``, ``moment`` m c and ``inertia`` of dry bodies; ``added`` takes all where there is water that moves with them.
-    """
-
-    mass: Any
-    moment: Vector
-    inertia: Square
-    added: tuple[Square, Square, Square] | None
-
-
 def _turning(t: Tape, w: Sequence[Any], alpha: Sequence[Any]) -> Square:
-    """alpha x + w x w x, named."""
+    """Alpha x + w x w x, named."""
     xx, yy, zz = (t.name(e * e) for e in w)
     xy, xz, yz = t.name(w[0] * w[1]), t.name(w[0] * w[2]), t.name(w[1] * w[2])
     return [
@@ -393,108 +354,10 @@ def _turning(t: Tape, w: Sequence[Any], alpha: Sequence[Any]) -> Square:
     ]
 
 
-def _scaled(amount: Any, v: Sequence[Any]) -> Vector:
-    return amount * v[0], amount * v[1], amount * v[2]
-
-
 def _at_origin(t: Tape, wrench: Wrench, centre: Vector) -> Wrench:
     """Of a force at a point the moment about the origin too."""
     force, moment = wrench
     return force, t.vector(plus(moment, cross(centre, force)))
-
-
-def _inward(t: Tape, step: Step, wrench: Wrench) -> Wrench:
-    """Force and moment of a joint frame, in the parent's axes and about its origin."""
-    force = step.inward(t, wrench[0])
-    return force, t.vector(plus(step.inward(t, wrench[1]), cross(step.shift, force)))
-
-
-def _skew(v: Sequence[Any]) -> Square:
-    nil = sp.S.Zero
-    return [[nil, -v[2], v[1]], [v[2], nil, -v[0]], [-v[1], v[0], nil]]
-
-
-def _sum(t: Tape, a: Square, b: Square) -> Square:
-    return [[t.name(x + y) for x, y in zip(r, s, strict=True)] for r, s in zip(a, b, strict=True)]
-
-
-def _shifted(t: Tape, mass: Any, moment: Vector, inertia: Square, r: Vector) -> tuple[Vector, Square]:
-    """m c and inertia about the origin of axes in which the old origin is at r."""
-    x, y, z = r
-    a, b, c = moment
-    twice = (2 * x * a + mass * x * x, 2 * y * b + mass * y * y, 2 * z * c + mass * z * z)
-    out = [list(row) for row in inertia]
-    for i in range(3):
-        out[i][i] = t.name(inertia[i][i] + sum(twice[j] for j in range(3) if j != i))
-        for j in range(i + 1, 3):
-            out[i][j] = out[j][i] = t.name(inertia[i][j] - r[i] * moment[j] - r[j] * moment[i] - mass * r[i] * r[j])
-    return t.vector(m + mass * e for m, e in zip(moment, r, strict=True)), out
-
-
-def _shifted_water(
-    t: Tape, blocks: tuple[Square, Square, Square], r: Vector
-) -> tuple[Square, Square, Square]:
-    """Blocks about the origin of axes in which the old origin is at r."""
-    a, b, d = blocks
-    s = _skew(r)
-    there = [[-e for e in row] for row in product(t, a, s)]
-    both = _sum(t, b, there)
-    low = product(t, transposed(b), s)
-    high = product(t, s, both)
-    out = [[sp.S.Zero] * 3 for _ in range(3)]
-    for i in range(3):
-        for j in range(i, 3):
-            out[i][j] = out[j][i] = t.name(d[i][j] - low[i][j] + high[i][j])
-    return a, both, out
-
-
-def _about_origin(t: Tape, body: Body) -> _Whole:
-    """A body about the origin of its axes."""
-    centre = t.vector(body.centre)
-    inertia = [[t.name(e) for e in row] for row in body.inertia]
-    dry = _Whole(body.mass, *_shifted(t, body.mass, ZERO, inertia, centre), None)
-    if body.added is None:
-        return dry
-    a, b, d = ([[t.name(e) for e in row] for row in block] for block in body.added)
-    return _joined(t, dry, dry._replace(added=_shifted_water(t, (a, b, d), centre)))
-
-
-def _blocks(whole: _Whole) -> tuple[Square, Square, Square]:
-    """A, B and D."""
-    if whole.added is not None:
-        return whole.added
-    nil = sp.S.Zero
-    mass = [[whole.mass if i == j else nil for j in range(3)] for i in range(3)]
-    return mass, [[-e for e in row] for row in _skew(whole.moment)], whole.inertia
-
-
-def _joined(t: Tape, one: _Whole, other: _Whole | None) -> _Whole:
-    """Two that move as one."""
-    if other is None:
-        return one
-    if one.added is None and other.added is None:
-        mass, moment = t.name(one.mass + other.mass), t.vector(plus(one.moment, other.moment))
-        return _Whole(mass, moment, _sum(t, one.inertia, other.inertia), None)
-    a, b, d = (_sum(t, x, y) for x, y in zip(_blocks(one), _blocks(other), strict=True))
-    return other._replace(added=(a, b, d))
-
-
-def _moved_in(t: Tape, step: Step, whole: _Whole) -> _Whole:
-    """The same in the parent's axes, about its origin."""
-    if whole.added is not None:
-        a, b, d = whole.added
-        turned = step.symmetric_inward(t, a), step.square_inward(t, b), step.symmetric_inward(t, d)
-        return whole._replace(added=_shifted_water(t, turned, step.shift))
-    moment, inertia = step.inward(t, whole.moment), step.symmetric_inward(t, whole.inertia)
-    return _Whole(whole.mass, *_shifted(t, whole.mass, moment, inertia, step.shift), None)
-
-
-def _momentum(t: Tape, whole: _Whole, turns: bool) -> Wrench:
-    """Momentum of a unit rate of the joint, about z or along it."""
-    a, b, d = _blocks(whole)
-    if turns:
-        return (b[0][2], b[1][2], b[2][2]), (d[0][2], d[1][2], d[2][2])
-    return (a[0][2], a[1][2], a[2][2]), (b[2][0], b[2][1], b[2][2])
 
 
 def _equations(one: Derivation, t: Tape, steps: list[Step]) -> Outputs:
@@ -502,9 +365,9 @@ def _equations(one: Derivation, t: Tape, steps: list[Step]) -> Outputs:
     mass = one.mass_matrix(t, steps)
     moving = one.motion(t, steps, current=True, still=False)
     down, water = one.spread(t, steps, one.down), one.spread(t, steps, one.acceleration)
-    total = [(_scaled(-1, f), _scaled(-1, m)) for f, m in one.inertia_forces(t, moving, water)]
-    heavy = one.uniform(t, ("mass", "displaced"), [_scaled(one.gravity, v) for v in down])
-    carried = [(_scaled(-1, f), _scaled(-1, m)) for f, m in one.uniform(t, ("displaced",), water)]
+    total = [(scaled(-1, f), scaled(-1, m)) for f, m in one.inertia_forces(t, moving, water)]
+    heavy = one.uniform(t, ("mass", "displaced"), [scaled(one.gravity, v) for v in down])
+    carried = [(scaled(-1, f), scaled(-1, m)) for f, m in one.uniform(t, ("displaced",), water)]
     for more in (heavy, carried, one.drags(t, moving)):
         total = [(plus(f, g), plus(m, n)) for (f, m), (g, n) in zip(total, more, strict=True)]
     return {"M": (mass, INERTIA), "f": (one.gathered(t, steps, total), FORCES)}
@@ -518,10 +381,7 @@ def _bias(one: Derivation, t: Tape, steps: list[Step]) -> Outputs:
 
 def _field(kind: str, output: str) -> Quantity:
     def quantity(one: Derivation, t: Tape, steps: list[Step]) -> Outputs:
-        if output == "f":
-            along = _scaled(-1, one.acceleration)
-        else:
-            along = _scaled(one.gravity, one.down)
+        along = scaled(-1, one.acceleration) if output == "f" else scaled(one.gravity, one.down)
         found = one.uniform(t, (kind,), one.spread(t, steps, along))
         return {output: (one.gathered(t, steps, found), FORCES)}
 
@@ -540,6 +400,38 @@ def _end(one: Derivation, t: Tape, steps: list[Step]) -> Outputs:
     for step in reversed(steps):
         place = plus(step.inward(t, t.vector(place)), step.shift)
     return {"r": (sp.Matrix(t.vector(place)), "m")}
+
+
+def link_motion(chain: Chain, link: int, *, symbols: bool = True) -> dict[str, sp.Matrix]:
+    """Place and motion of a link's centre of mass along the vehicle's axes, written out (equations 8 to 12).
+
+    Parameters
+    ----------
+    chain : Chain
+    link : int
+        From 1.
+    symbols : bool
+        Keep the numbers of the file as symbols.
+
+    Returns
+    -------
+    dict of str to (3, 1) sympy.Matrix
+        p from the vehicle's centre of mass, w, v, alpha and a, in q1 .., s1 .. and their rates sdot1 ...
+    """
+    one, t = Derivation(chain, symbols), Tape()
+    steps = one.steps(t)
+    moving = one.motion(t, steps, current=False, still=False, changes=symbols_of("sdot", 6 + chain.count))[link]
+    centre, turning = one.bodies[link].centre, moving.turning or []
+    found: dict[str, Sequence[Any]] = {
+        "w": moving.w, "v": plus(moving.v, cross(moving.w, centre)),
+        "alpha": moving.alpha, "a": plus(moving.a, times(turning, centre)),
+    }  # fmt: skip
+    for step in reversed(steps[:link]):
+        found = {key: step.inward(t, t.vector(vector)) for key, vector in found.items()}
+        centre = plus(step.inward(t, t.vector(centre)), step.shift)
+    outputs = {key: (sp.Matrix(list(vector)), "") for key, vector in {"p": centre, **found}.items()}
+    made = t.function("link_motion", "", ("q", "s"), outputs)
+    return {key: made.expanded(key) for key in outputs}
 
 
 Outputs = dict[str, tuple[sp.Matrix, str]]

@@ -10,22 +10,18 @@ from typing import Any
 
 import numpy as np
 import sympy as sp  # type: ignore[import-untyped]
-from sympy.printing.c import C99CodePrinter  # type: ignore[import-untyped]
-from sympy.printing.latex import LatexPrinter  # type: ignore[import-untyped]
-from sympy.printing.octave import OctaveCodePrinter  # type: ignore[import-untyped]
-from sympy.printing.pycode import PythonCodePrinter  # type: ignore[import-untyped]
 
 from coeflab.core.types import brief
 from coeflab.core.version import VERSION
 from coeflab.core.wording import identifier, matlab, one_line, python
 from coeflab.motion.multibody.chain import NODES
+from coeflab.motion.multibody.latex import STRIP, document
 from coeflab.motion.multibody.tape import ClosedForm, Function, Line
 
 WIDTH = 100
-STRIP = re.compile(r"strip(\d+)_(\d)")
-C_WORDS = frozenset(
+C_WORDS = (
     "auto break case char const continue default do double else enum extern float for goto if inline int long register restrict "
-    "return short signed sizeof static struct switch typedef union unsigned void volatile while main".split()
+    "return short signed sizeof static struct switch typedef union unsigned void volatile while main"
 )
 ARGUMENTS = {
     "q": "joint positions, rad or m",
@@ -59,75 +55,29 @@ class Origin:
     statements: tuple[str, ...] = ()
 
 
-class _Floats:
-    """Numbers as short as they can be read back, squares as products."""
-
-    def _print_Float(self, expr: Any) -> str:
-        return repr(float(expr))
-
-    def _print_Pow(self, expr: Any, **more: Any) -> str:
-        if expr.exp == 2 and expr.base.is_Atom:
-            base = self._print(expr.base)  # type: ignore[attr-defined]
-            return f"({base}*{base})"
-        return str(super()._print_Pow(expr, **more))  # type: ignore[misc]
-
-
-class _C(_Floats, C99CodePrinter):  # type: ignore[misc]
-    def _print_Symbol(self, expr: Any) -> str:
-        return STRIP.sub(r"strip\1[\2]", expr.name)
-
-
-class _Python(_Floats, PythonCodePrinter):  # type: ignore[misc]
-    def _print_Symbol(self, expr: Any) -> str:
-        return STRIP.sub(r"strip\1[\2]", expr.name)
+def in_code(expression: Any) -> str:
+    """An expression of scalars as C, Python and Octave all read it; numbers as short as they can be read back."""
+    if expression.is_Symbol:
+        return str(STRIP.sub(r"strip\1[\2]", expression.name))
+    if expression.is_Integer:
+        return str(int(expression))
+    if expression.is_Float:
+        return repr(float(expression))
+    if expression.is_Add:
+        terms = [in_code(e) for e in expression.args]
+        return terms[0] + "".join(f" - {x[1:]}" if x.startswith("-") else f" + {x}" for x in terms[1:])
+    if expression.is_Mul:
+        factors = list(expression.args)
+        sign = "-" if factors[0] == -1 else ""
+        return sign + "*".join(_factor(e) for e in factors[len(sign) :])
+    if expression.is_Pow and expression.exp == 2:
+        return f"{_factor(expression.base)}*{_factor(expression.base)}"
+    name = "sqrt" if expression.is_Pow and expression.exp == sp.S.Half else expression.func.__name__
+    return f"{name}({in_code(expression.args[0])})"
 
 
-class _Octave(_Floats, OctaveCodePrinter):  # type: ignore[misc]
-    def _print_Symbol(self, expr: Any) -> str:
-        return STRIP.sub(lambda m: f"strip{m[1]}({int(m[2]) + 1})", expr.name)
-
-
-class _Latex(LatexPrinter):  # type: ignore[misc]
-    """Symbols as papers write them."""
-
-    def _print_Float(self, expr: Any) -> str:
-        mantissa, _, power = repr(float(expr)).partition("e")
-        return mantissa if not power else rf"{mantissa} \cdot 10^{{{int(power)}}}"
-
-    def _print_Symbol(self, expr: Any, **_: Any) -> str:
-        return in_letters(expr.name)
-
-
-AXES = ("x", "y", "z")
-SPEEDS = ("u", "v", "w", "p", "q", "r")
-NAMED = {"cos": r"\mathrm{c}", "sin": r"\mathrm{s}", "angle": r"\theta", "x": "x", "q": "q"}
-VECTORS = {"down": r"\hat{e}", "current": "v^f", "acceleration": "a^f"}
-
-
-def in_letters(name: str) -> str:
-    """A symbol in LaTeX: c_1 and s_1 for cosine and sine of a joint, u to r and dq/dt for generalised speeds."""
-    if found := STRIP.fullmatch(name):
-        return f"d{chr(39) if int(found[2]) > 2 else ''}_{{{found[1]}{AXES[int(found[2]) % 3]}}}"
-    word, digits = re.fullmatch(r"(.*?)(\d*)", name).groups()  # type: ignore[union-attr]
-    if word == "s" and digits:
-        k = int(digits)
-        return SPEEDS[k - 1] if k <= 6 else rf"\dot{{q}}_{{{k - 6}}}"
-    if word in VECTORS:
-        return f"{VECTORS[word]}_{{{AXES[int(digits) - 1]}}}"
-    if word in NAMED and digits:
-        return f"{NAMED[word]}_{{{digits}}}"
-    head, _, behind = name.partition("_")
-    greek = {"alpha": r"\alpha", "theta": r"\theta", "rho": r"\rho"}
-    return greek.get(head, head) + (f"_{{{behind.replace('_', ',')}}}" if behind else "")
-
-
-def _printers() -> dict[str, Any]:
-    plain = {"order": "none"}
-    names = {"fully_qualified_modules": False}
-    return {
-        "c": _C(plain), "python": _Python({**plain, **names}), "octave": _Octave({**plain, "inline": True}),
-        "latex": _Latex({**plain, "mul_symbol": r" \,"}),
-    }  # fmt: skip
+def _factor(e: Any) -> str:
+    return f"({in_code(e)})" if e.is_Add else in_code(e)
 
 
 def _nodes() -> tuple[list[str], list[str]]:
@@ -140,7 +90,8 @@ def _folded(text: str, before: str, behind: str = "") -> list[str]:
     """A statement on lines of at most `WIDTH` letters, broken between terms."""
     lines = textwrap.wrap(text, WIDTH - len(before) - len(behind) - 4, break_long_words=False, break_on_hyphens=False)
     return [
-        before + ("    " if i else "") + line.replace("\0", " ") + (behind if i < len(lines) - 1 else "") for i, line in enumerate(lines)
+        before + ("    " if i else "") + line.replace("\0", " ") + (behind if i < len(lines) - 1 else "")
+        for i, line in enumerate(lines)
     ]
 
 
@@ -187,8 +138,7 @@ def _parameters_of(form: ClosedForm, used: set[str]) -> list[str]:
 
 def c_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
     """Header and source, C99 without anything but math.h."""
-    name = identifier(stem, C_WORDS)
-    printed = _printers()["c"]._print
+    name = identifier(stem, frozenset(C_WORDS.split()))
     comments = [line.replace("*/", "* /").replace("/*", "/ *") for line in _comment(_head(form, origin), "  ")]
     guard, n, size = f"{name.upper()}_H", len(form.links), form.size
     first = f"const\0{name}_parameters\0*of, " if form.parameters else ""
@@ -221,7 +171,7 @@ def c_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
             source += [f"    const double {symbol} = {argument}[{k}];" for symbol, k in own if symbol in used]
             if not any(symbol in used for symbol, _ in own):
                 source.append(f"    (void){argument};")
-        source += _body(function, "    ", "/* {} */", lambda line: _c_line(line, printed))
+        source += _body(function, "    ", "/* {} */", _c_line)
         for key, (matrix, _) in function.outputs.items():
             source.append(f"    memset({key}, 0, {matrix.rows * matrix.cols} * sizeof(double));")
             for i, j, e in _entries(matrix):
@@ -229,7 +179,7 @@ def c_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
                 if matrix.cols > 1 and j < i:
                     source += [f"    {at} = {key}[{j}][{i}];"] if e != 0 else []
                 elif e != 0:
-                    source += _folded(f"{at} = {printed(e)};", "    ")
+                    source += _folded(f"{at} = {in_code(e)};", "    ")
         source += ["}", ""]
     header += ["#ifdef __cplusplus", "}", "#endif", "", "#endif", ""]
     return {f"{name}.h": "\n".join(header), f"{name}.c": "\n".join(source)}
@@ -268,11 +218,11 @@ def _strip_name(line: Line) -> str:
     return str(line.names[0].name.partition("_")[0])
 
 
-def _c_line(line: Line, printed: Callable[[Any], str]) -> list[str]:
+def _c_line(line: Line) -> list[str]:
     if len(line.names) == 1:
-        return _folded(f"const double {line.names[0].name} = {printed(line.of[0])};", "    ")
+        return _folded(f"const double {line.names[0].name} = {in_code(line.of[0])};", "    ")
     name = _strip_name(line)
-    return [f"    double {name}[6];", *_folded(f"strip({', '.join(map(printed, line.of))}, {name});", "    ")]
+    return [f"    double {name}[6];", *_folded(f"strip({', '.join(map(in_code, line.of))}, {name});", "    ")]
 
 
 def _body(function: Function, before: str, comment: str, written: Callable[[Line], list[str]]) -> list[str]:
@@ -288,7 +238,6 @@ def _body(function: Function, before: str, comment: str, written: Callable[[Line
 
 def python_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
     """A module of functions of numpy arrays."""
-    printed = _printers()["python"]._print
     out = [*_comment(_head(form, origin), "# "), *_comment(
         ["Arguments are arrays of these lengths, or of columns: (length, many) gives results whose last axis is many."], "# "
     ), '"""Equations of motion of a vehicle with an arm, by Kane\'s method."""', "", "import math", "", "import numpy as np", ""]  # fmt: skip
@@ -315,7 +264,7 @@ def python_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
             names = ", ".join(f"{a}{k}" for k in range(1, form.length(a) + 1))
             out += _folded(f"{names}{',' * (form.length(a) == 1)} = np.asarray({a}, dtype=float).tolist() if np.ndim({a}) == 1 "
                            f"else np.asarray({a}, dtype=float)", "    ", " \\")  # fmt: skip
-        out += _body(function, "    ", "# {}", lambda line: _python_line(line, printed))
+        out += _body(function, "    ", "# {}", _python_line)
         for key, (matrix, _) in function.outputs.items():
             square = matrix.cols > 1
             shape = f"({matrix.rows}, {matrix.cols}, *many)" if square else f"({matrix.rows}, *many)"
@@ -325,7 +274,7 @@ def python_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
                 if square and j < i:
                     out += [f"    {at} = {key}[{j}, {i}]"] if e != 0 else []
                 elif e != 0:
-                    out += _folded(f"{at} = {printed(e)}", "    ", " \\")
+                    out += _folded(f"{at} = {in_code(e)}", "    ", " \\")
         out.append(f"    return {', '.join(function.outputs)}")
     return {f"{identifier(stem, python())}.py": "\n".join([*out, ""])}
 
@@ -340,16 +289,15 @@ PYTHON_STRIP = '''def strip(ax, ay, az, bx, by, bz):
 '''
 
 
-def _python_line(line: Line, printed: Callable[[Any], str]) -> list[str]:
+def _python_line(line: Line) -> list[str]:
     if len(line.names) == 1:
-        return _folded(f"{line.names[0].name} = {printed(line.of[0])}", "    ", " \\")
-    return _folded(f"{_strip_name(line)} = strip({', '.join(map(printed, line.of))})", "    ", " \\")
+        return _folded(f"{line.names[0].name} = {in_code(line.of[0])}", "    ", " \\")
+    return _folded(f"{_strip_name(line)} = strip({', '.join(map(in_code, line.of))})", "    ", " \\")
 
 
 def octave_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
     """One function a file, as MATLAB and Octave look them up."""
     name = identifier(stem, matlab(), 40)
-    printed = _printers()["octave"]._print
     head = _comment(_head(form, origin), "% ")
     files = {}
     if form.parameters:
@@ -367,7 +315,7 @@ def octave_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
         for a in function.arguments:
             symbols = [(f"{a}{k}", k) for k in range(1, form.length(a) + 1)]
             out += [f"    {symbol} = {a}({k});" for symbol, k in symbols if symbol in used]
-        out += _body(function, "    ", "% {}", lambda line: _octave_line(line, printed))
+        out += _body(function, "    ", "% {}", _octave_line)
         for key, (matrix, _) in function.outputs.items():
             out.append(f"    {key} = zeros({matrix.rows}, {matrix.cols});")
             for i, j, e in _entries(matrix):
@@ -375,7 +323,7 @@ def octave_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
                 if matrix.cols > 1 and j < i:
                     out += [f"    {at} = {key}({j + 1}, {i + 1});"] if e != 0 else []
                 elif e != 0:
-                    out += _folded(f"{at} = {printed(e)};", "    ", " ...")
+                    out += _folded(f"{at} = {in_code(e)};", "    ", " ...")
         out.append("end")
         if any(len(line.names) > 1 for line in function.lines):
             place, weight = _nodes()
@@ -385,78 +333,22 @@ def octave_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
             out += _folded(f"k = [{', '.join(weight)}];", "    ", " ...")
             out += ["    u = a(:)*ones(size(t)) + b(:)*t;", "    f = k.*sqrt(sum(u.*u, 1));"]
             out += ["    out = [u*f.'; u*(f.*t).'];", "end"]
-        files[f"{name}_{function.name}.m"] = "\n".join([*out, ""])
+        text = re.sub(r"(strip\d+)\[(\d)\]", lambda m: f"{m[1]}({int(m[2]) + 1})", "\n".join([*out, ""]))
+        files[f"{name}_{function.name}.m"] = text
     return files
 
 
-def _octave_line(line: Line, printed: Callable[[Any], str]) -> list[str]:
+def _octave_line(line: Line) -> list[str]:
     if len(line.names) == 1:
-        return _folded(f"{line.names[0].name} = {printed(line.of[0])};", "    ", " ...")
-    a, b = (", ".join(map(printed, part)) for part in (line.of[:3], line.of[3:]))
+        return _folded(f"{line.names[0].name} = {in_code(line.of[0])};", "    ", " ...")
+    a, b = (", ".join(map(in_code, part)) for part in (line.of[:3], line.of[3:]))
     return _folded(f"{_strip_name(line)} = strip([{a}], [{b}]);", "    ", " ...")
 
 
-SPECIAL = str.maketrans({c: rf"\{c}" for c in "&%$#_{}"} | {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}",
-                        "^": r"\textasciicircum{}"})  # fmt: skip
-
-
 def latex_files(form: ClosedForm, origin: Origin, stem: str) -> dict[str, str]:
-    """A document that stands alone: names as they are worked out, then the entries."""
-    printed = _printers()["latex"]._print
-    out = [*_comment(_head(form, origin), "% "), r"\documentclass{article}", r"\usepackage{amsmath}"]
-    out += [r"\usepackage[margin=2cm]{geometry}", r"\allowdisplaybreaks", r"\begin{document}", r"\sloppy"]
-    for line in _head(form, origin):
-        out += [*textwrap.wrap(line.translate(SPECIAL), WIDTH, break_long_words=False, break_on_hyphens=False), ""]
-    if form.parameters:
-        out += [r"\section*{Parameters}", r"\begin{itemize}"]
-        for p in form.parameters:
-            value = _Latex()._print_Float(p.value)
-            out.append(rf"\item ${in_letters(p.symbol.name)} = {value}$ {p.unit.translate(SPECIAL)}: {one_line(p.said).translate(SPECIAL)}")
-        out += [r"\end{itemize}"]
-    for function in form.functions:
-        out += [rf"\section*{{{function.name.replace('_', ' ').capitalize()}}}", function.said.translate(SPECIAL)]
-        rows: list[tuple[str, str]] = []
-        for line in function.lines:
-            rows += _latex_rows(line, printed)
-        for key, (matrix, _) in function.outputs.items():
-            for i, j, e in _entries(matrix):
-                if e != 0 and not (matrix.cols > 1 and j < i):
-                    at = f"{i + 1},{j + 1}" if matrix.cols > 1 else f"{i + 1}"
-                    rows.append((f"{key}_{{{at}}}", printed(e)))
-        if not rows:
-            out.append("It is zero.")
-            continue
-        out.append(r"\begin{align*}")
-        for left, right in rows:
-            lines = textwrap.wrap(right, 150, break_long_words=False, break_on_hyphens=False) if len(right) > 170 else [right]
-            lines = _between_terms(right) if len(lines) > 1 else lines
-            out.append(f"{left} &= {lines[0]} \\\\")
-            out += [rf"&\quad {more} \\" for more in lines[1:]]
-        out.append(r"\end{align*}")
-    return {f"{identifier(stem)}.tex": "\n".join([*out, r"\end{document}", ""])}
-
-
-def _between_terms(text: str) -> list[str]:
-    """A long sum on lines that begin with a sign, outside of braces and parentheses."""
-    out, depth, start = [], 0, 0
-    for i, letter in enumerate(text):
-        depth += (letter in "{(") - (letter in "})")
-        if depth == 0 and i - start > 140 and text[i : i + 3] in (" + ", " - "):
-            out.append(text[start:i])
-            start = i
-    return [*out, text[start:].strip()]
-
-
-def _latex_rows(line: Line, printed: Callable[[Any], str]) -> list[tuple[str, str]]:
-    if len(line.names) == 1:
-        return [(in_letters(line.names[0].name), printed(line.of[0]))]
-    k = _strip_name(line).removeprefix("strip")
-    a, b = (r" \\ ".join(map(printed, part)) for part in (line.of[:3], line.of[3:]))
-    u = rf"\mathbf{{u}}_{{{k}}}(t)"
-    return [
-        (u, rf"\begin{{pmatrix}} {a} \end{{pmatrix}} + t \begin{{pmatrix}} {b} \end{{pmatrix}}"),
-        (rf"\mathbf{{d}}_{{{k}}}, \mathbf{{d}}'_{{{k}}}", rf"\int_0^1 |{u}| \, {u} \, dt, \ \int_0^1 t \, |{u}| \, {u} \, dt"),
-    ]
+    """One document."""
+    head = _head(form, origin)
+    return {f"{identifier(stem)}.tex": "\n".join([*_comment(head, "% "), document(form, head)])}
 
 
 LANGUAGES: Mapping[str, Callable[[ClosedForm, Origin, str], dict[str, str]]] = {
@@ -465,3 +357,20 @@ LANGUAGES: Mapping[str, Callable[[ClosedForm, Origin, str], dict[str, str]]] = {
     "latex": latex_files,
     "octave": octave_files,
 }
+
+
+def written(
+    form: ClosedForm, language: str, origin: Origin, say: Callable[[str], None] = lambda _: None
+) -> dict[str, bytes]:
+    """The files of a language, by name.
+
+    Parameters
+    ----------
+    form : ClosedForm
+    language : {"c", "python", "latex", "octave"}
+    origin : Origin
+    say : callable
+        Is handed what is written next.
+    """
+    say(f"writing {language}")
+    return {name: text.encode() for name, text in LANGUAGES[language](form, origin, form.name).items()}

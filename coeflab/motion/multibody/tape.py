@@ -123,7 +123,7 @@ class ClosedForm:
 
 def symbols_of(argument: str, count: int) -> list[Any]:
     """Symbols of an argument's entries."""
-    return [sp.Symbol(f"{argument}{k}", real=True) for k in range(1, count + 1)]
+    return [sp.Symbol(f"{argument}{k}") for k in range(1, count + 1)]
 
 
 def number(value: float) -> Any:
@@ -152,7 +152,7 @@ class Tape:
         if negative := expression.could_extract_minus_sign():
             expression = -expression
         if not expression.is_Atom and expression not in self._known:
-            symbol = sp.Symbol(called or f"x{len(self.lines)}", real=True)
+            symbol = sp.Symbol(called or f"x{len(self.lines)}")
             self._known[expression] = symbol
             self.lines.append(Line((symbol,), (expression,), self.stage))
         found = self._known.get(expression, expression)
@@ -166,7 +166,7 @@ class Tape:
     def strip(self, start: Vector, more: Vector) -> tuple[Vector, Vector]:
         """Integrals over t from 0 to 1 of |u| u and of t |u| u, u = start + t more."""
         k = len(self.lines)
-        made = tuple(sp.Symbol(f"strip{k}_{i}", real=True) for i in range(6))
+        made = tuple(sp.Symbol(f"strip{k}_{i}") for i in range(6))
         self.lines.append(Line(made, (*start, *more), self.stage))
         still = [a == 0 and b == 0 for a, b in zip(start, more, strict=True)]
         first, second = ([sp.S.Zero if s else e for s, e in zip(still, m, strict=True)] for m in (made[:3], made[3:]))
@@ -195,46 +195,33 @@ class Tape:
                     count(e)
         put: dict[Any, Any] = {}
         seen: dict[Any, Any] = {}
-        kept = []
+        kept: list[Line] = []
+        strips = 0
         for line in reversed(needed):
-            of = tuple(e.xreplace(put) for e in line.of)
-            if of[0] in seen and len(line.names) == 1:
-                put[line.names[0]] = seen[of[0]]
-            elif len(line.names) == 1 and uses[line.names[0]] == 1 and int(sp.count_ops(of[0])) <= LONGEST:
-                put[line.names[0]] = of[0]
+            of = tuple(e.xreplace(put) if e.args or e.is_Symbol else e for e in line.of)
+            own = line.names[0]
+            if len(line.names) > 1:
+                strips += 1
+                names = tuple(sp.Symbol(f"strip{strips}_{i}") for i in range(6))
+            elif of[0] in seen or (uses[own] == 1 and int(sp.count_ops(of[0])) <= LONGEST):
+                put[own] = seen.get(of[0], of[0])
+                continue
             else:
-                if len(line.names) == 1:
-                    seen[of[0]] = line.names[0]
-                kept.append(line._replace(of=of))
+                names = (sp.Symbol(f"x{len(seen) + 1}") if own.name.startswith("x") else own,)
+                seen[of[0]] = names[0]
+            put.update(zip(line.names, names, strict=True))
+            kept.append(Line(names, of, line.stage))
         final = {key: (matrix.xreplace(put), what) for key, (matrix, what) in outputs.items()}
-        return _numbered(Function(name, said, arguments, tuple(kept), final))
-
-
-def _numbered(function: Function) -> Function:
-    """The same function, its names counted from 1 without gaps."""
-    new: dict[Any, Any] = {}
-    strips = 0
-    for line in function.lines:
-        if len(line.names) > 1:
-            strips += 1
-            new.update({n: sp.Symbol(f"strip{strips}_{i}", real=True) for i, n in enumerate(line.names)})
-        elif line.names[0].name.startswith("x"):
-            new[line.names[0]] = sp.Symbol(f"x{len(new) + 1}", real=True)
-    lines = tuple(
-        Line(tuple(new.get(n, n) for n in line.names), tuple(e.xreplace(new) for e in line.of), line.stage)
-        for line in function.lines
-    )
-    outputs = {key: (matrix.xreplace(new), what) for key, (matrix, what) in function.outputs.items()}
-    return Function(function.name, function.said, function.arguments, lines, outputs)
+        return Function(name, said, arguments, tuple(kept), final)
 
 
 def cross(a: Sequence[Any], b: Sequence[Any]) -> Vector:
-    """a x b, without names."""
+    """A x b, without names."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def plus(a: Sequence[Any], b: Sequence[Any]) -> Vector:
-    """a + b, without names."""
+    """A + b, without names."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
