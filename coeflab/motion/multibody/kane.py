@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.types import Array, brief
+from coeflab.law.transforms import denavit_hartenberg
 from coeflab.motion.multibody.chain import Chain
 
 ZERO = np.zeros(3)
@@ -45,13 +46,6 @@ class Pose:
     pivot: Array
     origin: Array
     end: Array
-
-
-def denavit_hartenberg(theta: float, d: float, a: float, alpha: float) -> tuple[Array, Array]:
-    """(3, 3) rotation and (3,) shift of A_(j-1)^j = Rz(theta) Tz(d) Tx(a) Rx(alpha), as in section 4.2."""
-    ct, st, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
-    turn = np.array([[ct, -st * ca, st * sa], [st, ct * ca, -ct * sa], [0.0, sa, ca]])
-    return turn, np.array([a * ct, a * st, d])
 
 
 def pose(chain: Chain, q: Array) -> Pose:
