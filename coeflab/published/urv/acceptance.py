@@ -12,8 +12,11 @@ import numpy as np
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
 from coeflab.core.machine import one_thread
 from coeflab.core.types import Array
+from coeflab.law.rigid_body import axes_in_earth, kinematics
+from coeflab.law.transforms import denavit_hartenberg, rotation
+from coeflab.motion.dynamics import from_euler, rotations
 from coeflab.motion.multibody import kane
-from coeflab.motion.multibody.chain import FLU, Base, Chain, Joint, Link, in_frame_0
+from coeflab.motion.multibody.chain import FLU, Chain, in_frame_0
 from coeflab.published.urv import model
 from coeflab.published.urv.model import DENSITY, cylinder, dry, wet
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
@@ -33,6 +36,7 @@ DIGITS, FOUR_DIGITS = 5.1e-7, 5.1e-5  # half of the last digit of the numbers ab
 EXACT, SECOND, CONSERVED, BALANCED = 1e-12, 1e-7, 1e-8, 1e-6
 FINEST = 1e-13  # no finer than that, so that every machine says the same
 STEP = 1e-4
+NO_WATER = np.zeros((6, 6))
 LASTS = 5.0
 SWING = {"radius": 0.05, "length": 0.8, "rate": 1.3}
 
@@ -161,7 +165,7 @@ def _transformations() -> ComparedTable:
     at = kane.pose(chain, Q)
     for j, link in enumerate(chain.links):
         joint = link.joint
-        turn, shift = kane.denavit_hartenberg(joint.theta + float(Q[j]), joint.d, joint.a, joint.alpha)
+        turn, shift = denavit_hartenberg(joint.theta + float(Q[j]), joint.d, joint.a, joint.alpha)
         apart = np.abs(np.hstack([turn, shift[:, None]]) - printed[j][:3]).max()
         rows.append(
             Compared(f"A_{j}^{j + 1}", "largest entry apart", "1, m", 0.0, max(float(apart), FINEST), EXACT, Basis.CALIBRATION)
@@ -170,8 +174,14 @@ def _transformations() -> ComparedTable:
         place = whole @ np.append(link.centre_of_mass, 1.0)
         expected = np.asarray(model.ATTACHMENT) + place[:3]
         rows.append(_none(f"equation 8, link {j + 1}", "p by 4 x 4 matrices, apart", "m", FLU @ at.centre[j + 1] - expected))
+        for name, printed_, held in (
+            ("mass", model.MASSES[j], link.mass), ("centre of mass", model.CENTRES[j], link.centre_of_mass),
+            ("inertia", model.INERTIAS[j], np.diag(link.inertia)),
+        ):  # fmt: skip
+            apart = np.max(np.abs(np.asarray(printed_) - held))
+            rows.append(Compared(f"link {j + 1}", f"{name} of the file, apart", "SI", 0.0, float(apart), EXACT, Basis.CALIBRATION))
     rows.append(
-        _none("equation 27", "end effector by 4 x 4 matrices, apart", "m", FLU @ at.end - np.asarray(model.ATTACHMENT) - whole[:3, 3])
+        _none("equation 27", "end effector by 4 x 4 matrices, apart", "m", FLU @ at.end - np.asarray(model.ATTACHMENT) - (whole @ [*chain.tool, 1.0])[:3])
     )
     return ComparedTable(
         "transformations", "Denavit-Hartenberg rows, and positions by the printed matrices", tuple(rows),
@@ -276,8 +286,7 @@ def _theory() -> ComparedTable:
         speeds = in_frame_0(chain, SPEEDS)
         bias = kane.bias(chain, Q, speeds)
         rows.append(_none(said, "C apart from Hamel's equations", "N, N m", bias - hamel_bias(chain, Q, speeds), SECOND))
-        lost = float(speeds @ bias - 0.5 * np.einsum("k,i,kij,j->", speeds[6:], speeds, _slopes(chain, Q), speeds))
-        rows.append(_none(said, "power from nothing", "W", lost, SECOND))
+        rows.append(_none(said, "power from nothing", "W", _from_nothing(chain, Q, speeds, bias), SECOND))
         found, step = kane.partial_velocities(chain, kane.pose(chain, Q)), 1e-6
         rows.append(_none(said, "partial velocities apart from slopes of p", "1, m", _position_slopes(chain, step) - found[:, :3, 6:], 1e-8))
     water = wet()
@@ -345,18 +354,9 @@ def _flow() -> ComparedTable:
     )  # fmt: skip
 
 
-def swung(radius: float = SWING["radius"], length: float = SWING["length"]) -> Chain:
-    """One cylinder along x, swung about its end, on a vehicle without drag."""
-    strip = model.strip(np.array([length / 2.0, 0.0, 0.0]), radius, length, 0)
-    link = Link(
-        "cylinder", Joint("q1", "revolute", 0.0, 0.0, 0.0, 0.0), 5.0, np.array([length / 2.0, 0.0, 0.0]), np.diag([0.01, 0.3, 0.3]),
-        cylinder(radius, length, 0), strips=(strip,),
-    )  # fmt: skip
-    return Chain("swung", Base("vehicle", 100.0, np.diag([10.0, 20.0, 25.0])), (link,), np.zeros(3), density=DENSITY)
-
-
 def _drag() -> ComparedTable:
-    chain, rate, length = swung(), SWING["rate"], SWING["length"]
+    rate, length = SWING["rate"], SWING["length"]
+    chain = model.swung(SWING["radius"], length)
     speeds = np.zeros(7)
     speeds[6] = rate
     push = kane.drag(chain, np.zeros(1), speeds)
@@ -366,24 +366,125 @@ def _drag() -> ComparedTable:
         _same("swung about its end", "moment at the joint", "N m", -unit * rate**2 * length**4 / 4.0, float(push[6]), 1e-9),
         _same("swung about its end", "force on the vehicle", "N", unit * rate**2 * length**3 / 3.0, float(np.linalg.norm(push[:3])), 1e-9),
     ]
-    along = np.zeros(7)
-    along[0] = 0.7
-    rows.append(_none("link, towed along its axis", "drag", "N, N m", kane.drag(chain, np.zeros(1), along)))
-    oblique = np.zeros(7)
-    oblique[:2] = 0.7 * np.sqrt(0.5)
-    rows.append(
-        _same("link, towed at 45 deg", "force across", "N", -unit * length * 0.7**2 / 2.0,
-              float(in_frame_0(chain, kane.drag(chain, np.zeros(1), in_frame_0(chain, oblique)))[1]), 1e-9)
-    )  # fmt: skip
+    rows.append(_none("link, towed along its axis", "drag", "N", _towed(chain, np.array([0.7, 0.0, 0.0]))))
     alone = replace(wet(), links=())
     towed = np.array([-0.6, 0.3, 0.2, 0.0, 0.0, 0.0])
     whole = float(np.linalg.norm(towed[:3]))
-    area = model.SPHERE * np.pi * 0.4**2
     rows.append(
         _none("vehicle, astern", "drag apart from -1/2 C_D rho S |v| v", "N",
-              kane.drag(alone, np.zeros(0), towed)[:3] + 0.5 * DENSITY * area * whole * towed[:3], 1e-9)
+              kane.drag(alone, np.zeros(0), towed)[:3] + 0.5 * DENSITY * model.AREA * whole * towed[:3], 1e-9)
     )  # fmt: skip
     return ComparedTable(
         "drag", "Drag in closed form", tuple(rows), "Equations 21 and 22 as corrected, section 4.5",
         (f"Cylinder of {SWING['radius']:g} m radius and {length:g} m at {rate:g} rad/s, C_D {model.BASIC:g}: power 1/2 rho C_D d w^3 L^4/4.",),
     )  # fmt: skip
+
+
+def _earth() -> ComparedTable:
+    angles, w, step = np.array([0.4, -0.5, 1.1]), np.array([0.3, -0.2, 0.25]), 1e-6
+    rates = model.euler_rates(angles, w)
+    ahead, behind = (rotation(*(angles + side * step * rates)) for side in (1.0, -1.0))
+    slope = rotation(*angles).T @ (ahead - behind) / (2.0 * step)
+    turned = np.array([slope[2, 1], slope[0, 2], slope[1, 0]])
+    quaternion = from_euler(*angles)
+    moved_ = np.array(kinematics(axes_in_earth(*quaternion), *quaternion, *np.zeros(3), *w)[3:7])
+    by_angles = (from_euler(*(angles + step * rates)) - from_euler(*(angles - step * rates))) / (2.0 * step)
+    rows = (
+        _none("equation 28", "apart from the turn of the equations", "1", model.turn_by_paper(angles) - rotations(quaternion[None])[0]),
+        _none("equation 29", "w apart from the slope of the turn", "rad/s", turned - w, 1e-8),
+        _none("quaternion", "rate apart from that of the angles", "1/s", moved_ - by_angles, 1e-8),
+    )
+    return ComparedTable(
+        "earth", "From frame 0 to north, east, down", rows, "Equations 28 and 29 as corrected",
+        ("Angles 0.4, -0.5 and 1.1 rad. Motions are integrated with a quaternion, as the paper advises.",),
+    )  # fmt: skip
+
+
+# ---- errata as numbers ---------------------------------------------------------------------------------------------
+
+
+def _errata() -> ComparedTable:
+    """Of each erratum what the printed form gives and what the corrected one, where theory knows both."""
+    rows: list[Compared] = []
+
+    def pair(what: str, quantity: str, unit: str, of_printed: tuple[float, float], of_corrected: tuple[float, float], within: float) -> None:
+        """Theory and found of the printed form, then of the corrected one."""
+        for said, (expected, found) in (("as printed", of_printed), ("corrected", of_corrected)):
+            rows.append(_same(f"{what}, {said}", quantity, unit, expected, found, within))
+
+    for i, (name, (right, wrong)) in enumerate(SPHEROID.items()):
+        forms = [model.spheroid_by_paper(1.0, 0.4, printed=printed)[i] for printed in (True, False)]
+        pair("1 e of the spheroid", name, "1", (wrong, forms[0]), (right, forms[1]), FOUR_DIGITS)
+    water = wet()
+    body, whole = kane.mass_matrix(dry(), Q)[1, 1], kane.mass_matrix(water, Q)[1, 1]
+    pair("2 sign of I_A", "M_22", "kg", (MASS[1] - ADDED[1], 2.0 * body - whole), (MASS[1] + ADDED[1], whole), 1.1e-6)
+    radius, length = SWING["radius"], SWING["length"]
+    across = DENSITY * np.pi * radius**2 * length
+    quarter, end, right = (
+        kane.mass_matrix(model.swung(radius, length, water), np.zeros(1)) - kane.mass_matrix(model.swung(radius, length, NO_WATER), np.zeros(1))
+        for water in (model.cylinder_by_paper(radius, length, quarter=True), model.cylinder_by_paper(radius, length, quarter=False), None)
+    )  # fmt: skip
+    pair("3 k of the cylinder", "A across", "kg", (across / 4.0, quarter[1, 1]), (across, right[1, 1]), 1e-9)
+    turning = across * length**2
+    pair("3 turning of the cylinder", "about its end", "kg m^2", (turning * 7.0 / 12.0, end[6, 6]), (turning / 3.0, right[6, 6]), 1e-9)
+    chain, w = model.swung(radius, length), np.array([0.3, 0.5, 0.9])
+    moving = in_frame_0(chain, np.array([0.0, 0.0, 0.0, w[0], w[1], 0.0, w[2]]))
+    made = [_from_nothing(chain, np.zeros(1), moving, law(chain, np.zeros(1), moving)) for law in (model.bias_by_equation_16, kane.bias)]
+    pair("4 equation 16", "power from nothing", "W", (-turning / 12.0 * float(np.prod(w)), made[0]), (0.0, made[1]), SECOND)
+    rate, unit = SWING["rate"], 0.5 * DENSITY * model.BASIC * 2.0 * radius
+    force, moment = model.drag_by_equation_21(radius, length, np.zeros(3), rate)
+    lost = -float(force[1] * rate * length / 2.0 + moment[2] * rate), -rate * float(kane.drag(chain, np.zeros(1), _only(6, rate, 7))[6])
+    size = unit * rate**3 * length**4
+    pair("5 moment of equation 21, swung", "power lost", "W", (size * 5.0 / 12.0, lost[0]), (size / 4.0, lost[1]), 1e-9)
+    oblique = np.sqrt(0.5) * np.array([1.0, 1.0, 0.0])
+    sides = model.drag_by_equation_21(radius, length, oblique, 0.0)[0][1], _towed(chain, oblique)[1]
+    pair("5 sin^2 in C_D, at 45 deg and 1 m/s", "force", "N", (-unit * length / 4.0, float(sides[0])), (-unit * length / 2.0, float(sides[1])), 1e-9)
+    torques = np.array([1.0, 2.0, 3.0])
+    printed = FLU @ model.equation_23(kane.pose(water, Q).axis, torques)
+    axes = np.array([[0.0, 0.0, 1.0], [-np.sin(Q[0]), np.cos(Q[0]), 0.0], [-np.sin(Q[0]), np.cos(Q[0]), 0.0]])
+    pair("6 equation 23, tau = 1, 2, 3 N m", "moment on the vehicle, y", "N m", (float(axes.T[1] @ torques), float(printed[1])), (0.0, _reaction(water, torques)), 1e-9)
+    rise = model.turn_by_paper(np.zeros(3)) @ np.array([0.0, 0.0, 1.0]), water.mount @ np.array([0.0, 0.0, 1.0])
+    pair("7 equation 28, level", "down, for 1 m up frame 0's z", "m", (1.0, float(rise[0][2])), (-1.0, float(rise[1][2])), EXACT)
+    roll, w = np.array([np.pi / 3.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
+    rates = [float(model.euler_rates(roll, w, printed=printed)[1]) for printed in (True, False)]
+    pair("7 equation 29, roll 60 deg", "pitch rate for w_y = 1 rad/s", "rad/s", (1.0, rates[0]), (0.5, rates[1]), EXACT)
+    astern = _only(0, -0.5, 6)
+    taken = float(astern @ kane.drag(replace(water, links=()), np.zeros(0), astern))
+    size = 0.5 * DENSITY * model.AREA * 0.5**3
+    pair("7 drag of the vehicle, 0.5 m/s astern", "power", "W", (size, 0.5 * DENSITY * model.AREA * float(astern @ astern) * 0.5), (-size, taken), 1e-9)
+    pair("8 added mass of link 2", "along its drag axis", "kg", (DENSITY * np.pi * 0.08**2 * 0.43, float(cylinder(0.08, 0.43, 2)[0, 0])), (0.0, float(water.inertias[1][2, 0, 0])), 1e-9)
+    a = model.link_1_by_paper(float(Q[0]), SPEEDS, RATES)["a"]
+    literal, gap = model.a_1_as_printed(float(Q[0]), SPEEDS, RATES)
+    pair("9 a of link 1", "x component", "m/s^2", (float(a[0]) + gap, literal), (float(a[0]), float(_of_link_1(dry(), RATES[:7])[0][0])), 1e-9)
+    return ComparedTable(
+        "errata", "Errata: the printed form, and the corrected one", tuple(rows), "The numbers of the list of errata",
+        (
+            "As printed: what the printed form gives, by theory and by that form computed. Corrected: theory, and what the model computes.",
+            "A printed form that passes is not right: it gives the wrong number that theory expects of it.",
+        ),
+    )  # fmt: skip
+
+
+def _only(index: int, value: float, size: int) -> Array:
+    out = np.zeros(size)
+    out[index] = value
+    return out
+
+
+def _towed(chain: Chain, velocity: Array) -> Array:
+    """(3,) drag along frame 0 of a chain of one link, towed at a velocity along frame 0."""
+    speeds = np.concatenate([velocity, np.zeros(4)])
+    return in_frame_0(chain, kane.drag(chain, np.zeros(1), in_frame_0(chain, speeds)))[:3]
+
+
+def _from_nothing(chain: Chain, q: Array, speeds: Array, bias: Array) -> float:
+    """Power, W, that the kinetic energy gains while no force acts: 1/2 s M' s - s C."""
+    changing = np.einsum("k,i,kij,j->", speeds[6:], speeds, _slopes(chain, q), speeds)
+    return float(0.5 * changing - speeds @ bias)
+
+
+def _reaction(chain: Chain, torques: Array) -> float:
+    """Moment about y that joint torques put on the whole at rest, N m: the rate of its angular momentum."""
+    level, still = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(chain.size)
+    pushed = kane.accelerations(chain, Q, still, level, np.concatenate([np.zeros(6), torques]))
+    return float((kane.mass_matrix(chain, Q) @ pushed)[4])

@@ -1,49 +1,56 @@
-"""The URV paper's example as a chain: what it prints, and what was chosen for the numbers that it leaves open.
+"""The URV paper's example as geometry/urv_puma states it, and forms as the paper prints them, for the errata.
 
 Printed: Denavit-Hartenberg matrices, centres of mass, masses and inertias of links 1 to 3 of the PUMA 560 (sections 4.2 and 4.3),
 C_D = 1.1 of a cylinder. Chosen: the vehicle, since the paper's is generic, and the cylinders that stand for the links in water.
-
-Forms as the paper prints them, and what stands in their place, for the errata: spheroid, cylinder, equations 16, 21, 23, 28 and 29.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 
-from coeflab.bodies.closed_forms import cylinder_added_mass, ellipsoid_added_mass
+from coeflab.bodies.closed_forms import cylinder_added_mass
+from coeflab.core.files import shipped
 from coeflab.core.types import Array
-from coeflab.motion.multibody.chain import FLU, Base, Chain, Joint, Link, Strip
-from coeflab.motion.multibody.kane import denavit_hartenberg, partial_velocities, pose
-from coeflab.motion.multibody.thrusters import Thruster, TorqueThruster
+from coeflab.motion.multibody.arm_file import read_chain
+from coeflab.motion.multibody.chain import Base, Chain, Joint, Link, Strip
+from coeflab.motion.multibody.kane import bias, partial_velocities, pose
 
-RIGHT = math.pi / 2.0
 DENSITY = 1000.0
 BASIC = 1.1  # C_D,basic of a cylinder, section 4.5
-# Section 4.2, as printed: a, alpha, d of the three matrices, and centres of mass.
-ROWS = ((0.0, -RIGHT, 0.0), (0.4318, 0.0, 0.0), (-0.0191, RIGHT, 0.1505))
+# Sections 4.2 and 4.3, as printed.
 CENTRES = ((0.0, 0.3088, 0.0389), (-0.3289, 0.0050, 0.2038), (0.0204, 0.0137, 0.0037))
-# Section 4.3, as printed.
 MASSES = (12.96, 22.37, 5.01)
 INERTIAS = ((1.09809, 0.177381, 1.1112), (0.403567, 0.968405, 0.966379), (0.0746421, 0.0755015, 0.00749571))
 # Chosen: the vehicle of the paper is generic.
-ATTACHMENT, VEHICLE_MASS, VEHICLE_INERTIA = (0.5, 0.0, 0.2), 100.0, (10.0, 20.0, 25.0)
-SEMI_AXES = (1.0, 0.4, 0.4)
-CYLINDERS = ((0.09, 0.66, 1), (0.08, 0.43, 0), (0.05, 0.43, 2))  # radius, length, axis
-SPHERE = 0.47  # C_D of a sphere, which section 4.5 names without a number
-# Chosen: eight equal thrusters, four of them upright.
-THRUSTER = TorqueThruster(alpha=0.02, beta=10.0, thrust=0.004, strongest=80.0)
-LEVEL, UPRIGHT = 0.6, 0.35
+ATTACHMENT, VEHICLE_MASS = (0.5, 0.0, 0.2), 100.0
+AREA = 0.236  # C_D S of the vehicle as a sphere, section 4.5: 0.47 pi (0.4 m)^2
 
 
-def cylinder(radius: float, length: float, axis: int, density: float = DENSITY) -> Array:
+@cache
+def wet() -> Chain:
+    """In water: spheroid and cylinders, drag, buoyancy equal to the weight, eight thrusters."""
+    return read_chain(Path(str(shipped("geometry"))) / "urv_puma")
+
+
+@cache
+def dry() -> Chain:
+    """Vehicle and arm without water: what Pinocchio knows."""
+    chain, none = wet(), {"added_mass": np.zeros((6, 6)), "volume": 0.0}
+    links = tuple(replace(link, strips=(), **none) for link in chain.links)
+    return replace(chain, base=replace(chain.base, drag_area=np.zeros(3), **none), links=links, thrusters=())
+
+
+def cylinder(radius: float, length: float, axis: int) -> Array:
     """(6, 6) added mass about its centre, nothing along it: ``cylinder_added_mass`` without its axial share, turned to the axis.
 
     The paper's own with k = rho pi r^2 L, about the centre (erratum 3).
     """
-    entries = np.diag(cylinder_added_mass(radius, length, density)).copy()
+    entries = np.diag(cylinder_added_mass(radius, length, DENSITY)).copy()
     entries[0] = 0.0
     order = [axis, *(i for i in range(3) if i != axis)]
     out = np.zeros(6)
@@ -51,51 +58,14 @@ def cylinder(radius: float, length: float, axis: int, density: float = DENSITY) 
     return np.diag(out)
 
 
-def thrusters() -> tuple[Thruster, ...]:
-    """Four level ones at 45 degrees and four upright ones: every force and moment can be given."""
-    out, half = [], math.sqrt(0.5)
-    for name, x, y in (("bow port", 1, -1), ("bow starboard", 1, 1), ("stern port", -1, -1), ("stern starboard", -1, 1)):
-        level = np.array([half, -x * y * half, 0.0])
-        out.append(Thruster(f"{name}, level", np.array([LEVEL * x, UPRIGHT * y, 0.0]), level, THRUSTER))
-        out.append(Thruster(f"{name}, upright", np.array([LEVEL * x, UPRIGHT * y, 0.0]), np.array([0.0, 0.0, 1.0]), THRUSTER))
-    return tuple(out)
-
-
-def dry() -> Chain:
-    """Vehicle and arm without water: what Pinocchio knows."""
-    links = tuple(
-        Link(f"link {j}", Joint(f"q{j}", "revolute", a, alpha, d, 0.0), mass, np.array(centre), np.diag(inertia))
-        for j, ((a, alpha, d), centre, mass, inertia) in enumerate(zip(ROWS, CENTRES, MASSES, INERTIAS, strict=True), 1)
-    )
-    base = Base("vehicle", VEHICLE_MASS, np.diag(VEHICLE_INERTIA))
-    return Chain("urv", base, links, FLU @ ATTACHMENT, density=DENSITY)
-
-
-def wet() -> Chain:
-    """In water: spheroid and cylinders, drag, buoyancy equal to the weight at the centres of mass, and eight thrusters."""
-    chain = dry()
-    links = tuple(
-        replace(
-            link,
-            added_mass=cylinder(radius, length, axis),
-            volume=link.mass / DENSITY,
-            centre_of_buoyancy=link.centre_of_mass,
-            strips=(strip(link.centre_of_mass, radius, length, axis),),
-        )
-        for link, (radius, length, axis) in zip(chain.links, CYLINDERS, strict=True)
-    )
-    base = replace(
-        chain.base,
-        added_mass=ellipsoid_added_mass(np.array(SEMI_AXES), DENSITY),
-        volume=VEHICLE_MASS / DENSITY,
-        drag_area=np.full(3, SPHERE * math.pi * SEMI_AXES[1] ** 2),
-    )
-    return replace(chain, base=base, links=links, thrusters=thrusters())
-
-
-def strip(centre: Array, radius: float, length: float, axis: int) -> Strip:
-    half = length / 2.0 * np.eye(3)[axis]
-    return Strip(centre - half, centre + half, 2.0 * radius, BASIC)
+def swung(radius: float, length: float, added_mass: Array | None = None) -> Chain:
+    """One cylinder along x, swung about its end at the centre of mass of a vehicle that no water holds."""
+    middle = np.array([length / 2.0, 0.0, 0.0])
+    strip = Strip(np.zeros(3), 2.0 * middle, 2.0 * radius, BASIC)
+    water = cylinder(radius, length, 0) if added_mass is None else added_mass
+    joint = Joint("q1", "revolute", 0.0, 0.0, 0.0, 0.0)
+    link = Link("cylinder", joint, 5.0, middle, np.diag([0.01, 0.3, 0.3]), water, strips=(strip,))
+    return Chain("swung", Base("vehicle", 100.0, np.diag([10.0, 20.0, 25.0])), (link,), np.zeros(3), density=DENSITY)
 
 
 # ---- forms as the paper prints them --------------------------------------------------------------------------------
@@ -154,3 +124,75 @@ def link_1_by_paper(q: float, speeds: Array, rates: Array) -> dict[str, Array]:
         "alpha": np.array([-wy * wz + wy * (wz + turn) + dx, wx * wz - wx * (wz + turn) + dy, dz + turning]),
         "a": a,
     }
+
+
+def a_1_as_printed(q: float, speeds: Array, rates: Array) -> tuple[float, float]:
+    """x component of a_1 with the brackets where the text has them, and what that is more than the repaired one.
+
+    The text closes the bracket of w_z (...) after ``v_y - (c_z0 - .3088) w_x``; the rest of the link's v_y stands outside.
+    """
+    s = math.sin(q)
+    _, vy, _, wx, _, wz, turn = (float(x) for x in speeds[:7])
+    repaired = link_1_by_paper(q, speeds, rates)
+    rest = (ATTACHMENT[0] - 0.0389 * s) * wz - 0.0389 * s * turn
+    inside = vy - (ATTACHMENT[2] - 0.3088) * wx
+    others = float(repaired["a"][0]) + wz * float(repaired["v"][1])
+    return others - wz * inside + rest, (1.0 + wz) * rest
+
+
+def cylinder_by_paper(radius: float, length: float, *, quarter: bool) -> Array:
+    """(6, 6) I_A of section 4.5 for an axis along x: diag(0, k, k, 0, k L^2/3, k L^2/3), with the printed k or four times that."""
+    k = DENSITY * math.pi * radius**2 * length / (4.0 if quarter else 1.0)
+    turning = k * length**2 / 3.0
+    return np.diag([0.0, k, k, 0.0, turning, turning])
+
+
+def bias_by_equation_16(chain: Chain, q: Array, speeds: Array) -> Array:
+    """C with the term D (w_0 x w_j) that equation 16 has in T; for bodies whose added mass is diagonal."""
+    at = pose(chain, q)
+    turning = partial_velocities(chain, at)[:, 3:]
+    out = bias(chain, q, speeds)
+    for turn, water, partial in zip(at.rotation, chain.inertias[1], turning, strict=True):
+        moment = turn @ water[3:, 3:] @ turn.T @ np.cross(speeds[3:6], partial @ speeds)
+        out = out - partial.T @ moment
+    return out
+
+
+def drag_by_equation_21(radius: float, length: float, v: Array, w: float) -> tuple[Array, Array]:
+    """R and T of equation 21 as printed, for a cylinder along x whose start moves at v and that turns by w about z.
+
+    C_D has its sin^2(sigma), and T is about the start, not about the centre of mass.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    force, moment = np.zeros(3), np.zeros(3)
+    for node, weight in zip((1.0 + nodes) / 2.0 * length, weights / 2.0 * length, strict=True):
+        here = v + np.array([0.0, w * node, 0.0])
+        across = here * [0.0, 1.0, 1.0]
+        coefficient = BASIC * float(across @ across) / float(here @ here)
+        push = -0.5 * DENSITY * coefficient * 2.0 * radius * float(np.linalg.norm(across)) * across * weight
+        force += push
+        moment += np.cross([node, 0.0, 0.0], push)
+    return force, moment
+
+
+def equation_23(axes: Array, torques: Array) -> Array:
+    """(3,) moment on the vehicle that equation 23 gives joint torques: the sum of tau_j z_(j-1), without the reactions."""
+    return np.asarray(axes.T @ torques)
+
+
+def turn_by_paper(angles: Array) -> Array:
+    """(3, 3) turn of equation 28, as printed: from axes with z down to north, east, down."""
+    (cr, cp, cy), (sr, sp, sy) = np.cos(angles), np.sin(angles)
+    return np.array([
+        [cy * cp, cy * sr * sp - cr * sy, cr * cy * sp + sr * sy],
+        [cp * sy, sr * sy * sp + cr * cy, cr * sy * sp - cy * sr],
+        [-sp, cp * sr, cr * cp],
+    ])  # fmt: skip
+
+
+def euler_rates(angles: Array, w: Array, *, printed: bool = False) -> Array:
+    """(3,) rates of roll, pitch and yaw by equation 29; ``printed`` has cos(theta) in its second row (erratum 7)."""
+    roll, pitch, _ = angles
+    (s, c), t = (math.sin(roll), math.cos(roll)), math.tan(pitch)
+    second = math.cos(pitch) if printed else c
+    return np.array([[1.0, s * t, c * t], [0.0, second, -s], [0.0, s / math.cos(pitch), c / math.cos(pitch)]]) @ w
