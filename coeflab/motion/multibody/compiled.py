@@ -18,8 +18,7 @@ from coeflab.law.rigid_body import axes_in_earth, kinematics
 from coeflab.motion.multibody.chain import STILL, Chain, Flow
 
 jitted = numba.njit(cache=True, error_model="numpy")
-inlined = jitted  # LLVM decides
-_axes_in_earth, _kinematics = inlined(axes_in_earth), inlined(kinematics)
+_axes_in_earth, _kinematics = jitted(axes_in_earth), jitted(kinematics)
 # Columns of a body's row: joint, centre of mass, mass, inertia, inertia of the water, displaced mass, centre of buoyancy.
 TURNS, A, COS, SIN, D, THETA, CENTRE, MASS, INERTIA, WATER, DISPLACED, LIFTED, WIDTH = (
     0, 1, 2, 3, 4, 5, 6, 9, 10, 19, 55, 56, 59,
@@ -76,18 +75,18 @@ def _pose(frame: Array, bodies: Array, q: Array, out: Array) -> None:
             )
 
 
-@inlined
+@jitted
 def _cross(ax: float, ay: float, az: float, bx: float, by: float, bz: float) -> tuple[float, float, float]:
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-@inlined
+@jitted
 def _into(r: Array, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Along the body's own axes."""
     return r[0] * x + r[3] * y + r[6] * z, r[1] * x + r[4] * y + r[7] * z, r[2] * x + r[5] * y + r[8] * z
 
 
-@inlined
+@jitted
 def _out_of(r: Array, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Along the vehicle's axes."""
     return r[0] * x + r[1] * y + r[2] * z, r[3] * x + r[4] * y + r[5] * z, r[6] * x + r[7] * y + r[8] * z
@@ -167,89 +166,79 @@ def _project(bodies: Array, at: Array, wrench: Array, out: Array) -> None:
 
 
 @jitted
-def _inertia_wrench(
-    frame: Array, bodies: Array, at: Array, s: Array, water: Array, velocity: Array, out: Array
-) -> None:
-    """Forces and moments (n + 1, 6) that no change of the speeds takes, and (n + 1, 6) velocities; equations 9 to 17.
+def _moving(frame: Array, bodies: Array, at: Array, s: Array, velocity: Array, rest: Array) -> None:
+    """Velocities, and accelerations where no speed changes, of the centres of mass and bodies (n + 1, 6); equations 9 to 12."""
+    wx, wy, wz = s[3], s[4], s[5]
+    for i in range(6):
+        velocity[0, i], rest[0, i] = s[i], 0.0
+    rest[0, 0], rest[0, 1], rest[0, 2] = _cross(wx, wy, wz, s[0], s[1], s[2])
+    # Velocity and acceleration of the point on the next joint's axis, angular acceleration.
+    tx, ty, tz = _cross(wx, wy, wz, frame[ATTACHED], frame[ATTACHED + 1], frame[ATTACHED + 2])
+    vx, vy, vz = s[0] + tx, s[1] + ty, s[2] + tz
+    qx, qy, qz = _cross(wx, wy, wz, tx, ty, tz)
+    gx, gy, gz = rest[0, 0] + qx, rest[0, 1] + qy, rest[0, 2] + qz
+    ex = ey = ez = 0.0
+    for j in range(1, len(bodies)):
+        here = at[j]
+        x, y, z = here[AXIS] * s[5 + j], here[AXIS + 1] * s[5 + j], here[AXIS + 2] * s[5 + j]
+        tx, ty, tz = _cross(wx, wy, wz, x, y, z)
+        if bodies[j, TURNS] != 0.0:
+            ex, ey, ez = ex + tx, ey + ty, ez + tz
+            wx, wy, wz = wx + x, wy + y, wz + z
+        else:
+            gx, gy, gz = gx + 2.0 * tx, gy + 2.0 * ty, gz + 2.0 * tz
+            vx, vy, vz = vx + x, vy + y, vz + z
+        velocity[j, 3], velocity[j, 4], velocity[j, 5] = wx, wy, wz
+        rest[j, 3], rest[j, 4], rest[j, 5] = ex, ey, ez
+        for reach in (CENTRED, ORIGIN):
+            lx, ly, lz = here[reach] - here[PIVOT], here[reach + 1] - here[PIVOT + 1], here[reach + 2] - here[PIVOT + 2]
+            tx, ty, tz = _cross(wx, wy, wz, lx, ly, lz)
+            qx, qy, qz = _cross(wx, wy, wz, tx, ty, tz)
+            lx, ly, lz = _cross(ex, ey, ez, lx, ly, lz)
+            if reach == CENTRED:
+                velocity[j, 0], velocity[j, 1], velocity[j, 2] = vx + tx, vy + ty, vz + tz
+                rest[j, 0], rest[j, 1], rest[j, 2] = gx + lx + qx, gy + ly + qy, gz + lz + qz
+            else:
+                vx, vy, vz = vx + tx, vy + ty, vz + tz
+                gx, gy, gz = gx + lx + qx, gy + ly + qy, gz + lz + qz
+
+
+@jitted
+def _inertia_wrench(bodies: Array, at: Array, velocity: Array, rest: Array, water: Array, out: Array) -> None:
+    """Forces and moments (n + 1, 6) that no change of the speeds takes; equations 13 and 15.
 
     ``water`` (6,): velocity and acceleration of the water along the vehicle's axes.
     """
-    v0, v1, v2, wx, wy, wz = s[0], s[1], s[2], s[3], s[4], s[5]
-    ax, ay, az = _cross(wx, wy, wz, v0, v1, v2)
-    ox, oy, oz = frame[ATTACHED], frame[ATTACHED + 1], frame[ATTACHED + 2]
-    tx, ty, tz = _cross(wx, wy, wz, ox, oy, oz)
-    vx, vy, vz = v0 + tx, v1 + ty, v2 + tz  # of the origin that the next joint leaves from
-    qx, qy, qz = _cross(wx, wy, wz, tx, ty, tz)
-    gx, gy, gz = ax + qx, ay + qy, az + qz  # its acceleration
-    ex = ey = ez = 0.0  # angular acceleration
-    p, push, rel = np.empty(6), np.empty(6), np.empty(6)
+    p, push, rel, spin = np.empty(6), np.empty(6), np.empty(6), np.empty(6)
     for j in range(len(bodies)):
-        b, here = bodies[j], at[j]
-        if j == 0:
-            cx, cy, cz = v0, v1, v2
-        else:
-            x, y, z = here[AXIS] * s[5 + j], here[AXIS + 1] * s[5 + j], here[AXIS + 2] * s[5 + j]
-            tx, ty, tz = _cross(wx, wy, wz, x, y, z)
-            if b[TURNS] != 0.0:
-                ex, ey, ez = ex + tx, ey + ty, ez + tz
-                wx, wy, wz = wx + x, wy + y, wz + z
-            else:
-                gx, gy, gz = gx + 2.0 * tx, gy + 2.0 * ty, gz + 2.0 * tz
-                vx, vy, vz = vx + x, vy + y, vz + z
-            lx, ly, lz = (
-                here[CENTRED] - here[PIVOT],
-                here[CENTRED + 1] - here[PIVOT + 1],
-                here[CENTRED + 2] - here[PIVOT + 2],
-            )
-            tx, ty, tz = _cross(wx, wy, wz, lx, ly, lz)
-            cx, cy, cz = vx + tx, vy + ty, vz + tz
-            qx, qy, qz = _cross(wx, wy, wz, tx, ty, tz)
-            tx, ty, tz = _cross(ex, ey, ez, lx, ly, lz)
-            ax, ay, az = gx + tx + qx, gy + ty + qy, gz + tz + qz
-            lx, ly, lz = (
-                here[ORIGIN] - here[PIVOT],
-                here[ORIGIN + 1] - here[PIVOT + 1],
-                here[ORIGIN + 2] - here[PIVOT + 2],
-            )
-            tx, ty, tz = _cross(wx, wy, wz, lx, ly, lz)
-            vx, vy, vz = vx + tx, vy + ty, vz + tz
-            qx, qy, qz = _cross(wx, wy, wz, tx, ty, tz)
-            tx, ty, tz = _cross(ex, ey, ez, lx, ly, lz)
-            gx, gy, gz = gx + tx + qx, gy + ty + qy, gz + tz + qz
-        velocity[j, 0], velocity[j, 1], velocity[j, 2] = cx, cy, cz
-        velocity[j, 3], velocity[j, 4], velocity[j, 5] = wx, wy, wz
+        b, here, v, a = bodies[j], at[j], velocity[j], rest[j]
         # Along the body's own axes, where the inertia of the water does not change.
-        u, v, w = _into(here, wx, wy, wz)
-        rel[3], rel[4], rel[5] = u, v, w
-        rel[0], rel[1], rel[2] = _into(here, cx - water[0], cy - water[1], cz - water[2])
-        push[3], push[4], push[5] = _into(here, ex, ey, ez)
-        tx, ty, tz = _cross(u, v, w, rel[0], rel[1], rel[2])
-        x, y, z = _into(here, ax - water[3], ay - water[4], az - water[5])
+        wx, wy, wz = _into(here, v[3], v[4], v[5])
+        rel[3], rel[4], rel[5] = wx, wy, wz
+        rel[0], rel[1], rel[2] = _into(here, v[0] - water[0], v[1] - water[1], v[2] - water[2])
+        push[3], push[4], push[5] = _into(here, a[3], a[4], a[5])
+        tx, ty, tz = _cross(wx, wy, wz, rel[0], rel[1], rel[2])
+        x, y, z = _into(here, a[0] - water[3], a[1] - water[4], a[2] - water[5])
         push[0], push[1], push[2] = x - tx, y - ty, z - tz
-        fx, fy, fz = _into(here, b[MASS] * ax, b[MASS] * ay, b[MASS] * az)
-        hx = b[INERTIA] * u + b[INERTIA + 1] * v + b[INERTIA + 2] * w
-        hy = b[INERTIA + 3] * u + b[INERTIA + 4] * v + b[INERTIA + 5] * w
-        hz = b[INERTIA + 6] * u + b[INERTIA + 7] * v + b[INERTIA + 8] * w
-        kx = b[INERTIA] * push[3] + b[INERTIA + 1] * push[4] + b[INERTIA + 2] * push[5]
-        ky = b[INERTIA + 3] * push[3] + b[INERTIA + 4] * push[4] + b[INERTIA + 5] * push[5]
-        kz = b[INERTIA + 6] * push[3] + b[INERTIA + 7] * push[4] + b[INERTIA + 8] * push[5]
         for i in range(6):
-            total = 0.0
+            momentum = pushed = 0.0
             for m in range(6):
-                total += b[WATER + 6 * i + m] * rel[m]
-            p[i] = total
-        tx, ty, tz = _cross(u, v, w, p[0], p[1], p[2])
-        fx, fy, fz = fx + tx, fy + ty, fz + tz
-        tx, ty, tz = _cross(u, v, w, hx + p[3], hy + p[4], hz + p[5])
-        qx, qy, qz = _cross(rel[0], rel[1], rel[2], p[0], p[1], p[2])
-        kx, ky, kz = kx + tx + qx, ky + ty + qy, kz + tz + qz
-        for i in range(6):
-            total = 0.0
-            for m in range(6):
-                total += b[WATER + 6 * i + m] * push[m]
-            p[i] = total
-        out[j, 0], out[j, 1], out[j, 2] = _out_of(here, fx + p[0], fy + p[1], fz + p[2])
-        out[j, 3], out[j, 4], out[j, 5] = _out_of(here, kx + p[3], ky + p[4], kz + p[5])
+                momentum += b[WATER + 6 * i + m] * rel[m]
+                pushed += b[WATER + 6 * i + m] * push[m]
+            p[i], spin[i] = momentum, pushed
+        x, y, z = _into(here, a[0], a[1], a[2])
+        spin[0] += b[MASS] * x
+        spin[1] += b[MASS] * y
+        spin[2] += b[MASS] * z
+        tx, ty, tz = _cross(wx, wy, wz, p[0], p[1], p[2])
+        out[j, 0], out[j, 1], out[j, 2] = _out_of(here, spin[0] + tx, spin[1] + ty, spin[2] + tz)
+        for i in range(3):
+            for m in range(3):
+                p[3 + i] += b[INERTIA + 3 * i + m] * rel[3 + m]
+                spin[3 + i] += b[INERTIA + 3 * i + m] * push[3 + m]
+        tx, ty, tz = _cross(wx, wy, wz, p[3], p[4], p[5])
+        x, y, z = _cross(rel[0], rel[1], rel[2], p[0], p[1], p[2])
+        out[j, 3], out[j, 4], out[j, 5] = _out_of(here, spin[3] + tx + x, spin[4] + ty + y, spin[5] + tz + z)
 
 
 @jitted
@@ -321,9 +310,11 @@ def mass_matrix(frame: Array, bodies: Array, q: Array) -> Array:
 def bias(frame: Array, bodies: Array, q: Array, s: Array, water: Array) -> Array:
     """C, as `coeflab.motion.multibody.kane.bias`; ``water`` (6,) is its velocity and acceleration along the vehicle's axes."""
     count = len(bodies)
-    at, velocity, wrench, out = np.empty((count, POSE)), np.empty((count, 6)), np.empty((count, 6)), np.empty(5 + count)
+    at, out = np.empty((count, POSE)), np.empty(5 + count)
+    velocity, rest, wrench = np.empty((count, 6)), np.empty((count, 6)), np.empty((count, 6))
     _pose(frame, bodies, q, at)
-    _inertia_wrench(frame, bodies, at, s, water, velocity, wrench)
+    _moving(frame, bodies, at, s, velocity, rest)
+    _inertia_wrench(bodies, at, velocity, rest, water, wrench)
     _project(bodies, at, wrench, out)
     return out
 
@@ -363,12 +354,14 @@ def equations(frame: Array, bodies: Array, nodes: Array, state: Array, flow: Arr
         down[i] = z
         water[i] = x * flow[0] + y * flow[1] + z * flow[2]
         water[3 + i] = x * flow[3] + y * flow[4] + z * flow[5]
-    at, velocity, wrench = np.empty((count, POSE)), np.empty((count, 6)), np.empty((count, 6))
+    at = np.empty((count, POSE))
+    velocity, rest, wrench = np.empty((count, 6)), np.empty((count, 6)), np.empty((count, 6))
     m, force = np.empty((6 + n, 6 + n)), np.empty(6 + n)
     q, s = state[7 : 7 + n], state[7 + n : 13 + 2 * n]
     _pose(frame, bodies, q, at)
     _mass(bodies, at, m)
-    _inertia_wrench(frame, bodies, at, s, water, velocity, wrench)
+    _moving(frame, bodies, at, s, velocity, rest)
+    _inertia_wrench(bodies, at, velocity, rest, water, wrench)
     for j in range(count):
         for i in range(6):
             wrench[j, i] = -wrench[j, i]

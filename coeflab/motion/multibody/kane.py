@@ -50,7 +50,7 @@ class Pose:
 
 
 def cross(a: Array, b: Array) -> Array:
-    """a x b along the last axis, several times quicker than numpy's on a few vectors."""
+    """Product a x b along the last axis, several times quicker than numpy's on a few vectors."""
     ax, ay, az, bx, by, bz = a[..., 0], a[..., 1], a[..., 2], b[..., 0], b[..., 1], b[..., 2]
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
 
@@ -243,24 +243,13 @@ def external(chain: Chain, q: Array, speeds: Array, attitude: Array, flow: Flow 
     return np.asarray(pushed + drag(chain, q, speeds, current))
 
 
-def accelerations(chain: Chain, q: Array, speeds: Array, attitude: Array, control: Array, flow: Flow = STILL) -> Array:
-    """(6 + n,) rates of the generalised speeds (equations 24 and 25).
-
-    Parameters
-    ----------
-    chain : Chain
-    q : (n,) array
-    speeds : (6 + n,) array
-    attitude : (4,) array
-    control : (6 + n,) array
-        R_0, T_0 on the vehicle at its centre of mass and tau_j on qdot_j alone: link j - 1 takes the reaction, which equation 23
-        leaves out (erratum 6).
-    flow : Flow
-    """
+def equations(chain: Chain, state: Array, flow: Flow = STILL) -> tuple[Array, Array]:
+    """M, and all forces but control less C, (6 + n,), at a state of `right_hand_side` (equations 24 and 25)."""
+    n = chain.count
+    attitude, q, speeds = state[3:7], state[7 : 7 + n], state[7 + n : 13 + 2 * n]
     turn = np.reshape(axes_in_earth(*attitude), (3, 3))
     rest = bias(chain, q, speeds, turn @ flow.velocity, turn @ flow.acceleration)
-    pushed = external(chain, q, speeds, attitude, flow) + control - rest
-    return np.asarray(np.linalg.solve(mass_matrix(chain, q), pushed))
+    return mass_matrix(chain, q), external(chain, q, speeds, attitude, flow) - rest
 
 
 def right_hand_side(chain: Chain, state: Array, control: Array, flow: Flow = STILL) -> Array:
@@ -274,16 +263,22 @@ def right_hand_side(chain: Chain, state: Array, control: Array, flow: Flow = STI
     chain : Chain
     state : (13 + 2 n,) array
     control : (6 + n,) array
+        R_0, T_0 on the vehicle at its centre of mass and tau_j on qdot_j alone: link j - 1 takes the reaction, which equation 23
+        leaves out (erratum 6).
     flow : Flow
     """
     n = chain.count
-    attitude, q, speeds = state[3:7], state[7 : 7 + n], state[7 + n :]
-    axes = axes_in_earth(*attitude)
+    m, force = equations(chain, state, flow)
     out = np.empty_like(state)
-    out[:7] = kinematics(axes, *attitude, *speeds[:6])[:7]
-    out[7 : 7 + n] = speeds[6:]
-    out[7 + n :] = accelerations(chain, q, speeds, attitude, control, flow)
+    out[: 7 + n] = displacement_rates(n, state)
+    out[7 + n :] = np.linalg.solve(m, force + control)
     return out
+
+
+def displacement_rates(count: int, state: Array) -> Array:
+    """(7 + n,) rates of position, quaternion and joint positions; see `right_hand_side`."""
+    attitude, speeds = state[3:7].tolist(), state[7 + count : 13 + 2 * count].tolist()
+    return np.array([*kinematics(axes_in_earth(*attitude), *attitude, *speeds[:6])[:7], *speeds[6:]])
 
 
 def kinetic_energy(chain: Chain, q: Array, speeds: Array) -> float:
