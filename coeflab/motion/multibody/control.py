@@ -1,129 +1,40 @@
-"""Control of a vehicle with an arm: computed torque or station keeping, thrusters and their dynamics in the loop.
+"""A vehicle with an arm under control: computed torque or station keeping, with the dynamics of its thrusters in the loop.
 
-The controller asks for accelerations that bring vehicle and joints to their references; computed torque turns them into forces by
-M, C and all other forces of the model (equation 25 of the URV paper), station keeping by M at the start and the restoring
-forces alone. The vehicle's six forces become thrusts by the pseudo-inverse of the thruster matrix (section 3.6), thrusts
-become speeds of the propellers, and those torques or voltages, each within its limits. What is out of reach is a status of the run.
+The controller asks for accelerations that bring vehicle and joints to their references. Computed torque turns them into forces by
+M, C and all other forces of the model (equation 25 of the URV paper); station keeping by M at the start, with weight and buoyancy
+taken up. The six forces on the vehicle become thrusts by the pseudo-inverse of the thruster matrix (section 3.6), thrusts
+become propeller speeds, and those torques or voltages, each within its limits. What is out of reach is a status of the run.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from coeflab.core.errors import InputError
 from coeflab.core.types import Array, brief, locked
-from coeflab.core.wording import listed
-from coeflab.law.rigid_body import axes_in_earth, kinematics
+from coeflab.law.rigid_body import axes_in_earth
 from coeflab.motion.dynamics import rotations
-from coeflab.motion.marching import compiles
 from coeflab.motion.multibody import kane
 from coeflab.motion.multibody.chain import STILL, Chain, Flow
-from coeflab.motion.multibody.thrusters import Thruster, TorqueThruster, VoltageThruster
+from coeflab.motion.multibody.motion import Equations, Track, at_rest, equations_of, limited, march
+from coeflab.motion.multibody.thrusters import (
+    Thruster,
+    TorqueThruster,
+    VoltageThruster,
+    require_all_directions,
+    thruster_forces,
+    thruster_matrix,
+    thruster_rates,
+)
+from coeflab.motion.trajectory import Ended
 
-FORCES = ("X", "Y", "Z", "K", "M", "N")
-LOST = 1e-6
-STEP = 0.02
-ITERATIONS, CLOSE, DAMPED = 60, 1e-9, 1e-4
-STATE = 7  # position and quaternion, before the joints
-Law = Callable[[Array], tuple[Array, Array]]
-
-
-# ---- what is wanted ------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class JointPath:
-    """Joint positions in time, by a cubic spline; at rest before its beginning and after its end.
-
-    Attributes
-    ----------
-    time : (k,) array
-        s, rising.
-    q : (k, n) array
-        rad or m.
-    missed : float
-        How far the end effector stays from the places that were asked for, m; zero where joints were.
-    """
-
-    time: Array
-    q: Array
-    missed: float = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "time", locked(self.time))
-        object.__setattr__(self, "q", locked(self.q))
-
-    @cached_property
-    def _splines(self) -> tuple[Any, Any, Any]:
-        from scipy.interpolate import CubicSpline
-
-        whole = CubicSpline(self.time, self.q, bc_type="clamped")
-        return whole, whole.derivative(1), whole.derivative(2)
-
-    def at(self, time: float) -> tuple[Array, Array, Array]:
-        """q, its rate and its acceleration at a time, each (n,)."""
-        within = float(np.clip(time, self.time[0], self.time[-1]))
-        whole, rate, change = self._splines
-        moving = 1.0 if self.time[0] <= time <= self.time[-1] else 0.0
-        return whole(within), moving * rate(within), moving * change(within)
-
-
-def joint_move(start: Array, end: Array, begins: float, ends: float) -> JointPath:
-    """From one arm pose to another, fifth order in time: speeds and accelerations are zero at both ends."""
-    if not begins < ends:
-        raise InputError(f"{begins:g} to {ends:g} s", "a time that ends after it begins", column="joints")
-    x = np.linspace(0.0, 1.0, 101)
-    share = x**3 * (10.0 + x * (6.0 * x - 15.0))
-    return JointPath(begins + x * (ends - begins), start + share[:, None] * (end - start))
-
-
-def end_track(chain: Chain, station: Station, time: Array, places: Array, start: Array) -> JointPath:
-    """Joint positions that bring the end effector of a vehicle on its station through places.
-
-    Parameters
-    ----------
-    chain : Chain
-    station : Station
-    time : (k,) array
-        s.
-    places : (k, 3) array
-        North, east, down, m.
-    start : (n,) array
-        Near the first.
-
-    Notes
-    -----
-    Newton's method with damping 1e-4 of the smallest gain; a place out of reach is missed by `JointPath.missed`, no joint is
-    turned beyond its limits.
-    """
-    turn, q = rotations(station.attitude[None])[0], np.array(start)
-    low, high = (np.array([getattr(j, side) for j in chain.joints]) for side in ("low", "high"))
-    path, missed = [], 0.0
-    for place in places:
-        goal = turn.T @ (place - station.position)
-        for _ in range(ITERATIONS):
-            at = kane.pose(chain, q)
-            apart = goal - at.end
-            if float(np.linalg.norm(apart)) < CLOSE:
-                break
-            slopes = end_slopes(chain, at)
-            step = slopes.T @ np.linalg.solve(slopes @ slopes.T + DAMPED**2 * np.eye(3), apart)
-            q = np.clip(q + step, low, high)
-        missed = max(missed, float(np.linalg.norm(goal - kane.pose(chain, q).end)))
-        path.append(q)
-    return JointPath(time, np.array(path), missed)
-
-
-def end_slopes(chain: Chain, at: kane.Pose) -> Array:
-    """(3, n) slopes of the end effector's place over the joints, along the vehicle's axes."""
-    places = np.vstack([at.centre[:-1], at.end])
-    return kane.partial_velocities(chain, at, places)[-1, :3, 6:]
+ROWS, TOLERANCE = 0.05, 1e-7
+SHORT = 1e-3  # of a limit: closer than that it is reached
+LEVEL = (1.0, 0.0, 0.0, 0.0)
 
 
 @brief
@@ -140,7 +51,7 @@ class Station:
     """
 
     position: Array = field(default_factory=lambda: np.zeros(3))
-    attitude: Array = field(default_factory=lambda: np.array([1.0, 0.0, 0.0, 0.0]))
+    attitude: Array = field(default_factory=lambda: np.array(LEVEL))
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "position", locked(self.position))
@@ -155,7 +66,7 @@ class Controller:
     Attributes
     ----------
     law : {"computed_torque", "station"}
-        Computed torque knows the whole model; station keeping M at the start of the run and the restoring forces.
+        Computed torque knows the whole model; station keeping M at the start, and weight and buoyancy.
     vehicle, joints : float
         Natural frequency of an error, rad/s.
     damping : float
@@ -179,166 +90,274 @@ class Controller:
                 raise InputError(f"{getattr(self, name):g}", "a value above zero", column=name)
 
 
-# ---- thrusters -----------------------------------------------------------------------------------------------------
-
-
 @brief
 @dataclass(frozen=True, slots=True, eq=False)
-class Allocation:
-    """From forces on the vehicle to thrusts.
+class ControlledRun:
+    """A motion under control, one row a time.
 
     Attributes
     ----------
-    matrix : (6, m) array
-        Theta of the URV paper: forces and moments about the centre of mass of unit thrusts.
-    inverse : (m, 6) array
-        Its pseudo-inverse: the least sum of squares of thrusts.
+    chain : Chain
+    controller : Controller
+    station : Station
+    time : (k,) array
+        s.
+    state : (k, 13 + 2 n) array
+        As `coeflab.motion.multibody.kane.right_hand_side` has it.
+    wanted : (k, n) array
+        Joint positions that were asked for, rad or m.
+    ordered, thrust : (k, m) array
+        Thrusts, N: asked for, and given.
+    torque : (k, n) array
+        Of the joints, N m or N.
+    end, end_wanted : (k, 3) array
+        End effector, and where it is with vehicle and joints at their references; NED, m.
+    ended : Ended
+    status : tuple of str
+        What was out of reach, each with its time: thrusters or drives at their limits, a joint at its end; empty where
+        nothing was.
     """
 
-    matrix: Array
-    inverse: Array
+    chain: Chain
+    controller: Controller
+    station: Station
+    time: Array
+    state: Array
+    wanted: Array
+    ordered: Array
+    thrust: Array
+    torque: Array
+    end: Array
+    end_wanted: Array
+    ended: Ended
+    status: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "matrix", locked(self.matrix))
-        object.__setattr__(self, "inverse", locked(self.inverse))
+        for name in ("time", "state", "wanted", "ordered", "thrust", "torque", "end", "end_wanted"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+    @property
+    def apart(self) -> Array:
+        """(k,) distance of the vehicle's centre of mass from its station, m."""
+        return np.asarray(np.linalg.norm(self.state[:, :3] - self.station.position, axis=1))
+
+    @property
+    def turned(self) -> Array:
+        """(k,) angle between the vehicle's attitude and the station's, rad."""
+        return np.asarray([2.0 * np.arcsin(min(float(np.linalg.norm(_turn_left(s[3:7], self.station.attitude))), 1.0)) for s in self.state])
+
+    @property
+    def q(self) -> Array:
+        """(k, n) joint positions, rad or m."""
+        return np.asarray(self.state[:, 7 : 7 + self.chain.count])
+
+    @property
+    def end_apart(self) -> Array:
+        """(k,) distance of the end effector from its track, m."""
+        return np.asarray(np.linalg.norm(self.end - self.end_wanted, axis=1))
 
 
-def allocation(thrusters: Sequence[Thruster]) -> Allocation:
-    """The thruster matrix and its pseudo-inverse.
+def controlled(
+    chain: Chain,
+    controller: Controller,
+    track: Track,
+    lasts: float,
+    *,
+    station: Station | None = None,
+    start: Array | None = None,
+    flow: Flow = STILL,
+    rows: float = ROWS,
+) -> ControlledRun:
+    """Keep the vehicle on its station while the joints follow a track.
+
+    Parameters
+    ----------
+    chain : Chain
+        Its thrusters give every force and moment.
+    controller : Controller
+    track : Track
+        Of the joints; `coeflab.motion.multibody.motion.track_of_end` makes one of the end effector.
+    lasts : float
+        s.
+    station : Station, optional
+        The origin, level, heading north, unless given.
+    start : (13 + 2 n,) array, optional
+        On station at rest, with the joints where the track begins, unless given. Propellers stand still.
+    flow : Flow
+    rows : float
+        s between rows.
 
     Raises
     ------
     InputError
-        The thrusters cannot give every force and moment; it names the directions that are lost.
+        Thrusters that cannot give every force and moment, with the directions that are lost.
     """
-    columns = [np.concatenate([t.axis, np.cross(t.place, t.axis)]) for t in thrusters]
-    matrix = np.array(columns).T.reshape(6, -1)
-    if lost := lost_directions(matrix):
-        raise InputError(
-            f"a thruster matrix of rank {6 - len(lost)}: nothing gives {listed(lost)}",
-            "thrusters that give every force and moment, rank 6",
-            column="thruster",
-            advice="Add thrusters, or turn some, so that the lost directions are reached.",
-        )
-    return Allocation(matrix, np.linalg.pinv(matrix))
+    station = Station() if station is None else station
+    if start is None:
+        start = at_rest(chain, track.at(0.0)[0])
+        start[:7] = np.concatenate([station.position, station.attitude])
+    loop = _Loop(chain, controller, track, station, flow, start)
+    states = sum(t.order for t in chain.thrusters)
+    found = march(chain, loop.rates, loop.control, np.concatenate([start, np.zeros(states)]), 0.0, lasts, rows, TOLERANCE)
+    asked = [loop.asked(t, y) for t, y in zip(found.time, found.state, strict=True)]
+    size, n = 13 + 2 * chain.count, chain.count
+    thrusts = [loop.thrusts(y, a) for y, a in zip(found.state, asked, strict=True)]
+    wanted = np.array([track.at(float(t))[0] for t in found.time])
+    ideal = np.array([np.concatenate([station.position, station.attitude, q, np.zeros(6 + n)]) for q in wanted])
+    ordered = np.array([loop.inverse @ a[:6] for a in asked])
+    torque = np.array([a[6:] for a in asked])
+    status = (*_at_limits(loop, found.time, ordered, torque), *((found.why,) if found.why else ()))
+    return ControlledRun(
+        chain, controller, station, found.time, found.state[:, :size], wanted, ordered, np.array(thrusts),
+        np.array([limited(chain, a) for a in torque]), end_in_earth(chain, found.state), end_in_earth(chain, ideal), found.ended, status,
+    )  # fmt: skip
 
 
-def lost_directions(matrix: Array) -> tuple[str, ...]:
-    """What a (6, m) thruster matrix cannot give: ``K``, or a combination such as ``0.8 Y - 0.6 N``."""
-    left, sizes, _ = np.linalg.svd(matrix, full_matrices=True)
-    rank = int(np.sum(sizes > LOST * max(1.0, float(sizes.max(initial=0.0)))))
-    basis = _echelon(left[:, rank:].T)
-    out = []
-    for row in basis:
-        parts = [(round(float(v), 3), name) for v, name in zip(row, FORCES, strict=True) if abs(v) > LOST]
-        text = " ".join(f"{'-' if v < 0.0 else '+'} {'' if abs(v) == 1.0 else f'{abs(v):g} '}{name}" for v, name in parts)
-        out.append(text.removeprefix("+ ").replace("- ", "-", 1) if text.startswith("- ") else text.removeprefix("+ "))
-    return tuple(out)
+def end_in_earth(chain: Chain, states: Array) -> Array:
+    """(k, 3) places of the end effector, NED, m, at (k, ..) states (equations 26 and 27 of the URV paper)."""
+    turns = rotations(states[:, 3:7])
+    ends = np.array([kane.pose(chain, state[7 : 7 + chain.count]).end for state in states])
+    return np.asarray(states[:, :3] + np.einsum("kij,kj->ki", turns, ends))
 
 
-def _echelon(rows: Array) -> Array:
-    """Rows reduced so that each has a 1 where all others have none: single names where that can be."""
-    out, pivot = np.array(rows), 0
-    for column in range(rows.shape[1]):
-        if pivot == len(out):
-            break
-        best = pivot + int(np.argmax(np.abs(out[pivot:, column])))
-        if abs(out[best, column]) < LOST:
-            continue
-        out[[pivot, best]] = out[[best, pivot]]
-        out[pivot] /= out[pivot, column]
-        for other in range(len(out)):
-            if other != pivot:
-                out[other] -= out[other, column] * out[pivot]
-        pivot += 1
+class _Loop:
+    """Controller, allocation, thrusters and the equations of motion."""
+
+    def __init__(
+        self, chain: Chain, controller: Controller, track: Track, station: Station, flow: Flow, start: Array
+    ) -> None:
+        self.chain, self.controller, self.track, self.station, self.flow = chain, controller, track, station, flow
+        self.equations: Equations = equations_of(chain)
+        self.inverse = require_all_directions(chain.thrusters)
+        self.matrix = thruster_matrix(chain.thrusters)
+        self.size = 13 + 2 * chain.count
+        self.at_start = kane.mass_matrix(chain, start[7 : 7 + chain.count])
+        self.gains = tuple(gain_of(t, chain.density) for t in chain.thrusters)
+        self.known = flow if controller.knows_current else STILL
+
+    def asked(self, time: float, state: Array) -> Array:
+        """(6 + n,) control forces that the law asks for."""
+        n, chain = self.chain.count, self.chain
+        changes = wanted_accelerations(self.controller, self.station, self.track, n, time, state)
+        if self.controller.law == "computed_torque":
+            m, force = self.equations(state[: self.size], self.known)
+            return np.asarray(m @ changes - force)
+        down = np.array(axes_in_earth(*state[3:7])[2::3])
+        q = state[7 : 7 + n]
+        return np.asarray(self.at_start @ changes - kane.weight(chain, q, down) - kane.buoyancy(chain, q, down))
+
+    def commands(self, state: Array, asked: Array) -> Array:
+        """(m,) torques, voltages or thrusts that the thrusters get."""
+        ordered, out, at = self.inverse @ asked[:6], np.zeros(len(self.gains)), self.size
+        for i, (thruster, gain) in enumerate(zip(self.chain.thrusters, self.gains, strict=True)):
+            here = state[at : at + thruster.order]
+            out[i] = demand(thruster, gain, float(ordered[i]), here, self.controller.propeller, self.chain.density)
+            at += thruster.order
+        return out
+
+    def thrusts(self, state: Array, asked: Array) -> Array:
+        """(m,) thrusts that act, N."""
+        return thruster_forces(self.chain.thrusters, state[self.size :], self.commands(state, asked), self.chain.density)
+
+    def control(self, time: float, state: Array) -> Array:
+        """(6 + n,) control forces that act."""
+        asked = self.asked(time, state)
+        return np.concatenate([self.matrix @ self.thrusts(state, asked), limited(self.chain, asked[6:])])
+
+    def rates(self, time: float, state: Array) -> Array:
+        """Of the whole state."""
+        asked = self.asked(time, state)
+        commands = self.commands(state, asked)
+        density, propellers = self.chain.density, state[self.size :]
+        pushed = self.matrix @ thruster_forces(self.chain.thrusters, propellers, commands, density)
+        m, force = self.equations(state[: self.size], self.flow)
+        changed = np.linalg.solve(m, force + np.concatenate([pushed, limited(self.chain, asked[6:])]))
+        moved = kane.displacement_rates(self.chain.count, state)
+        return np.concatenate([moved, changed, thruster_rates(self.chain.thrusters, propellers, commands, density)])
+
+
+def wanted_accelerations(
+    controller: Controller, station: Station, track: Track, count: int, time: float, state: Array
+) -> Array:
+    """(6 + n,) rates of the generalised speeds that bring every error e to zero by e'' + 2 zeta w e' + w^2 e = 0.
+
+    The vehicle's place obeys that in the earth, so that its speeds change by w x v less; its attitude by the vector part of the
+    quaternion of what is left to turn, twice, which is the angle where it is small.
+    """
+    q, s = state[7 : 7 + count], state[7 + count : 13 + 2 * count]
+    turn = rotations(state[None, 3:7])[0]
+    place, pace = controller.vehicle, 2.0 * controller.damping
+    out = np.empty(6 + count)
+    pulled = place**2 * (turn.T @ (station.position - state[:3])) - pace * place * s[:3]
+    out[:3] = pulled - kane.cross(s[3:6], s[:3])
+    out[3:6] = 2.0 * place**2 * _turn_left(state[3:7], station.attitude) - pace * place * s[3:6]
+    wanted, rate, change = track.at(time)
+    out[6:] = change + pace * controller.joints * (rate - s[6:]) + controller.joints**2 * (wanted - q)
     return out
 
 
-def blade(model: VoltageThruster, omega: float, through: float, density: float) -> tuple[float, float]:
-    """Thrust, N, and torque, N m, of a propeller's blades in water that goes through it (Healey et al. 1994)."""
-    tip = 0.7 * model.radius * omega
-    theta = np.arctan2(through, tip)
-    incidence = model.pitch - theta
-    area = np.pi * model.radius**2
-    size = 0.5 * density * area * (tip**2 + through**2)
-    lift, drag = size * model.lift * np.sin(2.0 * incidence), size * model.drag * (1.0 - np.cos(2.0 * incidence))
-    thrust = lift * np.cos(theta) - drag * np.sin(theta)
-    return float(thrust), float(0.7 * model.radius * (lift * np.sin(theta) + drag * np.cos(theta)))
+def _turn_left(attitude: Array, wanted: Array) -> Array:
+    """(3,) vector part of the quaternion from an attitude to a wanted one, along the body's axes, the shorter way."""
+    w, v, w0, v0 = float(attitude[0]), attitude[1:], float(wanted[0]), wanted[1:]
+    scalar = w * w0 + float(v @ v0)
+    vector = w * v0 - w0 * v - np.cross(v, v0)
+    return np.asarray(vector if scalar >= 0.0 else -vector)
 
 
-def steady_flow(model: VoltageThruster, omega: float, density: float) -> float:
-    """Speed of the water through a propeller that turns steadily at rest, m/s: T = rho A delta v_p |v_p|."""
-    from scipy.optimize import brentq
-
-    area, tip = np.pi * model.radius**2, 0.7 * model.radius
-
-    def left(ratio: float) -> float:
-        return blade(model, 1.0, ratio * tip, density)[0] - density * area * model.momentum * (ratio * tip) ** 2
-
-    return float(brentq(left, 0.0, np.tan(model.pitch))) * tip * omega
-
-
-def thrust_of(model: TorqueThruster | VoltageThruster, state: Array, density: float) -> float:
-    """Thrust, N, at a propeller's speed and the water's through it (2,)."""
-    if isinstance(model, TorqueThruster):
-        return model.thrust * float(state[0] * abs(state[0]))
-    return blade(model, float(state[0]), float(state[1]), density)[0]
-
-
-def propeller_rates(model: TorqueThruster | VoltageThruster, state: Array, drive: float, density: float) -> Array:
-    """(2,) rates of a propeller's speed and of the water through it, by a torque, N m, or a voltage, V."""
-    omega, through = float(state[0]), float(state[1])
-    if isinstance(model, TorqueThruster):
-        return np.array([model.beta * drive - model.alpha * omega * abs(omega), 0.0])
-    thrust, torque = blade(model, omega, through, density)
-    mass = density * np.pi * model.radius**2
-    turning = -model.damping * omega + model.drive * drive - model.load * torque
-    return np.array([turning, (thrust - mass * model.momentum * through * abs(through)) / (mass * model.column)])
-
-
-@brief
-@dataclass(frozen=True, slots=True)
-class Drive:
-    """A thruster with what its controller knows: thrust = gain Omega |Omega| where it turns steadily at rest.
-
-    Attributes
-    ----------
-    model : TorqueThruster, VoltageThruster or None
-    gain : float
-        N s^2/rad^2.
-    most : float
-        Largest steady thrust, N.
-    """
-
-    model: TorqueThruster | VoltageThruster | None
-    gain: float
-    most: float
-
-    def demand(self, thrust: float, state: Array, pace: float, density: float) -> float:
-        """Torque or voltage, within its limits, that brings the propeller to the speed of a thrust at ``pace``, 1/s."""
-        model, omega = self.model, float(state[0])
-        aim = np.sign(thrust) * np.sqrt(abs(thrust) / self.gain)
-        if isinstance(model, TorqueThruster):
-            drive = (model.alpha * omega * abs(omega) + pace * (aim - omega)) / model.beta
-        elif isinstance(model, VoltageThruster):
-            torque = blade(model, omega, float(state[1]), density)[1]
-            drive = (model.damping * omega + model.load * torque + pace * (aim - omega)) / model.drive
-        else:
-            return thrust
-        return float(np.clip(drive, -model.strongest, model.strongest))
-
-
-def drive_of(thruster: Thruster, density: float) -> Drive:
-    """What the controller of a thruster has to know of it."""
+def gain_of(thruster: Thruster, density: float) -> float:
+    """Thrust over Omega |Omega|, N s^2/rad^2, where the thruster turns steadily at rest; one without a model has 1."""
     model = thruster.model
     if model is None:
-        return Drive(None, 1.0, np.inf)
+        return 1.0
+    turning = float(model.steady(1.0, density)[1][0])
+    return 1.0 / (turning * abs(turning))
+
+
+def demand(thruster: Thruster, gain: float, thrust: float, state: Array, pace: float, density: float) -> float:
+    """Torque, N m, or voltage, V, that brings a propeller to the speed of a thrust at ``pace``, 1/s; without a model the thrust.
+
+    The propeller's own losses are taken up: of the torque model alpha Omega |Omega|, of the voltage model friction and the blades.
+    """
+    model = thruster.model
+    if model is None:
+        return thrust
+    aim = float(np.sign(thrust) * np.sqrt(abs(thrust) / gain))
+    idle = float(model.rates(state, 0.0, density)[0])
+    power = model.beta if isinstance(model, TorqueThruster) else model.drive
+    wanted = (pace * (aim - float(state[0])) - idle) / power
+    return float(np.clip(wanted, -model.strongest, model.strongest))
+
+
+def most_thrust(thruster: Thruster, gain: float, density: float) -> float:
+    """Largest steady thrust, N."""
+    model = thruster.model
+    if model is None or not np.isfinite(model.strongest):
+        return np.inf
     if isinstance(model, TorqueThruster):
-        return Drive(model, model.thrust, model.thrust * model.beta * model.strongest / model.alpha)
-    through = steady_flow(model, 1.0, density)
-    gain, load = blade(model, 1.0, through, density)
-    if not np.isfinite(model.strongest):
-        return Drive(model, gain, np.inf)
-    a, b = model.load * load, model.damping
-    fastest = (-b + np.sqrt(b * b + 4.0 * a * model.drive * model.strongest)) / (2.0 * a)
-    return Drive(model, gain, gain * fastest**2)
+        return model.thrust * model.beta * model.strongest / model.alpha
+    return _most_by_voltage(model, gain, density)
+
+
+def _most_by_voltage(model: VoltageThruster, gain: float, density: float) -> float:
+    """Of the voltage model: damping Omega + load Q = drive V, Q by the square of Omega."""
+    volts, state = model.steady(1.0, density)
+    turning = float(state[0])
+    load = (volts * model.drive - model.damping * turning) / turning**2
+    half = model.damping / 2.0
+    return gain * ((np.sqrt(half**2 + load * model.drive * model.strongest) - half) / load) ** 2
+
+
+def _at_limits(loop: _Loop, time: Array, ordered: Array, torque: Array) -> Iterator[str]:
+    """In words: which thrusters and joints were asked for more than they give, since when and for how long."""
+    chain = loop.chain
+    most = [most_thrust(t, g, chain.density) for t, g in zip(chain.thrusters, loop.gains, strict=True)]
+    names = [f"thruster {t.name}" for t in chain.thrusters] + [f"joint {j.name}" for j in chain.joints]
+    limits = np.array([*most, *(j.strongest for j in chain.joints)])
+    beyond = np.abs(np.hstack([ordered, torque])) > (1.0 + SHORT) * limits
+    length = np.gradient(time) if len(time) > 1 else np.zeros(len(time))
+    for k, name in enumerate(names):
+        if beyond[:, k].any():
+            first, share = float(time[np.argmax(beyond[:, k])]), float(length[beyond[:, k]].sum())
+            yield f"saturated: {name} from {first:.3g} s, for {share:.3g} s in all"
+
+
