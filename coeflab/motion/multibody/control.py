@@ -32,8 +32,9 @@ from coeflab.motion.multibody.thrusters import (
 )
 from coeflab.motion.trajectory import Ended
 
-ROWS, TOLERANCE = 0.05, 1e-7
+ROWS, TOLERANCE, METHOD = 0.05, 1e-6, "RK45"
 SHORT = 1e-3  # of a limit: closer than that it is reached
+IDLE = 1.0  # rad/s: how near zero the root of a thrust is made straight
 LEVEL = (1.0, 0.0, 0.0, 0.0)
 
 
@@ -144,7 +145,12 @@ class ControlledRun:
     @property
     def turned(self) -> Array:
         """(k,) angle between the vehicle's attitude and the station's, rad."""
-        return np.asarray([2.0 * np.arcsin(min(float(np.linalg.norm(_turn_left(s[3:7], self.station.attitude))), 1.0)) for s in self.state])
+        return np.asarray(
+            [
+                2.0 * np.arcsin(min(float(np.linalg.norm(_turn_left(s[3:7], self.station.attitude))), 1.0))
+                for s in self.state
+            ]
+        )
 
     @property
     def q(self) -> Array:
@@ -198,7 +204,9 @@ def controlled(
         start[:7] = np.concatenate([station.position, station.attitude])
     loop = _Loop(chain, controller, track, station, flow, start)
     states = sum(t.order for t in chain.thrusters)
-    found = march(chain, loop.rates, loop.control, np.concatenate([start, np.zeros(states)]), 0.0, lasts, rows, TOLERANCE)
+    found = march(
+        chain, loop.rates, loop.control, np.concatenate([start, np.zeros(states)]), 0.0, lasts, rows, TOLERANCE, METHOD
+    )
     asked = [loop.asked(t, y) for t, y in zip(found.time, found.state, strict=True)]
     size, n = 13 + 2 * chain.count, chain.count
     thrusts = [loop.thrusts(y, a) for y, a in zip(found.state, asked, strict=True)]
@@ -209,15 +217,8 @@ def controlled(
     status = (*_at_limits(loop, found.time, ordered, torque), *((found.why,) if found.why else ()))
     return ControlledRun(
         chain, controller, station, found.time, found.state[:, :size], wanted, ordered, np.array(thrusts),
-        np.array([limited(chain, a) for a in torque]), end_in_earth(chain, found.state), end_in_earth(chain, ideal), found.ended, status,
+        np.array([limited(chain, a) for a in torque]), np.array([kane.end_in_earth(chain, s) for s in found.state]), np.array([kane.end_in_earth(chain, s) for s in ideal]), found.ended, status,
     )  # fmt: skip
-
-
-def end_in_earth(chain: Chain, states: Array) -> Array:
-    """(k, 3) places of the end effector, NED, m, at (k, ..) states (equations 26 and 27 of the URV paper)."""
-    turns = rotations(states[:, 3:7])
-    ends = np.array([kane.pose(chain, state[7 : 7 + chain.count]).end for state in states])
-    return np.asarray(states[:, :3] + np.einsum("kij,kj->ki", turns, ends))
 
 
 class _Loop:
@@ -257,7 +258,9 @@ class _Loop:
 
     def thrusts(self, state: Array, asked: Array) -> Array:
         """(m,) thrusts that act, N."""
-        return thruster_forces(self.chain.thrusters, state[self.size :], self.commands(state, asked), self.chain.density)
+        return thruster_forces(
+            self.chain.thrusters, state[self.size :], self.commands(state, asked), self.chain.density
+        )
 
     def control(self, time: float, state: Array) -> Array:
         """(6 + n,) control forces that act."""
@@ -316,12 +319,14 @@ def gain_of(thruster: Thruster, density: float) -> float:
 def demand(thruster: Thruster, gain: float, thrust: float, state: Array, pace: float, density: float) -> float:
     """Torque, N m, or voltage, V, that brings a propeller to the speed of a thrust at ``pace``, 1/s; without a model the thrust.
 
-    The propeller's own losses are taken up: of the torque model alpha Omega |Omega|, of the voltage model friction and the blades.
+    The speed is the root of thrust over gain, but for a straight line through zero that is as wide as the thrust of 1 rad/s, so that no
+    thrust asks for a jump. The propeller's own losses are taken up: of the torque model alpha Omega |Omega|, of the voltage model friction and the blades.
     """
     model = thruster.model
     if model is None:
         return thrust
-    aim = float(np.sign(thrust) * np.sqrt(abs(thrust) / gain))
+    square = thrust / gain
+    aim = square / (square * square + IDLE**4) ** 0.25
     idle = float(model.rates(state, 0.0, density)[0])
     power = model.beta if isinstance(model, TorqueThruster) else model.drive
     wanted = (pace * (aim - float(state[0])) - idle) / power
@@ -359,5 +364,3 @@ def _at_limits(loop: _Loop, time: Array, ordered: Array, torque: Array) -> Itera
         if beyond[:, k].any():
             first, share = float(time[np.argmax(beyond[:, k])]), float(length[beyond[:, k]].sum())
             yield f"saturated: {name} from {first:.3g} s, for {share:.3g} s in all"
-
-

@@ -19,6 +19,7 @@ from coeflab.core.types import Array
 from coeflab.motion.multibody.arm_file import read_chain
 from coeflab.motion.multibody.chain import Base, Chain, Joint, Link, Strip
 from coeflab.motion.multibody.kane import bias, partial_velocities, pose
+from coeflab.motion.multibody.thrusters import VoltageThruster
 
 DENSITY = 1000.0
 BASIC = 1.1  # C_D,basic of a cylinder, section 4.5
@@ -28,6 +29,11 @@ MASSES = (12.96, 22.37, 5.01)
 INERTIAS = ((1.09809, 0.177381, 1.1112), (0.403567, 0.968405, 0.966379), (0.0746421, 0.0755015, 0.00749571))
 # Chosen: the vehicle of the paper is generic.
 ATTACHMENT, VEHICLE_MASS = (0.5, 0.0, 0.2), 100.0
+# Chosen: a small ducted thruster, for the form that the paper prints of the voltage-driven model.
+VOLTAGE_DRIVE = 40.0
+VOLTAGE = VoltageThruster(
+    damping=5.0, drive=VOLTAGE_DRIVE, load=120.0, radius=0.1, pitch=0.5, lift=0.6, drag=0.4, column=0.15, momentum=1.0, strongest=48.0,
+)  # fmt: skip
 AREA = 0.236  # C_D S of the vehicle as a sphere, section 4.5: 0.47 pi (0.4 m)^2
 
 
