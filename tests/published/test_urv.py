@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from coeflab.published.urv import acceptance as urv
+from coeflab.published.urv import tasks, theory
 from coeflab.report.acceptance import Basis, Compared, ComparedTable
 
 
@@ -82,19 +83,19 @@ def test_control_does_what_its_law_says(moving: dict[str, ComparedTable]) -> Non
         "End effector on a straight line",
     ):
         assert words in said
-    runs = urv.tasks()
+    runs = tasks.tasks()
     assert runs["torque"].apart.max() < 1e-3 < runs["station"].end_apart.max()
     straight = runs["end"].end_wanted
     line = straight[-1] - straight[0]
     off = np.cross(straight - straight[0], line) / np.linalg.norm(line)
     assert np.abs(off).max() < 5e-4
-    assert np.linalg.norm(line) == pytest.approx(np.linalg.norm(urv.REACH), abs=1e-6)
+    assert np.linalg.norm(line) == pytest.approx(np.linalg.norm(tasks.REACH), abs=1e-6)
 
 
 def test_hamel_sees_a_changed_mass(monkeypatch: pytest.MonkeyPatch) -> None:
-    chain = urv.wet()
-    speeds = urv.in_frame_0(chain, urv.SPEEDS)
-    before = urv.hamel_bias(chain, urv.Q, speeds)
-    mass = urv.kane.mass_matrix
-    monkeypatch.setattr(urv.kane, "mass_matrix", lambda c, q: 1.05 * mass(c, q))
-    assert urv.hamel_bias(chain, urv.Q, speeds) == pytest.approx(1.05 * before)
+    chain = theory.wet()
+    speeds = theory.in_frame_0(chain, theory.SPEEDS)
+    before = theory.hamel_bias(chain, theory.Q, speeds)
+    mass = theory.kane.mass_matrix
+    monkeypatch.setattr(theory.kane, "mass_matrix", lambda c, q: 1.05 * mass(c, q))
+    assert theory.hamel_bias(chain, theory.Q, speeds) == pytest.approx(1.05 * before)

@@ -8,6 +8,7 @@ become propeller speeds, and those torques or voltages, each within its limits. 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Literal
@@ -349,7 +350,8 @@ def _most_by_voltage(model: VoltageThruster, gain: float, density: float) -> flo
     turning = float(state[0])
     load = (volts * model.drive - model.damping * turning) / turning**2
     half = model.damping / 2.0
-    return gain * ((np.sqrt(half**2 + load * model.drive * model.strongest) - half) / load) ** 2
+    fastest = (math.sqrt(half**2 + load * model.drive * model.strongest) - half) / load
+    return gain * fastest**2
 
 
 def _at_limits(loop: _Loop, time: Array, ordered: Array, torque: Array) -> Iterator[str]:
