@@ -82,6 +82,26 @@ def _require_inertia(mass: float, inertia: Array) -> None:
         raise InputError(doubt, "the inertia of a body about its centre of mass", column="inertia_matrix")
 
 
+def _numbers(value: Any, _file: Path) -> tuple[float, ...]:
+    if not isinstance(value, list):
+        raise InputError(shown(value), "a list of numbers")
+    return tuple(with_unit(v, "none") for v in value)
+
+
+def _listed(value: Any, _file: Path) -> tuple[Any, ...]:
+    if not isinstance(value, list) or not all(isinstance(v, (int, float, str)) for v in value):
+        raise InputError(shown(value), 'a list of positions, such as ["20 deg", 0]')
+    return tuple(value)
+
+
+_NUMBER = {"type": ["number", "string"], "unit": "1"}
+Numbers = Annotated[tuple[float, ...], takes.Takes("a list of numbers", _numbers, {"type": "array", "items": _NUMBER})]
+Positions = Annotated[
+    tuple[Any, ...],
+    takes.Takes("a list of positions", _listed, {"type": "array", "items": {**_NUMBER, "unit": "rad or m"}}),
+]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CylinderKeys(takes.Declaration):
     """A cylinder of a link: it drags across its axis and moves water with it.
@@ -395,6 +415,62 @@ class PropulsorKeys(takes.Declaration):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class StartKeys(takes.Declaration):
+    """How a motion begins: at the origin, level, heading north, with the joints at home.
+
+    Attributes
+    ----------
+    velocity : (6,) tuple
+        u v w p q r of the vehicle over ground, m/s and rad/s.
+    rates : list of float
+        Of the joints, rad/s or m/s; at rest unless given.
+    """
+
+    velocity: Annotated[tuple[float, ...], takes.numbers(6, "none", "six speeds, m/s and rad/s")] = (0.0,) * 6
+    rates: Numbers = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmPhaseKeys(takes.Declaration):
+    """A phase of the motion that `coeflab simulate` makes.
+
+    Attributes
+    ----------
+    name : str
+        Of the phase.
+    lasts : float
+        How long.
+    vehicle : {"free", "held"}
+        held: it keeps its velocity, by whatever force that takes.
+    joints : list
+        Positions that the joints reach at its end, from rest to rest, each with its unit.
+    end : (3,) array
+        Place that the end effector reaches at its end, on a straight line of the vehicle, [x, y, z], m, FRD, from the datum.
+    torque : list of float
+        Of the joints, N m or N, constant. Without joints, end and torque they turn freely.
+    commands : list of float
+        Of the thrusters, constant: N m by torque, V by voltage, N without a model; without it they stand still.
+    """
+
+    name: takes.Text
+    lasts: Annotated[takes.Time, takes.ABOVE_ZERO]
+    vehicle: Annotated[str, takes.one_of("free", "held")] = "free"
+    joints: Positions = ()
+    end: takes.Point | None = None
+    torque: Numbers = ()
+    commands: Numbers = ()
+
+    def check(self) -> None:
+        """One way to move the joints."""
+        ways = {"joints": bool(self.joints), "end": self.end is not None, "torque": bool(self.torque)}
+        given = [key for key, there in ways.items() if there]
+        if len(given) > 1:
+            raise InputError(f"{' and '.join(given)}", "one of joints, end and torque", column=given[1])
+        if self.commands and self.vehicle == "held":
+            raise InputError("commands of a vehicle that is held", "a free vehicle", column="commands")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class File(BodyFile):
     """A body.toml of a vehicle with an arm.
 
@@ -408,6 +484,10 @@ class File(BodyFile):
         Joints and links, from the vehicle outwards.
     thruster : array of tables
         Thrusters of the vehicle.
+    start : table
+        How a motion begins.
+    phase : array of tables
+        The motion that `coeflab simulate` makes, one phase after the other.
     basis : mapping of str to str
         Where numbers come from, in words that begin with printed, derived, assumed or chosen.
     """
@@ -417,6 +497,8 @@ class File(BodyFile):
     arm: ArmKeys
     link: tuple[LinkKeys, ...] = ()
     thruster: tuple[PropulsorKeys, ...] = ()
+    start: StartKeys = StartKeys()
+    phase: tuple[ArmPhaseKeys, ...] = ()
     basis: dict[str, takes.Text] = field(default_factory=dict)
 
     def check(self) -> None:
@@ -428,9 +510,32 @@ class File(BodyFile):
             names = [part.name for part in parts]
             if twice := sorted({n for n in names if names.count(n) > 1}):
                 raise InputError(f"two called {shown(twice[0])}", "one name for each", column=key)
+        self._check_motion()
         for key, said in self.basis.items():
             if said.split()[0].rstrip(":,") not in BASES:
                 raise InputError(shown(said), "a text that begins with " + ", ".join(BASES), column=f"basis.{key}")
+
+    def _check_motion(self) -> None:
+        """As many values as there are joints and thrusters, each of its joint's kind."""
+        many = [("start.rates", self.start.rates, len(self.link), "joints")]
+        for i, phase in enumerate(self.phase):
+            at = f"phase[{i}]"
+            many += [(f"{at}.{key}", getattr(phase, key), len(self.link), "joints") for key in ("joints", "torque")]
+            many.append((f"{at}.commands", phase.commands, len(self.thruster), "thrusters"))
+        for key, values, count, what in many:
+            if values and len(values) != count:
+                raise InputError(f"{len(values)} values", f"{count}, one for each of the {what}", column=key)
+        for i, phase in enumerate(self.phase):
+            try:
+                self.positions(phase)
+            except InputError as why:
+                raise InputError(why.found, why.expected, column=f"phase[{i}].joints", advice=why.advice) from None
+
+    def positions(self, phase: ArmPhaseKeys) -> tuple[float, ...]:
+        """Joint positions that a phase goes to, rad and m."""
+        return tuple(
+            with_unit(value, DIMENSIONS[link.joint][0]) for link, value in zip(self.link, phase.joints, strict=False)
+        )
 
     @property
     def at_home(self) -> tuple[tuple[Array, Array], ...]:

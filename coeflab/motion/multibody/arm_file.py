@@ -14,14 +14,36 @@ from coeflab.core.errors import shown
 from coeflab.core.text.toml import read_toml
 from coeflab.core.types import Array
 from coeflab.law.transforms import moved
+from coeflab.motion.manoeuvre import Manoeuvre, Phase
 from coeflab.motion.multibody.chain import Base, Chain, Joint, Link, Strip
 from coeflab.motion.multibody.thrusters import Thruster, TorqueThruster, VoltageThruster
 
 BODY = "body.toml"
+FREE = 10.0  # s of free motion where no phase is given
+
+
+def is_arm(path: Path) -> bool:
+    """Whether a path is the body.toml of an arm, or the folder of one; nothing is raised for what cannot be read."""
+    file = path / BODY if path.is_dir() else path
+    if file.suffix != ".toml" or not file.is_file():
+        return False
+    head = read_toml(file).content.get("body")
+    return isinstance(head, dict) and head.get("reader") == File.reader
 
 
 def read_chain(path: Path) -> Chain:
     """The vehicle and arm of a body.toml, or of the folder that holds one.
+
+    Raises
+    ------
+    InputError
+        No body.toml of an arm; everything that is wrong with it, by line and key.
+    """
+    return read_arm(path)[0]
+
+
+def read_arm(path: Path) -> tuple[Chain, Manoeuvre]:
+    """The same, and the motion that its phases order; without a phase it moves freely for 10 s.
 
     Raises
     ------
@@ -40,7 +62,7 @@ def read_chain(path: Path) -> Chain:
     if file.vehicle.volume is None:
         neutral.insert(0, "vehicle")
     assumed = (f"Displaced mass equals mass, as no volume is stated: {', '.join(neutral)}.",) if neutral else ()
-    return Chain(
+    chain = Chain(
         name=file.body.name,
         base=_base(file.body.name, file.vehicle, rho),
         links=tuple(_link(one, rho) for one in file.link),
@@ -52,6 +74,25 @@ def read_chain(path: Path) -> Chain:
         gravity=file.arm.gravity,
         statements=(*assumed, *(f"{key}: {said}" for key, said in file.basis.items())),
     )
+    return chain, _motion(file, chain)
+
+
+def _motion(file: File, chain: Chain) -> Manoeuvre:
+    """Phases with their orders, by the names of joints and thrusters."""
+    joints = [joint.name for joint in chain.joints]
+    phases = []
+    for one in file.phase:
+        orders = {"vehicle.held": float(one.vehicle == "held")}
+        orders |= dict(zip(joints, file.positions(one), strict=False))
+        orders |= {f"{name}.torque": value for name, value in zip(joints, one.torque, strict=False)}
+        orders |= {t.name: value for t, value in zip(chain.thrusters, one.commands, strict=False)}
+        if one.end is not None:
+            place = one.end - file.vehicle.centre_of_mass
+            orders |= {f"end.{axis}": float(value) for axis, value in zip("xyz", place, strict=True)}
+        phases.append(Phase(one.name, orders, one.lasts))
+    started = {f"{name}.rate": value for name, value in zip(joints, file.start.rates, strict=False)}
+    made = tuple(phases) or (Phase("free motion", {"vehicle.held": 0.0}, FREE),)
+    return Manoeuvre("arm_motion", made, np.array(file.start.velocity), orders=started)
 
 
 def _base(name: str, keys: VehicleKeys, density: float) -> Base:

@@ -26,13 +26,14 @@ from coeflab.motion.trajectory import Ended
 Control = Callable[[float, Array], Array]
 Equations = Callable[[Array, Flow], tuple[Array, Array]]
 CLOSE, ITERATIONS, STRAIGHT = 1e-9, 60, 41
+AT_REST = 1e-6  # rad/s or m/s
 FEW_CALLS, CALLS_A_SECOND = 20_000, 20_000.0
 
 
 @brief
 @dataclass(frozen=True, eq=False)
 class Track:
-    """Joint positions over time, from rest to rest.
+    """Joint positions over time, to rest.
 
     Attributes
     ----------
@@ -40,14 +41,19 @@ class Track:
         s.
     positions : (k, n) array
         Passed at equal steps of the share of the way, which goes by 10 x^3 - 15 x^4 + 6 x^5 of the share x of the time.
+    rates : (n,) array
+        At the beginning, of a track of two positions; they die away by x - 6 x^3 + 8 x^4 - 3 x^5. Of more positions none.
     """
 
     begins: float
     ends: float
     positions: Array
+    rates: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
+        rates = self.rates if len(self.rates) else np.zeros(np.shape(self.positions)[1])
         object.__setattr__(self, "positions", locked(self.positions))
+        object.__setattr__(self, "rates", locked(rates))
 
     @cached_property
     def _path(self) -> Any:
@@ -62,8 +68,12 @@ class Track:
         s = x**3 * (10.0 - 15.0 * x + 6.0 * x * x)
         ds, dds = 30.0 * x * x * (1.0 - x) ** 2 / span, 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / span**2
         if len(self.positions) == 2:
-            way = self.positions[1] - self.positions[0]
-            return self.positions[0] + s * way, ds * way, dds * way
+            way, swing = self.positions[1] - self.positions[0], self.rates
+            h, dh = x - 6.0 * x**3 + 8.0 * x**4 - 3.0 * x**5, 1.0 - 18.0 * x**2 + 32.0 * x**3 - 15.0 * x**4
+            ddh = (-36.0 * x + 96.0 * x**2 - 60.0 * x**3) / span
+            moving = 0.0 if time > self.ends else 1.0
+            here = self.positions[0] + s * way + span * h * swing
+            return here, ds * way + moving * dh * swing, dds * way + moving * ddh * swing
         along, bent = self._path(s, 1), self._path(s, 2)
         return self._path(s), ds * along, dds * along + ds * ds * bent
 
@@ -306,8 +316,10 @@ def _upright(state: Array) -> Array:
     return out
 
 
-def track_to(chain: Chain, q: Array, to: Array, begins: float, ends: float) -> Track:
-    """From joint positions to others.
+def track_to(
+    chain: Chain, q: Array, to: Array, begins: float, ends: float, rates: Array | None = None
+) -> Track:  # fmt: skip
+    """From joint positions to others, from rest or from rates (n,).
 
     Raises
     ------
@@ -321,10 +333,12 @@ def track_to(chain: Chain, q: Array, to: Array, begins: float, ends: float) -> T
                 f"{value:g} {unit}", f"{joint.low:g} to {joint.high:g} {unit}, the limits of joint {joint.name}",
                 column="joints",
             )  # fmt: skip
-    return Track(begins, ends, np.array([q, to]))
+    return Track(begins, ends, np.array([q, to]), np.zeros(chain.count) if rates is None else rates)
 
 
-def track_of_end(chain: Chain, q: Array, to: Array, begins: float, ends: float) -> Track:
+def track_of_end(
+    chain: Chain, q: Array, to: Array, begins: float, ends: float, rates: Array | None = None
+) -> Track:  # fmt: skip
     """Joint positions that take the end effector straight to a point of the vehicle.
 
     Parameters
@@ -336,12 +350,17 @@ def track_of_end(chain: Chain, q: Array, to: Array, begins: float, ends: float) 
         m, FRD, from the vehicle's centre of mass.
     begins, ends : float
         s.
+    rates : (n,) array, optional
+        Of the joints at the beginning: none.
 
     Raises
     ------
     InputError
-        A point that the arm does not reach along the straight line within its limits; with the nearest place on the way.
+        A point that the arm does not reach along the straight line within its limits, with the first place on the way that it
+        misses; joints that still move.
     """
+    if rates is not None and np.max(np.abs(rates), initial=0.0) > AT_REST:
+        raise InputError("joints that still move", "an end effector that begins at rest", column="end")
     start = kane.pose(chain, q).end
     rows, here = [np.array(q)], np.array(q)
     low, high = (np.array([getattr(j, name) for j in chain.joints]) for name in ("low", "high"))
