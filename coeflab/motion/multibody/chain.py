@@ -235,6 +235,8 @@ class Chain:
         m/s^2.
     statements : tuple of str
         What was assumed, and which numbers come from where.
+    assumed : tuple of str
+        Of these, what a motion has to say.
     """
 
     name: str
@@ -247,6 +249,7 @@ class Chain:
     density: float = FRESH
     gravity: float = STANDARD_GRAVITY
     statements: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("attachment", "mount", "tool"):

@@ -189,7 +189,7 @@ def _trajectory(
         columns[f"end.{name} [m]"] = ends[:, k]
     ahead = axes[:, :, 0]
     heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
-    statements = list(chain.statements[:1]) + [
+    statements = list(chain.assumed) + [
         f"{name}, for {float(np.mean(flags)):.1%} of the rows." for name, flags in outside.items() if flags.any()
     ]
     return Trajectory(
