@@ -27,7 +27,7 @@ Control = Callable[[float, Array], Array]
 Equations = Callable[[Array, Flow], tuple[Array, Array]]
 CLOSE, ITERATIONS, STRAIGHT = 1e-9, 60, 41
 AT_REST = 1e-6  # rad/s or m/s
-FEW_CALLS, CALLS_A_SECOND = 20_000, 20_000.0
+FEW_CALLS, CALLS_A_SECOND = 20_000, 10_000.0
 
 
 @brief
@@ -252,19 +252,24 @@ def march(
     most = FEW_CALLS + CALLS_A_SECOND * (ends - begins)
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.filterwarnings("ignore", message="lsoda: ", category=UserWarning)
-        solver = getattr(integrate, method)(rates, begins, start, ends, rtol=tolerance, atol=tolerance)
-        while solver.status == "running" and not why:
+        reached, here = begins, np.array(start)
+        try:
+            solver = getattr(integrate, method)(_finite(rates), begins, start, ends, rtol=tolerance, atol=tolerance)
+        except _NotFiniteError:
+            solver, ended, why = None, Ended.NOT_FINITE, "the rates are not finite"
+        while solver is not None and solver.status == "running" and not why:
             try:
                 solver.step()
-            except (np.linalg.LinAlgError, OverflowError, ValueError) as error:
-                ended, why = Ended.NOT_FINITE, f"the numbers fail ({error})"
-                break
-            if solver.status == "failed" or solver.nfev > most:
+            except (_NotFiniteError, np.linalg.LinAlgError, OverflowError):
+                ended, why = Ended.NOT_FINITE, "the rates are not finite"
+            if not why and (solver.status == "failed" or solver.nfev > most):
                 ended, why = Ended.STEP_TOO_SMALL, "the steps become too small"
+            if why:
+                if times[-1] < reached:
+                    times.append(reached)
+                    states.append(_upright(here))
                 break
-            if not np.isfinite(solver.y).all():
-                ended, why = Ended.NOT_FINITE, "the state is not finite"
-                break
+            reached, here = float(solver.t), np.array(solver.y)
             inside = solver.dense_output()
             until = float(solver.t)
             met = _at_a_limit(chain, inside, float(solver.t_old), until)
@@ -282,6 +287,22 @@ def march(
     if why:
         why = f"at {times[-1]:.6g} s: {why}"
     return March(np.array(times), np.array(states), np.array(acted), ended, why)
+
+
+class _NotFiniteError(ArithmeticError):
+    """Rates that are no numbers."""
+
+
+def _finite(rates: Control) -> Control:
+    """The same rates, which raise where they are no numbers: a solver never comes back from those."""
+
+    def checked(time: float, state: Array) -> Array:
+        found = rates(time, state)
+        if not math.isfinite(float(np.sum(found))):
+            raise _NotFiniteError
+        return found
+
+    return checked
 
 
 def _at_a_limit(chain: Chain, inside: Callable[[float], Array], begins: float, ends: float) -> tuple[float, str] | None:

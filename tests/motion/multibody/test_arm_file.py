@@ -128,6 +128,16 @@ def test_voltage_thrusters_and_their_limits(tmp_path: Path) -> None:
     assert refused(tmp_path, torque, f"{torque}\nvoltage = {{{keys}}}").column == "thruster[0].voltage"
 
 
+def test_a_cylinder_away_from_the_centre_of_mass(tmp_path: Path) -> None:
+    """What it moves has a moment about the centre of mass: centre x A v."""
+    file = tmp_path / "body.toml"
+    file.write_text(TEXT.replace("centre = [0.0, 0.3088, 0.0389]\naxis", "centre = [0.2, 0.3088, -0.1611]\naxis", 1))
+    water, v = read_chain(file).links[0].added_mass, np.array([0.3, -0.4, 0.7])
+    own = np.diag(puma().links[0].added_mass)[:3] * v
+    np.testing.assert_allclose(water[:3, :3] @ v, own, atol=1e-12)
+    np.testing.assert_allclose(water[3:, :3] @ v, np.cross([0.2, 0.0, -0.2], own), atol=1e-12)
+
+
 def test_cylinders_with_their_ends(tmp_path: Path) -> None:
     file = tmp_path / "body.toml"
     file.write_text(TEXT.replace("drag_coefficient = 1.1", 'drag_coefficient = 1.1\nadded_mass = "ends"', 1)

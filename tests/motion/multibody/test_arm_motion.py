@@ -94,6 +94,17 @@ def test_a_joint_at_its_limit_ends_the_motion() -> None:
     assert off.ended is Ended.COMPLETE
 
 
+@pytest.mark.parametrize(("torque", "ended"), [(np.nan, Ended.NOT_FINITE), (1e200, Ended.STEP_TOO_SMALL)])
+def test_numbers_that_fail_are_a_status(torque: float, ended: Ended) -> None:
+    chain = ideal(puma())
+    strong = tuple(replace(one, joint=replace(one.joint, strongest=np.inf)) for one in chain.links)
+    chain = replace(chain, links=strong)
+    found = march(chain, *driven(chain, Drive(torque=np.array([0.0, 0.0, torque]))), at_rest(chain), 0.0, 1.0, 0.1)
+    assert found.ended is ended
+    assert found.why.startswith("at 0 s: the ")
+    assert len(found.time) == 1
+
+
 def test_held_vehicle_and_tracked_joints_need_the_force_of_the_equations() -> None:
     chain = puma()
     track = track_to(chain, Q, np.array([0.6, -1.0, 1.2]), 0.0, 2.0)
