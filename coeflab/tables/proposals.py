@@ -33,7 +33,32 @@ from coeflab.tables.words_above import BODY_AXES
 OPEN = "?"
 UNKNOWN = "no known name"
 AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
-IDLE_UNITS = frozenset(["°c", "c", "degc", "k", "s", "sec", "ms", "min", "h", "hz", "khz", "pa", "kpa", "mpa", "bar", "mbar", "v", "mv", "a", "ma", "w", "kw"])
+IDLE_UNITS = frozenset(
+    [
+        "°c",
+        "c",
+        "degc",
+        "k",
+        "s",
+        "sec",
+        "ms",
+        "min",
+        "h",
+        "hz",
+        "khz",
+        "pa",
+        "kpa",
+        "mpa",
+        "bar",
+        "mbar",
+        "v",
+        "mv",
+        "a",
+        "ma",
+        "w",
+        "kw",
+    ]
+)
 OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore", *WIND}  # names that coeflab's own tables have
 ALLOWED = {
     "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
@@ -157,7 +182,9 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     by = (said_of.get(AREA), said_of.get(LENGTH_OF, said_of.get("scaling.length")))
     one = _with_unit(column, said, why, certain, by)
     if one.text.endswith(f"[{OPEN}]") and said_of.get(UNITS_OF) == "SI" and said.dimension not in ("angle", "none"):
-        return Proposal(f"{one.text.partition(' [')[0]} [{SI[said.dimension]}]", f"{why.partition(';')[0]}; in SI, as said")
+        return Proposal(
+            f"{one.text.partition(' [')[0]} [{SI[said.dimension]}]", f"{why.partition(';')[0]}; in SI, as said"
+        )
     return one
 
 

@@ -199,7 +199,35 @@ _PLACED = re.compile(r"[-+]?\d[^A-Za-z]*(?:(?:mm|cm|m)\b)?")
 _SIZED = re.compile(r"\s*([-+]?[\d.,]*\d(?:\s*(?:mm|cm|m|ft|in)\b)?)[\s,:]*(.*)")
 _BETWEEN = frozenset(["from", "of", "the", "at", "von", "vom", "ab", "am", "du", "de", "la", "m"])
 _SIDED = frozenset(
-    ["aft", "behind", "abaft", "astern", "after", "forward", "fwd", "fore", "ahead", "before", "below", "above", "under", "over", "port", "starboard", "hinter", "vor", "achtern", "achterlich", "vorn", "ueber", "über", "unter", "derriere", "derrière", "devant"]
+    [
+        "aft",
+        "behind",
+        "abaft",
+        "astern",
+        "after",
+        "forward",
+        "fwd",
+        "fore",
+        "ahead",
+        "before",
+        "below",
+        "above",
+        "under",
+        "over",
+        "port",
+        "starboard",
+        "hinter",
+        "vor",
+        "achtern",
+        "achterlich",
+        "vorn",
+        "ueber",
+        "über",
+        "unter",
+        "derriere",
+        "derrière",
+        "devant",
+    ]
 )
 
 

@@ -41,8 +41,12 @@ _BODY = re.compile(
     r"|\brep[èe]re\s+(?:li[ée]|du\s+(?:corps|navire))\b|\baxes\s+li[ée]s\b"
 )
 
-_TEMPERATURE = re.compile(r"(?i)(?:\bt|temp\w*|temperatur\w*)\s*(?:=|:|\bof\b)?\s*(?P<t>\d{1,2}(?:[.,]\d+)?)\s*(?:°|º|deg)\s*C\b")
-_SALT = re.compile(r"(?i)\b(?:sea\s?-?water|salt\s?-?water|salzwasser|seewasser|meerwasser|eau\s+(?:de\s+mer|sal[ée]e))\b")
+_TEMPERATURE = re.compile(
+    r"(?i)(?:\bt|temp\w*|temperatur\w*)\s*(?:=|:|\bof\b)?\s*(?P<t>\d{1,2}(?:[.,]\d+)?)\s*(?:°|º|deg)\s*C\b"
+)
+_SALT = re.compile(
+    r"(?i)\b(?:sea\s?-?water|salt\s?-?water|salzwasser|seewasser|meerwasser|eau\s+(?:de\s+mer|sal[ée]e))\b"
+)
 _FRESH = re.compile(
     r"(?i)\b(?:fresh\s?-?water|tap\s?-?water|s(?:ü|ue)(?:ß|ss)wasser|frischwasser|leitungswasser|eau\s+douce)\b"
     r"|(?P<tank>\btow(?:ing)?[- ]tank\b|schlepp(?:tank|kanal|rinne|versuch)|bassin\s+(?:de\s+)?(?:traction|car[èe]nes?))"
@@ -86,9 +90,9 @@ def water_density(celsius: float, salinity: float = 0.0) -> float:
     salinity : float
     """
     t, s = celsius, salinity
-    fresh = (((((-280.54253e-12 * t + 105.56302e-9) * t - 46.170461e-6) * t - 7.9870401e-3) * t + 16.945176) * t + 999.83952) / (
-        1.0 + 16.879850e-3 * t
-    )
+    fresh = (
+        ((((-280.54253e-12 * t + 105.56302e-9) * t - 46.170461e-6) * t - 7.9870401e-3) * t + 16.945176) * t + 999.83952
+    ) / (1.0 + 16.879850e-3 * t)
     first = (((5.3875e-9 * t - 8.2467e-7) * t + 7.6438e-5) * t - 4.0899e-3) * t + 8.24493e-1
     second = (-1.6546e-6 * t + 1.0227e-4) * t - 5.72466e-3
     return float(fresh + first * s + second * s**1.5 + 4.8314e-4 * s * s)
@@ -135,7 +139,9 @@ def of_the_test(texts: Iterable[tuple[str, str]]) -> dict[str, Stated]:
         how = f"{water or 'fresh'} water of {at:g} °C" + ", 35 g/kg of salt" * (water == "sea")
         found["conditions.density"] = Stated(density, f"{how}; {first['water']}", offered=True)
     if len(axes) >= 2 and (frame := _frame(axes)):
-        found["axes.frame"] = Stated(frame, f"{first['axes']}: " + ", ".join(f"{a} {d}" for a, d in axes.items()), offered=True)
+        found["axes.frame"] = Stated(
+            frame, f"{first['axes']}: " + ", ".join(f"{a} {d}" for a, d in axes.items()), offered=True
+        )
     return found
 
 
