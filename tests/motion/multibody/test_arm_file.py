@@ -79,6 +79,18 @@ def test_another_kind_of_body_is_no_arm() -> None:
         read_chain(other)
 
 
+def test_what_the_shipped_file_makes() -> None:
+    chain = puma()
+    strip = chain.links[0].strips[0]
+    np.testing.assert_allclose([strip.start, strip.end], [[0.0, 0.3088 - 0.33, 0.0389], [0.0, 0.3088 + 0.33, 0.0389]])
+    assert (strip.diameter, strip.coefficient) == (0.18, 1.1)
+    np.testing.assert_allclose(chain.displaced[0], [0.1, 0.01296, 0.02237, 0.00501])  # neutral: section 4.5
+    down = np.array([0.0, 0.0, 1.0])
+    np.testing.assert_allclose(
+        kane.weight(chain, chain.home, down) + kane.buoyancy(chain, chain.home, down), 0.0, atol=1e-9
+    )
+
+
 def test_points_from_a_datum_elsewhere(tmp_path: Path) -> None:
     file = tmp_path / "body.toml"
     moved = TEXT.replace("centre_of_mass = [0.0, 0.0, 0.0]", "centre_of_mass = [-1.0, 0.0, 0.5]", 1)
