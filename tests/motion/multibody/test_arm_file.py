@@ -9,6 +9,7 @@ import pytest
 
 from coeflab.bodies.added_mass import ADDED_MASS
 from coeflab.bodies.readers import read_body
+from coeflab.bodies.shape import Parts
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.motion.multibody import kane
@@ -177,3 +178,15 @@ def test_it_is_a_body_too() -> None:
         axis = turn @ link.strips[0].axis
         along[:3, :3] += 0.1 * np.max(np.diag(link.added_mass)[:3]) * np.outer(axis, axis)
     np.testing.assert_allclose(found[:3, :3], (water[:6, :6] + along)[:3, :3], atol=1e-9)
+
+
+def test_a_cylinder_lies_along_its_own_axis(tmp_path: Path) -> None:
+    file = tmp_path / "body.toml"
+    file.write_text(TEXT.replace("axis = [1, 0, 0]", "axis = [1, 2, 0.5]"))
+    chain, shape = read_chain(file), read_body(file).require_shape()
+    assert isinstance(shape, Parts)
+    at = kane.pose(chain, chain.home)
+    for link, part, turn, origin in zip(chain.links, shape.parts[1:], at.rotation[1:], at.origin[1:], strict=True):
+        strip = link.strips[0]
+        assert abs(part.rotation[:, 0] @ turn @ strip.axis) == pytest.approx(1.0)
+        np.testing.assert_allclose(part.centre, origin + turn @ (strip.start + strip.end) / 2.0)
