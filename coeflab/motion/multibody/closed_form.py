@@ -34,6 +34,7 @@ from coeflab.motion.multibody.composite import (
     scaled,
 )  # fmt: skip
 from coeflab.motion.multibody.tape import (
+    ROUNDING,
     ZERO,
     ClosedForm,
     Parameter,
@@ -95,7 +96,8 @@ class Derivation:
         self.rows = [self._row(k, link) for k, link in enumerate(chain.links, 1)]
         self.attachment = self.of.vector("c_0", chain.attachment, "origin of frame 0 from the vehicle's centre of mass")
         self.tool = self.of.vector("e_", chain.tool, f"end effector in frame {self.n}")
-        self.mount = [[number(float(v)) for v in row] for row in chain.mount]
+        near = np.where(np.abs(chain.mount - np.round(chain.mount)) < ROUNDING, np.round(chain.mount), chain.mount)
+        self.mount = [[number(float(v)) for v in row] for row in near]
         self.areas = [
             self.of(f"S_{axis}", float(v), "m^2", f"vehicle, C_D S along {axis}")
             for axis, v in zip("xyz", chain.base.drag_area)
@@ -125,9 +127,9 @@ class Derivation:
         if np.any(body.added_mass):
             water, said = (body.added_mass + body.added_mass.T) / 2.0, f"{name}, added mass"
             added = (
-                of.square(f"A_{k}", water[:3, :3], "kg", said, "123"),
-                of.square(f"A_{k}", water[:3, 3:], "kg m", said, "123", "456"),
-                of.square(f"A_{k}", water[3:, 3:], "kg m^2", said, "456"),
+                of.square(f"A_{k}_", water[:3, :3], "kg", said, "123"),
+                of.square(f"A_{k}_", water[:3, 3:], "kg m", said, "123", "456"),
+                of.square(f"A_{k}_", water[3:, 3:], "kg m^2", said, "456"),
             )
         volume = of(f"V_{k}", body.volume, "m^3", f"{name}, displaced volume")
         lifted = of.vector(f"b_{k}", body.centre_of_buoyancy, f"{name}, centre of buoyancy")

@@ -15,6 +15,7 @@ Vector = tuple[Any, Any, Any]
 Wrench = tuple[Vector, Vector]
 Square = list[list[Any]]
 ZERO: Vector = (sp.S.Zero, sp.S.Zero, sp.S.Zero)
+ROUNDING = 1e-15  # of a sine or cosine: what is closer to 0 or 1 is meant to be
 LONGEST = 24  # operations of a line into which names used once are put back
 
 
@@ -134,7 +135,7 @@ def number(value: float) -> Any:
 def right_angled(angle: float) -> tuple[float, float]:
     """Cosine and sine; exact at right angles."""
     c, s = math.cos(angle), math.sin(angle)
-    return (round(c), round(s)) if min(abs(c), abs(s)) < 1e-15 else (c, s)
+    return (round(c), round(s)) if min(abs(c), abs(s)) < ROUNDING else (c, s)
 
 
 class Tape:
@@ -196,7 +197,7 @@ class Tape:
         put: dict[Any, Any] = {}
         seen: dict[Any, Any] = {}
         kept: list[Line] = []
-        strips = 0
+        strips = many = 0
         for line in reversed(needed):
             of = tuple(e.xreplace(put) if e.args or e.is_Symbol else e for e in line.of)
             own = line.names[0]
@@ -207,7 +208,8 @@ class Tape:
                 put[own] = seen.get(of[0], of[0])
                 continue
             else:
-                names = (sp.Symbol(f"x{len(seen) + 1}") if own.name.startswith("x") else own,)
+                many += own.name.startswith("x")
+                names = (sp.Symbol(f"x{many}") if own.name.startswith("x") else own,)
                 seen[of[0]] = names[0]
             put.update(zip(line.names, names, strict=True))
             kept.append(Line(names, of, line.stage))
