@@ -22,9 +22,9 @@ C_FILES = ["urv_puma.c", "urv_puma.h"]
 def one_link(tmp_path: Path) -> Path:
     """The shipped arm with its first link alone."""
     head, first, *_ = PUMA.read_text(encoding="utf-8").split("[[link]]\n")
-    thrusters = PUMA.read_text(encoding="utf-8").partition("[[thruster]]")
+    basis = PUMA.read_text(encoding="utf-8").partition("\n[basis]\n")[2]
     file = tmp_path / "body.toml"
-    file.write_text(f"{head}[[link]]\n{first}{''.join(thrusters[1:])}", encoding="utf-8")
+    file.write_text(f"{head}[[link]]\n{first}[basis]\n{basis}", encoding="utf-8")
     return file
 
 
