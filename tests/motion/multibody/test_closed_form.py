@@ -65,7 +65,7 @@ def compiled(form: ClosedForm, folder: Path) -> Code:
     for name, content in files.items():
         (folder / name).write_bytes(content)
     (source,) = folder.glob("*.c")
-    build = ["cc", "-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O1", "-shared", "-fPIC"]
+    build = ["cc", "-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O0", "-shared", "-fPIC"]
     subprocess.run([*build, "-o", folder / "form.so", source, "-lm"], check=True)
     library = ctypes.CDLL(str(folder / "form.so"))
 
