@@ -27,10 +27,10 @@ def command(
     out: Path | None = typer.Option(
         None, "--out", metavar="FOLDER", help="Folder for the files; default NAME.LANGUAGE in the current folder."
     ),
-    symbols: bool = typer.Option(
-        False,
-        "--symbols",
-        help="Keep masses, lengths and coefficients as arguments; without it their numbers stand in the code.",
+    symbols: bool | None = typer.Option(
+        None,
+        "--symbols/--numbers",
+        help="Whether masses, lengths and coefficients stay symbols, with the file's values beside; by default in LaTeX alone.",
     ),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
@@ -58,7 +58,7 @@ def command(
             raise
         raise InputError("derive without the package sympy", "sympy", advice='Install "coeflab[derive]".') from None
     with show.progress(json) as say:
-        form = derive(chain, symbols=symbols, say=say)
+        form = derive(chain, symbols=to == "latex" if symbols is None else symbols, say=say)
         files = written(form, to, Origin(file.name, sha256_of(file), chain.statements), say)
     folder = Path(f"{identifier(chain.name)}.{to}") if out is None else out
     changed = write_all(folder, files)
@@ -75,11 +75,12 @@ def _functions(form: ClosedForm) -> Table:
     """What was derived, and how long it is."""
     from coeflab.core.table import Table
 
+    count = len(form.links)
     rows = tuple((f.name, ", ".join(f.arguments), ", ".join(f.outputs), str(f.operations)) for f in form.functions)
     notes = ["Operations: additions, products, functions; a strip counts as one."]
     if form.parameters:
         notes.append(f"{len(form.parameters)} numbers of the file stay arguments; zeros and right angles do not.")
     return Table(
-        f"{form.name}: {len(form.links)} links, {form.size} generalised speeds",
+        f"{form.name}: {count} link{'s' * (count > 1)}, {form.size} generalised speeds",
         ("function", "of", "gives", "operations"), rows, tuple(notes), frozenset({0, 1, 2}),
     )  # fmt: skip

@@ -22,9 +22,9 @@ C_FILES = ["urv_puma.c", "urv_puma.h"]
 def one_link(tmp_path: Path) -> Path:
     """The shipped arm with its first link alone."""
     head, first, *_ = PUMA.read_text(encoding="utf-8").split("[[link]]\n")
-    thrusters = PUMA.read_text(encoding="utf-8").partition("[[thruster]]")
+    basis = PUMA.read_text(encoding="utf-8").partition("\n[basis]\n")[2]
     file = tmp_path / "body.toml"
-    file.write_text(f"{head}[[link]]\n{first}{''.join(thrusters[1:])}", encoding="utf-8")
+    file.write_text(f"{head}[[link]]\n{first}[basis]\n{basis}", encoding="utf-8")
     return file
 
 
@@ -39,7 +39,7 @@ def test_files_are_written_and_the_same_again(
     """The second run in an interpreter of its own, which hashes in another way."""
     done = coeflab("derive", "body.toml", "--to", "c")
     assert (done.returncode, done.stderr) == (0, "")
-    assert "urv_puma: 1 links, 7 generalised speeds" in done.stdout
+    assert "urv_puma: 1 link, 7 generalised speeds" in done.stdout
     assert flat(done.stdout).count(": written") == 2
     assert max(map(len, done.stdout.splitlines())) <= 80
     assert sorted(content(tmp_path / "urv_puma.c")) == C_FILES
@@ -53,8 +53,12 @@ def test_files_are_written_and_the_same_again(
 
 @pytest.mark.slow
 def test_every_language_and_json(coeflab: Run, one_link: Path, tmp_path: Path) -> None:
-    for language, ending in (("python", ".py"), ("latex", ".tex"), ("octave", ".m")):
-        done = coeflab("derive", tmp_path, "--to", language, "--out", "made", "--symbols", "--json")
+    for language, ending, symbols in (
+        ("python", ".py", "--symbols"),
+        ("latex", ".tex", "--numbers"),
+        ("octave", ".m", "--symbols"),
+    ):
+        done = coeflab("derive", tmp_path, "--to", language, "--out", "made", symbols, "--json")
         found = json.loads(done.stdout)
         assert found["functions"]["equations"]["operations"] > found["functions"]["bias"]["operations"] > 0
         assert {Path(file).suffix for file in found["files"]} == {ending}

@@ -14,6 +14,7 @@ stays structure.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,6 +35,7 @@ from coeflab.motion.multibody.composite import (
     scaled,
 )  # fmt: skip
 from coeflab.motion.multibody.tape import (
+    ROUNDING,
     ZERO,
     ClosedForm,
     Parameter,
@@ -82,10 +84,10 @@ class _Numbers:
 
 
 class Derivation:
-    """One chain in symbols, on a tape of its own for each quantity."""
+    """One chain in symbols, all quantities on one tape."""
 
     def __init__(self, chain: Chain, symbols: bool = False) -> None:
-        self.chain, self.n = chain, chain.count
+        self.chain, self.n, self.tape = chain, chain.count, Tape()
         self.of = _Numbers(symbols)
         self.q, self.speeds = symbols_of("q", self.n), symbols_of("s", 6 + self.n)
         self.down, self.current = symbols_of("down", 3), symbols_of("current", 3)
@@ -95,7 +97,8 @@ class Derivation:
         self.rows = [self._row(k, link) for k, link in enumerate(chain.links, 1)]
         self.attachment = self.of.vector("c_0", chain.attachment, "origin of frame 0 from the vehicle's centre of mass")
         self.tool = self.of.vector("e_", chain.tool, f"end effector in frame {self.n}")
-        self.mount = [[number(float(v)) for v in row] for row in chain.mount]
+        near = np.where(np.abs(chain.mount - np.round(chain.mount)) < ROUNDING, np.round(chain.mount), chain.mount)
+        self.mount = [[number(float(v)) for v in row] for row in near]
         self.areas = [
             self.of(f"S_{axis}", float(v), "m^2", f"vehicle, C_D S along {axis}")
             for axis, v in zip("xyz", chain.base.drag_area)
@@ -125,9 +128,9 @@ class Derivation:
         if np.any(body.added_mass):
             water, said = (body.added_mass + body.added_mass.T) / 2.0, f"{name}, added mass"
             added = (
-                of.square(f"A_{k}", water[:3, :3], "kg", said, "123"),
-                of.square(f"A_{k}", water[:3, 3:], "kg m", said, "123", "456"),
-                of.square(f"A_{k}", water[3:, 3:], "kg m^2", said, "456"),
+                of.square(f"A_{k}_", water[:3, :3], "kg", said, "123"),
+                of.square(f"A_{k}_", water[:3, 3:], "kg m", said, "123", "456"),
+                of.square(f"A_{k}_", water[3:, 3:], "kg m^2", said, "456"),
             )
         volume = of(f"V_{k}", body.volume, "m^3", f"{name}, displaced volume")
         lifted = of.vector(f"b_{k}", body.centre_of_buoyancy, f"{name}, centre of buoyancy")
@@ -164,8 +167,10 @@ class Derivation:
         centre, lifted = placed(body.centre), placed(body.lifted)
         return Body(body.mass, centre, turned(body.inertia), added, body.displaced, lifted, strips)
 
-    def steps(self, t: Tape) -> list[Step]:
+    @cached_property
+    def steps(self) -> list[Step]:
         """Cosines and sines of the joints, and where the joint frames stand."""
+        t = self.tape
         t.stage = "joints"
         out = []
         nil = sp.S.Zero
@@ -190,8 +195,10 @@ class Derivation:
             fixed, place = turn, (a, nil, nil)
         return out
 
-    def mass_matrix(self, t: Tape, steps: list[Step]) -> sp.Matrix:
+    @cached_property
+    def mass(self) -> sp.Matrix:
         """M by composite bodies: what moves with a joint as one body, from the tip inwards."""
+        t, steps = self.tape, self.steps
         size = 6 + self.n
         out = sp.zeros(size, size)
         whole = None
@@ -217,29 +224,42 @@ class Derivation:
                 out[i, 3 + j] = out[3 + j, i] = b[i][j]
         return out
 
-    def motion(
-        self, t: Tape, steps: list[Step], current: bool, still: bool, changes: Sequence[Any] = ()
-    ) -> list[_Motion]:
+    @cached_property
+    def moving(self) -> list[_Motion]:
+        """Motion where no generalised speed changes."""
+        return self.motion(current=True)
+
+    @cached_property
+    def heavy(self) -> list[Vector]:
+        """Gravity in the axes of every body."""
+        return self.spread(scaled(self.gravity, self.down))
+
+    @cached_property
+    def water(self) -> list[Vector]:
+        """Acceleration of the water in the axes of every body."""
+        return self.spread(self.acceleration)
+
+    def motion(self, current: bool, changes: Sequence[Any] = ()) -> list[_Motion]:
         """How every joint frame moves, the vehicle first (equations 9 to 12); no speed changes unless ``changes`` says how."""
+        t, steps = self.tape, self.steps
         t.stage = "velocity of the vehicle"
         v, w = self.speeds[:3], self.speeds[3:6]
         faster = changes or [sp.S.Zero] * (6 + self.n)
-        a: Sequence[Any] = ZERO if still else t.vector(plus(faster[:3], cross(w, v)))
+        a: Sequence[Any] = t.vector(plus(faster[:3], cross(w, v)))
         alpha: Sequence[Any] = tuple(faster[3:6])
         if current:
             v = [t.name(x - c) for x, c in zip(v, self.current, strict=True)]
         out = []
         for k in range(self.n + 1):
-            turning = None if still else _turning(t, w, alpha)
+            turning = _turning(t, w, alpha)
             out.append(_Motion(tuple(v), tuple(w), tuple(a), tuple(alpha), turning))
             if k == self.n:
                 break
             t.stage = f"velocity of link {k + 1}"
             step, rate, more = steps[k], self.speeds[6 + k], faster[6 + k]
             v = list(step.outward(t, t.vector(plus(v, cross(w, step.shift)))))
-            if turning is not None:
-                a = step.outward(t, t.vector(plus(a, times(turning, step.shift))))
-                alpha = step.outward(t, alpha)
+            a = step.outward(t, t.vector(plus(a, times(turning, step.shift))))
+            alpha = step.outward(t, alpha)
             w = list(step.outward(t, w))
             if step.turns:
                 alpha = (t.name(alpha[0] + w[1] * rate), t.name(alpha[1] - w[0] * rate), t.name(alpha[2] + more))
@@ -250,16 +270,18 @@ class Derivation:
                 v[2] = t.name(v[2] + rate)
         return out
 
-    def spread(self, t: Tape, steps: list[Step], vector: Sequence[Any]) -> list[Vector]:
+    def spread(self, vector: Sequence[Any]) -> list[Vector]:
         """A vector of the vehicle's axes in those of every body."""
+        t = self.tape
         out = [t.vector(vector)]
-        for k, step in enumerate(steps, 1):
+        for k, step in enumerate(self.steps, 1):
             t.stage = f"directions in link {k}"
             out.append(step.outward(t, out[-1]))
         return out
 
-    def gathered(self, t: Tape, steps: list[Step], wrenches: list[Wrench]) -> sp.Matrix:
+    def gathered(self, wrenches: list[Wrench]) -> sp.Matrix:
         """Generalised forces of forces and moments about the origins of the joint frames."""
+        t, steps = self.tape, self.steps
         out = sp.zeros(6 + self.n, 1)
         force, moment = wrenches[-1]
         for k in range(self.n, 0, -1):
@@ -274,20 +296,21 @@ class Derivation:
             out[i] = e
         return out
 
-    def inertia_forces(self, t: Tape, moving: list[_Motion], field: list[Vector]) -> list[Wrench]:
-        """What bias each body needs: equations 6, 7 and 15, minus; ``field`` is the water's acceleration."""
-        out = []
-        for k, (body, m) in enumerate(zip(self.bodies, moving, strict=True)):
+    @cached_property
+    def inertial(self) -> list[Wrench]:
+        """What each body needs to move so: equations 6, 7 and 15, minus."""
+        t, out = self.tape, []
+        for k, (body, m) in enumerate(zip(self.bodies, self.moving, strict=True)):
             t.stage = f"inertia forces of link {k}" if k else "inertia forces of the vehicle"
             centre = t.vector(body.centre)
-            at = m.a if m.turning is None else t.vector(plus(m.a, times(m.turning, centre)))
+            at = t.vector(plus(m.a, times(m.turning, centre)))
             force = tuple(body.mass * e for e in at)
             spin = t.vector(times(body.inertia, m.w))
             moment = plus(times(body.inertia, m.alpha), cross(m.w, spin))
             if body.added is not None:
                 mass, both, inertia = body.added
                 v = t.vector(plus(m.v, cross(m.w, centre)))
-                changing = t.vector(e - f - g for e, f, g in zip(at, field[k], cross(m.w, v), strict=True))
+                changing = t.vector(e - f - g for e, f, g in zip(at, self.water[k], cross(m.w, v), strict=True))
                 p = t.vector(plus(times(mass, v), times(both, m.w)))
                 h = t.vector(plus(times(transposed(both), v), times(inertia, m.w)))
                 force = plus(force, plus(plus(times(mass, changing), times(both, m.alpha)), cross(m.w, p)))
@@ -296,9 +319,9 @@ class Derivation:
             out.append(_at_origin(t, (t.vector(force), t.vector(moment)), centre))
         return out
 
-    def uniform(self, t: Tape, kinds: Sequence[str], field: list[Vector]) -> list[Wrench]:
+    def uniform(self, kinds: Sequence[str], field: list[Vector]) -> list[Wrench]:
         """Forces of a field on masses, and against it on what is displaced, at its centre (equations 14, 19 and 20)."""
-        out = []
+        t, out = self.tape, []
         for k, (body, along) in enumerate(zip(self.bodies, field, strict=True)):
             t.stage = f"forces of a field on link {k}" if k else "forces of a field on the vehicle"
             amount, lever = sp.S.Zero, ZERO
@@ -310,8 +333,10 @@ class Derivation:
             out.append((t.vector(scaled(amount, along)), t.vector(cross(lever, along))))
         return out
 
-    def drags(self, t: Tape, moving: list[_Motion]) -> list[Wrench]:
+    @cached_property
+    def dragging(self) -> list[Wrench]:
         """Drag on every body (equations 21 and 22, erratum 7)."""
+        t, moving = self.tape, self.moving
         t.stage = "drag of the vehicle"
         v = moving[0].v
         speed = t.name(sp.sqrt(sum(e * e for e in v))) if any(e != 0 for e in self.areas) else sp.S.Zero
@@ -340,7 +365,7 @@ class _Motion(NamedTuple):
     w: Any
     a: Any
     alpha: Any
-    turning: Square | None
+    turning: Square
 
 
 def _turning(t: Tape, w: Sequence[Any], alpha: Sequence[Any]) -> Square:
@@ -360,44 +385,47 @@ def _at_origin(t: Tape, wrench: Wrench, centre: Vector) -> Wrench:
     return force, t.vector(plus(moment, cross(centre, force)))
 
 
-def _equations(one: Derivation, t: Tape, steps: list[Step]) -> Outputs:
+def _mass_matrix(one: Derivation) -> Outputs:
+    return {"M": (one.mass, INERTIA)}
+
+
+def _equations(one: Derivation) -> Outputs:
     """M and all forces but the drives', in one go."""
-    mass = one.mass_matrix(t, steps)
-    moving = one.motion(t, steps, current=True, still=False)
-    down, water = one.spread(t, steps, one.down), one.spread(t, steps, one.acceleration)
-    total = [(scaled(-1, f), scaled(-1, m)) for f, m in one.inertia_forces(t, moving, water)]
-    heavy = one.uniform(t, ("mass", "displaced"), [scaled(one.gravity, v) for v in down])
-    carried = [(scaled(-1, f), scaled(-1, m)) for f, m in one.uniform(t, ("displaced",), water)]
-    for more in (heavy, carried, one.drags(t, moving)):
+    total = [(scaled(-1, f), scaled(-1, m)) for f, m in one.inertial]
+    heavy = one.uniform(("mass", "displaced"), one.heavy)
+    carried = [(scaled(-1, f), scaled(-1, m)) for f, m in one.uniform(("displaced",), one.water)]
+    for more in (heavy, carried, one.dragging):
         total = [(plus(f, g), plus(m, n)) for (f, m), (g, n) in zip(total, more, strict=True)]
-    return {"M": (mass, INERTIA), "f": (one.gathered(t, steps, total), FORCES)}
+    return {"M": (one.mass, INERTIA), "f": (one.gathered(total), FORCES)}
 
 
-def _bias(one: Derivation, t: Tape, steps: list[Step]) -> Outputs:
-    moving = one.motion(t, steps, current=True, still=False)
-    field = one.spread(t, steps, one.acceleration)
-    return {"h": (one.gathered(t, steps, one.inertia_forces(t, moving, field)), FORCES)}
+def _bias(one: Derivation) -> Outputs:
+    return {"h": (one.gathered(one.inertial), FORCES)}
 
 
-def _field(kind: str, output: str) -> Quantity:
-    def quantity(one: Derivation, t: Tape, steps: list[Step]) -> Outputs:
-        along = scaled(-1, one.acceleration) if output == "f" else scaled(one.gravity, one.down)
-        found = one.uniform(t, (kind,), one.spread(t, steps, along))
-        return {output: (one.gathered(t, steps, found), FORCES)}
-
-    return quantity
+def _weight(one: Derivation) -> Outputs:
+    return {"w": (one.gathered(one.uniform(("mass",), one.heavy)), FORCES)}
 
 
-def _drag(one: Derivation, t: Tape, steps: list[Step]) -> Outputs:
-    moving = one.motion(t, steps, current=True, still=True)
-    return {"d": (one.gathered(t, steps, one.drags(t, moving)), FORCES)}
+def _buoyancy(one: Derivation) -> Outputs:
+    return {"b": (one.gathered(one.uniform(("displaced",), one.heavy)), FORCES)}
 
 
-def _end(one: Derivation, t: Tape, steps: list[Step]) -> Outputs:
+def _fluid_acceleration(one: Derivation) -> Outputs:
+    against = [scaled(-1, v) for v in one.water]
+    return {"f": (one.gathered(one.uniform(("displaced",), against)), FORCES)}
+
+
+def _drag(one: Derivation) -> Outputs:
+    return {"d": (one.gathered(one.dragging), FORCES)}
+
+
+def _end(one: Derivation) -> Outputs:
     a, _, turn, _ = one.rows[-1]
+    t = one.tape
     place = plus(times(turn, one.tool), (a, sp.S.Zero, sp.S.Zero))
     t.stage = "end effector"
-    for step in reversed(steps):
+    for step in reversed(one.steps):
         place = plus(step.inward(t, t.vector(place)), step.shift)
     return {"r": (sp.Matrix(t.vector(place)), "m")}
 
@@ -418,10 +446,10 @@ def link_motion(chain: Chain, link: int, *, symbols: bool = True) -> dict[str, s
     dict of str to (3, 1) sympy.Matrix
         p from the vehicle's centre of mass, w, v, alpha and a, in q1 .., s1 .. and their rates sdot1 ...
     """
-    one, t = Derivation(chain, symbols), Tape()
-    steps = one.steps(t)
-    moving = one.motion(t, steps, current=False, still=False, changes=symbols_of("sdot", 6 + chain.count))[link]
-    centre, turning = one.bodies[link].centre, moving.turning or []
+    one = Derivation(chain, symbols)
+    t, steps = one.tape, one.steps
+    moving = one.motion(current=False, changes=symbols_of("sdot", 6 + chain.count))[link]
+    centre, turning = one.bodies[link].centre, moving.turning
     found: dict[str, Sequence[Any]] = {
         "w": moving.w, "v": plus(moving.v, cross(moving.w, centre)),
         "alpha": moving.alpha, "a": plus(moving.a, times(turning, centre)),
@@ -435,18 +463,18 @@ def link_motion(chain: Chain, link: int, *, symbols: bool = True) -> dict[str, s
 
 
 Outputs = dict[str, tuple[sp.Matrix, str]]
-Quantity = Callable[[Derivation, Tape, list[Step]], Outputs]
+Quantity = Callable[[Derivation], Outputs]
 INERTIA, FORCES = "kg, kg m, kg m^2", "N, N m"
 QUANTITIES: dict[str, tuple[str, tuple[str, ...], Quantity]] = {
     "mass_matrix": (
         "M, inertia of bodies and of the water that moves with them.", ("q",),
-        lambda one, t, steps: {"M": (one.mass_matrix(t, steps), INERTIA)},
+        _mass_matrix,
     ),
     "bias": ("h, what motion asks for where no speed changes.", ("q", "s", "current", "acceleration"), _bias),
-    "weight": ("Generalised force of the weight.", ("q", "down"), _field("mass", "w")),
-    "buoyancy": ("Generalised force of buoyancy.", ("q", "down"), _field("displaced", "b")),
+    "weight": ("Generalised force of the weight.", ("q", "down"), _weight),
+    "buoyancy": ("Generalised force of buoyancy.", ("q", "down"), _buoyancy),
     "fluid_acceleration": (
-        "Generalised force on the displaced water.", ("q", "acceleration"), _field("displaced", "f"),
+        "Generalised force on the displaced water.", ("q", "acceleration"), _fluid_acceleration,
     ),
     "drag": ("Generalised force of drag.", ("q", "s", "current"), _drag),
     "equations": (
@@ -479,9 +507,7 @@ def derive(chain: Chain, *, symbols: bool = False, say: Say = lambda _: None) ->
     made = []
     for name, (said, arguments, quantity) in QUANTITIES.items():
         say(name.replace("_", " "))
-        t = Tape()
-        outputs = quantity(one, t, one.steps(t))
-        made.append(t.function(name, said, arguments, outputs))
+        made.append(one.tape.function(name, said, arguments, quantity(one)))
     links = tuple((link.name, link.joint.kind) for link in chain.links)
     found = {p.symbol: p for p in one.of.found}
     return ClosedForm(chain.name, links, tuple(made), tuple(found.values()))

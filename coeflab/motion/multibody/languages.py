@@ -99,7 +99,7 @@ def _head(form: ClosedForm, origin: Origin) -> list[str]:
     """What stands above every file."""
     joints = ", ".join(f"{name} ({'rad' if kind == 'revolute' else 'm'})" for name, kind in form.links)
     said = [
-        f"Equations of motion of {form.name}, a vehicle with an arm of {len(form.links)} links, by Kane's method.",
+        f"Equations of motion of {form.name}, a vehicle with an arm of {len(form.links)} link{'s' * (len(form.links) > 1)}, by Kane's method.",
         f"Written by coeflab {VERSION} with sympy {sp.__version__} from {origin.file}, sha256 {origin.sha256}.",
         *FRAMES,
         *(f"{name} ({form.length(name)}): {what}." for name, what in ARGUMENTS.items()),

@@ -13,6 +13,7 @@ from coeflab.core.wording import one_line
 from coeflab.motion.multibody.tape import ClosedForm, Line
 
 LONG, WIDTH = 140, 100  # letters of an equation's line, of a line of text
+DIGITS = 12  # the rest is rounding of products, which code needs and a reader does not
 STRIP = re.compile(r"strip(\d+)_(\d)")
 AXES = ("x", "y", "z")
 SPEEDS = ("u", "v", "w", "p", "q", "r")
@@ -24,7 +25,7 @@ class _Latex(LatexPrinter):  # type: ignore[misc]
     """Symbols as papers write them."""
 
     def _print_Float(self, expr: Any) -> str:  # noqa: N802 - sympy's name
-        mantissa, _, power = repr(float(expr)).partition("e")
+        mantissa, _, power = f"{float(expr):.{DIGITS}g}".partition("e")
         return mantissa if not power else rf"{mantissa} \cdot 10^{{{int(power)}}}"
 
     def _print_Symbol(self, expr: Any, **_: Any) -> str:  # noqa: N802
@@ -48,6 +49,10 @@ def in_letters(name: str) -> str:
     return greek.get(head, head) + (f"_{{{behind.replace('_', ',')}}}" if behind else "")
 
 
+NOTATION = (
+    r"In symbols: $\mathbf{s} = (u, v, w, p, q, r, \dot{q}_1, \dots)$; $\hat{e}$ is down, $v^f$ and $a^f$ are velocity and acceleration of "
+    r"the water; $\mathrm{c}_j$ and $\mathrm{s}_j$ are cosine and sine of joint $j$. Numbers are rounded to 12 digits."
+)
 SPECIAL = str.maketrans({c: rf"\{c}" for c in "&%$#_{}"} | {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}",
                         "^": r"\textasciicircum{}"})  # fmt: skip
 
@@ -66,6 +71,7 @@ def document(form: ClosedForm, head: Sequence[str]) -> str:
     out += [r"\usepackage[margin=2cm]{geometry}", r"\allowdisplaybreaks", r"\begin{document}", r"\sloppy"]
     for line in head:
         out += [*textwrap.wrap(line.translate(SPECIAL), WIDTH, break_long_words=False, break_on_hyphens=False), ""]
+    out += [NOTATION, ""]
     if form.parameters:
         out += [r"\section*{Parameters}", r"\begin{itemize}"]
         for p in form.parameters:

@@ -15,6 +15,7 @@ Vector = tuple[Any, Any, Any]
 Wrench = tuple[Vector, Vector]
 Square = list[list[Any]]
 ZERO: Vector = (sp.S.Zero, sp.S.Zero, sp.S.Zero)
+ROUNDING = 1e-15  # of a sine or cosine: what is closer to 0 or 1 is meant to be
 LONGEST = 24  # operations of a line into which names used once are put back
 
 
@@ -73,9 +74,9 @@ class Function:
     @property
     def operations(self) -> int:
         """Additions, products and functions of the lines and outputs; a strip counts as one."""
-        own = sum(int(sp.count_ops(e)) for line in self.lines if len(line.names) == 1 for e in line.of)
+        own = sum(operations(e) for line in self.lines if len(line.names) == 1 for e in line.of)
         strips = sum(len(line.names) > 1 for line in self.lines)
-        return own + strips + sum(int(sp.count_ops(e)) for m, _ in self.outputs.values() for e in m)
+        return own + strips + sum(operations(e) for m, _ in self.outputs.values() for e in m)
 
     def expanded(self, output: str) -> sp.Matrix:
         """An output in the arguments alone. It grows by an order of magnitude with every link."""
@@ -134,7 +135,28 @@ def number(value: float) -> Any:
 def right_angled(angle: float) -> tuple[float, float]:
     """Cosine and sine; exact at right angles."""
     c, s = math.cos(angle), math.sin(angle)
-    return (round(c), round(s)) if min(abs(c), abs(s)) < 1e-15 else (c, s)
+    return (round(c), round(s)) if min(abs(c), abs(s)) < ROUNDING else (c, s)
+
+
+def operations(expression: Any) -> int:
+    """Additions, products and functions; a sign is none."""
+    if not expression.args:
+        return 0
+    own = 1 if expression.is_Pow or expression.is_Function else len(expression.args) - 1 - (expression.args[0] == -1)
+    return own + sum(operations(e) for e in expression.args if not e.is_Atom)
+
+
+def has_minus(expression: Any) -> bool:
+    """Whether the expression is named by its negative: most terms have a minus, or sympy says so where as many have none."""
+    if expression.is_Mul:
+        return bool(expression.args[0].is_Number and expression.args[0] < 0)
+    if not expression.is_Add:
+        return False
+    signs = [
+        float(e.args[0]) < 0 if e.is_Mul and e.args[0].is_Number else e.is_Number and e < 0 for e in expression.args
+    ]
+    minus = sum(map(bool, signs))
+    return minus > len(signs) - minus or (2 * minus == len(signs) and bool(expression.could_extract_minus_sign()))
 
 
 class Tape:
@@ -149,7 +171,7 @@ class Tape:
         """A symbol for an expression, with the sign in front; atoms stay themselves."""
         if expression.is_Atom:
             return expression
-        if negative := expression.could_extract_minus_sign():
+        if negative := has_minus(expression):
             expression = -expression
         if not expression.is_Atom and expression not in self._known:
             symbol = sp.Symbol(called or f"x{len(self.lines)}")
@@ -196,18 +218,19 @@ class Tape:
         put: dict[Any, Any] = {}
         seen: dict[Any, Any] = {}
         kept: list[Line] = []
-        strips = 0
+        strips = many = 0
         for line in reversed(needed):
             of = tuple(e.xreplace(put) if e.args or e.is_Symbol else e for e in line.of)
             own = line.names[0]
             if len(line.names) > 1:
                 strips += 1
                 names = tuple(sp.Symbol(f"strip{strips}_{i}") for i in range(6))
-            elif of[0] in seen or (uses[own] == 1 and int(sp.count_ops(of[0])) <= LONGEST):
+            elif of[0] in seen or (uses[own] == 1 and operations(of[0]) <= LONGEST):
                 put[own] = seen.get(of[0], of[0])
                 continue
             else:
-                names = (sp.Symbol(f"x{len(seen) + 1}") if own.name.startswith("x") else own,)
+                many += own.name.startswith("x")
+                names = (sp.Symbol(f"x{many}") if own.name.startswith("x") else own,)
                 seen[of[0]] = names[0]
             put.update(zip(line.names, names, strict=True))
             kept.append(Line(names, of, line.stage))

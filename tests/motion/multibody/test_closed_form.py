@@ -9,7 +9,6 @@ import subprocess
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,50 +16,21 @@ import sympy as sp
 from sympy.physics.mechanics import KanesMethod, Point, ReferenceFrame, RigidBody, dynamicsymbols, inertia
 
 from coeflab.core.errors import InputError
-from coeflab.core.files import shipped
 from coeflab.core.types import Array
 from coeflab.motion.multibody import kane
-from coeflab.motion.multibody.arm_file import read_chain
-from coeflab.motion.multibody.chain import Base, Chain, Joint, Link, Strip
+from coeflab.motion.multibody.chain import Base, Chain, Joint, Link
 from coeflab.motion.multibody.closed_form import derive, link_motion
 from coeflab.motion.multibody.languages import Origin, written
 from coeflab.motion.multibody.tape import ClosedForm
+from tests.motion.multibody.chains import drawn
+from tests.motion.multibody.chains import puma as puma_chain
 
 ORIGIN = Origin("body.toml", "0" * 64, ('Two */ lines """ of \\n text',))
 TOLERANCE = 1e-12
 Code = Callable[..., dict[str, Array]]
 
 
-def random_chain(count: int, seed: int, right_angles: bool = False) -> Chain:
-    """Every number there is, no two alike; the second joint slides."""
-    rng = np.random.default_rng(seed)
-
-    def body(scale: float) -> dict[str, Any]:
-        axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-        root = rng.normal(size=(6, 6))
-        return {
-            "mass": scale * rng.uniform(1, 3),
-            "inertia": scale * axes @ np.diag([1.0, 1.2, 1.5]) @ axes.T,
-            "added_mass": 0.1 * scale * root @ root.T,
-            "volume": 1e-3 * scale,
-            "centre_of_buoyancy": rng.normal(size=3),
-        }
-
-    links = []
-    for k in range(count):
-        row = rng.uniform(-1, 1, 4)
-        if right_angles:
-            row[1], row[3] = rng.choice([0.0, np.pi / 2, -np.pi / 2], 2)
-        joint = Joint(f"joint {k}", "prismatic" if k == 1 else "revolute", *row.tolist())
-        strips = tuple(Strip(rng.normal(size=3), rng.normal(size=3), 0.1, 1.1) for _ in range(1 + k % 2))
-        links.append(Link(f"link {k}", joint, centre_of_mass=rng.normal(size=3), strips=strips, **body(4.0)))
-    base = Base("hull", drag_area=rng.uniform(size=3), **body(50.0))
-    mount = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-    mount[:, 2] *= np.linalg.det(mount)
-    return Chain(f"random {count}", base, tuple(links), rng.normal(size=3), mount, rng.normal(size=3))
-
-
-def state(chain: Chain, many: int = 1) -> dict[str, Array]:
+def arguments(chain: Chain, many: int = 1) -> dict[str, Array]:
     """Arguments, a column each."""
     rng = np.random.default_rng(7)
     sizes = {"q": chain.count, "s": chain.size, "down": 3, "current": 3, "acceleration": 3}
@@ -95,7 +65,7 @@ def compiled(form: ClosedForm, folder: Path) -> Code:
     for name, content in files.items():
         (folder / name).write_bytes(content)
     (source,) = folder.glob("*.c")
-    build = ["cc", "-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O1", "-shared", "-fPIC"]
+    build = ["cc", "-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O0", "-shared", "-fPIC"]
     subprocess.run([*build, "-o", folder / "form.so", source, "-lm"], check=True)
     library = ctypes.CDLL(str(folder / "form.so"))
 
@@ -118,14 +88,14 @@ def compiled(form: ClosedForm, folder: Path) -> Code:
 
 @pytest.fixture(scope="module")
 def puma() -> tuple[Chain, ClosedForm]:
-    chain = read_chain(shipped("geometry") / "urv_puma")
-    return chain, derive(chain)
+    return puma_chain(), derive(puma_chain())
 
 
 @pytest.fixture(scope="module")
 def random() -> tuple[Chain, ClosedForm]:
     """Two links, one of which slides; numbers kept as symbols."""
-    chain = random_chain(2, 5)
+    chain = replace(drawn(1, 2), tool=np.array([0.1, 0.2, 0.3]))
+    assert [joint.kind for joint in chain.joints] == ["revolute", "prismatic"]
     return chain, derive(chain, symbols=True)
 
 
@@ -140,13 +110,13 @@ def one(columns: dict[str, Array], k: int = 0) -> dict[str, Array]:
 
 def test_c_equals_the_numeric_route_on_the_puma(puma: tuple[Chain, ClosedForm], tmp_path: Path) -> None:
     chain, form = puma
-    at = one(state(chain))
+    at = one(arguments(chain))
     assert differing(compiled(form, tmp_path)(at), numeric(chain, at)) == []
 
 
 def test_c_equals_the_numeric_route_on_a_random_chain(random: tuple[Chain, ClosedForm], random_code: Code) -> None:
     chain, _ = random
-    at = one(state(chain))
+    at = one(arguments(chain))
     assert differing(random_code(at), numeric(chain, at)) == []
 
 
@@ -158,7 +128,7 @@ def test_other_numbers_go_into_the_same_code(random: tuple[Chain, ClosedForm], r
     other = replace(chain, links=(link, *chain.links[1:]), density=1025.0)
     values = {p.symbol.name: p.value for p in form.parameters}
     values |= {"m_1": link.mass, "a_1": link.joint.a, "rho": 1025.0}
-    at = one(state(chain))
+    at = one(arguments(chain))
     assert differing(random_code(at, np.array(list(values.values()))), numeric(other, at)) == []
 
 
@@ -180,7 +150,7 @@ def test_python_equals_the_numeric_route_column_by_column(random: tuple[Chain, C
                 out[f"{f.name} {key}" if len(f.outputs) > 1 else f.name] = m
         return out
 
-    columns = state(chain, 3)
+    columns = arguments(chain, 3)
     together = run(columns)
     for k in range(3):
         at = one(columns, k)
@@ -195,11 +165,11 @@ def test_octave_equals_the_numeric_route(random: tuple[Chain, ClosedForm], tmp_p
     files = written(form, "octave", ORIGIN)
     for name, content in files.items():
         (tmp_path / name).write_bytes(content)
-    at = one(state(chain))
+    at = one(arguments(chain))
     lines = [f"{key} = [{' '.join(repr(float(v)) for v in a)}];" for key, a in at.items()]
-    lines += ["of = random_2_parameters();"]
+    lines += ["of = drawn_parameters();"]
     for f in form.functions:
-        lines.append(f"[{', '.join(f.outputs)}] = random_2_{f.name}({', '.join(('of', *f.arguments))});")
+        lines.append(f"[{', '.join(f.outputs)}] = drawn_{f.name}({', '.join(('of', *f.arguments))});")
         for key in f.outputs:
             lines.append(f"printf('{f.name} {key}'); printf(' %.17g', {key}.'); printf('\\n');")
     (tmp_path / "all.m").write_text("\n".join(lines))
@@ -240,16 +210,17 @@ def test_what_a_name_holds_cannot_leave_its_comment(puma: tuple[Chain, ClosedFor
 
 def test_a_vehicle_without_an_arm_has_nothing_to_derive() -> None:
     with pytest.raises(InputError, match="a vehicle without links; expected one link or more"):
-        derive(replace(random_chain(1, 1), links=()))
+        derive(replace(drawn(1, 1), links=()))
 
 
 @pytest.mark.slow
 def test_six_links(tmp_path: Path) -> None:
-    chain = random_chain(6, 11, right_angles=True)
+    """Every number drawn, two joints slide: the longest equations."""
+    chain = drawn(0)
     said: list[str] = []
     form = derive(chain, say=said.append)
     assert len(said) == len(form.functions)
-    at = one(state(chain))
+    at = one(arguments(chain))
     assert differing(compiled(form, tmp_path)(at), numeric(chain, at)) == []
 
 
@@ -273,7 +244,6 @@ PRINTED_AX = (
 @pytest.fixture(scope="module")
 def link_1() -> dict[str, sp.Matrix]:
     """Our expressions of link 1 in the paper's frame and symbols."""
-    chain = read_chain(shipped("geometry") / "urv_puma")
     turn = sp.diag(1, -1, -1)
     house = {}
     for prefix, names in (("s", "vx vy vz wx wy wz dq"), ("sdot", "dvx dvy dvz dwx dwy dwz ddq")):
@@ -283,7 +253,7 @@ def link_1() -> dict[str, sp.Matrix]:
     cx, cz, c, k, q = sp.symbols("cx cz c k q")
     names = {"c_0x": cx, "c_0z": -cz, "c_1y": c, "c_1z": k, "q1": q}
     house |= {sp.Symbol(name): e for name, e in names.items()}
-    return {key: turn * m.subs(house, simultaneous=True) for key, m in link_motion(chain, 1).items()}
+    return {key: turn * m.subs(house, simultaneous=True) for key, m in link_motion(puma_chain(), 1).items()}
 
 
 def same(ours: sp.Matrix, printed: str) -> bool:
