@@ -128,7 +128,7 @@ WORKS: dict[str, str] = {
     "thauv": "Analysis of a New Twin Hybrid Autonomous Underwater Vehicle (THAUV), Applied Sciences 13(3), 1551, 2023, "
     "doi 10.3390/app13031551 (the copy read here names no authors); equations 5, 9-30 and Table 3.",
     "urv_kane": "T. J. Tarn, G. A. Shoults, S. P. Yang, A Dynamic Model of an Underwater Vehicle with a Robotic Manipulator using "
-    "Kane's Method, Autonomous Robots 3, 1996.",
+    "Kane's Method, Autonomous Robots 3, 1996 (authors and journal from memory: the copy read here names none).",
     "yoerger1990": "D. R. Yoerger, J. G. Cooke, J.-J. E. Slotine, The influence of thruster dynamics on underwater vehicle behavior and "
     "their incorporation into control system design, IEEE J. Oceanic Engineering 15(3), 1990.",
     "healey1994": "A. J. Healey, S. M. Rock, S. Cody, D. Miles, J. P. Brown, Toward an improved understanding of thruster dynamics for "
