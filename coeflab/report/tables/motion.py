@@ -71,7 +71,7 @@ def columns(trajectory: Trajectory) -> dict[str, Array]:
         out[f"{name} [{unit}]"] = nu[:, i]
     for name, values in t.controls.items():
         unit = "rad" if name in CONTROLS or name.endswith(".tilt") else "command" if name != "thrust" else "N"
-        out[f"{name} [{unit}]"] = values
+        out[name if name.endswith("]") else f"{name} [{unit}]"] = values
     outside = np.zeros(len(t.time), dtype=bool)
     for flags in t.outside.values():
         outside |= flags
@@ -105,6 +105,30 @@ def motion_parquet(trajectory: Trajectory) -> bytes:
     buffer = io.BytesIO()
     pd.DataFrame(columns(trajectory)).to_parquet(buffer, index=False, engine="pyarrow")
     return buffer.getvalue()
+
+
+def arm_phases(trajectory: Trajectory, name: str) -> Table:
+    """Vehicle, end effector and joints of an arm where the motion begins and where each phase ends; largest torques within it."""
+    t, rows = trajectory, []
+    ends = [int(np.flatnonzero(t.phase == k)[-1]) for k in range(len(t.phases)) if np.any(t.phase == k)]
+    at = [0, *ends]
+    rows.append(("time", "s", *(f"{t.time[i]:.4g}" for i in at)))
+    for k, axis in enumerate(("north", "east", "down")):
+        rows.append((f"vehicle, {axis}", "m", *(f"{t.position[i, k]:.4f}" for i in at)))
+    for k, angle in enumerate(("roll", "pitch", "yaw")):
+        rows.append((f"vehicle, {angle}", "deg", *(f"{np.degrees(t.angles[i, k]) + 0.0:.2f}" for i in at)))
+    for key, values in t.controls.items():
+        what, _, unit = key.removesuffix("]").partition(" [")
+        if what.startswith("end."):
+            rows.append((f"end effector, {what[4:]}", unit, *(f"{values[i]:.4f}" for i in at)))
+        elif what.endswith(".torque"):
+            most = [f"{np.max(np.abs(values[t.phase == k])):.3g}" for k in range(len(ends))]
+            rows.append((f"{what[:-7]}, largest {'torque' if unit == 'N m' else 'force'}", unit, "", *most))
+        elif "." not in what and unit in ("rad", "m"):
+            factor, shown = (180.0 / np.pi, "deg") if unit == "rad" else (1.0, unit)
+            rows.append((what, shown, *(f"{factor * values[i]:.2f}" for i in at)))
+    headers = ("", "unit", "start", *(f"after {t.phases[k]}" for k in range(len(ends))))
+    return Table(f"Motion of {name}", headers, tuple(rows), (), frozenset({0, 1}))
 
 
 def _degrees(angle: float) -> str:
