@@ -54,6 +54,8 @@ class Joint:
         Limit of the rate, rad/s or m/s.
     strongest : float
         Limit of the drive's torque or force, N m or N.
+    home : float
+        q at which the arm is drawn and a motion begins, rad or m.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Joint:
     high: float = math.inf
     fastest: float = math.inf
     strongest: float = math.inf
+    home: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.low < self.high:
@@ -107,7 +110,7 @@ class Strip:
 
     @property
     def length(self) -> float:
-        """m."""
+        """From start to end, m."""
         return float(np.linalg.norm(self.end - self.start))
 
     @property
@@ -200,12 +203,12 @@ def _lock(body: Link | Base) -> None:
         raise InputError(f"{body.mass:g} kg", "a mass above zero", column="mass")
     if doubt := inertia_doubt(body.mass, np.zeros(3), body.inertia):
         raise InputError(doubt, "the inertia of a body about its centre of mass", column="inertia")
-    if np.any(body.added_mass) and not (found := definiteness(body.added_mass)).holds:
+    if np.any(body.added_mass) and not definiteness(body.added_mass).holds:
+        smallest = float(np.linalg.eigvalsh((body.added_mass + body.added_mass.T) / 2.0)[0])
         raise InputError(
-            f"an added mass whose smallest eigenvalue is {float(np.linalg.eigvalsh((body.added_mass + body.added_mass.T) / 2.0)[0]):g}",
-            "a symmetric matrix without negative eigenvalues (the paper prints its entries negative: erratum 2)",
-            column="added_mass",
-        )
+            f"an added mass of smallest eigenvalue {smallest:g}", "a symmetric matrix without negative eigenvalues",
+            column="added_mass", advice="M_A is positive; the URV paper prints its entries negative (erratum 2).",
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,7 +241,7 @@ class Chain:
     base: Base
     links: tuple[Link, ...]
     attachment: Array
-    mount: Array = field(default_factory=lambda: FLU.copy())
+    mount: Array = field(default_factory=FLU.copy)
     tool: Array = field(default_factory=lambda: np.zeros(3))
     thrusters: tuple[Thruster, ...] = ()
     density: float = FRESH
@@ -250,6 +253,11 @@ class Chain:
             object.__setattr__(self, name, locked(getattr(self, name)))
         if np.max(np.abs(self.mount.T @ self.mount - np.eye(3))) > 1e-9 or np.linalg.det(self.mount) < 0.0:
             raise InputError("axes that are not right-handed and of length one", "a rotation", column="mount")
+
+    @property
+    def home(self) -> Array:
+        """(n,) joint positions at which a motion begins."""
+        return np.array([joint.home for joint in self.joints])
 
     @property
     def joints(self) -> tuple[Joint, ...]:

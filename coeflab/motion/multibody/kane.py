@@ -15,7 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from coeflab.core.types import Array, brief
-from coeflab.motion.multibody.chain import Chain
+from coeflab.law.rigid_body import axes_in_earth, kinematics
+from coeflab.law.transforms import denavit_hartenberg
+from coeflab.motion.multibody.chain import STILL, Chain, Flow
 
 ZERO = np.zeros(3)
 
@@ -47,11 +49,10 @@ class Pose:
     end: Array
 
 
-def denavit_hartenberg(theta: float, d: float, a: float, alpha: float) -> tuple[Array, Array]:
-    """(3, 3) rotation and (3,) shift of A_(j-1)^j = Rz(theta) Tz(d) Tx(a) Rx(alpha), as in section 4.2."""
-    ct, st, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
-    turn = np.array([[ct, -st * ca, st * sa], [st, ct * ca, -ct * sa], [0.0, sa, ca]])
-    return turn, np.array([a * ct, a * st, d])
+def cross(a: Array, b: Array) -> Array:
+    """Product a x b along the last axis, several times quicker than numpy's on a few vectors."""
+    ax, ay, az, bx, by, bz = a[..., 0], a[..., 1], a[..., 2], b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
 
 
 def pose(chain: Chain, q: Array) -> Pose:
@@ -92,7 +93,7 @@ def partial_velocities(chain: Chain, at: Pose, places: Array | None = None) -> A
     for k, joint in enumerate(chain.joints):
         moved = slice(k + 1, None)
         if joint.turns:
-            out[moved, :3, 6 + k] = np.cross(at.axis[k], places[moved] - at.pivot[k])
+            out[moved, :3, 6 + k] = cross(at.axis[k], places[moved] - at.pivot[k])
             out[moved, 3:, 6 + k] = at.axis[k]
         else:
             out[moved, :3, 6 + k] = at.axis[k]
@@ -106,7 +107,7 @@ def mass_matrix(chain: Chain, q: Array) -> Array:
     """
     at = pose(chain, q)
     own = _in_own_axes(at, partial_velocities(chain, at))
-    return np.asarray(np.einsum("bik,bij,bjl->kl", own, chain.inertias[0] + chain.inertias[1], own))
+    return np.asarray(np.sum(np.swapaxes(own, 1, 2) @ (chain.inertias[0] + chain.inertias[1]) @ own, axis=0))
 
 
 def bias(chain: Chain, q: Array, speeds: Array, current: Array = ZERO, acceleration: Array = ZERO) -> Array:
@@ -133,17 +134,17 @@ def bias(chain: Chain, q: Array, speeds: Array, current: Array = ZERO, accelerat
         np.einsum("bij,bj->bi", turn, x) for x in (moving[:, :3], moving[:, 3:], rest[:, :3], rest[:, 3:])
     )
     through = v - turn @ current
-    changing = a - turn @ acceleration - np.cross(w, through)
+    changing = a - turn @ acceleration - cross(w, through)
     rigid, added = chain.inertias
     mass, inertia = rigid[:, 0, 0][:, None], rigid[:, 3:, 3:]
     spin = np.einsum("bij,bj->bi", inertia, w)
     force = mass * a
-    moment = np.einsum("bij,bj->bi", inertia, alpha) + np.cross(w, spin)
+    moment = np.einsum("bij,bj->bi", inertia, alpha) + cross(w, spin)
     pushed = np.einsum("bij,bj->bi", added, np.hstack([changing, alpha]))
     momentum = np.einsum("bij,bj->bi", added, np.hstack([through, w]))
     p, h = momentum[:, :3], momentum[:, 3:]
-    force += pushed[:, :3] + np.cross(w, p)
-    moment += pushed[:, 3:] + np.cross(w, h) + np.cross(through, p)
+    force += pushed[:, :3] + cross(w, p)
+    moment += pushed[:, 3:] + cross(w, h) + cross(through, p)
     return np.asarray(np.einsum("bik,bi->k", _in_own_axes(at, partial), np.hstack([force, moment])))
 
 
@@ -157,19 +158,19 @@ def _bias_accelerations(chain: Chain, at: Pose, speeds: Array) -> Array:
     """(n + 1, 6) accelerations of the centres of mass and of the bodies where no speed changes (equations 11 and 12)."""
     v, w = speeds[:3], speeds[3:6]
     out = np.zeros((chain.count + 1, 6))
-    out[0, :3] = np.cross(w, v)
-    turning, place = np.zeros(3), out[0, :3] + np.cross(w, np.cross(w, chain.attachment))
+    out[0, :3] = cross(w, v)
+    turning, place = np.zeros(3), out[0, :3] + cross(w, cross(w, chain.attachment))
     for k, joint in enumerate(chain.joints):
         along = at.axis[k] * speeds[6 + k]
         if joint.turns:
-            turning = turning + np.cross(w, along)
+            turning = turning + cross(w, along)
             w = w + along
         else:
-            place = place + 2.0 * np.cross(w, along)
+            place = place + 2.0 * cross(w, along)
         arm, reach = at.origin[k + 1] - at.pivot[k], at.centre[k + 1] - at.pivot[k]
-        out[k + 1, :3] = place + np.cross(turning, reach) + np.cross(w, np.cross(w, reach))
+        out[k + 1, :3] = place + cross(turning, reach) + cross(w, cross(w, reach))
         out[k + 1, 3:] = turning
-        place = place + np.cross(turning, arm) + np.cross(w, np.cross(w, arm))
+        place = place + cross(turning, arm) + cross(w, cross(w, arm))
     return out
 
 
@@ -217,8 +218,75 @@ def drag(chain: Chain, q: Array, speeds: Array, current: Array = ZERO) -> Array:
     turn = at.rotation[body]
     arm = np.einsum("kij,kj->ki", turn, places) + at.origin[body] - at.centre[body]
     along = np.einsum("kij,kj->ki", turn, axes)
-    flow = moving[body, :3] + np.cross(moving[body, 3:], arm) - current
+    flow = moving[body, :3] + cross(moving[body, 3:], arm) - current
     across = flow - np.sum(flow * along, axis=1)[:, None] * along
     push = -(factors * np.linalg.norm(across, axis=1))[:, None] * across
-    np.add.at(force, body, np.hstack([push, np.cross(arm, push)]))
+    np.add.at(force, body, np.hstack([push, cross(arm, push)]))
     return np.asarray(np.einsum("bik,bi->k", partial, force))
+
+
+def external(chain: Chain, q: Array, speeds: Array, attitude: Array, flow: Flow = STILL) -> Array:
+    """(6 + n,) all forces but control: weight, buoyancy, fluid acceleration and drag (equations 14 and 19 to 22).
+
+    Parameters
+    ----------
+    chain : Chain
+    q : (n,) array
+    speeds : (6 + n,) array
+    attitude : (4,) array
+        Unit quaternion, body to NED, scalar first.
+    flow : Flow
+    """
+    turn = np.reshape(axes_in_earth(*attitude), (3, 3))
+    down, current, acceleration = turn[:, 2], turn @ flow.velocity, turn @ flow.acceleration
+    pushed = weight(chain, q, down) + _displaced(chain, q, acceleration - chain.gravity * down)
+    return np.asarray(pushed + drag(chain, q, speeds, current))
+
+
+def equations(chain: Chain, state: Array, flow: Flow = STILL) -> tuple[Array, Array]:
+    """M, and all forces but control less C, (6 + n,), at a state of `right_hand_side` (equations 24 and 25)."""
+    n = chain.count
+    attitude, q, speeds = state[3:7], state[7 : 7 + n], state[7 + n : 13 + 2 * n]
+    turn = np.reshape(axes_in_earth(*attitude), (3, 3))
+    rest = bias(chain, q, speeds, turn @ flow.velocity, turn @ flow.acceleration)
+    return mass_matrix(chain, q), external(chain, q, speeds, attitude, flow) - rest
+
+
+def right_hand_side(chain: Chain, state: Array, control: Array, flow: Flow = STILL) -> Array:
+    """(13 + 2 n,) rates of a state: position (NED), quaternion, joint positions, generalised speeds.
+
+    The quaternion takes the place of equation 28, which maps frame 0 without diag(1, -1, -1), and of equation 29, whose entry (2, 2)
+    is cos(phi) and which is singular at a pitch of 90 deg (erratum 7).
+
+    Parameters
+    ----------
+    chain : Chain
+    state : (13 + 2 n,) array
+    control : (6 + n,) array
+        R_0, T_0 on the vehicle at its centre of mass and tau_j on qdot_j alone: link j - 1 takes the reaction, which equation 23
+        leaves out (erratum 6).
+    flow : Flow
+    """
+    n = chain.count
+    m, force = equations(chain, state, flow)
+    out = np.empty_like(state)
+    out[: 7 + n] = displacement_rates(n, state)
+    out[7 + n :] = np.linalg.solve(m, force + control)
+    return out
+
+
+def displacement_rates(count: int, state: Array) -> Array:
+    """(7 + n,) rates of position, quaternion and joint positions; see `right_hand_side`."""
+    attitude, speeds = state[3:7].tolist(), state[7 + count : 13 + 2 * count].tolist()
+    return np.array([*kinematics(axes_in_earth(*attitude), *attitude, *speeds[:6])[:7], *speeds[6:]])
+
+
+def kinetic_energy(chain: Chain, q: Array, speeds: Array) -> float:
+    """Of the bodies and of the water that moves with them, J."""
+    return float(0.5 * speeds @ mass_matrix(chain, q) @ speeds)
+
+
+def end_in_earth(chain: Chain, state: Array) -> Array:
+    """(3,) end effector, NED, m: equations 26 and 27, with diag(1, -1, -1) between NED and frame 0 (erratum 7)."""
+    at = pose(chain, state[7 : 7 + chain.count])
+    return np.asarray(state[:3] + at.end @ np.reshape(axes_in_earth(*state[3:7]), (3, 3)))
