@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from coeflab.cli import show
+
+if TYPE_CHECKING:
+    from coeflab.vehicle.parameter_file import ParameterFile
 
 EXAMPLE = "coeflab merge reports/hull/hull.parameters.json my_study/campaign --out reports/hull_merged"
 
@@ -26,37 +31,87 @@ def command(
     What the other file does not give stays. Prints what was replaced, and what the estimates that remain contribute to the
     uncertainty of the turn; writes the merged parameter file and a report.
     """
-    from coeflab.core.files import write_all
-    from coeflab.report.sections import estimates as tables
     from coeflab.vehicle.parameter_file import read_parameter_file
-    from coeflab.workbench import run
-    from coeflab.workbench.vehicle import given_by, replaced, replaced_files
 
     with show.progress(json) as say:
         say("reading both")
-        first = read_parameter_file(base)
-        second = given_by(other, first, run)
-        say("merging, and moving what came out")
-        made, moves, carried = replaced(first, second, name or f"{first.name}_merged")
-    folder = out if out is not None else base.parent
+        done = carried_out(read_parameter_file(base), other, name, out if out is not None else base.parent, say)
+    if json:
+        show.json_object(done.as_json())
+    else:
+        done.told()
+
+
+@dataclass(frozen=True)
+class Done:
+    """A merge, what its estimates do to the first manoeuvres, and the files that were written.
+
+    Attributes
+    ----------
+    made : Merged
+    carried : tuple of Carried
+    source : str
+        Name of what replaced estimates.
+    paths : tuple of Path
+    """
+
+    made: Any
+    carried: Any
+    source: str
+    paths: tuple[Path, ...]
+
+    def as_json(self) -> dict[str, Any]:
+        """What was replaced, what is left, and the files."""
+        return {**as_json(self.made, self.carried), "files": [str(p) for p in self.paths]}
+
+    def told(self) -> None:
+        """Print it."""
+        from coeflab.report.sections import estimates as tables
+
+        made, carried = self.made, self.carried
+        words = tables.interval_in_words(carried).removesuffix(", estimate")
+        many = sum(r.after is not None for r in made.replaced)
+        left = len(made.estimates)
+        show.sentence(
+            f"{made.parameters.name}: {many} number{'s' * (many != 1)} from {self.source}, {left} estimate{'s' * (left != 1)} left"
+            f"{f'; {words}' if words else ''}."
+        )
+        show.text()
+        show.table(tables.merged_table(made))
+        show.table(tables.estimates_table(made.parameters, carried))
+        for path in self.paths:
+            show.path(path)
+
+
+def carried_out(first: ParameterFile, other: str, name: str, folder: Path, say: Callable[[str], None]) -> Done:
+    """Merge a file or campaign into a parameter file, and write what comes out.
+
+    Parameters
+    ----------
+    first : ParameterFile
+    other : str
+        A parameter file, or a campaign.
+    name : str
+        Of the merged file; empty: that of the first with ``_merged``.
+    folder : Path
+    say : callable
+        Takes what is being done, in words.
+
+    Raises
+    ------
+    InputError, ScalingMismatchError
+        As of `coeflab.workbench.vehicle.replaced`.
+    """
+    from coeflab.core.files import write_all
+    from coeflab.workbench import run
+    from coeflab.workbench.vehicle import given_by, replaced, replaced_files
+
+    second = given_by(other, first, run)
+    say("merging, and moving what came out")
+    made, moves, carried = replaced(first, second, name or f"{first.name}_merged")
     files = replaced_files(made, moves, carried)
     write_all(folder, files)
-    paths = [folder / n for n in sorted(files)]
-    if json:
-        show.json_object({**as_json(made, carried), "files": [str(p) for p in paths]})
-        return
-    words = tables.interval_in_words(carried).removesuffix(", estimate")
-    many = sum(r.after is not None for r in made.replaced)
-    left = len(made.estimates)
-    show.sentence(
-        f"{made.parameters.name}: {many} number{'s' * (many != 1)} from {second.name}, {left} estimate{'s' * (left != 1)} left"
-        f"{f'; {words}' if words else ''}."
-    )
-    show.text()
-    show.table(tables.merged_table(made))
-    show.table(tables.estimates_table(made.parameters, carried))
-    for path in paths:
-        show.path(path)
+    return Done(made, carried, second.name, tuple(folder / n for n in sorted(files)))
 
 
 def as_json(made: Any, carried: Any) -> dict[str, Any]:

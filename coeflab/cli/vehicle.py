@@ -52,6 +52,12 @@ def command(
         [], "--to", metavar="TARGET", autocompletion=complete.exporters, help="Export to it; may be given again."
     ),
     accept_loss: bool = typer.Option(False, "--accept-loss", help="Export although a target cannot hold everything."),
+    campaign: str = typer.Option(
+        "",
+        metavar="CAMPAIGN",
+        autocompletion=complete.campaigns,
+        help="Fit it and replace estimates by it, as coeflab merge does, into FOLDER/merged.",
+    ),
     out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/BODY."),
     json: bool = typer.Option(False, "--json", help="Print one JSON object."),
 ) -> None:
@@ -60,11 +66,14 @@ def command(
     Writes a parameter file, exports and a report: added mass, estimates with U95, a first turn and zigzag where its body.toml
     gives [[control]] or [[thruster]], else a coast-down and what is missing. Exit code 1 when an export is refused.
     """
-    from coeflab.core.files import write_all
+    from coeflab.cli.merge import carried_out
+    from coeflab.core.files import located, write_all
     from coeflab.workbench import checked, rendered
     from coeflab.workbench.exports import refuse_unknown
     from coeflab.workbench.vehicle import asked, from_shape, subject
 
+    if campaign:
+        located(campaign, "cfd_data")  # before minutes of added mass
     with show.progress(json) as say:
         say("reading the body")
         found = subject(body, unit, axes, repair)
@@ -72,14 +81,22 @@ def command(
         refuse_unknown(plan.exports)
         study = checked(from_shape(plan, found, stated, say), say)
     folder = out if out is not None else Path("reports") / plan.name
+    merged = None
+    if campaign:
+        with show.progress(json) as say:
+            say(f"fitting {campaign}")
+            merged = carried_out(next(iter(study.parameter_files.values())), campaign, "", folder / "merged", say)
     show.step("drawing the report", json)
     files = rendered(study)
     changed = sum(write_all(folder, files).values())
     paths = [folder / name for name in sorted(files)]
     if json:
-        show.json_object({**as_json(study), "files": [str(p) for p in paths]})
+        more = {} if merged is None else {"merged": merged.as_json()}
+        show.json_object({**as_json(study), **more, "files": [str(p) for p in paths]})
     else:
-        _print(study, folder, sorted(files), changed)
+        _print(study, folder, sorted(files), changed, merged is None)
+        if merged is not None:
+            merged.told()
     for refused in study.refused:
         why = str(refused.why).replace('"export.accept_loss": ', "").replace("accept_loss = true", "--accept-loss")
         show.error(f"error: {why}")
@@ -87,11 +104,13 @@ def command(
         raise typer.Exit(1)
 
 
-def _print(study: Study, folder: Path, names: list[str], changed: int) -> None:
+def _print(study: Study, folder: Path, names: list[str], changed: int, alone: bool) -> None:
 
     summarise(study)
     show.findings(study.checks)
     show.written(folder, names, changed)
+    if not alone:
+        return
     name = next(iter(study.parameter_files))
     place = shlex.quote(str(folder / f"{name}.parameters.json"))
     show.command_line("Next", f"coeflab merge {place} CAMPAIGN")

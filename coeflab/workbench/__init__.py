@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -127,7 +128,7 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
         fits.append(fitted)
         progress(f"fitted {fitted.campaign} by {joint.fit}")
         tables += [t for t in read if t.name not in {known.name for known in tables}]
-    body = read_body(plan.body) if plan.body else None
+    body = read_body(_body_file(plan.body)) if plan.body else None
     references = tuple(r for path in plan.references for r in read_references(path))
     groups = plan.parameter_files or _groups(fits, plan)
     missing = tuple(c for g in groups for c in _missing(g, fits, plan.wanted))
@@ -167,8 +168,12 @@ def _of_shape(plan: Plan, progress: Progress) -> Study:
     """The study of a body alone."""
     if plan.body is None:
         raise InputError("no table and no body", "a table, or a body to estimate from", column="table")
-    path = plan.body / "body.toml" if plan.body.is_dir() else plan.body
-    return from_shape(plan, read_body(path), progress=progress)
+    return from_shape(plan, read_body(_body_file(plan.body)), progress=progress)
+
+
+def _body_file(path: Path) -> Path:
+    """A shipped name is a folder."""
+    return path / "body.toml" if path.is_dir() else path
 
 
 def checked(study: Study, progress: Progress = lambda _: None) -> Study:

@@ -69,9 +69,26 @@ def test_a_campaign_replaces_what_it_gives(coeflab: Run, made: tuple[Path, str],
     assert "none of an estimate" in flat(done.stderr)
 
 
+@pytest.mark.slow
+def test_simplified_mesh_and_table_make_a_vehicle_that_moves_without_a_hand_edit(coeflab: Run, tmp_path: Path) -> None:
+    """One command: estimates, a fitted campaign in their place, a parameter file, first manoeuvres, a report."""
+    done = coeflab("vehicle", "huuv_mesh_simplified", "--speed", "1 m/s", "--method", "primitives", "--campaign",
+                   "huuv_synthetic", "--out", "made", "--json")  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    merged = json.loads(done.stdout)["merged"]
+    by_symbol = {r["symbol"]: r["after"] for r in merged["replaced"]}
+    assert by_symbol["Yv'"]["campaign"] == "huuv_synthetic"
+    assert {"Yr'", "Nr'", "Mq'"} <= set(merged["estimates"])
+    folder = tmp_path / "made" / "merged"
+    assert (folder / "report.html").is_file()
+    moved = coeflab("simulate", folder / "huuv_mesh_simplified_merged.parameters.json", "--manoeuvre", "straight_run")
+    assert moved.returncode == 0, moved.stderr
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
+        (("huuv_mesh_simplified", "--campaign", "nowhere"), "nowhere"),
         (("{mesh}", "--axes", "FRD"), '"--unit"'),
         (("{mesh}", "--unit", "m"), '"--axes"'),
         ((BODY, "--mass", "heavy"), '"--mass"'),

@@ -146,6 +146,16 @@ def test_steady_motions_and_the_same_in_time(five: FiveDof, file: ParameterFile)
     assert end[[0, 1, 2]] == pytest.approx(found[0, :3], abs=1e-4)
 
 
+def test_bow_planes_change_the_depth_of_a_vehicle_that_has_no_others(file: ParameterFile) -> None:
+    found = simulate(file, "depth_change", {})
+    assert found.vehicle.free == ("u", "w", "q")
+    assert any("first bow planes +10 deg, to dive" in said for said in found.manoeuvre.statements)
+    value = {f.name: f.value for f in found.figures}
+    assert value["time to execute"] == pytest.approx(1.036, rel=1e-3)
+    assert value["overshoot of depth"] == pytest.approx(0.07133, rel=1e-3)
+    assert found.trajectory.position[:, 2].max() > 0.1
+
+
 def test_the_geometrys_masses_change_the_turns_and_the_turns_tell_only_differences(five: FiveDof) -> None:
     turns = five.level.turns[MATLAB]
     left = {how: with_masses(five, how, turns) - turns.figures for how in ("stated", "geometry", "moved")}

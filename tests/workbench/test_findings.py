@@ -115,7 +115,7 @@ def test_a_name_too_long_for_the_file_is_one_error() -> None:
 def of_hull(folder: Path, hull: Path, campaign: str = "suboff_roddy_2", body: str = "suboff_fully_appended") -> Study:
     """A parameter file of one campaign with a body's added mass, and Roddy's particulars beside it."""
     (folder / "plan.toml").write_text(
-        f'[study]\nname = "s"\nwanted = ["Yv"]\n[body]\npath = "{shipped("geometry") / "suboff" / "body.toml"}"\n'
+        f'[study]\nname = "s"\nwanted = ["Yv"]\n[body]\npath = "suboff"\n'
         f'[[table]]\ncampaign = "{shipped("cfd_data") / campaign}"\nfits = ["slope_at_origin"]\n'
         f'[[parameter_file]]\nname = "p"\nbody = "{body}"\ncampaigns = ["{campaign}"]\n'
         f'added_mass = "{hull}"\nadded_mass_method = "ellipsoid"\n'

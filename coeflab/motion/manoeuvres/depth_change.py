@@ -1,4 +1,7 @@
-"""Depth change: stern planes to dive until a pitch is reached, then reversed until the vehicle is level again."""
+"""Depth change: planes to dive until a pitch is reached, then reversed until the vehicle is level again.
+
+The stern planes; the bow planes where the file knows those alone.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +12,12 @@ from typing import Any
 import numpy as np
 
 from coeflab.core.options import bounded, measured, one_of, parse_options
-from coeflab.motion.approach import along, judged, propulsion, turning_sense, unlimited, within_limit
+from coeflab.motion.approach import SURFACES, along, judged, propulsion, turning_sense, unlimited, within_limit
 from coeflab.motion.manoeuvre import Figure, Manoeuvre, Phase, Until, extreme, value_at
 from coeflab.motion.trajectory import Trajectory
 from coeflab.motion.vehicle import Vehicle
 
-summary = "depth change by the stern planes: time to execute, overshoot of pitch and of depth"
+summary = "depth change by the stern or bow planes: time to execute, overshoot of pitch and of depth"
 citations = ("gertler1967",)
 plane = "vertical"
 NAME = "depth_change"
@@ -27,7 +30,7 @@ class Options:
     Attributes
     ----------
     planes, pitch
-        Angle of the stern planes and pitch at which they are reversed; 10 deg each by default.
+        Angle of the planes and pitch at which they are reversed; 10 deg each by default.
     way
         Dive or rise.
     speed
@@ -48,17 +51,19 @@ def plan(vehicle: Vehicle, options: Mapping[str, Any]) -> Manoeuvre:
     o = parse_options(Options, options, NAME)
     nu = along(vehicle, o.speed)
     sign = -1.0 if o.way == "dive" else 1.0
-    angle = within_limit(vehicle, "ds", o.planes, f"{NAME}.planes")
-    order = sign * angle * turning_sense(vehicle, "ds", "q", float(nu[0]))
+    known = {v for t in vehicle.law.terms for v in t.variables}
+    planes = "db" if "db" in known and "ds" not in known else "ds"
+    angle = within_limit(vehicle, planes, o.planes, f"{NAME}.planes")
+    order = sign * angle * turning_sense(vehicle, planes, "q", float(nu[0]))
     orders, said = propulsion(vehicle, float(nu[0]))
     level = max(5.0 * vehicle.length / float(nu[0]), 1.0)
     phases = (
-        Phase("over", {"ds": order}, o.longest, Until("pitch", o.way == "rise", sign * o.pitch)),
-        Phase("reversed", {"ds": -order}, o.longest, Until("pitch", o.way == "dive", 0.0)),
-        Phase("amidships", {"ds": 0.0}, level),
+        Phase("over", {planes: order}, o.longest, Until("pitch", o.way == "rise", sign * o.pitch)),
+        Phase("reversed", {planes: -order}, o.longest, Until("pitch", o.way == "dive", 0.0)),
+        Phase("amidships", {planes: 0.0}, level),
     )
-    planes = f"first stern planes {np.degrees(order):+.4g} deg, to {o.way} by the coefficients of the file"
-    return Manoeuvre(NAME, phases, nu, orders=orders, statements=(said, planes))
+    first = f"first {SURFACES[planes]} {np.degrees(order):+.4g} deg, to {o.way} by the coefficients of the file"
+    return Manoeuvre(NAME, phases, nu, orders=orders, statements=(said, first))
 
 
 def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]) -> tuple[Figure, ...]:

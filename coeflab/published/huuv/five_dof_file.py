@@ -113,7 +113,7 @@ def _added_mass(huuv: FiveDof) -> AddedMass:
     other = OtherMethod("assumed geometry, equations 28-32 as corrected", huuv.geometry)
     said = (MASSES[huuv.masses],)
     return AddedMass(
-        huuv.added, datum=Datum("cb"), body=BODY, method=huuv.masses, statements=said, density=huuv.density,
+        huuv.added, datum=Datum("cb"), body="HUUV", method="stated" if huuv.masses == "stated" else "primitives:huuv", statements=said, density=huuv.density,
         others=(other,) if huuv.masses == "stated" else (),
     )  # fmt: skip
 
