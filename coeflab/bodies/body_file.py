@@ -53,6 +53,11 @@ def _rows(value: Any, file: Path) -> Array:
     return np.array([ROW.read(row, file) for row in value])
 
 
+InertiaMatrix = Annotated[
+    Array, takes.Takes(ROW.words, _rows, {"type": "array", "items": ROW.schema, "minItems": 3, "maxItems": 3})
+]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ConfigurationKeys(takes.Declaration):
     """One state of appendages: volume, surface, centre of buoyancy and mass, each as far as it is given.
@@ -90,12 +95,7 @@ class ConfigurationKeys(takes.Declaration):
     centre_of_gravity_forward: takes.Length | None = None
     inertia: Annotated[takes.Inertia, takes.ABOVE_ZERO] | None = None
     centre_of_gravity: takes.Point | None = None
-    inertia_matrix: (
-        Annotated[
-            Array, takes.Takes(ROW.words, _rows, {"type": "array", "items": ROW.schema, "minItems": 3, "maxItems": 3})
-        ]
-        | None
-    ) = None
+    inertia_matrix: InertiaMatrix | None = None
     mass_prime: Annotated[takes.Pure, takes.ABOVE_ZERO] | None = None
     mass_moment_prime: takes.Pure | None = None
     inertia_prime: Annotated[takes.Pure, takes.ABOVE_ZERO] | None = None

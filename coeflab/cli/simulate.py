@@ -21,7 +21,10 @@ TABLES = ("csv", "parquet")
 def command(
     ctx: typer.Context,
     file: Path = typer.Argument(
-        ..., metavar="PARAMS", autocompletion=complete.parameters, help="A parameter file, or a shipped vehicle."
+        ...,
+        metavar="PARAMS",
+        autocompletion=complete.parameters,
+        help="A parameter file, or a shipped vehicle; the body.toml of a vehicle with an arm, or a shipped one: urv_puma.",
     ),
     manoeuvre: str = typer.Option(
         "turning_circle", metavar="NAME", autocompletion=complete.manoeuvres, help="See coeflab formats manoeuvres."
@@ -58,6 +61,7 @@ def command(
     See --help-options. Exit code 1
     where the motion could not be computed to its end, or where the file determines nothing of it; then nothing is written.
     """
+    from coeflab.cli.fit import further
     from coeflab.core.errors import InputError, shown
     from coeflab.motion.simulation import simulate
     from coeflab.vehicle.parameter_file import read_parameter_file
@@ -70,6 +74,13 @@ def command(
         return
     if to not in TABLES:
         raise InputError(shown(to), f"one of {', '.join(TABLES)}", column="--to")
+    if (body := arm_at(file)) is not None:
+        refused = {"--free": free, "--hold": hold, "--tables": tables, "--step": step}
+        if strange := [key for key, value in refused.items() if value]:
+            raise InputError(f"{strange[0]} for a vehicle with an arm", "phases of its body.toml", column=strange[0])
+        of_arm = current_of(current) | ({"record": record} if record else {}) | dict(further(ctx.args))
+        _arm(body, of_arm, to, out, json)
+        return
     parameters = read_parameter_file(file)
     given = {"integrator": integrator, "step": step, "record": record}
     how: dict[str, Any] = {k: v for k, v in given.items() if v not in ("adaptive", 0.0)} | current_of(current)
@@ -91,6 +102,49 @@ def command(
     else:
         _print(made, written)
     if made.trajectory.why or made.undetermined or all(f.value is None for f in made.figures):
+        raise typer.Exit(1)
+
+
+def arm_at(file: Path) -> Path | None:
+    """The body.toml of a vehicle with an arm that a person means, by path or shipped name; None for anything else."""
+    from coeflab.core.files import shipped, typed
+    from coeflab.motion.multibody.arm_file import is_arm
+
+    path = typed(file)
+    for place in (path, shipped("geometry") / path.name if len(path.parts) == 1 else path):
+        if is_arm(place):
+            return place
+    return None
+
+
+def _arm(body: Path, options: dict[str, Any], to: str, out: Path | None, json: bool) -> None:
+    """The phases of a vehicle with an arm."""
+    from coeflab.core.files import write_all
+    from coeflab.motion.multibody.arm_file import read_arm
+    from coeflab.motion.simulators import SIMULATORS
+    from coeflab.motion.trajectory import Ended
+    from coeflab.report.tables.motion import arm_phases, columns, motion_csv, motion_parquet
+
+    chain, manoeuvre = read_arm(body)
+    with SIMULATORS.guarded("arm"):
+        moved = SIMULATORS.load("arm").simulate(chain, manoeuvre, options)
+    table = motion_csv(moved) if to == "csv" else motion_parquet(moved)
+    content = {} if out is None else {f"{manoeuvre.name}.{to}": table}
+    write_all(Path(out or ""), content)
+    files = [str(Path(out or "") / name) for name in content]
+    if json:
+        last = {name: float(values[-1]) for name, values in columns(moved).items()}
+        said = {"name": chain.name, "phases": list(moved.phases), "ended": moved.ended.value, "why": moved.why}
+        show.json_object({**said, "last": last, "statements": list(moved.statements), "files": files})
+    else:
+        show.table(arm_phases(moved, chain.name))
+        for line in moved.statements:
+            show.text(f"  {line}")
+        if moved.why:
+            show.text(f"  {moved.ended.value}: {moved.why}")
+        for path in files:
+            show.path(path)
+    if moved.ended is not Ended.COMPLETE:
         raise typer.Exit(1)
 
 

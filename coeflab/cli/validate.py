@@ -21,7 +21,7 @@ def command(
     name: str = typer.Argument(
         ...,
         metavar="NAME",
-        help="suboff, huuv, flyingfish, thauv, tank or estimates.",
+        help="suboff, huuv, flyingfish, thauv, urv, tank or estimates.",
         autocompletion=complete.validations,
     ),
     out: Path | None = typer.Option(None, metavar="FOLDER", help="Folder for the files; default reports/NAME."),

@@ -14,7 +14,7 @@ from typing import Annotated
 from coeflab.core.declarations import Declaration, Text, Words, one_of
 from coeflab.core.stored import Means, Within, stored
 
-TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic", "estimate")
+TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic", "estimate", "unstated")
 BODY_KINDS = (*TABLE_KINDS, "computed")
 
 
@@ -127,6 +127,12 @@ WORKS: dict[str, str] = {
     f"(TJ-FlyingFish), {UNNAMED}; equations 13-18, 25-56 and Table 1.",
     "thauv": "Analysis of a New Twin Hybrid Autonomous Underwater Vehicle (THAUV), Applied Sciences 13(3), 1551, 2023, "
     "doi 10.3390/app13031551 (the copy read here names no authors); equations 5, 9-30 and Table 3.",
+    "urv_kane": "T. J. Tarn, G. A. Shoults, S. P. Yang, A Dynamic Model of an Underwater Vehicle with a Robotic Manipulator using "
+    "Kane's Method, Autonomous Robots 3, 1996.",
+    "yoerger1990": "D. R. Yoerger, J. G. Cooke, J.-J. E. Slotine, The influence of thruster dynamics on underwater vehicle behavior and "
+    "their incorporation into control system design, IEEE J. Oceanic Engineering 15(3), 1990.",
+    "healey1994": "A. J. Healey, S. M. Rock, S. Cody, D. Miles, J. P. Brown, Toward an improved understanding of thruster dynamics for "
+    "underwater vehicles, Symposium on Autonomous Underwater Vehicle Technology, 1994.",
     "leonard_graver2001": "N. E. Leonard, J. G. Graver, Model-based feedback control of autonomous underwater gliders, IEEE J. "
     "Oceanic Engineering 26(4), 2001.",
     "huuv2025": "T. Talarczyk, M. Morawski, M. Malec, M. Garncarz, Identification of Motion Model Parameters for a Small "

@@ -97,6 +97,16 @@ def rotation(roll: float, pitch: float, yaw: float) -> Array:
     return np.asarray(about_z @ about_y @ about_x)
 
 
+def denavit_hartenberg(theta: float, d: float, a: float, alpha: float) -> tuple[Array, Array]:
+    """(3, 3) rotation and (3,) shift of A_(j-1)^j = Rz(theta) Tz(d) Tx(a) Rx(alpha), rad and m.
+
+    The distal convention of the URV paper (section 4.2): x of frame j lies along the common normal of joints j and j + 1.
+    """
+    ct, st, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
+    turn = np.array([[ct, -st * ca, st * sa], [st, ct * ca, -ct * sa], [0.0, sa, ca]])
+    return turn, np.array([a * ct, a * st, d])
+
+
 def angles(turn: Array) -> tuple[float, float, float]:
     """Roll, pitch and yaw of a (3, 3) rotation, rad; pitched straight up or down, roll is zero."""
     pitch = float(np.arcsin(np.clip(-turn[2, 0], -1.0, 1.0)))

@@ -13,7 +13,7 @@ from coeflab.study.plan import read_plan
 from coeflab.study.study import Plan
 
 PLAN = "plan.toml"
-PUBLISHED = ("estimates", "flyingfish", "huuv", "tank", "thauv")
+PUBLISHED = ("estimates", "flyingfish", "huuv", "tank", "thauv", "urv")
 
 
 def validations() -> tuple[str, ...]:

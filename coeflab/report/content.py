@@ -30,6 +30,7 @@ from coeflab.report.acceptance import headline, held_of_study
 from coeflab.report.answer import answer
 from coeflab.report.bench import bench_of
 from coeflab.report.document import Document, Section, digest_of, reproduction, shipped_name
+from coeflab.report.figures.answer import share_text
 from coeflab.report.figures.svg import settings
 from coeflab.report.notation import keeping, users_texts
 from coeflab.report.sections.body import added_mass_sections, body_sections
@@ -285,6 +286,9 @@ def _named(c: Comparison) -> str:
     return f"{primed(c.coefficient.symbol)} of {c.coefficient.campaign}"
 
 
+WIDE = 0.25  # of the published value: a wider U95 passes what a reader would call a difference
+
+
 def _re_analysis(study: Study) -> list[str]:
     ours = [c for c in study.comparisons if c.relation is Relation.RE_ANALYSIS]
     judged = [c for c in ours if c.passed is not None]
@@ -300,6 +304,9 @@ def _re_analysis(study: Study) -> list[str]:
     else:
         verb = "passed" if len(judged) == 1 else "all passed"
         out = [f"{count} with the authors' own evaluation of the same data {verb}: every difference within U95."]
+    shares = [(c, c.combined / abs(c.published)) for c in judged if c.passed and c.combined and c.published]
+    if wide := [f"{_named(c)} ({share_text(share)})" for c, share in shares if share > WIDE]:
+        out.append(f"Weak tests, whose U95 is above {share_text(WIDE)} of the published value: {listed(wide)}.")
     if len(ours) > len(judged):
         out.append(f"No verdict without U95: {listed([_named(c) for c in ours if c.passed is None])}.")
     out.extend(headline(held_of_study(study)))

@@ -310,6 +310,7 @@ def test_figures_beyond_the_data_say_so() -> None:
         ("turning_circle", STABLE, {"commands": "left"}, 'found "left"; expected NAME=NUMBER'),
         ("turning_circle", STABLE, {"commands": "thrust=1 thrust=2"}, 'found "thrust" twice'),
         ("free_decay", STABLE, {}, "p held"),
+        ("glide", STABLE, {}, "does not glide"),
     ],
 )
 def test_what_cannot_be_done(manoeuvre: str, values: dict[str, float], options: dict[str, Any], says: str) -> None:
@@ -325,8 +326,8 @@ def test_a_rudder_beyond_its_limit_is_refused() -> None:
 
 def test_every_manoeuvre_is_tried_here() -> None:
     assert set(MANOEUVRES.names()) == {
-        "depth_change", "free_decay", "medium_change", "pull_out", "spiral", "steady_motion", "stop", "straight_run",
-        "turning_circle", "zigzag",
+        "depth_change", "free_decay", "glide", "medium_change", "pull_out", "spiral", "steady_motion", "stop",
+        "straight_run", "turning_circle", "zigzag",
     }  # fmt: skip  # medium_change in test_media.py
 
 

@@ -142,6 +142,17 @@ def test_a_pass_says_what_it_means():
     assert "re-analysis" in text
 
 
+@pytest.mark.parametrize(("share", "is_weak"), [(0.26, True), (-0.26, True), (0.24, False)])
+def test_a_pass_by_a_wide_interval_is_called_weak(share, is_weak):
+    study = small_study(FULL, published=True)
+    others = tuple(replace(c, combined=0.01 * abs(c.published)) for c in study.comparisons[1:])
+    first = replace(study.comparisons[0], passed=True, published=0.02 / share, combined=0.02)
+    text = words(replace(study, comparisons=(first, *others)), "verdict")
+    assert ("Weak tests, whose U95 is above 25 % of the published value: Yv' of tow (26 %)." in text) == is_weak
+    failed = replace(study, comparisons=(replace(first, passed=False), *others))
+    assert "Weak" not in words(failed, "verdict")
+
+
 def test_a_failure_is_named():
     study = small_study(FULL, published=True)
     first = replace(study.comparisons[0], passed=False)

@@ -69,6 +69,14 @@ def test_an_index_is_stable_unstable_or_not_determined_by_its_interval(values, h
     assert chip.text.startswith(f"{said}, G_h = ")
 
 
+def test_derivatives_of_the_literature_are_named_beside_measured_ones():
+    file = made()
+    measured = tuple(replace(c, origin="fit") if c.symbol in ("Yv'", "Nv'") else c for c in file.coefficients)
+    (said,) = in_words(with_files(file.model_copy(update={"coefficients": measured})))
+    assert said.endswith(" From literature: Yr', Nr'.")
+    assert "literature" not in in_words(with_files(file))[0]
+
+
 def test_a_missing_rate_derivative_is_named():
     few = {s: v for s, v in STABLE.items() if s not in ("Nr", "Zq", "Mq", "Zw", "Mw")}
     (section,) = stability_sections(with_files(made(few)))

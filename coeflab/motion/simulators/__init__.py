@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from coeflab.motion.glider.glider import Glider
     from coeflab.motion.manoeuvre import Manoeuvre
+    from coeflab.motion.multibody.chain import Chain
     from coeflab.motion.trajectory import Trajectory
     from coeflab.motion.vehicle import Vehicle
 
@@ -19,12 +20,14 @@ if TYPE_CHECKING:
 class Simulator(Plugin, Protocol):
     """Moves a vehicle through a manoeuvre."""
 
-    def simulate(self, vehicle: Vehicle | Glider, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -> Trajectory:
+    def simulate(
+        self, vehicle: Vehicle | Glider | Chain, manoeuvre: Manoeuvre, options: Mapping[str, Any]
+    ) -> Trajectory:
         """The motion, as far as it goes; how it ended is a status of it.
 
         Parameters
         ----------
-        vehicle : Vehicle or Glider
+        vehicle : Vehicle, Glider or Chain
         manoeuvre : Manoeuvre
         options : mapping of str to value
             Of the plugin's `Options`.

@@ -20,6 +20,7 @@ from coeflab.core.table import ABSENT, Table, number, plus_minus
 from coeflab.core.types import Array
 from coeflab.core.wording import listed
 from coeflab.formats.export import ASSUMED, LOSSLESS, Export, Loss, Refused
+from coeflab.law.symbols import primed
 from coeflab.motion.manoeuvre import Simulation
 from coeflab.motion.steady_state import RootLocus, root_locus
 from coeflab.report.document import Figure, Section, Series
@@ -120,7 +121,16 @@ def in_words(study: Study, *, with_values: bool = True) -> list[str]:
             speeds = listed([number(u, 3) for u in dict.fromkeys(lacking[n] for n in places if n in lacking)] or [""])
             each += f", at {speeds} m/s not determined, as BG is not known" if speeds else ""
         out.append(f"{verdict.replace(FAST, f'{FAST} (no restoring moment)')}: {each}")
-    return [f"With controls fixed, straight motion is {'; '.join(out)}."] if out else []
+    mixed = [_from_literature(p, d.name) for p in study.parameter_files.values() for d in stability(p)]
+    by_others = dict.fromkeys(s for stated in mixed if len(stated) < len(INDICES["G_h"]) - 1 for s in stated)
+    stated = f" From literature: {', '.join(map(primed, by_others))}." if by_others else ""
+    return [f"With controls fixed, straight motion is {'; '.join(out)}.{stated}"] if out else []
+
+
+def _from_literature(parameters: ParameterFile, index: str) -> list[str]:
+    """Derivatives of a stability index that no campaign of the study gave."""
+    found = [parameters.coefficient(str(s)) for s in INDICES[index][:-1]]
+    return [c.symbol for c in found if c is not None and c.origin == "literature"]
 
 
 def _value(d: Derived) -> str:
@@ -170,7 +180,7 @@ def _indices(parameters: ParameterFile) -> list[tuple[str, ...]]:
             continue
         d = given[index]
         half = None if d.result is None else d.result.linear
-        stated = [c.symbol for c in found if c is not None and c.origin == "literature"]
+        stated = _from_literature(parameters, index)
         remarks = [f"{', '.join(stated)} from literature"] if stated else []
         remarks += [d.statement] if half is None else []
         remarks.append(

@@ -21,6 +21,7 @@ from coeflab.law.symbols import CONTROLS
 from coeflab.motion.glider.glide import GlideRun, SteadyGlide
 from coeflab.motion.glider.glider import Glider
 from coeflab.motion.glider.motion import shallowest
+from coeflab.motion.glider.space import Spiral
 from coeflab.motion.identify.identification import Identified, IdentifiedTerm
 from coeflab.motion.manoeuvre import Figure
 from coeflab.motion.trajectory import Trajectory
@@ -70,7 +71,7 @@ def columns(trajectory: Trajectory) -> dict[str, Array]:
         out[f"{name} [{unit}]"] = nu[:, i]
     for name, values in t.controls.items():
         unit = "rad" if name in CONTROLS or name.endswith(".tilt") else "command" if name != "thrust" else "N"
-        out[f"{name} [{unit}]"] = values
+        out[name if name.endswith("]") else f"{name} [{unit}]"] = values
     outside = np.zeros(len(t.time), dtype=bool)
     for flags in t.outside.values():
         outside |= flags
@@ -106,6 +107,30 @@ def motion_parquet(trajectory: Trajectory) -> bytes:
     return buffer.getvalue()
 
 
+def arm_phases(trajectory: Trajectory, name: str) -> Table:
+    """Vehicle, end effector and joints of an arm where the motion begins and where each phase ends; largest torques within it."""
+    t, rows = trajectory, []
+    ends = [int(np.flatnonzero(t.phase == k)[-1]) for k in range(len(t.phases)) if np.any(t.phase == k)]
+    at = [0, *ends]
+    rows.append(("time", "s", *(f"{t.time[i]:.4g}" for i in at)))
+    for k, axis in enumerate(("north", "east", "down")):
+        rows.append((f"vehicle, {axis}", "m", *(f"{t.position[i, k]:.4f}" for i in at)))
+    for k, angle in enumerate(("roll", "pitch", "yaw")):
+        rows.append((f"vehicle, {angle}", "deg", *(f"{np.degrees(t.angles[i, k]) + 0.0:.2f}" for i in at)))
+    for key, values in t.controls.items():
+        what, _, unit = key.removesuffix("]").partition(" [")
+        if what.startswith("end."):
+            rows.append((f"end effector, {what[4:]}", unit, *(f"{values[i]:.4f}" for i in at)))
+        elif what.endswith(".torque"):
+            most = [f"{np.max(np.abs(values[t.phase == k])):.3g}" for k in range(len(ends))]
+            rows.append((f"{what[:-7]}, largest {'torque' if unit == 'N m' else 'force'}", unit, "", *most))
+        elif "." not in what and unit in ("rad", "m"):
+            factor, shown = (180.0 / np.pi, "deg") if unit == "rad" else (1.0, unit)
+            rows.append((what, shown, *(f"{factor * values[i]:.2f}" for i in at)))
+    headers = ("", "unit", "start", *(f"after {t.phases[k]}" for k in range(len(ends))))
+    return Table(f"Motion of {name}", headers, tuple(rows), (), frozenset({0, 1}))
+
+
 def _degrees(angle: float) -> str:
     return f"{np.degrees(angle):.3f}"
 
@@ -136,7 +161,7 @@ def steady(glider: Glider, glides: Sequence[SteadyGlide]) -> Table:
         f"Angles of attack searched: {low:.4g} to {high:.4g} deg. Growth: largest real part of the eigenvalues, 1/s."
     ]
     for phase in glider.phases:
-        count = sum((g.net_mass, g.position) == phase.setting for g in glides)
+        count = sum((g.net_mass, g.position) == phase.setting[:2] for g in glides)
         if count != 1:
             notes.append(f"{phase.name}: {count or 'no'} steady glide{'s' if count > 1 else ''} ahead.")
     return Table(
@@ -152,11 +177,41 @@ def steady(glider: Glider, glides: Sequence[SteadyGlide]) -> Table:
     )  # fmt: skip
 
 
+def spirals(glider: Glider, turns: Sequence[tuple[str, Spiral]]) -> Table:
+    """Steady turns on the orders of the phases."""
+    rows = tuple(
+        (
+            phase, f"{s.speed:.4f}", _degrees(s.alpha), _degrees(s.beta), _degrees(s.phi), _degrees(s.theta), _degrees(s.zeta),
+            _degrees(s.turn), f"{s.radius:.2f}", f"{s.sinking:.4f}",
+        )
+        for phase, s in turns
+    )  # fmt: skip
+    return Table(
+        f"{glider.title}: steady spirals",
+        (
+            "phase",
+            "V m/s",
+            "alpha deg",
+            "beta deg",
+            "roll deg",
+            "theta deg",
+            "zeta deg",
+            "turn deg/s",
+            "radius m",
+            "sinking m/s",
+        ),
+        rows or ((glider.phases[0].name, *([ABSENT] * 9)),),
+        ("Equilibrium of forces and moments, solved without a motion in time; turn above zero to starboard.",),
+        frozenset({0}),
+        ("beta deg", "theta deg", "sinking m/s"),
+    )
+
+
 def phases(run: GlideRun) -> Table:
     """How every phase of a motion ended."""
     rows = []
     for i, row in enumerate(run.ends):
-        near = run.nearest(i)
+        near = run.steady_speed(i)
         rows.append(
             (
                 run.phase_of(i).name,
@@ -165,7 +220,7 @@ def phases(run: GlideRun) -> Table:
                 f"{round(float(run.depth[row]), 2) + 0.0:.2f}",
                 f"{run.x[row]:.2f}",
                 f"{run.speed[row]:.4f}",
-                ABSENT if near is None else f"{near.speed:.4f}",
+                ABSENT if near is None else f"{near:.4f}",
                 "yes" if run.settled(i) else "no",
             )
         )

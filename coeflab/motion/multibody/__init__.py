@@ -1,0 +1,3 @@
+"""A vehicle with an arm of any number of links: nouns, Kane's equations, thrusters, motion."""
+
+from __future__ import annotations

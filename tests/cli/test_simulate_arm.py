@@ -1,0 +1,44 @@
+"""coeflab simulate on the body.toml of a vehicle with an arm."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from coeflab.core.files import shipped
+from tests.cli.conftest import Run
+
+SHIPPED = shipped("geometry") / "urv_puma" / "body.toml"
+
+
+def test_phases_of_the_shipped_arm(coeflab: Run, tmp_path: Path) -> None:
+    done = coeflab("simulate", "urv_puma", "--record", "0.1", "--out", "moved", "--json")
+    assert done.returncode == 0, done.stderr
+    said = json.loads(done.stdout)
+    assert said["ended"] == "complete"
+    rows = pd.read_csv(tmp_path / "moved" / "arm_motion.csv")
+    joints = rows[rows["phase [-]"] == 0]
+    np.testing.assert_allclose(
+        np.degrees(joints.iloc[-1][["shoulder [rad]", "upper_arm [rad]", "forearm [rad]"]]), [40, -60, 80]
+    )
+    assert said["last"]["end.down [m]"] == rows["end.down [m]"].iloc[-1]
+
+
+def test_a_joint_that_meets_its_limit_ends_it_with_exit_code_1(coeflab: Run, tmp_path: Path) -> None:
+    text = SHIPPED.read_text().partition("[[phase]]")[0]
+    phase = '[[phase]]\nname = "fall"\nlasts = 60\nvehicle = "held"\ntorque = [0, 0, -2]\n'
+    (tmp_path / "body.toml").write_text(text + phase)
+    done = coeflab("simulate", "body.toml")
+    assert done.returncode == 1
+    assert "out_of_range: in fall, at" in done.stdout
+    assert "joint forearm is at its limit of -45 deg" in " ".join(done.stdout.split())
+
+
+def test_what_an_arm_does_not_take(coeflab: Run) -> None:
+    for option in (("--hold", "u"), ("--stiff", "1")):
+        done = coeflab("simulate", "urv_puma", *option)
+        assert done.returncode == 2
+        assert option[0].removeprefix("--") in done.stderr

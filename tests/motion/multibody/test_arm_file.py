@@ -1,0 +1,134 @@
+"""The body.toml of a vehicle with an arm: what it makes, and every complaint by file, line and key."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coeflab.bodies.added_mass import ADDED_MASS
+from coeflab.bodies.readers import read_body
+from coeflab.core.errors import InputError
+from coeflab.core.files import shipped
+from coeflab.motion.multibody import kane
+from coeflab.motion.multibody.arm_file import is_arm, read_chain
+from tests.motion.multibody.chains import dry, puma
+
+FILE = shipped("geometry") / "urv_puma" / "body.toml"
+TEXT = FILE.read_text()
+
+
+def refused(folder: Path, old: str, new: str) -> InputError:
+    assert old in TEXT
+    file = folder / "body.toml"
+    file.write_text(TEXT.replace(old, new, 1))
+    with pytest.raises(InputError) as raised:
+        read_chain(file)
+    assert raised.value.file == file
+    assert raised.value.line
+    return raised.value
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key", "said"),
+    [
+        ('alpha = "-90 deg"\n', "", "link[0].alpha", "an angle"),
+        ("a = 0\n", "", "link[0].a", "a length"),
+        ("d = 0\n", "", "link[0].d", "a length"),
+        ("theta = 0\n", "", "link[0].theta", "an angle"),
+        ('low = "-160 deg"', 'low = "170 deg"', "link[0].low", "low below high"),
+        ('home = "0.3 rad"', 'home = "3 rad"', "link[0].home", "-2.79253 to 2.79253 rad"),
+        ('mass = "12.96 kg"\n', "", "link[0].mass", "a mass"),
+        ('mass = "12.96 kg"', "mass = 0", "link[0].mass", "above zero"),
+        ("[1.09809, 0.0, 0.0]", "[3.09809, 0.0, 0.0]", "link[0].inertia_matrix", "one larger than the others' sum"),
+        ('alpha = "-90 deg"', "alpha = -90", "link[0].alpha", "without a unit"),
+        ('low = "-160 deg"', 'low = "-1 m"', "link[0].low", "angle"),
+        ('fastest = "60 deg/s"', "fastest = 0", "link[0].fastest", "above zero"),
+        ("axis = [0, 1, 0]", "axis = [0, 0, 0]", "link[0].cylinder[0].axis", "without a direction"),
+        ("semi_axes = [1.0, 0.4, 0.4]", "semi_axes = [1.0, 0.0, 0.4]", "vehicle.semi_axes", "above zero"),
+        ('joint = "revolute"', 'joint = "ball"', "link[0].joint", "prismatic"),
+        ('name = "upper_arm"', 'name = "shoulder"', "link", "one name for each"),
+        ('joints = ["40 deg", "-60 deg", "80 deg"]', 'joints = ["40 deg"]', "phase[0].joints", "3, one for each"),
+        ('joints = ["40 deg", "-60 deg", "80 deg"]', 'joints = ["4 m", 0, 0]', "phase[0].joints", "angle"),
+        ("end = [0.75", "torque = [1.0, 0.0, 0.0]\nend = [0.75", "phase[2].torque", "one of joints, end and torque"),
+        ('"link.mass" = "printed', '"link.mass" = "guessed', "basis.link.mass", "printed, derived"),
+    ],
+)  # fmt: skip
+def test_wrong_input(tmp_path: Path, old: str, new: str, key: str, said: str) -> None:
+    why = refused(tmp_path, old, new)
+    assert why.column == key
+    assert said in str(why)
+
+
+def test_all_complaints_at_once(tmp_path: Path) -> None:
+    file = tmp_path / "body.toml"
+    file.write_text(TEXT.replace('alpha = "-90 deg"\n', "").replace('mass = "22.37 kg"\n', ""))
+    with pytest.raises(InputError) as raised:
+        read_chain(file)
+    assert len(raised.value.lines) == 2
+
+
+def test_another_kind_of_body_is_no_arm() -> None:
+    other = shipped("geometry") / "huuv"
+    assert is_arm(FILE)
+    assert is_arm(FILE.parent)
+    assert not is_arm(other)
+    with pytest.raises(InputError, match="a vehicle with an arm"):
+        read_chain(other)
+
+
+def test_points_from_a_datum_elsewhere(tmp_path: Path) -> None:
+    file = tmp_path / "body.toml"
+    moved = TEXT.replace("centre_of_mass = [0.0, 0.0, 0.0]", "centre_of_mass = [-1.0, 0.0, 0.5]", 1)
+    moved = moved.replace("centre = [0.0, 0.0, 0.0]", "centre = [-1.0, 0.0, 0.5]", 1)
+    moved = moved.replace("attachment = [0.5, 0.0, -0.2]", "attachment = [-0.5, 0.0, 0.3]", 1)
+    file.write_text(moved)
+    q = puma().home
+    np.testing.assert_allclose(kane.mass_matrix(read_chain(file), q), kane.mass_matrix(puma(), q), atol=1e-12)
+
+
+def test_stated_values_take_the_place_of_assumed_ones(tmp_path: Path) -> None:
+    file = tmp_path / "body.toml"
+    rows = str((np.diag([1.0, 2.0, 3.0, 0.4, 0.5, 0.6])).tolist())
+    stated = f'added_mass = {rows}\nvolume = "0.02 m^3"\ncentre_of_buoyancy = [0.0, 0.3, 0.1]\nmass = "12.96 kg"'
+    turning = 'low = "-160 deg"\nhigh = "160 deg"\nhome = "0.3 rad"\nfastest = "60 deg/s"\nstrongest = "97.6 N*m"'
+    assert turning in TEXT
+    text = TEXT.partition("[[phase]]")[0].replace('joint = "revolute"', 'joint = "prismatic"', 1)
+    text = text.replace(turning, 'low = "-2 cm"\nhigh = 0.3\nstrongest = "40 N"')
+    file.write_text(text.replace('mass = "12.96 kg"', stated))
+    first = read_chain(file).links[0]
+    np.testing.assert_allclose(np.diag(first.added_mass), [1.0, 2.0, 3.0, 0.4, 0.5, 0.6])
+    assert first.volume == 0.02
+    np.testing.assert_allclose(first.centre_of_buoyancy, [0.0, 0.3, 0.1])
+    assert not first.joint.turns
+    assert (first.joint.low, first.joint.high, first.joint.strongest) == (-0.02, 0.3, 40.0)
+
+
+def test_cylinders_with_their_ends(tmp_path: Path) -> None:
+    file = tmp_path / "body.toml"
+    file.write_text(TEXT.replace("drag_coefficient = 1.1", 'drag_coefficient = 1.1\nadded_mass = "ends"', 1)
+                    .replace("axis = [1, 0, 0]\n", 'axis = [1, 0, 0]\nadded_mass = "none"\n'))  # fmt: skip
+    first, second, third = (link.added_mass for link in read_chain(file).links)
+    whole = puma().links[0].added_mass
+    assert 0.5 * whole[0, 0] < first[0, 0] < whole[0, 0]  # water goes round the ends
+    assert first[1, 1] > whole[1, 1] == 0.0
+    assert not second.any()
+    assert third.any()
+
+
+def test_it_is_a_body_too() -> None:
+    """At home, as one rigid body: mass and added mass of the chain."""
+    body, chain = read_body(FILE), puma()
+    home, rigid = body.configurations[0].mass, kane.mass_matrix(dry(chain), chain.home)
+    water = kane.mass_matrix(chain, chain.home) - rigid
+    assert home is not None
+    assert home.mass == pytest.approx(rigid[0, 0])
+    np.testing.assert_allclose(home.inertia_matrix, rigid[3:6, 3:6], atol=1e-9)
+    found = ADDED_MASS.load("primitives").added_mass(body, 1000.0, {"cylinder_ends": "huuv"}).matrix
+    # There a tenth of a cylinder's displaced mass moves along its axis, which the URV paper leaves out.
+    along = np.zeros((6, 6))
+    for link, turn in zip(chain.links, kane.pose(chain, chain.home).rotation[1:], strict=True):
+        axis = turn @ link.strips[0].axis
+        along[:3, :3] += 0.1 * np.max(np.diag(link.added_mass)[:3]) * np.outer(axis, axis)
+    np.testing.assert_allclose(found[:3, :3], (water[:6, :6] + along)[:3, :3], atol=1e-9)
