@@ -23,6 +23,7 @@ from coeflab.published.flyingfish.model import (
 )
 from coeflab.published.parameter_files import flyingfish_file as published_file
 from coeflab.vehicle.parameter_file import read_parameter_file
+from coeflab.workbench.exports import export
 from tests.motion.trimmed import flyingfish_file
 
 
@@ -127,3 +128,14 @@ def test_closed_form_dash_and_rise() -> None:
     up, height = rise(8.0, 0.0, 2.0, 3.0, 2.0)
     assert height == pytest.approx(0.75 * np.log(2.0))
     assert up == pytest.approx(tau * np.arctan(1.0))
+
+
+@pytest.mark.parametrize("medium", MEDIA)
+def test_simulators_get_the_files_as_far_as_they_hold_them(medium: Medium) -> None:
+    file = read_parameter_file(Path(f"flyingfish_{medium}"))
+    for target in ("xdyn", "mss"):
+        made = export(file, target)
+        assert made.files
+        assert not made.lossless  # tilting rotors
+    with pytest.raises(InputError, match="no added mass"):
+        export(file, "mujoco")
