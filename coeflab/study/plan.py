@@ -23,6 +23,7 @@ from coeflab.tables.campaign import FILE, read_campaign
 from coeflab.tables.importers import PlannedTable
 from coeflab.vehicle.assemble import PlannedParameterFile
 from coeflab.vehicle.inertia import ACCELERATIONS, MEASURED
+from coeflab.vehicle.parameter_file import SHIPPED
 
 JOINT = "manoeuvring_model"
 DEFAULT_FITS = ("slope_at_origin", "tied_law")
@@ -52,6 +53,12 @@ def _derivatives(value: Any, file: Path) -> tuple[str, ...]:
     for name in names:
         derivative(name)
     return names
+
+
+def _parameters(value: Any, file: Path) -> Path:
+    name = takes.text_of(value, file)
+    beside = file.parent / name
+    return beside if beside.is_file() else named(name, SHIPPED)
 
 
 Options = Annotated[Mapping[str, Any], takes.TABLE]
@@ -196,6 +203,9 @@ class ParameterFileKeys(takes.Declaration):
         The body.toml of its added mass, or a shipped name.
     added_mass_method : str
         ``all`` recommends one by the stated rule, else a method's name.
+    base : Path
+        A parameter file, or the name of a shipped one: what the campaigns do not give is as it is there, such as mass, buoyancy
+        and thrusters.
     """
 
     name: FileName
@@ -204,6 +214,7 @@ class ParameterFileKeys(takes.Declaration):
     literature: takes.Texts = ()
     added_mass: BodyPath | None = None
     added_mass_method: takes.Words = "all"
+    base: Annotated[Path, takes.Takes("a text", _parameters, {"type": "string"})] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -425,7 +436,7 @@ def read_plan(path: Path) -> Plan:
         body=None if file.body is None else file.body.path,
         references=tuple(r.path for r in file.references),
         parameter_files=tuple(
-            PlannedParameterFile(f.name, f.body, f.campaigns, f.literature, f.added_mass, f.added_mass_method)
+            PlannedParameterFile(f.name, f.body, f.campaigns, f.literature, f.added_mass, f.added_mass_method, f.base)
             for f in file.parameter_file
         ),
         exports=tuple(

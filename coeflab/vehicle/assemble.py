@@ -461,6 +461,8 @@ class PlannedParameterFile:
         The body.toml of the added mass.
     method : str
         ``all`` recommends one by the stated rule, else a method's name.
+    base : Path or None
+        A parameter file that holds what the campaigns do not give.
     """
 
     name: str
@@ -469,3 +471,4 @@ class PlannedParameterFile:
     literature: tuple[str, ...]
     hull: Path | None = None
     method: str = "all"
+    base: Path | None = None

@@ -36,7 +36,8 @@ from coeflab.tables.force_table import ForceTable
 from coeflab.tables.planar_motion import PlanarMotionTable
 from coeflab.tables.reading import read_tables
 from coeflab.vehicle.assemble import PlannedParameterFile, assemble
-from coeflab.vehicle.parameter_file import refusals_told
+from coeflab.vehicle.merge import merged
+from coeflab.vehicle.parameter_file import read_parameter_file, refusals_told
 from coeflab.vehicle.reference import compare, compare_set, read_references
 from coeflab.workbench.exports import exports_of, parameter_files_rendered, refuse_unknown
 from coeflab.workbench.hulls import hulls_of
@@ -142,6 +143,8 @@ def run(plan: Plan, progress: Progress = lambda _: None) -> Study:
             files[g.name] = assemble(
                 g, plan.name, fits, tables, missing, references, body, conditions, inputs, hulls.get(g.name)
             )
+            if g.base is not None:
+                files[g.name] = merged(read_parameter_file(g.base), files[g.name], g.name).parameters
     exports, refused = exports_of(plan.exports, files.values(), progress)
     study = Study(
         plan=plan,

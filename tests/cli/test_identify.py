@@ -11,6 +11,7 @@ from subprocess import CompletedProcess
 
 import pytest
 
+from coeflab.core.files import shipped
 from tests.cli.conftest import flat
 from tests.motion.vehicles import made, with_limits
 
@@ -109,3 +110,22 @@ def test_a_missing_file(coeflab: Run, params: Path) -> None:
     done = coeflab("identify", "nowhere.csv", "--params", params)
     assert done.returncode == 2
     assert "nowhere.csv" in done.stderr
+
+
+def test_a_bench_test_of_a_rotor(coeflab: Run, tmp_path: Path) -> None:
+    series = shipped("cfd_data") / "flyingfish_bench_synthetic" / "air.csv"
+    asked = ("identify", series, "--params", "flyingfish_air", "--thruster", "rotor1")
+    done = coeflab(*asked, "--json")
+    assert (done.returncode, done.stderr) == (0, "")
+    found = json.loads(done.stdout)
+    thrust = found["curves"][0]
+    assert thrust["load"] == "thrust"
+    assert thrust["file_value"] == [2.8619e-5, 1.1587e-7]
+    assert abs(thrust["value"][1] - 1.1587e-7) <= thrust["u95"][1]
+    assert len(found["stretches"]) == 9
+    written = coeflab(*asked, "--out", tmp_path / "out")
+    assert "Curves of rotor1" in written.stdout
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["rotor1.bench.json", "rotor1.bench.svg"]
+    refused = coeflab(*asked[:-1], "rotor9")
+    assert refused.returncode == 2
+    assert '"--thruster": found the thruster "rotor9"; expected one of rotor1' in refused.stderr

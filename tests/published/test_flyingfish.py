@@ -22,7 +22,10 @@ from coeflab.published.flyingfish.model import (
     thrusters,
 )
 from coeflab.published.parameter_files import flyingfish_file as published_file
+from coeflab.study.plan import read_plan
 from coeflab.vehicle.parameter_file import read_parameter_file
+from coeflab.workbench import run
+from coeflab.workbench.exports import export
 from tests.motion.trimmed import flyingfish_file
 
 
@@ -127,3 +130,42 @@ def test_closed_form_dash_and_rise() -> None:
     up, height = rise(8.0, 0.0, 2.0, 3.0, 2.0)
     assert height == pytest.approx(0.75 * np.log(2.0))
     assert up == pytest.approx(tau * np.arctan(1.0))
+
+
+@pytest.mark.parametrize("medium", MEDIA)
+def test_simulators_get_the_files_as_far_as_they_hold_them(medium: Medium) -> None:
+    file = read_parameter_file(Path(f"flyingfish_{medium}"))
+    for target in ("xdyn", "mss"):
+        made = export(file, target)
+        assert made.files
+        assert not made.lossless  # tilting rotors
+    with pytest.raises(InputError, match="no added mass"):
+        export(file, "mujoco")
+
+
+@pytest.mark.slow
+def test_a_plan_goes_from_sweeps_to_motions_in_one_command(tmp_path: Path) -> None:
+    """Damping from the tables; mass, buoyancy and rotors from the shipped file."""
+    plan = read_plan(shipped("cfd_data") / "flyingfish_water_synthetic" / "plan.toml")
+    study = run(plan)
+    made, base = study.parameter_files["flyingfish_water_fitted"], read_parameter_file(Path("flyingfish_water"))
+    assert (made.hydrostatics, made.thrusters) == (base.hydrostatics, base.thrusters)
+    assert made.mass is not None
+    assert made.mass.mass == pytest.approx(2.2297)
+    fitted, stated = (p.coefficient("Xu|u|") for p in (made, base))
+    assert fitted is not None
+    assert stated is not None
+    assert fitted.u95 is not None
+    assert fitted.value == pytest.approx(stated.value, rel=0.01)
+    assert fitted.value != stated.value
+    assert [s.manoeuvre.name for s in study.manoeuvres] == ["steady_motion", "medium_change"]
+    assert all(s.trajectory.ended == "complete" for s in study.manoeuvres)
+    text = (shipped("cfd_data") / "flyingfish_water_synthetic" / "plan.toml").read_text()
+    wrong = tmp_path / "plan.toml"
+    wrong.write_text(
+        text.replace('campaign = "."', 'campaign = "flyingfish_water_synthetic"').replace(
+            '"flyingfish_water"', '"flyingfisch"'
+        )
+    )
+    with pytest.raises(InputError, match="flyingfish_water"):
+        read_plan(wrong)

@@ -103,6 +103,8 @@ def aerial_wrench(thrust: Array, torque: Array, arm: float, as_printed: bool = F
 def dash(drive: float, linear: float, quadratic: float, mass: float, distance: float) -> tuple[float, float]:
     """Time and speed after a distance on a straight line from rest under a constant force against the damping, in closed form.
 
+    No numbers where the force does not drive it that way.
+
     m ds/dt = F - a s - b s^2 is a Riccati equation with constant factors: s tends to the larger root of its right side.
 
     Parameters
@@ -114,6 +116,8 @@ def dash(drive: float, linear: float, quadratic: float, mass: float, distance: f
     """
     from scipy.optimize import brentq
 
+    if not (drive > 0.0 and quadratic > 0.0 and linear >= 0.0):
+        return float("nan"), float("nan")
     spread = float(np.sqrt(linear**2 + 4.0 * quadratic * drive))
     fast, other = (-linear + spread) / (2.0 * quadratic), (-linear - spread) / (2.0 * quadratic)
     rate, share = spread / mass, fast / other

@@ -345,13 +345,13 @@ def hop(c: Craft) -> Trajectory:
     wet = {f"rotor{n}": UNDER for n in ROTORS} | {f"rotor{n}.tilt": float(np.pi) for n in ROTORS}
     dry = {f"rotor{n}": ABOVE for n in ROTORS}
     phases = (
-        Phase("water", wet, 30.0, Until("depth", False, -DEPTH)),
-        Phase("air", dry, 30.0, Until("depth", True, -DEPTH), 1),
+        Phase("water", wet, 4.0, Until("depth", False, -DEPTH)),
+        Phase("air", dry, 2.0, Until("depth", True, -DEPTH), 1),
     )
     manoeuvre = Manoeuvre("hop", phases, np.zeros(6), orders=wet, others=(c.air,), surface=-DEPTH)
     mover = SIMULATORS.load("rigid_body")
     return through_media(
-        c.water, manoeuvre, lambda body, one: mover.simulate(body, one, {"record": 0.01, "tolerance": 1e-12})
+        c.water, manoeuvre, lambda body, one: mover.simulate(body, one, {"record": 0.01, "tolerance": 1e-11})
     )
 
 
