@@ -14,12 +14,14 @@ from pathlib import Path
 import numpy as np
 
 from coeflab.bodies.closed_forms import cylinder_added_mass
+from coeflab.bodies.readers.arm import read
 from coeflab.core.files import shipped
 from coeflab.core.types import Array
 from coeflab.motion.multibody.arm_file import read_chain
 from coeflab.motion.multibody.chain import Base, Chain, Joint, Link, Strip
 from coeflab.motion.multibody.kane import bias, partial_velocities, pose
 from coeflab.motion.multibody.thrusters import VoltageThruster
+from coeflab.report.figures.arm import hull_of
 
 DENSITY = 1000.0
 BASIC = 1.1  # C_D,basic of a cylinder, section 4.5
@@ -46,6 +48,12 @@ AREA = 0.236  # C_D S of the vehicle as a sphere, section 4.5: 0.47 pi (0.4 m)^2
 def wet() -> Chain:
     """In water: spheroid and cylinders, drag, buoyancy equal to the weight, eight thrusters."""
     return read_chain(Path(str(shipped("geometry"))) / "urv_puma")
+
+
+@cache
+def hull() -> Array:
+    """(3,) semi-axes of the vehicle, m."""
+    return hull_of(read(Path(str(shipped("geometry"))) / "urv_puma" / "body.toml"))
 
 
 @cache
