@@ -17,11 +17,11 @@ import pinocchio as pin
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from coeflab.core.files import shipped  # noqa: E402
-from coeflab.motion.multibody import compiled, kane  # noqa: E402
-from coeflab.motion.multibody.arm_file import read_chain  # noqa: E402
-from coeflab.motion.multibody.chain import Chain  # noqa: E402
-from tests.motion.multibody.chains import pinocchio_model  # noqa: E402
+from coeflab.core.files import shipped
+from coeflab.motion.multibody import compiled, kane
+from coeflab.motion.multibody.arm_file import read_chain
+from coeflab.motion.multibody.chain import Chain
+from tests.motion.multibody.chains import pinocchio_model
 
 REPEATS = 7
 

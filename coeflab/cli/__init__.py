@@ -42,6 +42,7 @@ ORDER = [
     "identify",
     "uncertainty",
     "glide",
+    "derive",
     "params",
 ]
 WITHOUT_TABLES = {

@@ -64,7 +64,9 @@ def tunings(incomplete: str) -> list[str]:
 
 def parameters(incomplete: str) -> list[str]:
     """Shipped parameter files, and paths."""
-    return _or_paths(_shipped("cfd_data", "*.parameters.json"), incomplete)
+    from coeflab.core.files import by_name
+
+    return _or_paths(tuple(by_name("*.parameters.json")), incomplete)
 
 
 def campaigns(incomplete: str) -> list[str]:

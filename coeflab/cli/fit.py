@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 SUITS = 0.05  # probability of a lack of fit as large by chance, below which a form does not suit its window
 DEFAULT = "slope_at_origin"
+MAIN = ("Yv", "Nv", "Zw", "Mw", "Yr", "Nr")
 EXAMPLE = "coeflab fit suboff_roddy_2 --symbol Yv"
 CONTEXT = {"allow_extra_args": True, "ignore_unknown_options": True}
 
@@ -109,7 +110,7 @@ def command(
         tables=(table_at(paths[0], (fit,), {fit: options}),) if alone else (),
         joint=() if alone else (PlannedJoint(tuple(map(table_at, paths)), fit, options),),
         scaling=Scaling(quantity(length, "length", key="--length"), length_name) if length else None,
-        wanted=("Yv", "Nv", "Zw", "Mw", "Yr", "Nr") if fit == DEFAULT else (),
+        wanted=MAIN if fit == DEFAULT else (),
         include_uncertain=include_uncertain,
     )
     with show.progress(json) as say:

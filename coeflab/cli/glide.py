@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +27,14 @@ def command(
     cycles: int = typer.Option(
         1, "--cycles", metavar="COUNT", min=1, max=1000, help="How often the phases of the file are flown."
     ),
+    roller: float = typer.Option(
+        0.0,
+        "--roller",
+        metavar="DEGREES",
+        min=-180.0,
+        max=180.0,
+        help="Turn the roller in every phase, to starboard above zero: spirals in place of straight glides.",
+    ),
     record: float = typer.Option(1.0, "--record", metavar="SECONDS", help="Time between rows, s."),
     out: Path | None = typer.Option(
         None, "--out", metavar="FOLDER", help="Folder for CSV and SVG; without it nothing is written."
@@ -42,7 +51,7 @@ def command(
     from coeflab.report.tables import motion as glide_tables
     from coeflab.workbench.glide import files, fly
 
-    flown = fly(glider, cycles, {"step": record})
+    flown = fly(glider, cycles, {"step": record}, math.radians(roller))
     made = {} if out is None else files(flown)
     changed = write_all(Path(out or ""), made)
     if json:
@@ -50,6 +59,8 @@ def command(
     else:
         for f in flown:
             show.table(glide_tables.steady(f.run.glider, f.steady))
+            if any(p.turns for p in f.run.glider.phases):
+                show.table(glide_tables.spirals(f.run.glider, f.spirals))
             show.table(glide_tables.phases(f.run))
             if basis:
                 show.table(glide_tables.basis(f.run.glider))
@@ -80,6 +91,20 @@ def as_json(flown: Flown) -> dict[str, Any]:
                 "growth": s.growth,
             }
             for s in flown.steady
+        ],
+        "spirals": [
+            {
+                "phase": phase,
+                "speed": s.speed,
+                "alpha": s.alpha,
+                "beta": s.beta,
+                "phi": s.phi,
+                "theta": s.theta,
+                "turn": s.turn,
+                "radius": s.radius,
+                "sinking": s.sinking,
+            }
+            for phase, s in flown.spirals
         ],
         "phases": [
             {

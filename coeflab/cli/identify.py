@@ -18,7 +18,9 @@ EXAMPLE = "coeflab identify zigzag.csv turning_circle.csv --params vehicle.param
 
 def command(
     series: list[Path] = typer.Argument(
-        ..., metavar="SERIES", help="Time series, CSV with units in the headers: t, u v w p q r, dr ds db ..."
+        ...,
+        metavar="SERIES",
+        help="Time series, CSV with units in the headers: t, u v w p q r, dr ds db ...; of a bench t, speed, T, Q.",
     ),
     params: Path = typer.Option(
         ...,
@@ -27,6 +29,9 @@ def command(
         autocompletion=complete.parameters,
         help="Parameter file: mass, inertia, scaling, and what to compare with.",
     ),
+    thruster: str = typer.Option(
+        "", metavar="NAME", help="A bench test of this thruster: thrust and torque over its command, no motion."
+    ),
     terms: str = typer.Option(
         "", metavar="Yv,Yr,...", help="Candidates; file: those of the file; default first and second order."
     ),
@@ -34,7 +39,9 @@ def command(
         True, "--weak/--derivative", help="Averages over windows, or differences for clean series."
     ),
     window: str = typer.Option(
-        "", metavar="TIME", help='Half of a window, such as "2 s"; default three quarters of L/V.'
+        "",
+        metavar="TIME",
+        help='Half of a window, such as "2 s"; default three quarters of L/V. Of a bench: within it a command is steady.',
     ),
     asymmetric: bool = typer.Option(False, "--asymmetric", help="Also terms that symmetry port to starboard forbids."),
     fit_added_mass: bool = typer.Option(False, "--fit-added-mass", help="Acceleration derivatives are candidates too."),
@@ -53,7 +60,12 @@ def command(
 
     They are compared with those of a parameter file. The rigid body is taken from the file; the terms of the force are chosen by sparse regression in the weak form. Says
     which terms the series cannot tell. Exit code 1 when nothing was identified.
+
+    With --thruster the series are bench tests of it: thrust and torque are fitted over the steady stretches of its command.
     """
+    if thruster:
+        _bench(series, params, thruster, window, out, json)
+        return
     from coeflab.motion.identify.identify import identify_from
     from coeflab.report.tables import motion as identified_tables
     from coeflab.vehicle.parameter_file import read_parameter_file
@@ -78,6 +90,34 @@ def command(
             show.path(path)
     if not found.found:
         raise typer.Exit(1)
+
+
+def _bench(series: list[Path], params: Path, thruster: str, window: str, out: Path | None, json: bool) -> None:
+    """Curves of a thruster from its bench tests."""
+    from json import dumps
+
+    from coeflab.core.files import write_all
+    from coeflab.core.units import quantity
+    from coeflab.motion.identify.thruster import WINDOW, bench_test
+    from coeflab.report.figures.identified import bench_figure
+    from coeflab.report.figures.svg import sheet
+    from coeflab.vehicle.parameter_file import read_parameter_file
+
+    within = quantity(window, "time", key="--window") if window else WINDOW
+    found = bench_test(series, read_parameter_file(params), thruster, within)
+    content = {
+        f"{thruster}.bench.json": (dumps(found.as_json(), indent=2, allow_nan=False) + "\n").encode(),
+        f"{thruster}.bench.svg": sheet([(bench_figure(found),)]) if out is not None else b"",
+    }
+    written = [] if out is None else [out / name for name in content]
+    if out is not None:
+        write_all(out, content)
+    if json:
+        show.json_object({**found.as_json(), "files": [str(p) for p in written]})
+        return
+    show.table(found.table())
+    for path in written:
+        show.path(path)
 
 
 def as_json(found: Identified) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import re
 import shlex
 import sys
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,49 +20,13 @@ if TYPE_CHECKING:
     from coeflab.tables.column_map import ColumnMap
     from coeflab.tables.conditions import NoConditionError
     from coeflab.tables.force_table import ForceTable
-    from coeflab.tables.proposals import Proposal
-    from coeflab.tables.questions import Doubt, Group, Question, Understood
-    from coeflab.tables.raw_table import RawColumn, RawTable, SeveralError
+    from coeflab.tables.form import Line, Typed
+    from coeflab.tables.questions import Understood
+    from coeflab.tables.raw_table import RawTable
     from coeflab.tables.settings import Setting
 
 
 EXAMPLE = "coeflab import drift.csv --out cfd_data/mine"
-
-
-class OpenError(InputError):
-    """What nobody has said yet, with the arguments that say it."""
-
-    def __init__(self, path: Path, points: Sequence[tuple[str, str]], wrong: Sequence[InputError] = ()) -> None:
-        many = f"{len(points)} open point" + "s" * (len(points) != 1)
-        super().__init__(many, "these arguments, with values for words in capitals", file=path)
-        self.points = points
-        self.wrong = tuple(str(one) for one in wrong)
-
-    @property
-    def lines(self) -> tuple[str, ...]:
-        """The arguments, each with its question below."""
-        points = getattr(self, "points", ())
-        proposed = any(open_value(argument) is None for argument, _ in points)
-        taken = ["  --yes takes those with values."] * proposed
-        return (*super().lines, *point_lines(points), *taken, *getattr(self, "wrong", ()))
-
-
-def open_value(argument: str) -> str | None:
-    """The word in capitals of an argument, or ``or`` between two ways; None where it has a value."""
-    if " or --map " in argument:
-        return "or"
-    word = re.search(r"\b(?:FRAME|POINT|NAME|SOURCE|KIND|SIGN|SIDE|METRES|DENSITY|SPEED|X,Y,Z|IX,IY,IZ|MASS|TRUE_OR_FALSE|"
-                     r"UNIT|SIZE|WHAT)\b", argument.partition("=")[2])  # fmt: skip
-    return word[0] if word else None
-
-
-def point_lines(points: Sequence[tuple[str, str]]) -> list[str]:
-    """Arguments and what they are about, at most 80 columns where words allow."""
-    out = []
-    for argument, why in points:
-        out.append(f"  {argument}")
-        out += textwrap.wrap(why, 72, initial_indent="      ", subsequent_indent="      ", break_long_words=False)
-    return out
 
 
 @dataclass(slots=True)
@@ -73,6 +37,7 @@ class Said:
     settings: dict[str, Setting] = field(default_factory=dict)
     importer: str = ""
     options: dict[str, Any] = field(default_factory=dict)
+    left: list[str] = field(default_factory=list)
 
 
 def command(
@@ -106,64 +71,295 @@ def command(
     state: Path = typer.Option(
         None, metavar="FILE", help="Keeps what was read of many runs, so that a stopped import goes on."
     ),
-    yes: bool = typer.Option(False, "--yes", help="Take proposals that the file or clear evidence supports."),
+    accept: bool = typer.Option(
+        False, "--accept", "--yes", help="Accept the proposals of the form, axes and signs too."
+    ),
     force: bool = typer.Option(False, "--force", help="Replace a campaign that is there."),
 ) -> None:
     """Make a campaign of a table or a folder of runs.
 
-    Writes table.csv and a commented campaign.toml. It proposes what each column is and shows what the numbers say of signs. On a terminal it asks; elsewhere it lists all
-    open points at once with the arguments that settle them. Axes, angle signs, reference point and inertia are never guessed.
+    Shows one form: what each column is and what each setting would be, why, and what is open. On a terminal one line answers
+    it; elsewhere its last lines are the command that does. Writes table.csv and a commented campaign.toml, and prints the
+    first slopes. Nothing is taken that the form did not show.
     """
     from coeflab.core.errors import OutputError
     from coeflab.core.files import typed, write_all
-    from coeflab.tables.conditions import NoConditionError
+    from coeflab.tables.form import of_campaign
     from coeflab.tables.imported import checked, contents
     from coeflab.tables.mapping import assigned
-    from coeflab.tables.questions import understood
-    from coeflab.tables.raw_table import SeveralError
-    from coeflab.tables.reading import importer_of, read_raw
-    from coeflab.tables.settings import assumed, doubtful_setting, stated_settings
+    from coeflab.tables.settings import assumed
 
     file, out = typed(path), typed(out)
     if not force and out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
     said = _said(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
-    importer = importer_of(file, said.importer)
-    sheets: tuple[str, ...] = ()
-    while True:
-        try:
-            with show.narrated(), show.progress(False) as say:
-                raw = read_raw(file, importer, said.options, say)
-            break
-        except SeveralError as several:
-            if not several.choices or not sys.stdin.isatty():
-                raise several if not several.choices else _each(several, path, out) from None
-            sheets = several.choices
-            said.options["sheet"] = _asked_sheet(sheets)
-        except NoConditionError as unsaid:
-            if name or runs or not sys.stdin.isatty():
-                raise
-            said.options["names"] = _asked_pattern(unsaid)
-    said.columns |= _mapped(map_, raw)
-    settings = assumed(out) | stated_settings(raw) | said.settings
-    found = understood(raw, said.columns, settings, yes)
-    described(raw, importer, found)
+    draft = Draft(file, said, assumed(out), map_)
+    draft.read()
     if sys.stdin.isatty():
-        columns, settings = _asked(raw, said.columns, settings, found, yes)
+        draft.asked()
     else:
-        columns, settings = _without_asking(file, found, settings, yes)
-        _listed(
-            "Check", [f"warning, {key}: {why}" for key in settings if (why := doubtful_setting(raw, settings, key))]
-        )
-    known = assigned(raw, columns)
-    made = contents(raw, importer, said.options, known, columns, settings)
-    table = checked(made, raw, columns)
+        draft.unasked(_typed_so_far(path, out, map_, set_, mapping, option, as_, name, runs, state, force), accept)
+    raw, settings = draft.raw, draft.settings
+    known = assigned(raw, draft.found.mapping)
+    made = contents(raw, draft.importer, said.options, known, draft.found.mapping, of_campaign(settings))
+    table = checked(made, raw, draft.found.mapping)
     write_all(out, made)
-    _written(out, table, settings)
-    others = [s for s in sheets if s != said.options.get("sheet")]
+    if not sys.stdin.isatty():
+        _listed("Check", draft.warned())
+    _written(out, table)
+    _first_slopes(out)
+    show.command_line("Next", f"coeflab fit {shlex.quote(str(out))}")
+    others = [s for s in draft.sheets if s != said.options.get("sheet")]
     _listed(
         "The other sheets, with the answers of this one",
         [_of_sheet(path, s, out, out / "mapping.toml") for s in others],
+    )
+
+
+def _typed_so_far(
+    path: str, out: Path, map_: Sequence[str], set_: Sequence[str], mapping: Path | None, option: Sequence[str], as_: str,
+    name: str, runs: Path | None, state: Path | None, force: bool,
+) -> list[str]:  # fmt: skip
+    """The words of the command as they were typed, without what was left open."""
+    words = [shlex.quote(path)]
+    for flag, said in (("--as", as_), ("--name", name), ("--runs", runs), ("--state", state), ("--mapping", mapping)):
+        words += [f"{flag} {shlex.quote(str(said))}"] if said else []
+    for flag, many in (("--option", option), ("--map", map_), ("--set", set_)):
+        words += [f"{flag} {shlex.quote(text)}" for text in many if "?" not in text.partition("=")[2]]
+    return [*words, *["--force"] * force, f"--out {shlex.quote(str(out))}"]
+
+
+@dataclass(slots=True)
+class Draft:
+    """A campaign in the making: the file as it is read, and what is said of it so far."""
+
+    file: Path
+    said: Said
+    assumed: Mapping[str, Setting]
+    maps: Sequence[str]
+    accept: bool = False
+    importer: str = ""
+    sheets: tuple[str, ...] = ()
+    chosen: list[Line] = field(default_factory=list)
+    numbers: dict[str, int] = field(default_factory=dict)
+    raw: RawTable = field(init=False)
+    found: Understood = field(init=False)
+    settings: dict[str, Setting] = field(default_factory=dict)
+
+    def read(self) -> None:
+        """Read the file, with a sheet or a pattern of names as a proposal where it needs one."""
+        from coeflab.tables.conditions import UNNAMED, NoConditionError
+        from coeflab.tables.raw_table import SeveralError
+        from coeflab.tables.reading import importer_of, read_raw
+        from coeflab.tables.settings import stated_settings
+
+        self.importer = importer_of(self.file, self.said.importer)
+        with show.narrated(), show.progress(False) as say:
+            while True:
+                try:
+                    self.raw = read_raw(self.file, self.importer, self.said.options, say)
+                    break
+                except SeveralError as several:
+                    if not several.choices:
+                        raise
+                    self.sheets = several.choices
+                    self.said.options["sheet"] = _likely_sheet(self.file, self.importer, self.said.options, self.sheets)
+                except NoConditionError as unsaid:
+                    if self.said.options.get("names") or not unsaid.pattern or UNNAMED in unsaid.pattern:
+                        raise
+                    self.said.options["names"] = unsaid.pattern
+                    self.chosen.append(_pattern_line(unsaid))
+        if self.sheets:
+            others = ", ".join(s for s in self.sheets if s != self.said.options["sheet"])
+            self.chosen = [one for one in self.chosen if one.key != "sheet"]
+            self.chosen.append(
+                _line(
+                    "sheet",
+                    self.said.options["sheet"],
+                    f"others: {others}",
+                    f"Sheets with numbers: {', '.join(self.sheets)}.",
+                )
+            )
+        names = {column.name for column in self.raw.columns}
+        shown, left = (
+            [t for t in self.maps if "?" not in t.partition("=")[2]],
+            [t for t in self.maps if "?" in t.partition("=")[2]],
+        )
+        self.said.columns = {n: c for n, c in self.said.columns.items() if n in names or not self.sheets} | _mapped(
+            shown, self.raw
+        )
+        self.said.left += [t.partition("=")[0] for t in left]
+        self.settings = {**self.assumed, **stated_settings(self.raw), **self.said.settings}
+
+    def lines(self) -> tuple[Line, ...]:
+        """The form as it stands."""
+        from coeflab.tables.form import form
+
+        return form(self.raw, self.found, self.settings, self.chosen, self.numbers)
+
+    def asked(self) -> None:
+        """Show the form, take lines of answers, until nothing is open and an empty line accepts what is shown."""
+        from coeflab.core.errors import together
+        from coeflab.tables.form import open_lines, settled, typed
+        from coeflab.tables.questions import understood
+
+        self.found = understood(self.raw, self.said.columns, self.settings)
+        if self.found.complaints:
+            raise together(list(self.found.complaints))
+        described(self.raw, self.importer, self.found, whole=False)
+        changed: set[str] = set()
+        again = True
+        while True:
+            lines = self.lines()
+            if again:
+                self.shown(lines, changed)
+            missing = open_lines(lines)
+            hint = "N=VALUE; KEY=VALUE; N ? explains" + ("" if missing else "; Enter accepts all")
+            answer = str(typer.prompt(f"  {hint}\n>", default="", show_default=False, prompt_suffix=" ")).strip()
+            again = False
+            if not answer and missing:
+                show.error(f"  Open: {', '.join(f'{one.number} {one.key}' for one in missing)}")
+                continue
+            try:
+                if not answer:
+                    found, settings = settled(self.raw, self.said.columns, self.settings, True)
+                    if found.complaints:
+                        raise together(list(found.complaints))
+                    self.found, self.settings = found, settings
+                    if not open_lines(self.lines()):
+                        return
+                else:
+                    said = typed(answer, lines, self.raw, [one.key for one in self.chosen])
+                    for one in said.explain:
+                        show.sentence(f"  {one.key}: {one.about}")
+                    if not (said.columns or said.settings or said.options):
+                        continue
+                    self.take(said)
+            except InputError as wrong:
+                for complaint in wrong.lines:
+                    show.error(f"  {complaint}")
+                continue
+            before = {one.key: (one.value, one.group) for one in lines}
+            changed = {one.key for one in self.lines() if before.get(one.key) != (one.value, one.group)}
+            again = True
+
+    def take(self, said: Typed) -> None:
+        """Take answers in; all or none.
+
+        Raises
+        ------
+        InputError
+            What they say together is not possible.
+        """
+        from coeflab.core.errors import together
+        from coeflab.tables.questions import understood
+
+        if said.options:
+            before = dict(self.said.options)
+            self.said.options |= said.options
+            self.chosen = [replace(one, value=str(self.said.options[one.key])) for one in self.chosen]
+            try:
+                self.read()
+            except InputError:
+                self.said.options = before
+                raise
+        columns, settings = self.said.columns | said.columns, self.said.settings | said.settings
+        found = understood(self.raw, columns, self.settings | said.settings)
+        if found.complaints:
+            raise together(list(found.complaints))
+        self.said.columns, self.said.settings, self.found = columns, settings, found
+        self.settings |= said.settings
+
+    def unasked(self, words: Sequence[str], accept: bool) -> None:
+        """Settle everything by what the command says, or show the form and the command that does, and stop.
+
+        Raises
+        ------
+        InputError
+            What cannot be, all of it.
+        """
+        from coeflab.core.errors import together
+        from coeflab.tables.form import open_lines, pending, settled
+        from coeflab.tables.questions import understood
+
+        found, settings = settled(self.raw, self.said.columns, self.settings, accept)
+        if found.complaints:
+            raise together(list(found.complaints))
+        waits = pending(found) or (bool(self.chosen) and not accept)
+        if not waits and not self.said.left:
+            self.found, self.settings = found, settings
+            return
+        self.found = understood(self.raw, self.said.columns, self.settings)
+        if accept:
+            self.found, self.settings = found, settings
+        described(self.raw, self.importer, self.found, whole=False)
+        lines = self.lines()
+        self.shown(lines)
+        for key in self.said.left:
+            own = next((one for one in lines if one.key == key), None)
+            about = f"{own.why}" if own else "no such key"
+            show.error(f'found "{key}=?", left open; expected a value: {about}')
+        missing = open_lines(lines)
+        many = f"{len(missing)} open: replace each ? by its value. " if missing else ""
+        show.sentence(f"{many}--accept takes the proposals shown. Nothing is written yet.")
+        show.command_line(
+            "coeflab import", " ".join([*words, *(one.argument for one in missing), "--accept"]), separator=" "
+        )
+        raise typer.Exit(2)
+
+    def shown(self, lines: Sequence[Line], changed: Collection[str] = ()) -> None:
+        """Print the form, and what looks wrong in it."""
+        from coeflab.tables.form import screen
+
+        for line in screen(lines, changed, min(show.width(), 100)):
+            show.lines(line)
+        show.text()
+        _listed("Check", self.warned())
+
+    def warned(self) -> list[str]:
+        """What looks wrong in what is said so far."""
+        from coeflab.tables.settings import doubtful_setting
+
+        sizes = [f"warning, {k}: {why}" for k in self.settings if (why := doubtful_setting(self.raw, self.settings, k))]
+        return [*sizes, *(e.text for e in self.found.shows if e.text.startswith("warning"))]
+
+
+def _line(key: str, value: str, why: str, about: str) -> Line:
+    from coeflab.tables.form import Group, Line
+
+    return Line(key, value, why, Group.GRAVE, about, pending=True)
+
+
+def _likely_sheet(file: Path, importer: str, options: Mapping[str, Any], sheets: Sequence[str]) -> str:
+    """The first sheet with a column that may be a force or moment by its name; else the first."""
+    from coeflab.tables.proposals import proposals
+    from coeflab.tables.reading import read_raw
+
+    for sheet in sheets:
+        try:
+            raw = read_raw(file, importer, {**options, "sheet": sheet})
+        except InputError:
+            continue
+        if any(re.match(r"-?(?:[XYZKMN]|lift|drag|side)\b", one.text) for one in proposals(raw)):
+            return sheet
+    return sheets[0]
+
+
+def _pattern_line(unsaid: NoConditionError) -> Line:
+    """The pattern of names of runs, with what it makes of them."""
+    from coeflab.tables.conditions import SPELT, name_pattern
+
+    pattern = name_pattern(unsaid.pattern)
+    read = [
+        f"{run}: "
+        + ", ".join(f"{key} = {one}".partition(" (name")[0] for key, one in (pattern.conditions(run) or {}).items())
+        for run in unsaid.runs
+    ]
+    return _line(
+        "names",
+        unsaid.pattern,
+        "; ".join(read[:2]),
+        f"Conditions by the names of the runs. {'; '.join(read)}. {SPELT}.",
     )
 
 
@@ -175,56 +371,8 @@ def _of_sheet(path: str, sheet: str, out: Path, mapping: Path | None = None) -> 
     return shlex.join([*words, "--out", f"{out}_{identifier(sheet)}"])
 
 
-def _each(several: SeveralError, path: str, out: Path) -> SeveralError:
-    """The error of a file with several tables, with a command for each; fits take several campaigns together."""
-    commands = "; ".join(_of_sheet(path, sheet, out) for sheet in several.choices)
-    made = type(several)(several.found, several.expected, file=several.file, advice=f"One each: {commands}.")
-    made.choices = several.choices
-    return made
-
-
-def _asked_sheet(sheets: Sequence[str]) -> str:
-    """The sheet that is meant, by its name or number."""
-    show.sentence("Sheets with rows of numbers: " + ", ".join(f"{i} {s}" for i, s in enumerate(sheets, start=1)) + ".")
-    while True:
-        typed = str(typer.prompt("  sheet")).strip()
-        if typed in sheets:
-            return typed
-        if typed.isdecimal() and 0 < int(typed[:4]) <= len(sheets):
-            return sheets[int(typed[:4]) - 1]
-        show.error(f"  {typed}: no such sheet")
-
-
-def _asked_pattern(open_: NoConditionError) -> str:
-    """The pattern of the runs' names, proposed, with what it makes of them, and confirmed."""
-    from coeflab.tables.conditions import SPELT, UNNAMED, name_pattern
-
-    show.sentence(f"No file states an angle, rate or speed for {len(open_.runs)} runs, such as {', '.join(open_.runs[:FEW])}. A pattern of "
-                  f"their names says it: {{beta:deg}} for a number, * for any text. {SPELT}.")  # fmt: skip
-    if UNNAMED in open_.pattern:
-        show.sentence(f"They look like {open_.pattern}, with NAME beta, alpha, r, U ... and its UNIT.")
-    default = open_.pattern if UNNAMED not in open_.pattern else ""
-    while True:
-        try:
-            pattern = name_pattern(str(typer.prompt("  --name", default=default or None)).strip(" '\""))
-        except InputError as why:
-            show.error(f"  {why}")
-            continue
-        read = {run: pattern.conditions(run) for run in open_.runs}
-        if unfit := [run for run, found in read.items() if not found]:
-            show.error(f"  The name {unfit[0]} does not fit. {SPELT}.")
-            continue
-        told = [
-            f"{run}: " + ", ".join(f"{key} = {one}".partition(" (name")[0] for key, one in (found or {}).items())
-            for run, found in read.items()
-        ]
-        _listed("Read as", told)
-        if typer.confirm("  Is that what they are, number, sign and unit?", default=None):
-            return pattern.text
-
-
-def described(raw: RawTable, importer: str, found: Understood) -> None:
-    """Print what a file is, its columns, what it says of itself and what its numbers show."""
+def described(raw: RawTable, importer: str, found: Understood, *, whole: bool = True) -> None:
+    """Print what a file is and what its numbers show; its columns and what it says of itself where the form does not."""
     from coeflab.report.tables import raw_tables
     from coeflab.tables.collect import runs_shown
 
@@ -232,10 +380,11 @@ def described(raw: RawTable, importer: str, found: Understood) -> None:
     show.sentence(f"{raw.path}: read by {importer}" + (f"; {said}" if said else ""))
     if runs := runs_shown(raw, MOST):
         show.table(runs)
-    show.table(raw_tables.columns(raw, found.proposals, found.mapping))
-    show.table(raw_tables.stated(raw))
+    if whole:
+        show.table(raw_tables.columns(raw, found.proposals, found.mapping))
+        show.table(raw_tables.stated(raw))
     _listed("Left out or mended", raw.remarks)
-    _listed("The numbers show", [e.text for e in found.shows])
+    _listed("The numbers show", [e.text for e in found.shows if whole or not e.text.startswith("warning")])
 
 
 MOST, FEW = 12, 3
@@ -255,7 +404,7 @@ def _listed(title: str, texts: Sequence[str]) -> None:
 def _said(mapping: Path | None, set_: Sequence[str], option: Sequence[str], as_: str) -> Said:
     """All that the command line and a saved mapping say, but for columns; complaints at once."""
     from coeflab.core.errors import shown, together
-    from coeflab.tables.settings import Setting, read_setting, saved_mapping
+    from coeflab.tables.settings import Setting, read_settings, saved_mapping
 
     out = Said()
     if mapping is not None:
@@ -264,11 +413,14 @@ def _said(mapping: Path | None, set_: Sequence[str], option: Sequence[str], as_:
     complaints: list[InputError] = []
     for text in set_:
         key, equals, said = text.partition("=")
+        if equals and "?" in said:
+            out.left.append(key.strip())
+            continue
         if not equals:
             complaints.append(InputError(shown(text), "KEY=VALUE, such as axes.frame=CFD", column="--set"))
             continue
         try:
-            out.settings[key.strip()] = Setting(read_setting(key.strip(), said.strip()), "confirmed")
+            out.settings |= {k: Setting(v, "confirmed") for k, v in read_settings(key.strip(), said.strip()).items()}
         except InputError as why:
             complaints.append(why)
     try:
@@ -331,184 +483,54 @@ def _mapped(map_: Sequence[str], raw: RawTable) -> dict[str, ColumnMap]:
     return out
 
 
-Settled = tuple[Mapping[str, "ColumnMap"], dict[str, "Setting"]]
-
-
-def _without_asking(file: Path, found: Understood, settings: Mapping[str, Setting], yes: bool) -> Settled:
-    """Everything that is settled; what is not, in one error."""
-    from coeflab.tables.questions import open_points
-
-    if points := open_points(found, yes):
-        raise OpenError(file, points, found.complaints)
-    _possible(found)
-    taken = {q.key: _taken(q, q.default) for q in found.questions}
-    return found.mapping, {**settings, **taken}
-
-
-def _possible(found: Understood) -> None:
-    from coeflab.core.errors import together
-
-    if found.complaints:
-        raise together(list(found.complaints))
-
-
-def _taken(question: Question, text: str) -> Setting:
-    from coeflab.tables.settings import Setting, read_setting
-
-    return Setting(read_setting(question.key, text), question.why if text == question.default else "confirmed")
-
-
-def _asked(
-    raw: RawTable, said: Mapping[str, ColumnMap], settings: Mapping[str, Setting], found: Understood, yes: bool
-) -> Settled:
-    """Everything, asked for where it is open; a default only where the file or clear evidence gives one."""
-    from coeflab.tables.questions import alone, together_with, understood
-    from coeflab.tables.settings import doubtful_setting
-
-    _listed("Check", [f"warning, {key}: {why}" for key in settings if (why := doubtful_setting(raw, settings, key))])
-    answers = {**said, **_asked_columns(raw, found)}
-    settings = dict(settings)
-    shown = {e.text for e in found.shows}
-    judged = set(said)
-    while True:
-        now = understood(raw, answers, settings, yes, judged)
-        fresh = [e for e in now.shows if e.text not in shown]
-        _listed("The numbers show", [e.text for e in fresh])
-        shown |= {e.text for e in now.shows}
-        _possible(now)
-        against = [e.key for e in fresh if e.key in settings and e.text.startswith("warning")]
-        if against and not typer.confirm(f"  Keep {against[0]} as declared?", default=None):
-            del settings[against[0]]
-            continue
-        if now.doubts and "axes.frame" in settings:
-            one_doubt = now.doubts[0]
-            judged.add(one_doubt.column.name)
-            answers[one_doubt.column.name] = _judged(one_doubt)
-            continue
-        if not now.questions:
-            return now.mapping, settings
-        one = now.questions[0]
-        if yes and one.default:
-            settings[one.key] = _taken(one, one.default)
-        else:
-            settings |= _typed(raw, settings, together_with(one, now.questions) or alone(one))
-
-
-def _judged(doubt: Doubt) -> ColumnMap:
-    """What a rate is that the numbers contradict, as a person judges its sign."""
-    name = doubt.column.name
-    show.sentence(f'Column "{name}": {doubt.why}.')
-    turn = doubt.turns.replace("s ", " ", 1)
-    if typer.confirm(f"  Does {name} > 0 {turn}?", default=None):
-        return doubt.said
-    return replace(doubt.said, negative=not doubt.said.negative)
-
-
-def _typed(raw: RawTable, settings: Mapping[str, Setting], asked: Group) -> dict[str, Setting]:
-    """Settings of one line, asked again until it can be read and doubtful numbers are kept; said back where it is not plain."""
-    from coeflab.tables.settings import PLACE_KEYS, doubtful_setting
-
-    show.sentence(asked.text)
-    while True:
-        try:
-            enter = asked.enter
-            prompt = f"  {asked.name} [{enter}]" if enter else f"  {asked.name}"
-            typed = str(typer.prompt(prompt, default="" if enter else None, show_default=False))
-            found = {key: _taken(asked.question(key), text) for key, text in asked.answers(typed).items()}
-        except InputError as wrong:
-            show.error(f"  {wrong}")
-            continue
-        if len(found) > 1 or set(found) & set(PLACE_KEYS):
-            show.sentence("  Taken: " + "; ".join(f"{key} = {one.value}" for key, one in found.items()) + ".")
-        doubts = [why for key in found if (why := doubtful_setting(raw, {**settings, **found}, key))]
-        for why in doubts:
-            show.sentence(f"  warning: {why}.")
-        if not doubts or typer.confirm("  Keep it?", default=None):
-            return found
-
-
-def _with_sizes(offered: Sequence[tuple[RawColumn, Proposal]]) -> list[tuple[RawColumn, Proposal]]:
-    """Proposals whose coefficients have their area and length, which are asked once for all."""
-    from coeflab.core.errors import shown
-    from coeflab.core.units import quantity
-    from coeflab.tables.proposals import OPEN
-
-    out = list(offered)
-    for letter, dimension, unit, example in (("A", "area", "m^2", "0.2 m^2"), ("L", "length", "m", "4.26 m")):
-        want = f"{letter}={OPEN}"
-        named = [column.name for column, offer in out if want in offer.text]
-        if not named:
-            continue
-        whose = "by 1/2 rho U^2 A" if letter == "A" else "of moments, by 1/2 rho U^2 A L"
-        show.sentence(f"{dimension.capitalize()} {letter} of the coefficients {', '.join(named)} ({whose}), such as {example}; "
-                      "prime: they are primes by the campaign's length; Enter: each column is asked.")  # fmt: skip
-        while typed := str(typer.prompt(f"  {letter}", default="", show_default=False)).strip():
-            if typed.casefold().strip("s") == "prime":
-                return [(c, replace(o, text=_primed(c, o)) if OPEN in o.text else o) for c, o in out]
-            try:
-                size = quantity(float(typed) if typed.replace(".", "", 1).isdigit() else typed, dimension)
-            except InputError as why:
-                show.error(f"  {why}")
-                continue
-            if size <= 0.0:
-                show.error(f"  found {shown(typed)}; expected a number above zero")
-                continue
-            out = [(c, replace(o, text=o.text.replace(want, f"{letter}={size!r} {unit}"))) for c, o in out]
-            break
-    return out
-
-
-def _primed(column: RawColumn, offer: Proposal) -> str:
-    """The proposal of a coefficient as a prime, counted in what the file says."""
-    from coeflab.tables.column_map import share
-
-    name = offer.text.partition(" [")[0]
-    return (
-        f"{name}' [{column.unit.strip() if share(column.unit) else '-'}]" if "coefficient" in offer.text else offer.text
-    )
-
-
-def _asked_columns(raw: RawTable, found: Understood) -> dict[str, ColumnMap]:
-    from coeflab.tables.column_map import read_column_map
-    from coeflab.tables.mapping import error_of, with_unit
-
-    out: dict[str, ColumnMap] = {}
-    opened = _with_sizes(found.open)
-    whole = [(column, offer) for column, offer in opened if offer.whole]
-    if whole:
-        show.sentence(
-            "Proposed by name and unit: "
-            + "; ".join(f"{c.name} = {o.text}" + f" ({o.note})" * bool(o.note) for c, o in whole)
-            + "."
-        )
-        if typer.confirm("  All of them right?", default=None):
-            out = {column.name: read_column_map(offer.text) for column, offer in whole}
-    for column, offer in opened:
-        if column.name in out or error_of(column, out):
-            continue
-        hint = f"{offer.text}: {offer.why}" if offer.text else offer.why
-        own = column.unit not in ("", "-", "1")
-        example = f"Y or -Y, in the file's {column.unit}" if own else "Y [N], -beta [deg], r' [-]"
-        show.sentence(f'Column "{column.name}" ({hint}). Say {example}, label, ignore ...')
-        while column.name not in out:
-            try:
-                answer = read_column_map(str(typer.prompt(f"  {column.name}")))
-                if answer.name != "ignore":
-                    with_unit(raw, column, answer)
-                out[column.name] = answer
-            except InputError as why:
-                show.error(f"  {why.found}; expected {why.expected}. {why.advice}".rstrip())
-    return out
-
-
-def _written(out: Path, table: ForceTable, settings: Mapping[str, Setting]) -> None:
-    """What was written, what was taken without a question, and the next command."""
-    from coeflab.tables.settings import CONFIRMED
-
-    taken = [f"{k} = {s.value} ({s.origin})" for k, s in settings.items() if not s.origin.startswith(CONFIRMED)]
-    _listed("Taken as it stands", taken)
-    many = len(table.exclusions)
-    excluded = f", {many} cell{'s' * (many != 1)} excluded" if many else ""
-    show.text(f"Written: {out / 'table.csv'} ({len(table)} rows{excluded}), campaign.toml, mapping.toml")
+def _written(out: Path, table: ForceTable) -> None:
+    """What was written, and what of it no fit uses."""
+    show.text(f"Written: {out / 'table.csv'} ({len(table)} rows), campaign.toml, mapping.toml")
     show.sentence(f"  varies: {', '.join(table.varies) or 'nothing'}; in SI and FRD: {', '.join(table.forces)}")
-    show.command_line("Next", f"coeflab fit {shlex.quote(str(out))}")
+    rows: dict[str, list[str]] = {}
+    for e in table.exclusions:
+        said = rows.setdefault(table.labels[e.row], [])
+        said += [e.component or "row"] if (e.component or "row") not in said else []
+    each = [
+        row if set(said) in ({"row"}, set(table.forces)) else f"{row} ({', '.join(said)})" for row, said in rows.items()
+    ]
+    if each:
+        more = f" and {len(each) - MOST} more" * (len(each) > MOST)
+        show.sentence(f"  kept out of fits, marked or without a number in the file: {', '.join(each[:MOST])}{more}")
+    show.text()
+
+
+def _brief(note: str) -> str:
+    """What U95 covers, without what its parts are."""
+    return note.partition(". random:")[0] + "." * (". random:" in note)
+
+
+def _first_slopes(folder: Path) -> None:
+    """The main table of derivatives that the campaign gives, or in one line why it gives none."""
+    from coeflab.cli.fit import DEFAULT, MAIN
+    from coeflab.report.tables import results as tables
+    from coeflab.study.plan import table_at
+    from coeflab.study.study import Plan
+    from coeflab.tables.reading import suited_fit
+    from coeflab.workbench import run
+
+    fit = suited_fit(folder)
+    plan = Plan(
+        name=folder.name,
+        title=folder.name,
+        tables=(table_at(folder, (fit,), {fit: {}}),),
+        wanted=MAIN if fit == DEFAULT else (),
+    )
+    try:
+        with show.progress(False) as say:
+            study = run(plan, say)
+    except InputError as why:
+        show.sentence(f"No slopes: {why}")
+        return
+    found = tables.coefficients_in(study, show.width())
+    kept = [i for i, head in enumerate(found.headers) if head in ("", "value", "U95", "U95 %")]
+    show.sentence(tables.unused(study.tables))
+    show.table(replace(
+        found, title="First slopes, primed", headers=tuple(found.headers[i] for i in kept), notes=tuple(_brief(note) for note in found.notes if not note.startswith("Not shown")),
+        rows=tuple(tuple(row[i] for i in kept) for row in found.rows), left=frozenset({0}),
+    ))  # fmt: skip

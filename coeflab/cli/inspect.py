@@ -93,10 +93,11 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     """
     import shlex
 
-    from coeflab.cli.import_ import described, options_of, point_lines
+    from coeflab.cli.import_ import described, options_of
     from coeflab.core.files import located
     from coeflab.core.wording import identifier
-    from coeflab.tables.questions import open_points, understood
+    from coeflab.tables.form import form, open_lines, screen
+    from coeflab.tables.questions import understood
     from coeflab.tables.reading import importer_of, read_raw
     from coeflab.tables.settings import stated_settings
 
@@ -111,8 +112,9 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
             _run(path, importer, options, json, why)
             return
         raise
-    found = understood(raw, {}, stated_settings(raw))
-    points = open_points(found)
+    settings = stated_settings(raw)
+    found = understood(raw, {}, settings)
+    lines = form(raw, found, settings)
     out = f"cfd_data/{identifier(path.resolve().stem)}"
     following = " ".join(
         ["coeflab import", shlex.quote(table), *(f"{flag} {shlex.quote(said)}" for flag, said in given), f"--out {out}"]
@@ -120,13 +122,12 @@ def _raw(table: str, importer: str, option: Sequence[str], json: bool, given: Se
     if json:
         from coeflab.report.tables.raw_tables import as_json
 
-        missing = [{"argument": argument, "about": about} for argument, about in points]
+        missing = [{"argument": one.argument, "about": one.about} for one in open_lines(lines)]
         show.json_object(as_json(raw, importer, found.proposals, found.shows) | {"missing": missing, "next": following})
         return
     described(raw, importer, found)
-    show.text("Missing to read it as a campaign" if points else "Nothing is missing")
-    for line in point_lines(points):
-        show.text(line)
+    for line in screen(lines, (), min(show.width(), 100)):
+        show.lines(line)
     show.text()
     show.command_line("Next", following)
 

@@ -74,12 +74,12 @@ def path(place: object, more: str = "") -> None:
         typer.echo(f"{line}  {more}".rstrip())
 
 
-def command_line(word: str, typed: str) -> None:
+def command_line(word: str, typed: str, separator: str = ": ") -> None:
     """A command to copy; a long one goes on behind a backslash, as a shell reads it."""
     import textwrap
 
     folded = textwrap.wrap(
-        visible(f"{word}: {typed}"), _prose(width()) - 2, subsequent_indent="  ", break_long_words=False,
+        visible(f"{word}{separator}{typed}"), _prose(width()) - 2, subsequent_indent="  ", break_long_words=False,
         break_on_hyphens=False,
     )  # fmt: skip
     typer.echo(" \\\n".join(folded))

@@ -14,6 +14,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from coeflab.core.errors import InputError, OutputError, clipped, shown
+from coeflab.core.wording import repeated
 
 if sys.platform != "win32":
     import fcntl
@@ -82,7 +83,7 @@ def named(name: str | Path, file: str) -> Path:
     ----------
     name : str or Path
     file : str
-        What is shipped under a name, below ``cfd_data/NAME``: ``plan.toml``, ``*.parameters.json``.
+        What is shipped under a name, as `by_name` has it.
 
     Raises
     ------
@@ -92,12 +93,25 @@ def named(name: str | Path, file: str) -> Path:
     path = typed(name)
     if path.is_file() or len(path.parts) != 1:
         return path
-    places = {p.parent.name: p for p in sorted(shipped("cfd_data").glob(f"*/{file}"))}
+    places = by_name(file)
     if path.name in places:
         return places[path.name]
     if path.suffix or path.exists():
         return path
     raise InputError(f"no file {shown(path, 300)}", f"a file that exists, or a shipped name ({', '.join(places)})")
+
+
+def by_name(file: str) -> dict[str, Path]:
+    """Shipped files by the name of their folder below ``cfd_data``; several of one folder go by their own names.
+
+    Parameters
+    ----------
+    file : str
+        ``plan.toml``, ``*.parameters.json``.
+    """
+    found = sorted(shipped("cfd_data").glob(f"*/{file}"))
+    crowded = repeated(p.parent.name for p in found)
+    return {p.name.partition(".")[0] if p.parent.name in crowded else p.parent.name: p for p in found}
 
 
 def write_all(folder: Path, contents: Mapping[str, bytes]) -> dict[str, bool]:

@@ -14,7 +14,7 @@ from typing import Annotated
 from coeflab.core.declarations import Declaration, Text, Words, one_of
 from coeflab.core.stored import Means, Within, stored
 
-TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic", "estimate")
+TABLE_KINDS = ("experiment", "cfd", "literature", "synthetic", "estimate", "unstated")
 BODY_KINDS = (*TABLE_KINDS, "computed")
 
 

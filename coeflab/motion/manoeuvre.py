@@ -79,12 +79,15 @@ class Phase:
     longest : float
         The phase ends after this time at the latest, s.
     until : Until or None
+    medium : int
+        Of the manoeuvre's media: 0 is that of the vehicle itself, 1 the first of ``others``.
     """
 
     name: str
     orders: Mapping[str, float]
     longest: float
     until: Until | None = None
+    medium: int = 0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "orders", MappingProxyType(dict(self.orders)))
@@ -106,6 +109,10 @@ class Manoeuvre:
     orders : mapping of str to float
         Orders that stand at the start.
     statements : tuple of str
+    others : tuple of Vehicle
+        The same craft in other media, by their parameter files; see `coeflab.motion.media`.
+    surface : float
+        Depth of the surface between the media from the start, m, positive down.
     """
 
     name: str
@@ -114,6 +121,8 @@ class Manoeuvre:
     attitude: Array = field(default_factory=lambda: np.array(UPRIGHT))
     orders: Mapping[str, float] = field(default_factory=dict)
     statements: tuple[str, ...] = ()
+    others: tuple[Vehicle, ...] = ()
+    surface: float = 0.0
 
     def __post_init__(self) -> None:
         for name in ("velocity", "attitude"):

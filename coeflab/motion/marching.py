@@ -344,6 +344,11 @@ def _arrays(ensemble: Ensemble, manoeuvres: tuple[Manoeuvre, ...]) -> tuple[Orde
     """Orders, and the states at the start."""
     if len(manoeuvres) not in (1, ensemble.count):
         raise InputError(f"{len(manoeuvres)} manoeuvres", f"one, or one for each of {ensemble.count} members")
+    if any(m.others or any(p.medium for p in m.phases) for m in manoeuvres):
+        raise InputError(
+            "a manoeuvre through two media in one march", "one medium: its forces have no break within a step",
+            column="medium", advice="The simulator rigid_body ends a march at the surface.",
+        )  # fmt: skip
     each = [orders_of(ensemble.vehicle, m) for m in manoeuvres]
     for name in ("angles", "begin", "watched", "sign", "value", "longest"):
         if any(not np.array_equal(getattr(o, name), getattr(each[0], name)) for o in each):

@@ -1,4 +1,4 @@
-"""Published vehicles as parameter files: the TJ-FlyingFish in water, and THAUV gliders as far as the format holds them."""
+"""Published vehicles as parameter files: the TJ-FlyingFish in water and in air, and THAUV gliders as far as the format holds them."""
 
 from __future__ import annotations
 
@@ -16,48 +16,67 @@ from coeflab.law.rigid_body import MassProperties
 from coeflab.law.scaling import Conditions, Scaling
 from coeflab.law.symbols import COMPONENTS, MOTIONS
 from coeflab.motion.glider.glider import Glider
-from coeflab.published.flyingfish.model import FlyingFish, thrusters
+from coeflab.published.flyingfish.model import FlyingFish, Medium, thrusters
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.parameter_parts import ParameterHydrostatics
 
 UNIT = Scaling(1.0, "unit length (the paper prints none)")
 WATER, SEA = Conditions(1000.0, 1.5), Conditions(1025.0, 0.3)
+AIR = Conditions(1.2, 10.0)
 FLYINGFISH_INERTIA = 0.02  # kg m^2, the mass at a tenth of a metre
+FLYINGFISH_AT: dict[Medium, Conditions] = {"water": WATER, "air": AIR}
+FLYINGFISH_NOTES: dict[Medium, tuple[str, ...]] = {
+    "water": (
+        "Damping of equation 50 and rotors of equations 47 and 48, printed. Mass, buoyancy, arm and height of the rotors are "
+        "calibrated on Table 1.",
+    ),
+    "air": (
+        "Damping of equation 49 and rotors of equations 45 and 46, printed. Mass, volume, arm and height of the rotors are "
+        "calibrated on Table 1, which holds motions under water only.",
+        "Rotors point up and do not tilt: equation 31 with its sign corrected. Rotor 1 to starboard and rotor 3 ahead, as equations "
+        "38 and 39 have them: equation 33 as printed, equation 32 with the other sign. Reaction torques as equation 34 has them.",
+        "Equations 7 to 12 leave the buoyancy of air out; the file holds that of its volume, 0.13 % of the weight.",
+    ),
+}
 THAUV_MASS, THAUV_ANGLE, THAUV_RATE = 66.35, float(np.radians(15.0)), 0.1
 
 
-def flyingfish_file(fish: FlyingFish) -> ParameterFile:
-    """Damping, weight, buoyancy and rotors of the TJ-FlyingFish under water, about its centre of gravity.
+def flyingfish_file(fish: FlyingFish, medium: Medium = "water") -> ParameterFile:
+    """Damping, weight, buoyancy and rotors of the TJ-FlyingFish under water or in air, about its centre of gravity.
 
     Parameters
     ----------
     fish : FlyingFish
         Its calibrated constants are those of the shipped file.
+    medium : {"water", "air"}
     """
+    at = FLYINGFISH_AT[medium]
+    printed = (fish.rotors.linear, fish.rotors.quadratic) if medium == "water" else fish.air
     damping: dict[str, tuple[float, Law]] = {}
-    for c, m, linear, quadratic in zip(COMPONENTS, MOTIONS, fish.rotors.linear, fish.rotors.quadratic, strict=True):
+    for c, m, linear, quadratic in zip(COMPONENTS, MOTIONS, *printed, strict=True):
         laws: tuple[tuple[str, float, Law], ...] = ((f"{c}{m}", linear, "rest"), (f"{c}{m}|{m}|", quadratic, "motion"))
         for symbol, value, law in laws:
-            damping[symbol] = -float(value) / UNIT.unit(symbol, WATER.density, WATER.speed), law
+            if value:
+                damping[symbol] = -float(value) / UNIT.unit(symbol, at.density, at.speed), law
     mass, buoyancy = fish.constants["mass"], fish.constants["mass"] * STANDARD_GRAVITY - fish.constants["net_weight"]
+    volume = buoyancy / (WATER.density * STANDARD_GRAVITY)
     stated = Stated(
-        "flyingfish_water", "TJ-FlyingFish in water", UNIT, WATER, damping, datum=Datum("cg"),
+        f"flyingfish_{medium}", f"TJ-FlyingFish in {medium}", UNIT, at, damping, datum=Datum("cg"),
         mass=MassProperties(mass, 0.0, FLYINGFISH_INERTIA, np.zeros(3), FLYINGFISH_INERTIA * np.eye(3)),
         notes=(
-            "Damping of equation 50 and rotors of equations 47 and 48, printed. Mass, buoyancy, arm and height of the rotors are "
-            "calibrated on Table 1.",
+            *FLYINGFISH_NOTES[medium],
             "Length, density and speed of the primes are chosen. The largest rotor speed is chosen.",
             f"The paper prints neither moments of inertia nor added mass. The file holds no added mass, and {FLYINGFISH_INERTIA:g} "
             "kg m^2 about every axis, assumed: steady motions (coeflab trim) do not depend on it, manoeuvres do.",
         ),
     )  # fmt: skip
     file = stated_file(stated, _sources("flyingfish", "vehicle.toml", "operating_points.csv"), ("tj_flyingfish",))
-    lever = fish.constants["buoyancy_moment"] / buoyancy
     rest = ParameterHydrostatics(
-        volume=buoyancy / (WATER.density * STANDARD_GRAVITY), centre_of_buoyancy=(0.0, 0.0, lever),
+        volume=volume,
+        centre_of_buoyancy=(0.0, 0.0, fish.constants["buoyancy_moment"] / buoyancy),
         gravity=STANDARD_GRAVITY,
-    )  # fmt: skip
-    return _of_study(file, "flyingfish").model_copy(update={"hydrostatics": rest, "thrusters": thrusters(fish)})
+    )
+    return _of_study(file, "flyingfish").model_copy(update={"hydrostatics": rest, "thrusters": thrusters(fish, medium)})
 
 
 def thauv_file(glider: Glider) -> ParameterFile:

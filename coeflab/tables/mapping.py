@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -24,6 +25,8 @@ from coeflab.tables.words_above import BODY_AXES
 SETTINGS = ("angle", "velocity", "control", "speed", "radius", "density")
 REMARKS = 5
 ALL = "all"
+NO_FORCE = "no force column"
+MARKS = re.compile(r"[*!?#\u2020\u2021x]{1,3}\)?")  # of a row that somebody doubts
 MOST_NAMED = 20
 SAME_DENSITY = 1e-3  # relative, as runs of one table may differ
 
@@ -138,7 +141,7 @@ def assigned(raw: RawTable, mapping: Mapping[str, ColumnMap], whole: bool = True
             )
         )  # fmt: skip
     if not any(a.said.role == "force" for a in out) and not complaints:
-        complaints.append(InputError("no force column", "at least one of X Y Z K M N", file=raw.path))
+        complaints.append(InputError(NO_FORCE, "at least one of X Y Z K M N", file=raw.path))
     if complaints:
         raise together(complaints)
     return tuple(out)
@@ -334,6 +337,7 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
     """For every row of the file the plain names that its column ``uncertain`` names; ``all`` are all forces and moments.
 
     A column may go by its name in the file, between semicolons where it has blanks; one that nobody uses counts for nothing.
+    A mark such as * is all of them, in that column or behind the name or label of a row.
 
     Raises
     ------
@@ -341,15 +345,19 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
         A word that is the name of no column.
     """
     column = next((one.column for one in known if one.said.name == "uncertain"), None)
-    if column is None:
-        return [frozenset()] * len(raw)
     names = {one.said.name for one in known if one.said.name not in WORDS}
-    forces = {one.said.name for one in known if one.said.role == "force"}
+    forces = frozenset(one.said.name for one in known if one.said.role == "force")
+    starred = _starred(known, len(raw))
+    if column is None:
+        return [forces if star else frozenset() for star in starred]
     used = {one.column.name for one in known}
     own = {c.name: "" for c in raw.columns if c.name not in used | names | {ALL}}
     own |= {one.column.name: one.said.name for one in known if one.said.name in names and not one.said.error}
     out = []
     for row, text in enumerate(texts_of(column)):
+        if starred[row] or MARKS.fullmatch(text.strip()):
+            out.append(forces)
+            continue
         words: set[str] = set()
         for part in map(str.strip, text.split(";")):
             single = [part] if part in own else part.replace(",", " ").split()
@@ -359,6 +367,17 @@ def doubtful(raw: RawTable, known: Sequence[Assigned]) -> list[frozenset[str]]:
         if strange := sorted(words - names):
             raise fault(raw, shown(strange[0]), f"{ALL}, or of {', '.join(sorted(names))}", column, row=row)
         out.append(frozenset(words))
+    return out
+
+
+def _starred(known: Sequence[Assigned], rows: int) -> NDArray[np.bool_]:
+    """Rows whose name or label ends in a star, where less than half do."""
+    out = np.zeros(rows, dtype=bool)
+    for one in known:
+        if one.said.name in ("point", "label") and one.column.is_text:
+            stars = np.array([text.rstrip(") ").endswith("*") for text in one.column.texts], dtype=bool)
+            if 2 * stars.sum() < rows:
+                out |= stars
     return out
 
 

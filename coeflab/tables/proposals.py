@@ -1,20 +1,16 @@
-"""What the columns of an unknown file probably are, by their names; and what their numbers show of axes and signs.
-
-Proposals are confirmed by a person, evidence is shown to one: nothing here decides.
-"""
+"""What the columns of an unknown file probably are, by their names and units. Proposals are confirmed by a person."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coeflab.core.axes import Axes
 from coeflab.core.errors import InputError, UnitsError
 from coeflab.core.types import Array
-from coeflab.core.units import factor
+from coeflab.core.units import SI, factor
 from coeflab.law.symbols import ANGULAR, COMPONENTS, CONTROL_COLUMNS, LINEAR, MOMENTS
 from coeflab.tables.column_map import (
     ACROSS,
@@ -28,25 +24,46 @@ from coeflab.tables.column_map import (
     folded,
     read_column_map,
     share,
-    unturned,
 )
-from coeflab.tables.mapping import Assigned
+from coeflab.tables.evidence import TURN
+from coeflab.tables.mapping import MARKS
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.words_above import BODY_AXES
 
 OPEN = "?"
 UNKNOWN = "no known name"
+AREA, LENGTH_OF, UNITS_OF = "coefficients.area", "coefficients.length", "columns.units"
+IDLE_UNITS = frozenset(
+    [
+        "°c",
+        "c",
+        "degc",
+        "k",
+        "s",
+        "sec",
+        "ms",
+        "min",
+        "h",
+        "hz",
+        "khz",
+        "pa",
+        "kpa",
+        "mpa",
+        "bar",
+        "mbar",
+        "v",
+        "mv",
+        "a",
+        "ma",
+        "w",
+        "kw",
+    ]
+)
 OWN = frozenset((*ROLES, *CONTROL_COLUMNS)) - {"label", "ignore", *WIND}  # names that coeflab's own tables have
 ALLOWED = {
     "speed": "U, u, v, w", "rate": "p, q, r", "angle": "alpha, beta, dr, ds, db", "force": "X, Y, Z", "moment": "K, M, N",
     "length": "R", "density": "density",
 }  # fmt: skip
-TURN = "counts about the z axis of the frame: z down, r > 0 turns to starboard; z up (CFD, FLU), to port"
-TURNS = {("p", True): "heels to starboard", ("p", False): "heels to port", ("q", True): "lifts the bow",
-         ("q", False): "lowers the bow", ("r", True): "turns the bow to starboard", ("r", False): "turns the bow to port"}  # fmt: skip
-OF_RATE = {"p": ("", "K"), "q": ("Z", "M"), "r": ("Y", "N")}  # force and moment that a rate moves first
-STILL = 0.1  # of the span of Y or N: a span of Z or M that is none
-CLEAR = 0.8  # correlation beyond which a slope has a sign
 _SAID = {
     "X": "fx forcex xforce surgeforce longitudinalforce axialforce laengskraft langskraft kraftlangs kraftlaengs kraftx xkraft widerstandskraft forcelongitudinale effortlongitudinal fxtotal",
     "Y": "fy forcey yforce swayforce sideforce lateralforce transverseforce querkraft seitenkraft kraftquer "
@@ -128,6 +145,13 @@ class Proposal:
         return bool(self.text) and OPEN not in self.text
 
 
+def is_marks(column: RawColumn) -> bool:
+    """Whether a column holds nothing but marks such as * and blanks, as tables mark doubtful rows."""
+    cells = {cell.strip() for cell in column.texts} - {"", "-"}
+    blank = any(cell.strip() in ("", "-") for cell in column.texts)
+    return bool(cells) and blank and all(MARKS.fullmatch(cell) for cell in cells)
+
+
 def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> Proposal:
     """What a column may be, by what its format fixes, else by its name and unit.
 
@@ -135,14 +159,19 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     ----------
     column : RawColumn
     stated : mapping, optional
-        What the file says of itself; ``coefficients.area`` and ``coefficients.length`` complete a coefficient.
+        What the file or a person says; ``coefficients.area`` and ``coefficients.length`` complete a coefficient, an area "prime"
+        makes primes, ``columns.units`` "SI" is the unit of columns without one.
     """
+    if not column.means and is_marks(column):
+        return Proposal("uncertain", "marks of rows, which no fit then uses")
     name, why, certain = _name(column)
     if not name and column.unit in ("", "-", "1") and (m := _THOUSAND.fullmatch(column.name.strip())):
         return Proposal(f"{m[1]}' [1e-3]", f"its name: 1000 {m[1]}', a prime by the campaign's length")
     if not name:
         if column.is_text:
             return Proposal("label", "text")
+        if why == UNKNOWN and (idle := _idle(column)):
+            return Proposal("ignore", f"{why}; {idle}")
         return Proposal("", why + allowed(column.unit, column.name.startswith("se_")) * (why == UNKNOWN))
     said = read_column_map(name)
     if said.name in WORDS:
@@ -150,8 +179,23 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
     if column.is_text and not np.any(np.isfinite(column.values)):
         return Proposal("label", "text")
     said_of = stated or {}
-    by = (said_of.get("coefficients.area"), said_of.get("coefficients.length", said_of.get("scaling.length")))
-    return _with_unit(column, said, why, certain, by)
+    by = (said_of.get(AREA), said_of.get(LENGTH_OF, said_of.get("scaling.length")))
+    one = _with_unit(column, said, why, certain, by)
+    if one.text.endswith(f"[{OPEN}]") and said_of.get(UNITS_OF) == "SI" and said.dimension not in ("angle", "none"):
+        return Proposal(
+            f"{one.text.partition(' [')[0]} [{SI[said.dimension]}]", f"{why.partition(';')[0]}; in SI, as said"
+        )
+    return one
+
+
+def _idle(column: RawColumn) -> str:
+    """Why a column of numbers cannot matter to a fit: one number throughout, or a unit of nothing that fits use."""
+    known = column.values[np.isfinite(column.values)]
+    if known.size and float(np.ptp(known)) <= 1e-9 * float(np.abs(known).max()) and not allowed(column.unit):
+        return "one number throughout"
+    if column.unit.strip().casefold() in IDLE_UNITS:
+        return f"no fit uses [{column.unit}]"
+    return ""
 
 
 def allowed(unit: str, error: bool = False) -> str:
@@ -238,6 +282,8 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
     is_coefficient = said.name in FORCES and (
         unit in ("-", "1") or counted or (not unit and folded(column.name) in COEFFICIENTS and not certain)
     )
+    if is_coefficient and by[0] == "prime":
+        return Proposal(f"{name}' [{unit if counted else '-'}]", f"{why}; a prime, as said")
     if is_coefficient:
         area, length = (
             f"{float(str(x))!r} m{u}" if x is not None else OPEN for x, u in zip(by, ("^2", ""), strict=True)
@@ -254,13 +300,28 @@ def _with_unit(column: RawColumn, said: ColumnMap, why: str, certain: bool, by: 
         return Proposal(str(whole), by_both, certain)
     if said.dimension == "angle" and np.nanmax(np.abs(column.values), initial=0.0) > np.pi:
         return Proposal(f"{name} [deg]", f"{why}; beyond half a turn in radians")
+    if said.dimension == "angle" and _whole_degrees(column.values):
+        return Proposal(f"{name} [deg]", f"{why}; whole numbers")
     return Proposal(f"{name} [{OPEN}]", f"{why}; no unit is stated, such as {EXAMPLES[said.dimension]}")
 
 
-def proposals(raw: RawTable) -> tuple[Proposal, ...]:
-    """What every column of a table may be; of several that may be the same, or name the rows, only the first keeps it."""
-    stated = {key: s.value for key, s in raw.stated.items()}
-    offered = any(s.offered for key, s in raw.stated.items() if key.startswith("coefficients."))
+def _whole_degrees(values: Array) -> bool:
+    """Whether angles are halves or wholes of something, one at least, as only degrees are."""
+    known = values[np.isfinite(values)]
+    return bool(known.size) and float(np.abs(known).max()) >= 1.0 and bool(np.all(known * 2.0 == np.round(known * 2.0)))
+
+
+def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple[Proposal, ...]:
+    """What every column of a table may be; of several that may be the same, or name the rows, only the first keeps it.
+
+    Parameters
+    ----------
+    raw : RawTable
+    known : mapping, optional
+        What a person says of coefficients and of units that are not stated; see `proposed`.
+    """
+    stated = {key: s.value for key, s in raw.stated.items()} | dict(known or {})
+    offered = any(s.offered for key, s in raw.stated.items() if key.startswith("coefficients.")) or bool(known)
     out: list[Proposal] = []
     taken: dict[str, str] = {}
     for column in raw.columns:
@@ -272,7 +333,14 @@ def proposals(raw: RawTable) -> tuple[Proposal, ...]:
             if said.name == "point" and (said.plain in taken or _repeats(column)):
                 one = Proposal("label", f"{one.why}, but rows share it" if _repeats(column) else one.why, one.certain)
             elif said.plain in taken:
-                one = Proposal("", f"{said.plain} is {taken[said.plain]} already")
+                first = next(i for i, c in enumerate(raw.columns) if c.name == taken[said.plain])
+                again = f"{said.plain} is {{}} already"
+                if one.whole and not out[first].whole:
+                    out[first] = Proposal("ignore", again.format(column.name))
+                    taken[said.plain] = column.name
+                else:
+                    whole = out[first].whole and not one.whole
+                    one = Proposal("ignore" * whole, again.format(taken[said.plain]))
             else:
                 taken[said.plain] = column.name
         out.append(one)
@@ -300,196 +368,3 @@ def _along_the_body(one: Proposal, column: RawColumn, place: str) -> Proposal:
 def _repeats(column: RawColumn) -> bool:
     cells = column.texts or tuple(column.values.tolist())
     return len(set(cells)) < len(cells)
-
-
-@dataclass(frozen=True, slots=True)
-class Evidence:
-    """What the numbers show.
-
-    Attributes
-    ----------
-    text : str
-    key, value : str
-        What of campaign.toml follows from it for a slender body; empty where nothing does.
-    against : str
-        The rate whose sign or axis it contradicts; empty where it contradicts none.
-    instead : str
-        The rate of the file that turns about the axis whose force and moment vary; empty where the axis is not contradicted.
-    """
-
-    text: str
-    key: str = ""
-    value: str = ""
-    against: str = ""
-    instead: str = ""
-
-
-def turn_of(said: ColumnMap, frame: Axes) -> str:
-    """What a positive number in a column of a rate does to the body, such as turns the bow to port."""
-    axis = frame.rotation[:, ANGULAR.index(said.name)]
-    i = int(np.argmax(np.abs(axis)))
-    return TURNS[ANGULAR[i], (float(axis[i]) > 0.0) != said.negative]
-
-
-def _about_another_axis(data: Mapping[str, Array], frame: Axes) -> Iterator[Evidence]:
-    """Rates about an axis whose own force and moment rest while those of the other plane vary."""
-    for rate in (m for m in ANGULAR if m in data and np.any(np.nan_to_num(data[m]))):
-        about = ANGULAR[int(np.argmax(np.abs(frame.rotation[:, ANGULAR.index(rate)])))]
-        if about == rate == "p":
-            continue  # roll moves Y and N too, and K is seldom measured
-        for other in (m for m in ("q", "r") if m != about):
-            found = [c for c in OF_RATE[other] if _varies(data, c, rate, frame)]
-            pairs = [(own, c) for own, c in zip(OF_RATE[about], OF_RATE[other], strict=True) if own]
-            if not found or any(_span(data, own, frame) > STILL * _span(data, c, frame) for own, c in pairs):
-                continue
-            instead = ANGULAR[int(np.argmax(np.abs(frame.rotation[ANGULAR.index(other)])))]
-            axes = [("forward", "aft"), ("starboard", "port"), ("down", "up")][ANGULAR.index(about)]
-            points = axes[float(frame.rotation[ANGULAR.index(about), ANGULAR.index(rate)]) < 0.0]
-            named = {"p": "roll", "q": "pitch", "r": "yaw"}
-            yield Evidence(
-                f"{rate} counts about the {'xyz'[ANGULAR.index(rate)]} axis of the frame, which points {points}: {named[about]}. "
-                f"But {' and '.join(found)} of the body vary and {' and '.join(own for own, _ in pairs)} "
-                f"{'does' if len(pairs) == 1 else 'do'} not: {named[other]}, which is {instead} in this frame",
-                against=rate, instead=instead,
-            )  # fmt: skip
-            break
-
-
-def _varies(data: Mapping[str, Array], component: str, rate: str, frame: Axes) -> bool:
-    values = _frd(data, component, frame)
-    return values is not None and trend(values, data, rate) != 0
-
-
-def _span(data: Mapping[str, Array], component: str, frame: Axes) -> float:
-    values = _frd(data, component, frame)
-    known = np.empty(0) if values is None else values[np.isfinite(values)]
-    return float(np.ptp(known)) if known.size else 0.0
-
-
-def evidence(columns: Sequence[Assigned], frame: Axes | None = None) -> tuple[Evidence, ...]:
-    """What the numbers of a table show of axes and signs.
-
-    Parameters
-    ----------
-    columns : sequence of Assigned
-    frame : Axes, optional
-        Of the file, once it is known; without it the sign of an angle stays open.
-    """
-    data = {one.said.name: one.values for one in columns if one.said.role not in ("word", "error")}
-    out = [Evidence(why) for one in columns if (why := unturned(one.column.name, one.said))]
-    angles = [one.said.name for one in columns if one.said.role == "angle"]
-    for angle, component, flow, side, other in (
-        ("beta", "Y", "v", "starboard", "port"), ("alpha", "Z", "w", "down", "up"),
-    ):  # fmt: skip
-        across, turned_by = ("side", 1.0) if component == "Y" else ("lift", -1.0)
-        if across in data and angle in angles and (sign := trend(turned_by * data[across], data, angle)):
-            same = "the same sign" if sign * turned_by > 0 else "opposite signs"
-            out.append(Evidence(f"{across} and {angle} have {same}, and a slender body has {component}{flow}' < 0",
-                                f"axes.{angle}", f"{flow} = {'-' if sign > 0 else '+'}U sin({angle})"))  # fmt: skip
-            continue
-        force = _frd(data, component, frame) if frame else data.get(component)
-        if angle not in angles or force is None or not (sign := trend(force, data, angle)):
-            continue
-        as_pointed = f"{flow} = {'-' if sign > 0 else '+'}U sin({angle})"
-        turned = f"{flow} = {'+' if sign > 0 else '-'}U sin({angle})"
-        have = f"{component} and {angle} have {'the same sign' if sign > 0 else 'opposite signs'}"
-        if frame is None:
-            axis = "yz"[component == "Z"]
-            out.append(Evidence(f"{have}: {as_pointed} if {axis} points {side}, {turned} if {axis} points {other}"))
-        else:
-            of = "" if frame.name == "FRD" else f" to {side}"
-            said = f"{component}{of} and {angle}" + have.removeprefix(f"{component} and {angle}")
-            out.append(Evidence(f"{said}, and a slender body has {component}{flow}' < 0", f"axes.{angle}", as_pointed))
-    for component, rate in (("Y", "v"), ("Z", "w"), ("K", "p"), ("M", "q"), ("N", "r")):
-        if component in data and rate in data and (sign := trend(data[component], data, rate)):
-            if sign < 0:
-                out.append(Evidence(f"{component} and {rate} have opposite signs, as damping has in one set of axes"))
-            else:
-                out.append(Evidence(
-                    f"{component} and {rate} have the same sign: no damping of a slender body; one of them has the "
-                    f'other sign (-{rate} or -{component}), or the force contains inertia', against=rate * (rate in ANGULAR)
-                ))  # fmt: skip
-    crossed = list(_about_another_axis(data, frame)) if frame else []
-    out += crossed
-    if "r" in data and np.any(np.nan_to_num(data["r"])) and not any(e.against == "r" for e in crossed):
-        up = float(frame.rotation[2][2]) if frame else 0.0
-        turn = f"r > 0 turns to {'starboard' if up > 0 else 'port'}: it {TURN.partition(':')[0]}"
-        out += [Evidence(turn if up else f"r {TURN}")]
-    out += _levers(data, {one.said.name: one.said for one in columns}, frame)
-    if "drag" in data and np.any(ok := np.isfinite(data["drag"])) and np.all(data["drag"][ok] < 0.0):
-        out.append(Evidence("warning: drag is below zero in every row: that is thrust, or -drag is meant"))
-    x = _frd(data, "X", frame) if frame else data.get("X")
-    x = np.empty(0) if x is None else x[np.isfinite(x)]
-    if frame and x.size and np.all(x > 0):
-        out.append(Evidence("warning: X is above zero in every row: in FRD that is thrust, not drag" if frame.name == "FRD"
-                            else "warning: X turned to FRD is above zero in every row: that is thrust, not drag"))  # fmt: skip
-    elif not frame and x.size and (np.all(x > 0) or np.all(x < 0)):
-        out.append(Evidence(f"X is {'positive' if x[0] > 0 else 'negative'} throughout: drag, if x points "
-                            f"{'aft' if x[0] > 0 else 'forward'}"))  # fmt: skip
-    return tuple(out)
-
-
-def _frd(data: Mapping[str, Array], component: str, frame: Axes) -> Array | None:
-    group = next(g for g in (COMPONENTS[:3], COMPONENTS[3:], LINEAR, ANGULAR) if component in g)
-    row = frame.rotation[group.index(component)]
-    own = group[int(np.argmax(np.abs(row)))]
-    return data[own] * float(row[group.index(own)]) if own in data else None
-
-
-def astern(columns: Sequence[Assigned], frame: Axes) -> Assigned | None:
-    """The column along the body's length if in FRD u is below zero in every row."""
-    data = {one.said.name: one.values for one in columns if one.said.role == "velocity"}
-    u = _frd(data, "u", frame)
-    u = np.empty(0) if u is None else u[np.isfinite(u)]
-    if not u.size or not np.all(u < 0.0):
-        return None
-    own = LINEAR[int(np.argmax(np.abs(frame.rotation[0])))]
-    return next(one for one in columns if one.said.role == "velocity" and one.said.name == own)
-
-
-def _levers(data: Mapping[str, Array], said: Mapping[str, ColumnMap], frame: Axes | None) -> list[Evidence]:
-    """Where along x the forces act, which M of a left-handed triad contradicts; in FRD once the axes are known."""
-    found = {}
-    for moment, force, sign in (("N", "Y", 1.0), ("M", "Z", -1.0)):
-        both = (_frd(data, moment, frame), _frd(data, force, frame)) if frame else (data.get(moment), data.get(force))
-        if both[0] is not None and both[1] is not None:
-            ok = np.isfinite(both[0]) & np.isfinite(both[1])
-            m, f = both[0][ok], both[1][ok]
-            if m.size >= 3 and np.any(f) and np.any(m) and abs(np.dot(m, f)) > CLEAR * np.sqrt((m @ m) * (f @ f)):
-                found[moment, force] = sign * float(m @ f) / float(f @ f)
-    turning = any(np.any(np.nan_to_num(data[m])) for m in (*ANGULAR, "R") if m in data)
-    hull = "" if turning else "; that of a bare hull without large fins acts forward of midships"
-    out = []
-    for (moment, force), arm in found.items():
-        if frame is None:
-            out.append(
-                Evidence(f"{moment} / {force}: the force acts toward {'+' if arm > 0 else '-'}x of the reference point")
-            )
-            continue
-        kinds = {said[c].pure for c in (moment, force) if c in said}
-        coefficient = any(said[c].area for c in (moment, force) if c in said)
-        place = (
-            "" if coefficient or len(kinds) != 1 else f" (x = {arm:.2g} {'of the length' if kinds == {True} else 'm'})"
-        )
-        side = "forward" if arm > 0 else "aft"
-        out.append(Evidence(f"{moment} / {force}: the force acts {side} of the reference point{place}{hull}"))
-    if len(found) == 2 and len({np.sign(arm) for arm in found.values()}) == 2:
-        out.append(Evidence("N / Y and M / Z disagree on the side: a left-handed triad, or a sign of Y, Z, M or N"))
-    return out
-
-
-def trend(force: Array, data: Mapping[str, Array], setting: str) -> int:
-    """Sign of a force's slope over a setting while the others rest; 0 where it is not clear."""
-    x = data[setting]
-    ok = np.isfinite(force) & np.isfinite(x)
-    still = ok.copy()
-    for name, values in data.items():
-        if name in ("alpha", "beta", "v", "w", "p", "q", "r", "dr", "ds", "db") and name != setting:
-            still &= np.abs(values) <= 1e-6 * max(float(np.nanmax(np.abs(values), initial=0.0)), 1e-12)
-    ok = still if np.unique(x[still]).size >= 3 else ok
-    if np.unique(x[ok]).size < 3:
-        return 0
-    dx, df = x[ok] - np.mean(x[ok]), force[ok] - np.mean(force[ok])
-    size = np.sqrt(np.dot(dx, dx) * np.dot(df, df))
-    shared = float(np.dot(dx, df) / size) if size > 0.0 else 0.0
-    return int(np.sign(shared)) if abs(shared) >= CLEAR else 0

@@ -1,72 +1,102 @@
-"""What a file leaves open before it is a campaign: settings with their origins, questions, and the arguments that answer them."""
+"""What a file leaves open before it is a campaign: settings with what they probably are, and what that rests on."""
 
 from __future__ import annotations
 
-import re
-import shlex
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from coeflab.core.axes import ANGLE_SIGNS, Axes
-from coeflab.core.errors import InputError, shown
+from coeflab.core.axes import ANGLE_SIGNS, Axes, parse_axes
+from coeflab.core.errors import InputError
 from coeflab.core.provenance import TABLE_KINDS
 from coeflab.core.units import quantity
+from coeflab.core.wording import identifier
 from coeflab.law.symbols import ANGULAR
 from coeflab.tables.campaign import CENTRES
 from coeflab.tables.column_map import ROLES, ColumnMap, read_column_map, unturned
-from coeflab.tables.mapping import Assigned, another_density, assigned, entry_of, error_of, fault, known_as, with_unit
-from coeflab.tables.proposals import OPEN, Evidence, Proposal, astern, evidence, proposals, turn_of
+from coeflab.tables.evidence import Evidence, along_x, astern, centre_of, evidence, turn_of
+from coeflab.tables.mapping import (
+    NO_FORCE,
+    Assigned,
+    another_density,
+    assigned,
+    entry_of,
+    error_of,
+    fault,
+    known_as,
+    with_unit,
+)
+from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal, proposals
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.settings import POINT_OF, Settings, frame_of
-from coeflab.tables.words_above import BODY_AXES
+from coeflab.tables.settings import EXTRA, POINT_OF, Setting, Settings, frame_of, read_setting
+from coeflab.tables.words_above import BODY_AXES, of_the_test
 
-FRAMES_ASKED = (
-    "Axes of the forces: FRD (x forward, y starboard, z down), FLU (x forward, y port, z up), CFD (x aft, y starboard, "
-    "z up), or three directions such as aft,port,down"
+PLACE_ASKED = (
+    "x, or x, y, z, in m from a point of the body, x forward, y starboard, z down: -2.1 from nose is 2.1 m aft of it"
 )
-PLACE_ASKED = "x, y, z in m from the datum, x forward, y starboard, z down, such as -2.1, 0, 0 (2.1 m aft of it), or 0 for the datum"
-INERTIA_ASKED = (
-    "Do the forces contain the model's own inertia: true for a balance on a real rotating arm, false for a solver"
-)
+COMPUTED = (
+    "openfoam",
+    "starccm",
+    "fluent",
+    "cfx",
+    "su2",
+    "simscale",
+)  # importers of solvers, whose forces hold no inertia
+READINGS = {
+    1: ("FRD", "FLU"),
+    -1: ("CFD", ["aft", "port", "down"]),
+    0: ("FRD", "FLU"),
+}  # by where x points: y to starboard, to port
 
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """A key of campaign.toml that somebody has to say.
+    """A key of campaign.toml, with what it probably is.
 
     Attributes
     ----------
     key : str
     asks : str
-    place : str
-        Stands for the value where an argument is shown.
+        The long explanation, with the choices.
+    choices : str
+        The choices in a few words, for one who has to say it.
     default : str
-        What follows from the file or from unambiguous evidence; empty where nothing does.
+        What follows from the file or from evidence; empty where nothing does.
     why : str
-        What the default rests on.
-    certain : bool
-        The file itself gives the default.
-    on_enter : str
-        What Enter takes on a terminal, where a person sees it; ``--yes`` does not.
+        What the default rests on, whole; the campaign.toml says it too.
+    short : str
+        The same in a few words.
+    shown : str
+        What is shown in the place of the default, where it follows once another key is known.
+    harmless : bool
+        The file gives the default, or no number hangs on it: nobody has to accept it.
+    grave : bool
+        Axes, signs, points, inertia: a wrong one makes wrong slopes that look right.
     """
 
     key: str
     asks: str
-    place: str
+    choices: str = ""
     default: str = ""
     why: str = ""
-    certain: bool = False
-    on_enter: str = ""
+    short: str = ""
+    shown: str = ""
+    harmless: bool = False
+    grave: bool = False
+
+    @property
+    def open(self) -> bool:
+        """Whether somebody has to say it."""
+        return not (self.default or self.shown)
 
 
 def questions(
     raw: RawTable, columns: Sequence[Assigned], settings: Settings, shows: Sequence[Evidence] = (),
-    likely: Sequence[str] = (),
+    likely: Sequence[str] = (), offers: Sequence[Proposal] = (),
 ) -> tuple[Question, ...]:  # fmt: skip
-    """What has to be said yet before the file is a campaign.
+    """Every key that makes the file a campaign, said or not.
 
     Parameters
     ----------
@@ -79,72 +109,214 @@ def questions(
         What the numbers show; a default comes of it only where one key follows.
     likely : sequence of str
         What columns are by name whose unit is still open.
+    offers : sequence of Proposal
+        Of the columns that nobody has confirmed.
     """
-    rates = {c.said.name: np.nan_to_num(c.values) != 0.0 for c in columns if c.said.name in ANGULAR}
+    words = of_the_test([("its name", raw.path.resolve().name.replace("_", " "))])
+    out = [
+        *_of_coefficients(offers, settings), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings),
+        *_of_sizes(columns), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
+    ]  # fmt: skip
+    return tuple(_offered(q, raw, words) for q in out)
+
+
+def without_unit(text: str) -> bool:
+    """Whether a proposal lacks a unit that all columns without one may share; angles are asked one by one."""
+    return text.endswith(f"[{OPEN}]") and read_column_map(text.partition(" [")[0]).dimension not in ("angle", "none")
+
+
+def _of_coefficients(offers: Sequence[Proposal], settings: Settings) -> Iterator[Question]:
+    """Sizes and units that several columns share."""
+    texts = [one.text for one in offers]
+    if any(f"A={OPEN}" in text for text in texts):
+        yield Question(
+            AREA, "Area of the coefficients, which are by 1/2 rho U^2 A (moments: A L), such as 0.2 m^2; or prime, where they "
+            "are primes by the campaign's length", "their area, such as 0.2 m^2; or prime: by the length",
+        )  # fmt: skip
+    if any(f"L={OPEN}" in text for text in texts):
+        length = settings.get("scaling.length")
+        yield Question(
+            LENGTH_OF, "Length of the coefficients of moments, by 1/2 rho U^2 A L, such as 4.26 m; none where they are primes", "",
+            "" if length is None else str(length.value), "the length of the primes", "not stated", "as scaling.length",
+        )  # fmt: skip
+    if any(without_unit(text) for text in texts):
+        yield Question(
+            UNITS_OF, "Unit of the columns that state none: SI is N, N m, m/s, rad/s and m; another one column by column, such as "
+            "Fy=Y [kN], and Fy=Y' [-] for a prime", "SI (N, N m, m/s, rad/s) for all; or Fy=Y [kN]",
+        )  # fmt: skip
+
+
+def _of_axes(
+    columns: Sequence[Assigned], settings: Settings, shows: Sequence[Evidence], likely: Sequence[str]
+) -> Iterator[Question]:
+    frame, (ahead, seen) = frame_of(settings), along_x(columns)
+    pairs = {1: "FRD (y stb, z down) or FLU (y port, z up)", -1: "CFD (y stb, z up) or aft,port,down",
+             0: "FRD, FLU, CFD or such as aft,port,down"}  # fmt: skip
+    yield Question(
+        "axes.frame", "Axes of the forces: FRD (x forward, y starboard, z down), FLU (x forward, y port, z up), CFD (x aft, y "
+        f"starboard, z up), or three directions such as aft,port,down{seen and f'. {seen}'}. No number of the table shows the side of y",
+        pairs[ahead] + (f": {seen}" if seen else ""), grave=True,
+    )  # fmt: skip
     angles = [c.said.name for c in columns if c.said.role == "angle"]
-    angles += [name for name in likely if ROLES[name] == "angle"]
     follows = {e.key: e for e in shows if e.key}
-    out = [Question("axes.frame", FRAMES_ASKED, "FRAME")]
-    for name in angles:
+    for name in (*angles, *(name for name in likely if ROLES[name] == "angle")):
         side = {"beta": "v to starboard", "alpha": "w down"}[name]
-        asks = f"Sign of {name}: {' or '.join(ANGLE_SIGNS[name])}, {side}, whatever the axes are; or just + or -"
         found = follows.get(f"axes.{name}")
-        out.append(Question(f"axes.{name}", asks, "SIGN", found.value if found else "", found.text if found else ""))
-    at = raw.stated.get(POINT_OF)
-    own = f". The file has {_point(at.value)} in its own axes from its own origin ({at.place})" if at else ""
-    here, turned = "", at.value if at else ""
-    if isinstance(turned, tuple) and len(turned) == 3 and (frame := frame_of(settings)):
-        here = ", ".join(f"{x + 0.0:.12g}" for x in frame.rotation @ np.array(turned))
-        own += f", in FRD ({here}): Enter takes it, if the datum is that origin"
+        text = f"Sign of {name}: {' or '.join(ANGLE_SIGNS[name])}, {side}, whatever the axes are; or just + or -"
+        both = [_signs(columns, name, reading) for reading in READINGS[ahead]] if frame is None else []
+        shown, short = "", ""
+        if not found and len(both) == 2 and all(both):
+            one, two = (word[4] for word in both)
+            sides = {"beta": ("starboard", "port"), "alpha": ("down", "up")}[name]
+            shown = one if one == two else f"{one} if {'yz'[name == 'alpha']} is {sides[0]}, else {two}"
+            shown = (
+                shown if name == "beta" or one == two else f"{one} if z is {'down' if ahead >= 0 else 'up'}, else {two}"
+            )
+            short = f"so that {'Yv' if name == 'beta' else 'Zw'}' < 0"
+        yield Question(
+            f"axes.{name}", text, f"+ or -: {' or '.join(ANGLE_SIGNS[name])}", found.value if found else "",
+            found.text if found else "", f"so that {'Yv' if name == 'beta' else 'Zw'}' < 0" if found else short, shown, grave=True,
+        )  # fmt: skip
+
+
+def _signs(columns: Sequence[Assigned], angle: str, reading: Any) -> str:
+    """The sign of an angle that follows in axes that nobody has declared."""
+    return next((e.value for e in evidence(columns, parse_axes(reading)) if e.key == f"axes.{angle}"), "")
+
+
+def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
+    at, frame, datum = raw.stated.get(POINT_OF), frame_of(settings), settings.get("axes.datum")
+    own = at.value if at and isinstance(at.value, tuple) and len(at.value) == 3 else None
+    asks = f"Point that the moments are about: {PLACE_ASKED}; or a point by its name: midship, cg, nose"
+    here, why, short, shown = "", "", "", ""
+    if own is not None and at is not None:
+        why = f"the file's point {_point(own)} from the origin of its axes, {at.place}"
+        asks += f". The file has {_point(own)} in its own axes from its own origin ({at.place})"
+        short = f"of the file, {at.place}"
+        shown = f"{_point(own)} in its axes"
+        if frame is not None or not any(own):
+            here = ", ".join(f"{x + 0.0:.12g}" for x in (frame.rotation @ np.array(own) if frame else np.array(own)))
+    elif datum is not None or "axes.datum" in raw.stated:
+        here, why, short = "0, 0, 0", "the datum itself", "the datum itself"
+    yield Question(
+        POINT_OF, asks, "x from a point: -2.1 from nose; or midship, cg", here, why, short, shown, grave=True
+    )
+    text = "Point of the body that places count from: nose, cg, midship ..."
+    if own is not None:
+        origin = f"origin_{identifier(raw.path.resolve().stem)}"[:40]
+        yield Question(
+            "axes.datum", text, "", origin, "the origin of the file's axes", "origin of the file's axes", grave=True
+        )
+    else:
+        follows = "" if POINT_OF in settings else "as the point says"
+        yield Question(
+            "axes.datum", text, "nose, midship, cg ...", shown=follows, short="-2.1 from nose: nose", grave=True
+        )
+
+
+def _of_sizes(columns: Sequence[Assigned]) -> Iterator[Question]:
+    forces = [c.said for c in columns if c.said.role == "force"]
+    pure = bool(forces) and all(said.pure for said in forces)
+    plain = not any(c.said.role == "velocity" and not c.said.primed for c in columns)
+    length = next((said.length for said in forces if said.length), 0.0)
+    yield Question(
+        "scaling.length", "Length of the primes, m, with its name: 4.3 m LOA. Y' = Y / (1/2 rho U^2 L^2), N' with L^3, r' = r L / U",
+        "m, with its name: 4.3 LOA", f"{length!r}" if length else "", "that of the coefficients", "that of the coefficients",
+    )  # fmt: skip
+    yield Question("scaling.length_name", "Which length that is: LBP, LOA ... Results of different names are not mixed", "",
+                   "L", "not stated", "not stated: LOA, LBP ...", harmless=True)  # fmt: skip
+    median = {role: _median(columns, role) for role in ("speed", "density")}
+    if (
+        not median["speed"]
+        and (u := next((c for c in columns if c.said.name == "u" and not c.said.primed), None)) is not None
+    ):
+        median["speed"] = f"{float(np.nanmedian(np.abs(u.values))):.12g}" if np.any(u.values) else ""
+    for role, asks, choices, cancels in (
+        ("density", "Density of the water, kg/m^3", "kg/m^3: 998.2 fresh, 1025 sea", "1000" if pure else ""),
+        ("speed", "Speed, m/s", "m/s", "1" if pure and plain else ""),
+    ):
+        found = median[role]
+        why = (
+            f"median of the column of {role}"
+            if found
+            else "it cancels: forces and motions are pure numbers"
+            if cancels
+            else ""
+        )
+        yield Question(
+            f"conditions.{role}", asks, choices, found or cancels, why, why.partition(":")[0], harmless=bool(found)
+        )
+
+
+def _of_rotation(
+    raw: RawTable, columns: Sequence[Assigned], settings: Settings, likely: Sequence[str], words: Mapping[str, Any]
+) -> Iterator[Question]:
+    rates = {c.said.name: np.nan_to_num(c.values) != 0.0 for c in columns if c.said.name in ANGULAR}
     known = settings[POINT_OF].value if POINT_OF in settings else None
     same = ", ".join(map(str, known)) if isinstance(known, list) else ""
-    enter = "; Enter: the reference point" * bool(same)
-    median = {role: _median(columns, role) for role in ("speed", "density")}
-    why = {role: f"median of the column of {role}" if found else "" for role, found in median.items()}
-    out += [
-        Question("axes.datum", "Point of the body that places count from: nose, cg, midship ...", "POINT"),
-        Question(POINT_OF, f"Where the moments are about: {PLACE_ASKED}{own}", "X,Y,Z", on_enter=here),
-        Question("scaling.length", "Length of the primes, m", "METRES"),
-        Question("scaling.length_name", "Which length that is: LBP, LOA ...", "NAME"),
-        *(
-            Question(f"conditions.{role}", asks, role.upper(), median[role], why[role], bool(median[role]))
-            for role, asks in (("density", "Density of the water, kg/m^3"), ("speed", "Speed, m/s"))
-        ),
-    ]
     arm = "R" in likely or any(c.said.role == "radius" for c in columns)
     if arm:
-        out += [
-            Question("table.centre", f"Where the centre of the circle lies: {', '.join(CENTRES)}", "SIDE"),
-            Question("table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}{enter}", "X,Y,Z", on_enter=same),
-        ]
+        side, why, shown = centre_of(columns, frame_of(settings))
+        yield Question("table.centre", f"Where the centre of the circle lies: {', '.join(CENTRES)}", "starboard or port; +R port if R has a sign",
+                       side, why, "so that Nr' < 0" if side or shown else "", shown, grave=True)  # fmt: skip
+        yield Question(
+            "table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}", "x from the datum, m", same, "the reference point",
+            "the reference point, unless said", "the reference point", grave=True,
+        )  # fmt: skip
     if arm or set(ANGULAR) & set(likely) or any(map(np.any, rates.values())):
-        out.append(Question("table.contains_inertia", INERTIA_ASKED, "TRUE_OR_FALSE"))
+        computed = raw.dialect.get("importer") in COMPUTED or _kind(raw, settings, words) == "cfd"
+        yield Question(
+            "table.contains_inertia", "Do the forces contain the model's own inertia: true for a balance on a real rotating arm, "
+            "false for a solver or where it was subtracted", "true (a balance), false (subtracted)", "false" if computed else "",
+            "a solver gives the force of the fluid alone", "a solver's forces do not", grave=True,
+        )  # fmt: skip
     if (inside := settings.get("table.contains_inertia")) and inside.value is True:
-        out += [
-            Question("inertia.mass", "Mass of the model, kg", "MASS"),
-            Question(
-                "inertia.centre_of_gravity", f"Its centre of gravity: {PLACE_ASKED}{enter}", "X,Y,Z", on_enter=same
-            ),
-        ]
+        yield Question("inertia.mass", "Mass of the model, kg", "kg", grave=True)
+        yield Question(
+            "inertia.centre_of_gravity",
+            f"Its centre of gravity: {PLACE_ASKED}",
+            "x from the datum, m, or x, y, z",
+            grave=True,
+        )
         # About one axis alone the moment of inertia holds nothing: omega x I omega = 0.
+        angles = [c.said.name for c in columns if c.said.role == "angle"] + list(likely)
         if np.any(np.sum([*rates.values()], axis=0) > 1) or (arm and "alpha" in angles):
-            out.append(Question("inertia.inertia", "Ix, Iy, Iz about its centre of gravity, kg m^2", "IX,IY,IZ"))
-    kinds = ", ".join(TABLE_KINDS)
-    cited = raw.path.resolve().name
-    out += [
-        Question("source.kind", f"What the numbers are: {kinds}", "KIND"),
-        Question("source.citation", "Their report, test or person", "SOURCE", cited, "the file's name", True),
-    ]
-    return tuple(_offered(q, raw) for q in out if q.key not in settings)
+            yield Question(
+                "inertia.inertia", "Ix, Iy, Iz about its centre of gravity, kg m^2", "Ix, Iy, Iz, kg m^2", grave=True
+            )
 
 
-def _offered(q: Question, raw: RawTable) -> Question:
-    """The question with what words over the table say as its default, where nothing else gives one."""
-    said = raw.stated.get(q.key)
-    if q.default or said is None or not said.offered:
+def _kind(raw: RawTable, settings: Settings, words: Mapping[str, Any]) -> str:
+    """What the numbers are, as said or as words say it."""
+    if "source.kind" in settings:
+        return str(settings["source.kind"].value)
+    if raw.dialect.get("importer") in COMPUTED:
+        return "cfd"
+    said = raw.stated.get("source.kind") or words.get("source.kind")
+    return str(said.value) if said else ""
+
+
+def _of_source(raw: RawTable) -> Iterator[Question]:
+    kind = "cfd" if raw.dialect.get("importer") in COMPUTED else "unstated"
+    why = "files of a solver" if kind == "cfd" else "not stated"
+    yield Question("source.kind", f"What the numbers are: {', '.join(TABLE_KINDS)}", "", kind, why, why, harmless=True)
+    yield Question("source.citation", "Their report, test or person", "", raw.path.resolve().name, "the file's name", "the file's name",
+                   harmless=True)  # fmt: skip
+
+
+def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
+    """The question with what words over the table or its name say as its default, where no number gives one."""
+    said = raw.stated.get(q.key) or words.get(q.key)
+    if (
+        said is None
+        or not said.offered
+        or (q.default and not q.harmless and q.key not in ("axes.datum", "conditions.density", "conditions.speed"))
+    ):
+        return q
+    if q.harmless and q.default and q.why.startswith("median"):
         return q
     value = f"{said.value:.12g}" if isinstance(said.value, float) else str(said.value)
-    return replace(q, default=value, why=said.place)
+    return replace(q, default=value, why=said.place, short=said.place, shown="")
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,10 +358,13 @@ class Understood:
         As they would be if all whole proposals are right.
     shows : tuple of Evidence
     questions : tuple of Question
+        What nobody has said yet.
     complaints : tuple of InputError
         What is said of columns and cannot be.
     doubts : tuple of Doubt
         Rates whose sign the numbers contradict and that no person has judged, and rates about another axis than the forces say.
+    about : mapping of str to str
+        The long explanation of every key, said ones too.
     """
 
     proposals: tuple[Proposal, ...]
@@ -200,6 +375,7 @@ class Understood:
     questions: tuple[Question, ...]
     complaints: tuple[InputError, ...] = ()
     doubts: tuple[Doubt, ...] = ()
+    about: Mapping[str, str] = field(default_factory=dict)
 
 
 def understood(
@@ -219,7 +395,7 @@ def understood(
     judged : collection of str, optional
         Columns whose sign a person has settled, by default all of ``said``.
     """
-    offers = proposals(raw)
+    offers = proposals(raw, {key: settings[key].value for key in EXTRA if key in settings})
     mapping: dict[str, ColumnMap] = {}
     still: list[tuple[RawColumn, Proposal]] = []
     for column, offer in zip(raw.columns, offers, strict=True):
@@ -236,13 +412,15 @@ def understood(
     try:
         columns = assigned(raw, said_of, whole=False)
     except InputError as why:
-        complaints = (why, *why.others)
         columns = tuple(_possible(raw, said_of))
-    frame = frame_of(settings)
+        unfinished = why.found == NO_FORCE and any(not offer.whole for _, offer in still)
+        complaints = () if unfinished else (why, *why.others)
+    likely = _with_frame(raw, settings)
+    frame = frame_of(likely)
     warned = {unturned(c.column.name, c.said) for c in columns} if BODY_AXES in raw.stated else set()
     shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
     names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
-    asked = questions(raw, columns, settings, shows, names)
+    asked = questions(raw, columns, likely, shows, names, [o for _, o in still])
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
     if "conditions.density" in settings:
@@ -254,7 +432,17 @@ def understood(
         if e.against and one.said.name == e.against and not one.said.error
         and (e.instead or not settled & {one.column.name, *known_as(one.column)})
     ]  # fmt: skip
-    return Understood(offers, mapping, tuple(still), columns, shows, asked, complaints, tuple(doubts))
+    yet = tuple(q for q in asked if q.key not in settings)
+    about = {q.key: q.asks for q in asked}
+    return Understood(offers, mapping, tuple(still), columns, shows, yet, complaints, tuple(doubts), about)
+
+
+def _with_frame(raw: RawTable, settings: Settings) -> Settings:
+    """The settings, with the axes that words over the table say where nobody has declared any."""
+    said = raw.stated.get("axes.frame")
+    if said is None or not said.offered or "axes.frame" in settings:
+        return settings
+    return {**settings, "axes.frame": Setting(read_setting("axes.frame", said.value), said.place)}
 
 
 def _doubt(one: Assigned, shows: Evidence, frame: Axes | None) -> Doubt:
@@ -291,42 +479,6 @@ def _possible(raw: RawTable, said: Mapping[str, ColumnMap]) -> Iterator[Assigned
             continue
 
 
-def argument(option: str, key: str, text: str) -> str:
-    """An argument of the command line as a shell takes it; primes in double quotes."""
-    said = f"{key}={text}"
-    plain = "'" in said and not set(said) & set('"$`\\!\n')
-    return f'{option} "{said}"' if plain else f"{option} {shlex.quote(said)}"
-
-
-def open_points(found: Understood, accept: bool = False) -> tuple[tuple[str, str], ...]:
-    """Arguments that settle what is open, each with what it rests on.
-
-    Parameters
-    ----------
-    found : Understood
-    accept : bool
-        Leave out questions whose answer follows from evidence.
-    """
-    out = []
-    for d in found.doubts:
-        ways = [argument("--map", d.column.name, str(replace(d.said, negative=turned))) for turned in (True, False)]
-        if d.another:
-            which = f"The second {d.turns} where {d.column.name} > 0, the first the other way"
-        else:
-            which = "The first turns its sign, the second keeps it" + f": {d.column.name} > 0 {d.turns}" * bool(d.turns)
-        out.append((" or ".join(ways), f"{d.why}. {which}"))
-    doubted = [d.column.name for d in found.doubts]
-    for column, offer in found.open:
-        if column.name in doubted:
-            continue
-        text = offer.text.replace(OPEN, "UNIT" if "coefficient" not in offer.text else "SIZE") or "WHAT"
-        out.append((argument("--map", column.name, text), offer.why))
-    for q in found.questions:
-        if not (q.certain or (accept and q.default)):
-            out.append((argument("--set", q.key, q.default or q.place), q.why or q.asks))
-    return tuple(out)
-
-
 def _point(value: Any) -> str:
     return f"({', '.join(f'{x:g}' for x in value)})" if isinstance(value, tuple) else str(value)
 
@@ -336,153 +488,3 @@ def _median(columns: Sequence[Assigned], role: str) -> str:
     values = next((c.values for c in columns if c.said.role == role), np.empty(0))
     usable = values[np.isfinite(values)]
     return f"{float(np.median(usable)):.12g}" if usable.size else ""
-
-
-@dataclass(frozen=True, slots=True)
-class Group:
-    """Questions that one line answers; what it leaves open is asked alone.
-
-    Attributes
-    ----------
-    name : str
-        For the prompt.
-    keys : tuple of str
-    asks : str
-        With an example.
-    split : callable
-        From what was typed to texts, one a key; empty ones are open.
-    questions : tuple of Question
-        In the order of the keys.
-    """
-
-    name: str
-    keys: tuple[str, ...]
-    asks: str
-    split: Callable[[str], tuple[str, ...]]
-    questions: tuple[Question, ...] = ()
-
-    def question(self, key: str) -> Question:
-        """The question of a key."""
-        return self.questions[self.keys.index(key)]
-
-    @property
-    def enter(self) -> str:
-        """What Enter takes; empty where nothing is offered for the first question."""
-        offers = [q.default or q.on_enter for q in self.questions]
-        return ", ".join(filter(None, offers)) if offers[0] else ""
-
-    @property
-    def text(self) -> str:
-        """What it asks, and what is offered with what it rests on."""
-        offers = [f"{q.default} ({q.why})" if len(self.keys) > 1 else q.why for q in self.questions if q.default]
-        return f"{self.asks}." + f" {'Default' if self.enter else 'Unless said'}: {'; '.join(offers)}." * bool(offers)
-
-    def answers(self, typed: str) -> dict[str, str]:
-        """Texts by key; fewer texts than keys go to those without a default, which the others take.
-
-        Raises
-        ------
-        InputError
-            More than is asked for, or a place with its side in words.
-        """
-        parts = self.split(typed)
-        if len(parts) > len(self.keys):
-            raise InputError(shown(typed), f"at most {len(self.keys)} answers: {', '.join(self.keys)}")
-        defaults = {q.key: q.default or q.on_enter for q in self.questions}
-        bare = [k for k in self.keys if not defaults[k]]
-        said = dict(zip(bare if len(parts) == len(bare) else self.keys, parts))
-        return {k: text for k in self.keys if (text := said.get(k, "") or defaults[k])}
-
-
-def _place_and_datum(typed: str) -> tuple[str, ...]:
-    """``-2.1 from nose``, ``nose -2.1, 0, 0``, or ``midship``, which is the point itself."""
-    numbers = re.search(r"[-+]?\d[^A-Za-z]*(?:(?:mm|cm|m)\b)?", typed)
-    at = numbers[0].strip(" ,;:@") if numbers else ""
-    rest = (
-        (typed[: numbers.start()] + " " + typed[numbers.end() :] if numbers else typed)
-        .replace("(", " ")
-        .replace(")", " ")
-    )
-    words = [w for w in re.split(r"[\s,;:@]+", rest) if w]
-    if numbers and (sided := {w.casefold() for w in words} & _SIDED):
-        raise InputError(
-            f"{shown(typed)}, the side as a word", "the side as a sign, x forward: -2.1 from nose is 2.1 m aft of it",
-            advice=f"Leave out {sided.pop()}.",
-        )  # fmt: skip
-    named = " ".join(w for w in words if w.casefold() not in _BETWEEN)
-    return named, at or ("0" if named else "")
-
-
-_BETWEEN = frozenset(["from", "of", "the", "at", "von", "vom", "ab", "am", "du", "de", "la", "m"])
-_SIDED = frozenset(
-    [
-        "aft",
-        "behind",
-        "abaft",
-        "astern",
-        "after",
-        "forward",
-        "fwd",
-        "fore",
-        "ahead",
-        "before",
-        "below",
-        "above",
-        "under",
-        "over",
-        "port",
-        "starboard",
-        "hinter",
-        "vor",
-        "achtern",
-        "achterlich",
-        "vorn",
-        "ueber",
-        "über",
-        "unter",
-        "derriere",
-        "derrière",
-        "devant",
-    ]
-)
-
-
-def _size_and_name(typed: str) -> tuple[str, ...]:
-    """``4.3 m LBP``, ``4.3, LBP`` or ``4300 mm``."""
-    found = re.match(r"\s*([-+]?[\d.,]*\d(?:\s*(?:mm|cm|m|ft|in)\b)?)[\s,;:]*(.*)", typed)
-    return (found[1].strip(), found[2].strip(" ()")) if found else (typed, "")
-
-
-def _numbers(typed: str) -> tuple[str, ...]:
-    """``998.8 kg/m^3, 1.5 m/s`` or ``998.8 1.5``."""
-    return tuple(p for p in re.split(r"\s*;\s*|,\s+|(?<=\d),(?=\d+\.)|\s+(?=[-+.]?\d)", typed.strip()) if p)
-
-
-def _kind_and_citation(typed: str) -> tuple[str, ...]:
-    kind, _, cited = typed.replace(":", ",", 1).replace(";", ",", 1).partition(",")
-    return kind.strip(), cited.strip()
-
-
-GROUPS = (
-    Group("moments about", ("axes.datum", POINT_OF), "Point that the moments are about: a named one (midship, cg, nose), or x or "
-          "x, y, z in m from one, x forward, y starboard, z down: -2.1 from nose (2.1 m aft of it)", _place_and_datum),
-    Group("length", ("scaling.length", "scaling.length_name"), "Length of the primes and its name, such as 4.3 m LBP", _size_and_name),
-    Group("density, speed", ("conditions.density", "conditions.speed"), "Density of the water in kg/m^3 and speed in m/s, such as "
-          "998.8, 1.5", _numbers),
-    Group("source", ("source.kind", "source.citation"), f"What the numbers are ({', '.join(TABLE_KINDS)}), and their report, test "
-          "or person, such as experiment, basin report 12", _kind_and_citation),
-)  # fmt: skip
-
-
-def alone(one: Question) -> Group:
-    """A question by itself."""
-    return Group(one.key, (one.key,), one.asks, lambda typed: (typed,), (one,))
-
-
-def together_with(one: Question, asked: Sequence[Question]) -> Group | None:
-    """The group of a question, if all of it is open and what Enter takes is clear; else None."""
-    by_key = {q.key: q for q in asked}
-    group = next((g for g in GROUPS if one.key in g.keys), None)
-    if group is None or any(k not in by_key or by_key[k].on_enter for k in group.keys):
-        return None
-    return replace(group, questions=tuple(by_key[k] for k in group.keys))

@@ -31,13 +31,13 @@ from coeflab.tables.column_map import ColumnMap, read_column_map
 from coeflab.tables.raw_table import RawTable
 
 POINT_OF = "axes.reference_point"
+EXTRA = ("coefficients.area", "coefficients.length", "columns.units")  # said of columns: no keys of campaign.toml
 CONFIRMED = ("confirmed", "from ")
 _KINDS = {
     "campaign": CampaignHead, "axes": CampaignAxes, "scaling": Scaling, "conditions": CampaignConditions,
     "source": TableSource, "inertia": TowedInertia, "uncertainty": InputUncertainty, "table": TableDeclaration,
 }  # fmt: skip
 SECTIONS = {section: tuple(f.name for f in fields(kind)) for section, kind in _KINDS.items()}
-PLACES = ("FRAME", "POINT", "NAME", "SOURCE", "KIND", "SIGN", "SIDE")
 RESERVED = ("table.file", "table.source_sha256", "table.sha256", "table.cells", "campaign.importer")
 PLACE_WANTED = "x, y, z in m, such as -2.1, 0, 0, or x alone; 0 is the datum"
 _ALONG = re.compile(r"[-+]?\d+(?:\.\d*)?\s*[a-z]{1,4}")
@@ -133,7 +133,22 @@ def _one_of(*words: str) -> Callable[[Any], Any]:
     return lambda said: one_of(*words).read(said, Path())
 
 
+def _area(said: Any) -> Any:
+    if str(said).casefold().rstrip("s") == "prime":
+        return "prime"
+    _measured("area")(said)
+    return quantity(said, "area")
+
+
+def _length(said: Any) -> float:
+    _measured("length")(said)
+    return quantity(said, "length")
+
+
 READERS: dict[str, Callable[[Any], Any]] = {
+    "coefficients.area": _area,
+    "coefficients.length": _length,
+    "columns.units": _one_of("SI"),
     "axes.frame": _frame,
     "axes.alpha": _sign("alpha"),
     "axes.beta": _sign("beta"),
@@ -169,17 +184,85 @@ def read_setting(key: str, text: Any) -> Any:
         No such key, or nothing that it takes.
     """
     section, _, name = key.partition(".")
-    if name not in SECTIONS.get(section, ()) or key in RESERVED:
+    if key not in EXTRA and (name not in SECTIONS.get(section, ()) or key in RESERVED):
         known = [f"{section}.{n}" for n in SECTIONS.get(section, ()) if f"{section}.{n}" not in RESERVED]
         expected = f"one of {', '.join(known or SECTIONS)}" + ("" if known else " with a key, such as axes.frame")
         raise InputError(f"the key {shown(key)}", expected)
-    if text in PLACES:
-        raise InputError(shown(text), "a value in its place", column=key)
     typed = _toml(text) if isinstance(text, str) and READERS.get(key) is not READERS["axes.datum"] else text
     try:
         return READERS.get(key, lambda said: said)(typed)
     except InputError as why:
         raise type(why)(why.found, why.expected, column=key, advice=why.advice) from None
+
+
+_PLACED = re.compile(r"[-+]?\d[^A-Za-z]*(?:(?:mm|cm|m)\b)?")
+_SIZED = re.compile(r"\s*([-+]?[\d.,]*\d(?:\s*(?:mm|cm|m|ft|in)\b)?)[\s,:]*(.*)")
+_BETWEEN = frozenset(["from", "of", "the", "at", "von", "vom", "ab", "am", "du", "de", "la", "m"])
+_SIDED = frozenset(
+    [
+        "aft",
+        "behind",
+        "abaft",
+        "astern",
+        "after",
+        "forward",
+        "fwd",
+        "fore",
+        "ahead",
+        "before",
+        "below",
+        "above",
+        "under",
+        "over",
+        "port",
+        "starboard",
+        "hinter",
+        "vor",
+        "achtern",
+        "achterlich",
+        "vorn",
+        "ueber",
+        "über",
+        "unter",
+        "derriere",
+        "derrière",
+        "devant",
+    ]
+)
+
+
+def read_settings(key: str, text: str) -> dict[str, Any]:
+    """What a person types for a key; a point says its datum and a length its name with it.
+
+    ``axes.reference_point`` takes ``-2.1 from nose`` and ``midship``, ``scaling.length`` takes ``4.3 m LOA``.
+
+    Raises
+    ------
+    InputError
+        As `read_setting`; or a place with its side in words.
+    """
+    if key == POINT_OF and re.search(r"[A-Za-zÄÖÜäöü]{2,}", re.sub(r"\b(?:mm|cm|ft|in)\b", "", text)):
+        datum, at = _place_and_datum(text)
+        return ({"axes.datum": read_setting("axes.datum", datum)} if datum else {}) | {key: read_setting(key, at)}
+    if key == "scaling.length" and (sized := _SIZED.fullmatch(text)) and (name := sized[2].strip(" ()")):
+        return {key: read_setting(key, sized[1].strip()), "scaling.length_name": name}
+    return {key: read_setting(key, text)}
+
+
+def _place_and_datum(typed: str) -> tuple[str, str]:
+    """``-2.1 from nose``, ``nose -2.1, 0, 0``, or ``midship``, which is the point itself."""
+    numbers = _PLACED.search(typed)
+    at = numbers[0].strip(" ,;:@") if numbers else ""
+    rest = typed[: numbers.start()] + " " + typed[numbers.end() :] if numbers else typed
+    words = [w for w in re.split(r"[\s,;:@()]+", rest) if w]
+    if numbers and (sided := {w.casefold() for w in words} & _SIDED):
+        raise InputError(
+            f"{shown(typed)}, the side as a word", "the side as a sign, x forward: -2.1 from nose is 2.1 m aft of it",
+            column=POINT_OF, advice=f"Leave out {sided.pop()}.",
+        )  # fmt: skip
+    if "/" in rest or (not numbers and len(words) > 2):
+        raise InputError(shown(typed), f"{PLACE_WANTED}; or -2.1 from nose, midship, cg", column=POINT_OF)
+    return " ".join(w for w in words if w.casefold() not in _BETWEEN), at or "0"
 
 
 def stated_settings(raw: RawTable) -> dict[str, Setting]:

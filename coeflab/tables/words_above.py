@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
-from itertools import pairwise
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise, permutations
 
-from coeflab.core.errors import InputError
+from coeflab.core.axes import DIRECTIONS, FRAMES, parse_axes
+from coeflab.core.errors import AxesError, InputError
 from coeflab.core.units import quantity
 from coeflab.tables.column_map import folded
 from coeflab.tables.dialect import Marks, Row
@@ -20,11 +21,13 @@ _NAMES = {
     "coefficients.area": "a s aref sref referencearea area flache flaeche bezugsflache bezugsflaeche surface",
     "coefficients.length": "lref referencelength bezugslange bezugslaenge",
     "inertia.mass": "m mass masse modelmass modellmasse",
+    "conditions.viscosity": "nu ν viscosity kinematicviscosity viskositat viskositaet kinematischeviskositat viscosite",
 }
 _KEYS = {word: key for key, words in _NAMES.items() for word in words.split()}
 _DIMENSIONS = {
     "conditions.speed": "speed", "conditions.density": "density", "scaling.length": "length", "coefficients.area": "area",
     "coefficients.length": "length", "inertia.mass": "mass",
+    "conditions.viscosity": "viscosity",
 }  # fmt: skip
 _LENGTHS = ("lpp", "lbp", "loa", "lwl", "los")
 _SAID = re.compile(
@@ -37,6 +40,121 @@ _BODY = re.compile(
     r"(?i)\b(?:k(?:ö|oe|o)rper|schiffs|boots|modell)fest|\b(?:body|ship|hull|vessel)[- ]?(?:fixed|axes|axis|frame)\b"
     r"|\brep[èe]re\s+(?:li[ée]|du\s+(?:corps|navire))\b|\baxes\s+li[ée]s\b"
 )
+
+_TEMPERATURE = re.compile(
+    r"(?i)(?:\bt|temp\w*|temperatur\w*)\s*(?:=|:|\bof\b)?\s*(?P<t>\d{1,2}(?:[.,]\d+)?)\s*(?:°|º|deg)\s*C\b"
+)
+_SALT = re.compile(
+    r"(?i)\b(?:sea\s?-?water|salt\s?-?water|salzwasser|seewasser|meerwasser|eau\s+(?:de\s+mer|sal[ée]e))\b"
+)
+_FRESH = re.compile(
+    r"(?i)\b(?:fresh\s?-?water|tap\s?-?water|s(?:ü|ue)(?:ß|ss)wasser|frischwasser|leitungswasser|eau\s+douce)\b"
+    r"|(?P<tank>\btow(?:ing)?[- ]tank\b|schlepp(?:tank|kanal|rinne|versuch)|bassin\s+(?:de\s+)?(?:traction|car[èe]nes?))"
+)
+_KINDS = {
+    "cfd": r"cfd|rans\w*|open\s?foam|star-?ccm\+?|fluent|cfx|su2|simulation|k-?omega|k-?epsilon|sst",
+    "experiment": r"tow(?:ing)?[- ]tank|basin|tank|rotating[- ]arm|experiment\w*|measure[dm]\w*|wind[- ]?tunnel|schlepp\w*|versuch\w*|"
+    r"messung\w*|drehkran\w*|rundlauf\w*|bassin|essais?|mesur\w*",
+    "synthetic": r"synthetic|synthetisch|synth[ée]tique|invented",
+}
+_POINT = re.compile(
+    r"(?i)\b(?:moments?\s+(?:are\s+)?(?:taken\s+)?(?:about|around|at|to|ref\w*(?:\s+to)?)|reference\s+point|moment\w*\s+(?:um|bezogen\s+auf)|"
+    r"bezugspunkt(?:\s+der\s+momente)?|point\s+de\s+r[ée]f[ée]rence|moments?\s+(?:au|par\s+rapport\s+[àa]u?))"
+    r"\s*(?:=|:|is|ist|est|the|la|le|den|das|dem|\s)*\s*(?P<point>midships?|amidships?|nose|bow|cg|cb|c\.?o\.?g\.?|c\.?o\.?b\.?|"
+    r"cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase|ma[îi]tre[- ]couple|centre\s+de\s+gravit[ée])\b"
+)
+_POINTS = {"mids": "midship", "amid": "midship", "haup": "midship", "maît": "midship", "mait": "midship", "nose": "nose", "bow": "nose",
+           "bug": "nose", "nase": "nose", "cb": "cb", "cob": "cb", "cg": "cg", "cog": "cg", "schw": "cg"}  # fmt: skip
+_DIRECTION = re.compile(
+    r"(?i)(?<![\w'])(?P<axis>[xyz])(?:[- ]?(?:axis|achse))?\s*(?:=|:|->|→|\+|positive?|pos\.?|is|points?|nach|zeigt|zur?|to|vers|\s)*\s*"
+    r"\b(?P<to>forwards?|fwd|ahead|bow|vorne?|voraus|bug|avant|aft|astern|backwards?|stern|hinten|achtern|heck|arri[èe]re|starboard|stbd|"
+    r"sb|right|steuerbord|stb|tribord|port|left|backbord|bb|b[âa]bord|downwards?|down|unten|bas|upwards?|up|oben|haut)\b"
+)
+_TO = {
+    "forward": "forward forwards fwd ahead bow vorn vorne voraus bug avant",
+    "aft": "aft astern backward backwards stern hinten achtern heck arrière arriere",
+    "starboard": "starboard stbd sb right steuerbord stb tribord",
+    "port": "port left backbord bb bâbord babord",
+    "down": "down downward downwards unten bas",
+    "up": "up upward upwards oben haut",
+}
+_DIRECTIONS = {word: name for name, words in _TO.items() for word in words.split()}
+
+
+def water_density(celsius: float, salinity: float = 0.0) -> float:
+    """Density of water at atmospheric pressure, kg/m^3: Kell (1975) of fresh water, UNESCO (1981) with salt, g/kg.
+
+    Parameters
+    ----------
+    celsius : float
+    salinity : float
+    """
+    t, s = celsius, salinity
+    fresh = (
+        ((((-280.54253e-12 * t + 105.56302e-9) * t - 46.170461e-6) * t - 7.9870401e-3) * t + 16.945176) * t + 999.83952
+    ) / (1.0 + 16.879850e-3 * t)
+    first = (((5.3875e-9 * t - 8.2467e-7) * t + 7.6438e-5) * t - 4.0899e-3) * t + 8.24493e-1
+    second = (-1.6546e-6 * t + 1.0227e-4) * t - 5.72466e-3
+    return float(fresh + first * s + second * s**1.5 + 4.8314e-4 * s * s)
+
+
+def of_the_test(texts: Iterable[tuple[str, str]]) -> dict[str, Stated]:
+    """What words say of the water, the kind of the source, the axes and the point of the moments; offered.
+
+    Parameters
+    ----------
+    texts : iterable of (place, text)
+        Such as lines over a table with their numbers, or a file's name.
+    """
+    found: dict[str, Stated] = {}
+    degrees, water, axes = None, "", dict[str, str]()
+    first: dict[str, str] = {}
+
+    def note(key: str, value: object, place: str, said: str) -> None:
+        found.setdefault(key, Stated(value, f'{place}: "{" ".join(said.split())}"', offered=True))  # type: ignore[arg-type]
+
+    for place, text in texts:
+        if m := _TEMPERATURE.search(text):
+            degrees = float(m["t"].replace(",", "."))
+            first.setdefault("water", f'{place}: "{m[0].strip()}"')
+        if m := _SALT.search(text):
+            water = "sea"
+            first.setdefault("water", f'{place}: "{m[0]}"')
+        elif m := _FRESH.search(text):
+            water = water or "fresh"
+            first.setdefault("water", f'{place}: "{m[0]}"' + ", fresh water" * bool(m["tank"]))
+        for kind, words in _KINDS.items():
+            if m := re.search(rf"(?i)(?<![^\W_])(?:{words})(?![^\W_])", text):
+                note("source.kind", kind, place, m[0])
+        if m := _POINT.search(text):
+            short = m["point"].casefold().replace(".", "")
+            named = "cb" if "buoy" in short else _POINTS.get(short, _POINTS.get(short[:4], "cg"))
+            note("axes.datum", named, place, m[0])
+        for m in _DIRECTION.finditer(text):
+            axes.setdefault(m["axis"].casefold(), _DIRECTIONS[m["to"].casefold()])
+            first.setdefault("axes", place)
+    if water or degrees is not None:
+        at = {"sea": 15.0}.get(water, 20.0) if degrees is None else degrees
+        density = round(water_density(at, 35.0 if water == "sea" else 0.0), 1)
+        how = f"{water or 'fresh'} water of {at:g} °C" + ", 35 g/kg of salt" * (water == "sea")
+        found["conditions.density"] = Stated(density, f"{how}; {first['water']}", offered=True)
+    if len(axes) >= 2 and (frame := _frame(axes)):
+        found["axes.frame"] = Stated(
+            frame, f"{first['axes']}: " + ", ".join(f"{a} {d}" for a, d in axes.items()), offered=True
+        )
+    return found
+
+
+def _frame(axes: Mapping[str, str]) -> str:
+    """The frame of two or three directions, right-handed; empty where they span none."""
+    for name, directions in (*FRAMES.items(), *((", ".join(d), d) for d in permutations(DIRECTIONS, 3))):
+        if all(directions["xyz".index(a)] == d for a, d in axes.items()):
+            try:
+                parse_axes(list(directions))
+            except AxesError:
+                continue
+            return name
+    return ""
 
 
 def _number(text: str, marks: Marks) -> float | None:
@@ -82,6 +200,7 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
         Offered: somebody has to confirm them. In SI. A key that two lines say differently is left out, and so is a single
         letter without a unit that fits. `BODY_AXES` where the words say that forces count along the body.
     """
+    rows = list(rows)
     found: dict[str, Stated] = {}
     twice: set[str] = set()
     for line, cells in rows:
@@ -109,4 +228,5 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
                 found.setdefault(key, Stated(size, place, offered=True))
                 if name in _LENGTHS:
                     found.setdefault("scaling.length_name", Stated(name.upper(), place, offered=True))
-    return {key: one for key, one in found.items() if key not in twice}
+    told = of_the_test((f"line {line}", " ".join(c for c in cells if c)[:LONGEST]) for line, cells in rows)
+    return told | {key: one for key, one in found.items() if key not in twice}

@@ -12,13 +12,17 @@ import numpy as np
 from coeflab.core.files import located
 from coeflab.core.machine import one_thread
 from coeflab.core.types import brief
-from coeflab.motion.glider.glide import GlideRun, SteadyGlide, steady_glides
+from coeflab.motion.glider.glide import GlideRun, SteadyGlide, steady_glides, steady_spirals
 from coeflab.motion.glider.glider import GliderPhase, gliders_at
 from coeflab.motion.glider.motion import Setting
+from coeflab.motion.glider.space import Spiral
 from coeflab.motion.simulators import SIMULATORS
 
 TIMES = ("time [s]", "x [m]", "depth [m]", "V [m/s]", "alpha [deg]", "theta [deg]", "u [m/s]", "w [m/s]", "q [deg/s]")
 ORDERS = ("net_mass [kg]", "position [m]", "phase [-]")
+ASIDE = (
+    "y [m]", "phi [deg]", "psi [deg]", "v [m/s]", "p [deg/s]", "r [deg/s]", "roller [deg]", "right [N]", "left [N]",
+)  # fmt: skip
 POLAR = ("net_mass [kg]", "alpha [deg]", "zeta [deg]", "theta [deg]", "V [m/s]", "ahead [m/s]", "sinking [m/s]")
 
 
@@ -31,15 +35,18 @@ class Flown:
     ----------
     run : GlideRun
     steady : tuple of SteadyGlide
-        Of all phases, those of equal orders once.
+        Straight, of all phases, those of equal orders once.
+    spirals : tuple of (str, Spiral)
+        What the straight glides of a phase become under its roller and thrusters, with the name of the phase.
     """
 
     run: GlideRun
     steady: tuple[SteadyGlide, ...]
+    spirals: tuple[tuple[str, Spiral], ...] = ()
 
 
 @one_thread()
-def fly(name: str | Path, cycles: int, options: Mapping[str, Any]) -> tuple[Flown, ...]:
+def fly(name: str | Path, cycles: int, options: Mapping[str, Any], roller: float = 0.0) -> tuple[Flown, ...]:
     """Fly a glider file, every one of a folder, or a shipped glider.
 
     Parameters
@@ -49,20 +56,24 @@ def fly(name: str | Path, cycles: int, options: Mapping[str, Any]) -> tuple[Flow
         How often the phases of the file are flown, from 1.
     options : mapping
         Of the simulator ``glider``.
+    roller : float
+        Angle of the roller in every phase, rad; zero: as the file orders.
 
     Raises
     ------
     InputError
-        Nothing there, a file or an option that cannot be used.
+        Nothing there, a file or an option that cannot be used, a roller that the file does not have.
     """
     simulator = SIMULATORS.load("glider")
     out = []
-    for g in gliders_at(located(name, "cfd_data")):
+    for read in gliders_at(located(name, "cfd_data")):
+        g = read.rolled(roller) if roller else read
         run = GlideRun(g, simulator.simulate(g, g.manoeuvre(cycles), options))
         distinct: dict[Setting, GliderPhase] = {}
         for phase in g.phases:
             distinct.setdefault(phase.setting, phase)
-        out.append(Flown(run, tuple(s for p in distinct.values() for s in steady_glides(g, p))))
+        turns = tuple((p.name, s) for p in distinct.values() if p.turns for s in steady_spirals(g, p))
+        out.append(Flown(run, tuple(s for p in distinct.values() for s in steady_glides(g, p)), turns))
     return tuple(out)
 
 
@@ -94,11 +105,19 @@ def _csv(header: Sequence[str], columns: Iterable[Any]) -> bytes:
 def motion_csv(run: GlideRun) -> bytes:
     """The motion, one row a time; alpha is empty at rest."""
     t = run.trajectory
-    columns = (
+    columns: tuple[Any, ...] = (
         run.time, run.x, run.depth, run.speed, np.degrees(run.alpha), np.degrees(run.theta), t.velocity[:, 0],
         t.velocity[:, 2], np.degrees(t.velocity[:, 4]), t.controls["net_mass"], t.controls["position"], t.phase,
     )  # fmt: skip
-    return _csv((*TIMES, *ORDERS), columns).replace(b",nan,", b",,")
+    names: tuple[str, ...] = (*TIMES, *ORDERS)
+    if "roller" in t.controls:
+        angles, nu, c = np.degrees(t.angles), t.velocity, t.controls
+        names = (*names, *ASIDE)
+        columns = (
+            *columns, t.position[:, 1], angles[:, 0], np.degrees(t.heading), nu[:, 1], np.degrees(nu[:, 3]), np.degrees(nu[:, 5]),
+            np.degrees(c["roller"]), c["right"], c["left"],
+        )  # fmt: skip
+    return _csv(names, columns).replace(b",nan,", b",,")
 
 
 def steady_csv(flown: Flown) -> bytes:

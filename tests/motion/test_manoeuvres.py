@@ -310,6 +310,7 @@ def test_figures_beyond_the_data_say_so() -> None:
         ("turning_circle", STABLE, {"commands": "left"}, 'found "left"; expected NAME=NUMBER'),
         ("turning_circle", STABLE, {"commands": "thrust=1 thrust=2"}, 'found "thrust" twice'),
         ("free_decay", STABLE, {}, "p held"),
+        ("glide", STABLE, {}, "does not glide"),
     ],
 )
 def test_what_cannot_be_done(manoeuvre: str, values: dict[str, float], options: dict[str, Any], says: str) -> None:
@@ -325,8 +326,29 @@ def test_a_rudder_beyond_its_limit_is_refused() -> None:
 
 def test_every_manoeuvre_is_tried_here() -> None:
     assert set(MANOEUVRES.names()) == {
-        "depth_change", "free_decay", "pull_out", "spiral", "stop", "straight_run", "turning_circle", "zigzag",
-    }  # fmt: skip
+        "depth_change", "free_decay", "glide", "medium_change", "pull_out", "spiral", "steady_motion", "stop",
+        "straight_run", "turning_circle", "zigzag",
+    }  # fmt: skip  # medium_change in test_media.py
+
+
+def test_a_steady_motion_holds_a_helix() -> None:
+    """Radius u / r, and a descent of w in a level attitude; the path of constant velocities is the helix."""
+    turn = np.radians(20.0)
+    asked = {"speed": 0.5, "heave": 0.06, "yaw_rate": turn, "duration": 18.0, "starts": 0}
+    found = simulate(read_parameter_file(Path("flyingfish_water")), "steady_motion", asked)
+    held = {f.name: f.value for f in found.figures}
+    assert held["radius"] == pytest.approx(0.5 / turn)
+    assert held["descent a turn"] == pytest.approx(0.06 * 18.0)
+    assert held["departure from the path"] < 1e-6
+    half = int(np.argmin(np.abs(found.trajectory.time - 9.0)))
+    time = found.trajectory.time[half]
+    due = [np.sin(turn * time) * 0.5 / turn, (1.0 - np.cos(turn * time)) * 0.5 / turn, 0.06 * time]
+    assert found.trajectory.position[half] == pytest.approx(due, abs=1e-6)
+
+
+def test_a_steady_motion_that_nothing_keeps_is_refused() -> None:
+    with pytest.raises(InputError, match="no such steady motion"):
+        simulate(made(), "steady_motion", {"speed": 1.0, "sway": 1.0, "starts": 0}, free=HORIZONTAL)
 
 
 def test_a_roll_that_oscillates_is_said() -> None:

@@ -36,11 +36,17 @@ from coeflab.motion.glider.glide import GlideRun
 from coeflab.motion.glider.glider import Glider, gliders_at, read_glider
 from coeflab.motion.simulators import SIMULATORS
 from coeflab.published.flyingfish import acceptance as flyingfish
+from coeflab.published.flyingfish import motions
 from coeflab.published.flyingfish.model import FlyingFish, calibrated, read_flyingfish
-from coeflab.published.huuv import acceptance as huuv
+from coeflab.published.huuv import turns as huuv
+from coeflab.published.huuv.five_dof import FiveDof, read_five_dof
+from coeflab.published.huuv.five_dof_file import five_dof_file
+from coeflab.published.huuv.five_dof_rows import stated_rows
 from coeflab.published.huuv.model import Huuv, parameter_file, read_huuv
 from coeflab.published.parameter_files import flyingfish_file
 from coeflab.published.thauv import acceptance as thauv
+from coeflab.published.thauv import in_space
+from coeflab.published.thauv.in_space import FlownSpiral
 from coeflab.report.acceptance import Compared, ComparedTable
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
@@ -212,7 +218,10 @@ def validate_flyingfish(fish: FlyingFish, file: ParameterFile | None = None) -> 
     """All but the searches for trims."""
     constants = calibrated(fish.rotors, fish.motion, fish.angles, fish.speeds)
     made = flyingfish_file(fish) if file is None else file
-    tables = (*flyingfish.implied(fish, constants), *flyingfish.carried(fish, made), flyingfish.air(fish))
+    tables = (
+        *flyingfish.implied(fish, constants), *flyingfish.carried(fish, made), flyingfish.air(fish),
+        *motions.without_trims(fish),
+    )  # fmt: skip
     return of_tables(tables, plausibility(made))
 
 
@@ -228,6 +237,16 @@ def validate_huuv(huuv_: Huuv) -> Verdicts:
     """All but motions in time and fits to Fig. 17."""
     file = parameter_file(huuv_)
     return of_tables(huuv.turned(huuv_, file), plausibility(file))
+
+
+@cache
+def in_five() -> FiveDof:
+    return read_five_dof(steered())
+
+
+def validate_five(five: FiveDof) -> Verdicts:
+    """Five degrees of freedom, all but motions in time; the rows of the horizontal plane are `validate_huuv`'s."""
+    return of_tables(stated_rows(five, five_dof_file(five)))
 
 
 # ---- THAUV ---------------------------------------------------------------------------------------------------------
@@ -264,6 +283,18 @@ def validate_thauv(change: Callable[[Glider], Glider] | None = None, cases: tupl
             flown(g if change is None else read_back(change(g))) if again else unmutated_flight(i)
         )
     return of_tables(thauv.compared(made))
+
+
+@cache
+def unmutated_spiral() -> FlownSpiral:
+    return in_space.flown_spiral(gliders()[1])
+
+
+def validate_thauv_in_space(change: Callable[[Glider], Glider] | None = None) -> Verdicts:
+    """What the vertical plane does not hold, of case 02; its spiral flies again where the glider is changed."""
+    glider = gliders()[1] if change is None else read_back(change(gliders()[1]))
+    flown_again = unmutated_spiral() if change is None else in_space.flown_spiral(glider)
+    return of_tables(in_space.compared_in_space(glider, flown_again))
 
 
 # ---- SUBOFF --------------------------------------------------------------------------------------------------------

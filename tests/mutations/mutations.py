@@ -13,12 +13,18 @@ import numpy as np
 from coeflab.core.files import shipped
 from coeflab.law import rigid_body
 from coeflab.law.rigid_body import momentum_quadratics, weighed
-from coeflab.motion import dynamics, steady_state
+from coeflab.motion import dynamics, media, steady_state
 from coeflab.motion.glider import motion as glider_motion
+from coeflab.motion.glider import space
 from coeflab.motion.glider.glider import Glider
+from coeflab.motion.glider.masses import MassModel
+from coeflab.motion.glider.space import SpaceBody
+from coeflab.motion.integrators.adaptive import _Phase
 from coeflab.published import parameter_files
+from coeflab.published.flyingfish import equations as aerial
 from coeflab.published.flyingfish import model as flyingfish_model
 from coeflab.published.flyingfish.model import FlyingFish
+from coeflab.published.huuv import five_dof, five_dof_file
 from coeflab.published.huuv import model as huuv_model
 from tests.mutations.harness import (
     REMUS,
@@ -27,12 +33,15 @@ from tests.mutations.harness import (
     edited,
     exchanged,
     fish,
+    in_five,
     refusals,
     steered,
+    validate_five,
     validate_flyingfish,
     validate_huuv,
     validate_remus,
     validate_thauv,
+    validate_thauv_in_space,
 )
 
 TENTH, TWENTIETH, FLIP = 1.1, 1.05, -1.0
@@ -98,6 +107,21 @@ def glider_law(old: str, new: str) -> Callable[[Suboff], Verdicts]:
     return lambda _: in_place_of(glider_motion.rates, old, new, lambda: validate_thauv(unchanged, (0,)))
 
 
+def in_space_law(function: Any, old: str, new: str) -> Callable[[Suboff], Verdicts]:
+    """Another law of masses or of the motion in space."""
+    return lambda _: in_place_of(function, old, new, validate_thauv_in_space)
+
+
+def in_space(change: Callable[[MassModel], MassModel]) -> Callable[[Suboff], Verdicts]:
+    """Other masses."""
+
+    def changed(g: Glider) -> Glider:
+        assert g.masses is not None
+        return replace(g, masses=change(g.masses))
+
+    return lambda _: refusals(lambda: validate_thauv_in_space(changed))
+
+
 THAUV = (
     ("sign of -m3 v3 q in equation 17", glider_law("-p3 * q - net_mass", "p3 * q - net_mass")),
     ("sign of m1 v1 q in equation 18, as printed", glider_law("p1 * q + net_mass", "-p1 * q + net_mass")),
@@ -112,6 +136,39 @@ THAUV = (
     ("angle of Table 3 in radians", glider(lambda g: replace(g, polar=replace(g.polar, angle_unit="rad")))),
     ("Munk moment already in the polar", glider(lambda g: replace(g, polar=replace(g.polar, contains_munk=True)))),
     ("g +5 %", glider(lambda g: replace(g, gravity=g.gravity * TWENTIETH))),
+    (
+        "a piston counts twice in equation 2",
+        in_space_law(MassModel.centre_of_gravity, "self.piston * right", "2.0 * self.piston * right"),
+    ),
+    ("sign of R sin(gamma) in equation 4", in_space_law(MassModel.roller_place, "y + arm * sin", "y - arm * sin")),
+    ("sign of R (1 - cos(gamma)) in equation 4", in_space_law(MassModel.roller_place, "z - (arm", "z + (arm")),
+    ("water of equation 5 +5 %", in_space_law(MassModel.ballast, "self.density * pi", "1.05 * self.density * pi")),
+    ("sign of 2 m_b in equation 6", in_space_law(MassModel.displaced, "self.total - 2.0", "self.total + 2.0")),
+    ("sign of equation 7", in_space_law(MassModel.centre_of_buoyancy, "-self.ballast", "self.ballast")),
+    (
+        "sign of the attitude's rate in equation 10",
+        in_space_law(space.rates_in_space, "-b * p - c * q - d * r", "b * p + c * q + d * r"),
+    ),
+    ("handedness of R in equation 8", in_space_law(space.rotation, "2.0 * (b * c - a * d)", "2.0 * (b * c + a * d)")),
+    ("sign of P x w in equation 13", in_space_law(space.pushed, "np.cross(p, turn)", "np.cross(turn, p)")),
+    ("sign of H x w in equation 12", in_space_law(space.pushed, "np.cross(h, turn)", "np.cross(turn, h)")),
+    ("sign of M v x v in equation 12", in_space_law(space.pushed, "np.cross(p, v)", "np.cross(v, p)")),
+    ("sign of the net weight in equation 13", in_space_law(space.pushed, "+ setting.net_mass", "- setting.net_mass")),
+    (
+        "sign of the masses' moment in equation 12",
+        in_space_law(space.pushed, "np.cross(body.moments(setting), down)", "np.cross(down, body.moments(setting))"),
+    ),
+    ("sign of the side force", in_space_law(SpaceBody.water, "side = -s.K_S", "side = s.K_S")),
+    ("sign of the yaw moment of sideslip", in_space_law(SpaceBody.water, "s.K_Y * beta", "-s.K_Y * beta")),
+    ("sign of the yaw damping", in_space_law(SpaceBody.water, "- s.yaw_damping", "+ s.yaw_damping")),
+    ("lift +5 % in space", in_space_law(SpaceBody.water, "lift = (polar", "lift = 1.05 * (polar")),
+    ("drag +5 % in space", in_space_law(SpaceBody.water, "drag = (polar", "drag = 1.05 * (polar")),
+    (
+        "thrusters exchanged",
+        in_space_law(SpaceBody.thrust, "setting.left - setting.right", "setting.right - setting.left"),
+    ),
+    ("roller's mass +5 %", in_space(lambda m: replace(m, roller=m.roller * TWENTIETH))),
+    ("radius of the pistons +5 %", in_space(lambda m: replace(m, piston_radius=m.piston_radius * TWENTIETH))),
 )
 
 
@@ -174,6 +231,37 @@ FLYINGFISH = (
         "sign of the Coriolis forces of the mass, m v x r",
         fish_law(momentum_quadratics, "out[:3, 3:, :] -= ", "out[:3, 3:, :] += "),
     ),
+    ("sign of v r in equation 7", fish_law(aerial.body_rates, "x / mass + v * r", "x / mass - v * r")),
+    ("sign of u q in equation 9", fish_law(aerial.body_rates, "+ u * q", "- u * q")),
+    ("sign of (I_z - I_y) q r in equation 10", fish_law(aerial.body_rates, "(k - (iz - iy)", "(k + (iz - iy)")),
+    ("sign of (I_x - I_y) p q in equation 12", fish_law(aerial.body_rates, "(n + (ix - iy)", "(n - (ix - iy)")),
+    ("weight +5 % in equations 7 to 9", fish_law(aerial.body_rates, "g = gravity * ", "g = 1.05 * gravity * ")),
+    ("sign of the righting moment in equation 23", fish_law(aerial.body_rates, "+ righting * st", "- righting * st")),
+    (
+        "sign of cos phi sin psi in equation 1",
+        fish_law(aerial.earth_rates, "(cf * sp - cp * sf * st)", "(cf * sp + cp * sf * st)"),
+    ),
+    (
+        "sign of r cos phi tan theta in equation 4",
+        fish_law(aerial.earth_rates, "+ r * cf * st / ct", "- r * cf * st / ct"),
+    ),
+    (
+        "thrust in air down, equation 31 as printed",
+        fish_law(aerial.aerial_wrench, "if as_printed else -1.0", "if as_printed else 1.0"),
+    ),
+    ("sign of the pitch moment in equation 33", fish_law(aerial.aerial_wrench, "(t3 - t4) * arm", "(t4 - t3) * arm")),
+    ("thrust factor in air +5 %", of_fish(lambda f: replace(f, rotor_air=scaled(f.rotor_air, (0, 1), TWENTIETH)))),
+    ("torque factor in air +5 %", of_fish(lambda f: replace(f, rotor_air=scaled(f.rotor_air, (1, 1), TWENTIETH)))),
+    ("damping in air +5 %", of_fish(lambda f: replace(f, air=f.air * TWENTIETH))),
+    ("air with the forces of water", fish_law(media.through_media, "media[phases[0].medium], start", "vehicle, start")),
+    (
+        "change of medium at the end of a step",
+        fish_law(_Phase.move, "now = float(brentq(", "_ = float(brentq("),
+    ),
+    (
+        "speed lost at the surface",
+        fish_law(media.through_media, "velocity=part.velocity[-1]", "velocity=0.95 * part.velocity[-1]"),
+    ),
 )
 
 
@@ -210,6 +298,38 @@ def reversed_added(_: Suboff) -> Verdicts:
         return refusals(lambda: validate_huuv(steered()))
 
 
+def of_five(name: str, factor: float) -> Callable[[Suboff], Verdicts]:
+    """A constant of five_dof.toml times a factor."""
+    changed = replace(in_five(), constants={**in_five().constants, name: in_five().constants[name] * factor})
+    return lambda _: refusals(lambda: validate_five(changed))
+
+
+def five_law(function: Any, old: str, new: str, times: int = 1) -> Callable[[Suboff], Verdicts]:
+    """Another law in five degrees of freedom."""
+    return lambda _: in_place_of(function, old, new, lambda: validate_five(in_five()), times)
+
+
+FIVE = (
+    *(
+        (f"five_dof.toml: {name} +5 %", of_five(name, TWENTIETH))
+        for name in ("centre_below", "displaced", "tuned_by", "area", "length", "lever", "C_D2", "C_L1", "C_m1")
+    ),
+    ("equation 5 as printed: sign of the lift", five_law(five_dof.hull_damping, "* side - sa * lift", "* side + sa * lift")),
+    ("equation 5 as printed: side force without cos(alpha)", five_law(five_dof.hull_damping, "ca * sb * side", "sb * side")),
+    ("equation 7 as printed: no side force", five_law(five_dof.hull_damping, " - sa * sb * side", "")),
+    ("equation 11: sign of the pitching moment", five_law(five_dof.hull_damping, "pitching + mq", "mq - pitching")),
+    ("equation 14: sign of the elevators' lever", five_law(five_dof.elevator_damping, '+ c["lever"]', '- c["lever"]')),
+    ("elevators counted twice at no deflection", five_law(five_dof.elevator_damping, "(deflected - still)", "deflected")),
+    ("equation 1: sign of m_z z_CG in C", five_law(five_dof.coriolis, "along + surge * q", "along - surge * q")),
+    ("erratum 6: sign of the righting moment", five_law(five_dof.restoring, "out[:, 3] = ", "out[:, 3] = -")),
+    ("sign of weight less buoyancy in g", five_law(five_dof.restoring, "huuv.weight - huuv.buoyancy", "huuv.buoyancy - huuv.weight")),
+    ("equation 30 as printed: c^2 b^3", five_law(five_dof.simple_masses, "short**2 * wide", "short**2 * wide**3")),
+    ("equation 31 as printed: L_m^3", five_law(five_dof.simple_masses, "((r + tall) ** 3 - r**3)", "tall**3")),
+    ("slope of C_m(alpha): sign of the Munk moment", five_law(five_dof.pitch_slope, "added[2, 2] - added[0, 0]", "added[0, 0] - added[2, 2]")),
+    ("sign of the lift in the parameter file", five_law(five_dof_file.five_dof_file, 'c["s1"] / by', '-c["s1"] / by')),
+    ("delta + alpha in the parameter file", five_law(vars(five_dof_file)["_effective"], "(-1.0) ** k", "1.0")),
+)  # fmt: skip
+
 HUUV = (
     (
         "reverse thrust x5",
@@ -233,6 +353,7 @@ HUUV = (
     ("sign of C_A of the parameter file", reversed_added),
     ("sign of the thrusters' moment", huuv_law(huuv_model.thrust_rates, "arm * (a - b)", "arm * (b - a)")),
     ("sign of the side force in the parameter file", huuv_law(huuv_model.parameter_file, '-c["s1"]', 'c["s1"]')),
+    *FIVE,
 )
 
 
@@ -350,11 +471,13 @@ def unchanged(study: str, suboff_study: Suboff | None) -> Verdicts:
     """A validation as it is."""
     match study:
         case "thauv":
-            return validate_thauv(lambda g: g)
+            plane, turned = validate_thauv(lambda g: g), validate_thauv_in_space()
+            return Verdicts({**plane.rows, **turned.rows}, plane.checks)
         case "flyingfish":
             return validate_flyingfish(fish())
         case "huuv":
-            return validate_huuv(steered())
+            level, five = validate_huuv(steered()), validate_five(in_five())
+            return replace(level, rows=level.rows | five.rows)
         case "remus":
             return validate_remus(REMUS)
     assert suboff_study is not None
@@ -377,7 +500,7 @@ def _fish_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Ver
     for name, size in (("linear", 6), ("quadratic", 6), ("thrust", 2), ("torque", 2)):
         yield from ((f"{name}[{k}]", rotors(name, k, factor)) for k in range(size) if getattr(fish().rotors, name)[k])
     yield from ((name, constant(name, factor)) for name in fish().constants)
-    for name, value in (("air", fish().air), ("arms", fish().arms)):
+    for name, value in (("air", fish().air), ("rotor_air", fish().rotor_air), ("arms", fish().arms)):
         for at in np.argwhere(value).tolist():
             yield (
                 f"{name}{at}",
@@ -395,6 +518,7 @@ def _huuv_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Ver
     for name, value in steered().chosen.items():
         chosen = replace(steered(), chosen=dict(steered().chosen) | {name: value * factor})
         yield name, lambda _, h=chosen: refusals(lambda: validate_huuv(h))
+    yield from ((f"five_dof {name}", of_five(name, factor)) for name in in_five().constants)
 
 
 def _glider_constants(factor: float) -> Iterator[tuple[str, Callable[[Suboff], Verdicts]]]:

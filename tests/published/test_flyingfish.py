@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import runpy
 import shutil
 from pathlib import Path
 
@@ -11,7 +12,17 @@ import pytest
 from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.motion.vehicle import vehicle
-from coeflab.published.flyingfish.model import CONSTANTS, read_flyingfish, rotor_wrench, thrusters
+from coeflab.published.flyingfish.equations import aerial_wrench, body_rates, damping, dash, earth_rates, rise
+from coeflab.published.flyingfish.model import (
+    CONSTANTS,
+    MEDIA,
+    Medium,
+    read_flyingfish,
+    rotor_wrench,
+    thrusters,
+)
+from coeflab.published.parameter_files import flyingfish_file as published_file
+from coeflab.vehicle.parameter_file import read_parameter_file
 from tests.motion.trimmed import flyingfish_file
 
 
@@ -56,3 +67,63 @@ def test_a_spoiled_file_is_refused(tmp_path: Path, old: str, new: str, said: str
     file.write_text(text.replace(old, new, 1))
     with pytest.raises(InputError, match=said):
         read_flyingfish(folder)
+
+
+@pytest.mark.parametrize("medium", MEDIA)
+def test_shipped_files_are_what_their_maker_writes(medium: Medium) -> None:
+    fish = read_flyingfish()
+    file = shipped("cfd_data") / "flyingfish" / f"flyingfish_{medium}.parameters.json"
+    assert file.read_bytes() == published_file(fish, medium).to_json()
+    assert read_parameter_file(Path(f"flyingfish_{medium}")).name == f"flyingfish_{medium}"
+
+
+@pytest.mark.parametrize("medium", MEDIA)
+def test_shipped_bench_tests_are_what_their_maker_writes(medium: Medium) -> None:
+    made = runpy.run_path(str(shipped("cfd_data") / "make_flyingfish.py"))["bench"](read_flyingfish(), medium)
+    assert (shipped("cfd_data") / "flyingfish_bench_synthetic" / f"{medium}.csv").read_bytes() == made
+
+
+def test_thrust_in_air_by_hand() -> None:
+    """Equation 45 at 6000 rpm, 1.1587e-7 36e6 + 2.8619e-5 6000 = 4.343034 N, and equations 31 to 34 in both readings."""
+    thrust = 1.1587e-7 * 6000.0**2 + 2.8619e-5 * 6000.0
+    torque = 1.6430e-9 * 6000.0**2 + 2.5078e-6 * 6000.0
+    craft = vehicle(published_file(read_flyingfish(), "air"))
+    for rotor, place in (
+        ("rotor1", (1.0, 0.0)),
+        ("rotor2", (-1.0, 0.0)),
+        ("rotor3", (0.0, 1.0)),
+        ("rotor4", (0.0, -1.0)),
+    ):
+        y, x = place
+        spin = torque if y else -torque
+        found = craft.wrench({rotor: 6000.0})
+        assert found == pytest.approx([0.0, 0.0, -thrust, -thrust * 0.22649 * y, thrust * 0.22649 * x, spin], abs=1e-12)
+    t, q = np.array([[4.0, 3.0, 2.0, 1.0]]), np.array([[0.4, 0.3, 0.2, 0.1]])
+    printed, corrected = (aerial_wrench(t, q, 0.5, as_printed=p)[0] for p in (True, False))
+    assert printed == pytest.approx([0.0, 0.0, 10.0, 0.5, 0.5, 0.4])
+    assert corrected == pytest.approx([0.0, 0.0, -10.0, -0.5, 0.5, 0.4])
+
+
+def test_equations_of_motion_by_hand() -> None:
+    """Equations 1 to 12 and 19 to 24 at one state each, worked out apart."""
+    nu, angles = np.array([[1.0, 2.0, 3.0, 0.1, 0.2, 0.3]]), np.array([[np.pi / 2.0, 0.0, 0.0]])
+    assert earth_rates(nu, angles)[0] == pytest.approx([1.0, -3.0, 2.0, 0.1, -0.3, 0.2])
+    push, drag, inertia = np.array([[2.0, 4.0, 6.0, 0.1, 0.2, 0.3]]), np.zeros((1, 6)), np.array([1.0, 2.0, 4.0])
+    air = body_rates(nu, angles[:, :2], push, drag, 2.0, inertia, 10.0)[0]
+    assert air == pytest.approx(
+        [1.0 + 0.6 - 0.6, 2.0 + 0.3 - 0.3 + 10.0, 3.0 + 0.2 - 0.2, 0.1 - 0.12, (0.2 + 0.09) / 2.0, (0.3 - 0.02) / 4.0]
+    )
+    wet = body_rates(nu, angles[:, :2], push, drag, 2.0, inertia, 10.0, 22.0, -0.5)[0]
+    assert wet - air == pytest.approx([0.0, -11.0, 0.0, -0.5, 0.0, 0.0])
+    assert damping(np.array([1.0]), np.array([2.0]), np.array([[-3.0]])) == pytest.approx(-21.0)
+
+
+def test_closed_form_dash_and_rise() -> None:
+    """Without linear damping s = s1 tanh(t / tau), x = s1 tau log cosh(t / tau); upward m/(2b) log(1 + b s^2 / F)."""
+    time, speed = dash(8.0, 0.0, 2.0, 3.0, 1.0)
+    tau = 3.0 / 4.0
+    assert speed == pytest.approx(2.0 * np.tanh(time / tau))
+    assert 2.0 * tau * np.log(np.cosh(time / tau)) == pytest.approx(1.0)
+    up, height = rise(8.0, 0.0, 2.0, 3.0, 2.0)
+    assert height == pytest.approx(0.75 * np.log(2.0))
+    assert up == pytest.approx(tau * np.arctan(1.0))

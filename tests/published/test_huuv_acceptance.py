@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from coeflab.motion.tune.tuning import OPEN
-from coeflab.published.huuv.acceptance import BASE, FREE, acceptance, hidden, start_of, tuned, turning_problem
+from coeflab.published.huuv.acceptance import acceptance
 from coeflab.published.huuv.model import read_huuv
+from coeflab.published.huuv.tuning import BASE, FREE, hidden, start_of, tuned, turning_problem
 from coeflab.report.acceptance import Acceptance
 
 # Steady turns of the constants, worked out independently: commands, u, |beta|, R.
@@ -29,14 +30,17 @@ def test_everything_holds(found: Acceptance) -> None:
     assert [t.key for t in found.tables if not t.holds] == []
     assert [t.key for t in found.tables] == [
         "steady_turns", "through_file", "sides", "coriolis", "equations", "thrusters", "bounds", "simulated", "origin", "tuned_matlab",
-        "tuned_tracker", "hidden",
+        "tuned_tracker", "hidden", "five_dof_forces", "five_dof_geometry",
+        "five_dof_straight", "five_dof_dives", "five_dof_turns",
     ]  # fmt: skip
     assert len(found.errata) == 10
     assert {r.basis for t in found.tables for r in t.rows} == {"calibration", "consistency"}
-    assert list(found.counts.values()) == [0, 0, 6, 55]  # no turn is predicted: the model was fitted to them
-    assert len(found.repeated) == 50  # 25 numbers of steady turns two more ways
+    assert list(found.counts.values()) == [0, 0, 6, 98]  # no turn is predicted: the model was fitted to them
+    assert len(found.repeated) == 68  # 25 numbers of steady turns two more ways, 18 with heave and pitch
     assert "0.986 times m_y - m_x" in next(t for t in found.tables if t.key == "equations").statements[0]
     assert found.citations == ("huuv2025",)
+    assert [p.name for p in found.parameter_files] == ["huuv", "huuv_5dof"]
+    assert sum(text.startswith("Cannot be made.") for text in found.statements) == 4
 
 
 @SLOW
@@ -109,10 +113,11 @@ def test_exact_derivatives_of_the_turns() -> None:
 def test_figures_are_drawings_with_words_and_the_same_bytes_again(found: Acceptance) -> None:
     assert [name for name, _ in found.figures] == [
         *(f"huuv_{half}_{kind}" for half in ("matlab", "tracker") for kind in ("turns", "agreement")), "huuv_forces",
+        "huuv_fig07", "huuv_fig12_13_16", "huuv_fig15", "huuv_fig17_18", "huuv_masses",
     ]  # fmt: skip
     for _, figure in found.figures:
         assert figure.svg.startswith("<svg")
-    for _, figure in found.figures[:-1]:
+    for _, figure in found.figures[:4]:
         assert "Root mean square before and after" in figure.caption
     assert "data, left 20 %" in found.figures[0][1].svg
     assert [figure.svg for _, figure in acceptance().figures] == [figure.svg for _, figure in found.figures]
@@ -131,3 +136,15 @@ def test_the_drawn_forces_end_where_the_turns_end_and_name_what_is_open(found: A
         assert np.array(s.y) == pytest.approx(-np.array(s.y[::-1]), abs=1e-9)
     assert "pool: drag C_D (beta^2)" in figure.caption
     assert "no drag surface" in figure.caption
+
+
+@SLOW
+def test_figure_18_stands_below_17_and_no_point_is_drawn_that_is_not_printed(found: Acceptance) -> None:
+    turns, straight = dict(found.figures)["huuv_fig17_18"].panels
+    printed = {s.name for s in turns.series if "printed" in s.name}
+    assert printed == {"printed, simulation", "printed, pool"}
+    assert sum(len(s.x) for s in turns.series if "printed" in s.name) == 56
+    assert [s.name for s in straight.series] == ["straight, submerged, our model", "straight, without the mast's drag"]
+    for name in ("huuv_fig12_13_16", "huuv_fig15"):
+        assert all("printed" not in s.name for p in dict(found.figures)[name].panels for s in p.series)
+        assert "Assumed" in dict(found.figures)[name].caption

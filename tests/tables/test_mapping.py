@@ -16,10 +16,11 @@ from coeflab.cli import app
 from coeflab.core.axes import FRAMES, Axes, parse_axes
 from coeflab.core.errors import InputError
 from coeflab.tables.column_map import read_column_map
+from coeflab.tables.evidence import evidence
 from coeflab.tables.force_table import ForceTable
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.mapping import assigned, with_unit
-from coeflab.tables.proposals import evidence, proposals, proposed
+from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.questions import understood
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.reading import importer_of, read_raw, read_tables, recognised

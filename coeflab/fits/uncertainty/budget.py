@@ -178,6 +178,7 @@ ALWAYS_OPEN = {
     "literature": ("whatever the source left out",),
     "synthetic": (),
     "estimate": ("scatter of the methods of estimates",),
+    "unstated": ("whatever the source left out",),
 }
 REMAINS = {
     STUDIES["turbulence"]: ("turbulence model", "turbulence models not tried"),

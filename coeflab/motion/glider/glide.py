@@ -9,6 +9,7 @@ import numpy as np
 from coeflab.core.types import Array, brief
 from coeflab.motion.glider.glider import Glider, GliderPhase
 from coeflab.motion.glider.motion import balanced, eigenvalues, glide
+from coeflab.motion.glider.space import Spiral, steady_spiral
 from coeflab.motion.trajectory import Ended, Trajectory
 
 SETTLED = 0.01  # of the steady speed
@@ -74,7 +75,7 @@ def steady_glides(glider: Glider, phase: GliderPhase) -> tuple[SteadyGlide, ...]
     body, weight = glider.body, phase.net_mass * glider.gravity
     if weight == 0.0:
         return ()
-    ahead, below = body.moments(*phase.setting)
+    ahead, below = body.moments(*phase.setting[:2])
     out = []
     for alpha in balanced(body.polar, weight, body.munk, ahead, below, glider.polar.searched):
         speed, zeta = (float(v) for v in glide(body.polar, weight, alpha))
@@ -93,6 +94,15 @@ def steady_glides(glider: Glider, phase: GliderPhase) -> tuple[SteadyGlide, ...]
             )
         )
     return tuple(out)
+
+
+def steady_spirals(glider: Glider, phase: GliderPhase) -> tuple[Spiral, ...]:
+    """The steady turns that the steady glides of a phase become under its roller and thrusters; none without a motion in space."""
+    if glider.space is None:
+        return ()
+    straight = steady_glides(glider, phase)
+    found = (steady_spiral(glider.space, phase.setting, s.speed, s.alpha, s.theta) for s in straight)
+    return tuple(s for s in found if s is not None)
 
 
 @brief
@@ -127,7 +137,9 @@ class GlideRun:
 
     @property
     def theta(self) -> Array:
-        """(n,) pitch, rad, beyond 90 degrees in a loop."""
+        """(n,) pitch, rad; in the vertical plane beyond 90 degrees in a loop."""
+        if np.any(self.trajectory.attitude[:, [1, 3]]):
+            return np.asarray(self.trajectory.angles[:, 1])
         return np.asarray(2.0 * np.arctan2(self.trajectory.attitude[:, 2], self.trajectory.attitude[:, 0]))
 
     @property
@@ -157,21 +169,29 @@ class GlideRun:
         found = steady_glides(self.glider, self.phase_of(index))
         return min(found, key=lambda g: abs(g.speed - speed), default=None)
 
+    def steady_speed(self, index: int) -> float | None:
+        """Speed, m/s, that a phase tends to: of the spiral where it turns, else of the nearest steady glide."""
+        if not self.phase_of(index).turns:
+            near = self.nearest(index)
+            return None if near is None else near.speed
+        spirals = steady_spirals(self.glider, self.phase_of(index))
+        return spirals[0].speed if spirals else None
+
     def settling(self, index: int) -> float | None:
         """Time from the start of a phase until the speed stays within 1 % of the steady one, s; None where it does not."""
-        steady, last = self.nearest(index), self.ends[index]
+        steady, last = self.steady_speed(index), self.ends[index]
         first = self.ends[index - 1] if index else 0
         if steady is None:
             return None
-        apart = np.flatnonzero(np.abs(self.speed[first : last + 1] / steady.speed - 1.0) > SETTLED)
+        apart = np.flatnonzero(np.abs(self.speed[first : last + 1] / steady - 1.0) > SETTLED)
         row = first + (int(apart[-1]) + 1 if len(apart) else 0)
         return float(self.time[row] - self.time[first]) if row <= last else None
 
     def settled(self, index: int) -> bool:
         """Whether a phase ends within 1 % of the speed of a steady glide, the engine at rest."""
-        steady, row = self.nearest(index), self.ends[index]
+        steady, row = self.steady_speed(index), self.ends[index]
         reached = abs(float(self.trajectory.controls["net_mass"][row]) - self.phase_of(index).net_mass) < 1e-9
-        return steady is not None and reached and abs(float(self.speed[row]) / steady.speed - 1.0) < SETTLED
+        return steady is not None and reached and abs(float(self.speed[row]) / steady - 1.0) < SETTLED
 
     @property
     def statements(self) -> tuple[str, ...]:

@@ -15,9 +15,11 @@ import numpy as np
 from coeflab.core import declarations as takes
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.toml import read_toml, toml_text
-from coeflab.core.types import brief
+from coeflab.core.types import Array, brief
 from coeflab.core.units import STANDARD_GRAVITY
+from coeflab.motion.glider.masses import MassModel
 from coeflab.motion.glider.motion import GliderBody, Polar, Setting
+from coeflab.motion.glider.space import Force, Lateral, SpaceBody, Thrusters
 from coeflab.motion.manoeuvre import Manoeuvre, Phase, Until
 
 AngleUnit = Literal["deg", "rad"]
@@ -172,24 +174,36 @@ class GliderPhase(takes.Declaration):
         s, the longest where ``until_depth`` is given.
     until_depth : float or None
         m; met on the way down where the glider is heavy, on the way up where it is light.
+    roller : float
+        Ordered angle of the roller, rad, above zero to starboard.
+    thrust_right, thrust_left : float
+        Ordered thrusts, N.
     """
 
     name: takes.Text
     net_mass: takes.Mass
     position: takes.Length = 0.0
+    roller: takes.Angle = field(default=0.0, kw_only=True)
+    thrust_right: Force = field(default=0.0, kw_only=True)
+    thrust_left: Force = field(default=0.0, kw_only=True)
     lasts: Annotated[takes.Time, takes.ABOVE_ZERO, NOT_FOR_EVER] = field(kw_only=True)
     until_depth: takes.Length | None = field(default=None, kw_only=True)
 
     @property
     def setting(self) -> Setting:
-        """Net mass and position."""
-        return Setting(self.net_mass, self.position)
+        """All that is ordered."""
+        return Setting(self.net_mass, self.position, self.roller, self.thrust_right, self.thrust_left)
+
+    @property
+    def turns(self) -> bool:
+        """Whether roller or thrusters take it out of a straight glide."""
+        return any(self.setting[2:])
 
     @property
     def ordered(self) -> Phase:
         """The same as a phase of a manoeuvre; a heavy glider meets its depth from above, a light one from below."""
         until = None if self.until_depth is None else Until("depth", self.net_mass > 0.0, self.until_depth)
-        return Phase(self.name, {"net_mass": self.net_mass, "position": self.position}, self.lasts, until)
+        return Phase(self.name, self.setting._asdict(), self.lasts, until)
 
 
 @brief
@@ -208,6 +222,8 @@ class Glider:
     polar : StatedPolar
     phases : tuple of GliderPhase
         One cycle.
+    masses, lateral, thrusters : MassModel, Lateral and Thrusters, or None
+        What a motion in space needs; without one of them the glider stays in the vertical plane.
     basis : tuple of (str, str)
         Where a table or key of the file comes from: ``printed ...``, ``derived ...``, ``calibrated ...``, ``assumed ...``.
     """
@@ -222,6 +238,9 @@ class Glider:
     polar: StatedPolar
     phases: tuple[GliderPhase, ...]
     basis: tuple[tuple[str, str], ...] = ()
+    masses: MassModel | None = None
+    lateral: Lateral | None = None
+    thrusters: Thrusters | None = None
 
     @property
     def body(self) -> GliderBody:
@@ -240,6 +259,33 @@ class Glider:
             holds_munk=self.polar.contains_munk,
         )
 
+    @property
+    def space(self) -> SpaceBody | None:
+        """What the equations of motion in space need; None where the file holds the vertical plane alone."""
+        if self.masses is None or self.lateral is None or self.thrusters is None:
+            return None
+        return SpaceBody(self.body, self.masses, self.lateral, self.thrusters)
+
+    @property
+    def rest_place(self) -> Array | None:
+        """(3,) m, of all masses but pistons and roller, from the moments of [mass]; None without [masses]."""
+        if self.masses is None:
+            return None
+        ahead, below = self.body.moments(0.0, 0.0)
+        return self.masses.rest_place(ahead / self.gravity, below / self.gravity)
+
+    def rolled(self, angle: float) -> Glider:
+        """The same with the roller at an angle, rad, in every phase.
+
+        Raises
+        ------
+        InputError
+            The file holds the vertical plane alone.
+        """
+        if self.space is None:
+            raise InputError(f"{self.name} without a roller", "[masses], [lateral] and [thrusters]", column="roller")
+        return replace(self, phases=tuple(replace(p, roller=angle) for p in self.phases))
+
     def manoeuvre(self, cycles: int) -> Manoeuvre:
         """The phases, flown several times, from rest, level, at the surface, neutral."""
         phases = tuple(p.ordered for p in self.phases) * cycles
@@ -255,14 +301,27 @@ class Glider:
             "sliding_mass": {name: getattr(s, name) for name in SlidingMass.__slots__},
             "engine": {name: getattr(e, name) for name in BuoyancyEngine.__slots__},
             "polar": {name: getattr(p, name) for name in StatedPolar.__slots__} | {"covered": covered},
+            **{n: {k: _stored(getattr(part, k)) for k in part.__slots__} for n, part in self._in_space().items()},
             "basis": dict(self.basis),
-            "phase": [{name: getattr(p, name) for name in GliderPhase.__slots__} for p in self.phases],
+            "phase": [
+                {name: getattr(p, name) for name in GliderPhase.__slots__} | {"roller": f"{p.roller!r} rad"}
+                for p in self.phases
+            ],
         }
         return toml_text(content).encode()
 
+    def _in_space(self) -> dict[str, MassModel | Lateral | Thrusters]:
+        parts = {"masses": self.masses, "lateral": self.lateral, "thrusters": self.thrusters}
+        return {name: part for name, part in parts.items() if part is not None}
+
+
+def _stored(value: float | tuple[float, ...]) -> float | list[float]:
+    return list(value) if isinstance(value, tuple) else value
+
 
 KINDS = ("printed", "derived", "calibrated", "assumed")
-TABLES = ("glider", "mass", "sliding_mass", "engine", "polar", "phase")
+IN_SPACE = ("masses", "lateral", "thrusters")
+TABLES = ("glider", "mass", "sliding_mass", "engine", "polar", *IN_SPACE, "phase")
 
 
 def _no_name(text: str) -> str:
@@ -307,6 +366,12 @@ class GliderFile(takes.Declaration):
         What makes the vehicle heavy or light.
     polar : table
         Lift, drag and moment over the angle of attack.
+    masses : table
+        Pistons, roller and the rest; with [lateral] and [thrusters] the glider moves in space.
+    lateral : table
+        What moves it to the side.
+    thrusters : table
+        Two thrusters that push ahead.
     phase : array of tables
         Orders of one cycle, one after the other.
     basis : mapping of str to str
@@ -318,6 +383,9 @@ class GliderFile(takes.Declaration):
     sliding_mass: SlidingMass = SlidingMass(0.0, 0.0, 0.0, 0.0, 1.0)
     engine: BuoyancyEngine
     polar: StatedPolar
+    masses: MassModel | None = None
+    lateral: Lateral | None = None
+    thrusters: Thrusters | None = None
     phase: tuple[GliderPhase, ...] = ()
     basis: dict[str, takes.Text] = field(default_factory=dict)
 
@@ -330,6 +398,23 @@ class GliderFile(takes.Declaration):
                 if not part.low <= (value := getattr(phase, key)) <= part.high:
                     expected = f"{part.low:g} to {part.high:g} {unit}, which it reaches"
                     raise InputError(f"{value:g} {unit}", expected, column=f"phase[{i}].{key}")
+            self._check_in_space(i, phase)
+
+    def _check_in_space(self, i: int, phase: GliderPhase) -> None:
+        """Orders that leave the vertical plane need all that moves the glider there."""
+        asked = [key for key in ("roller", "thrust_right", "thrust_left") if getattr(phase, key)]
+        absent = [f"[{name}]" for name in IN_SPACE if getattr(self, name) is None]
+        if asked and absent:
+            advice = f"{asked[0]} moves the glider out of the vertical plane or drives it."
+            raise InputError(
+                f"no {absent[0]}", "[masses], [lateral] and [thrusters]", column=f"phase[{i}].{asked[0]}", advice=advice
+            )
+        for key in (k for k in asked if k != "roller"):
+            most = 0.0 if self.thrusters is None else self.thrusters.largest
+            if abs(value := getattr(phase, key)) > most:
+                raise InputError(
+                    f"{value:g} N", f"{-most:g} to {most:g} N, [thrusters] largest", column=f"phase[{i}].{key}"
+                )
 
 
 def read_glider(path: Path) -> Glider:
@@ -354,7 +439,7 @@ def read_glider(path: Path) -> Glider:
             raise toml.fail(f"basis.{key}", shown(said), "a text that begins with " + ", ".join(KINDS))
     return Glider(
         head.name, head.title, head.citation, head.gravity, file.mass, file.sliding_mass, file.engine, file.polar,
-        file.phase, tuple(file.basis.items()),
+        file.phase, tuple(file.basis.items()), file.masses, file.lateral, file.thrusters,
     )  # fmt: skip
 
 

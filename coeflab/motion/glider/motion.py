@@ -197,10 +197,13 @@ class GliderBody:
 
 
 class Setting(NamedTuple):
-    """Net mass, kg, and position of the sliding mass, m."""
+    """Net mass, kg, and position of the sliding mass, m; in space the roller's angle, rad, and both thrusts, N, too."""
 
     net_mass: float
     position: float
+    roller: float = 0.0
+    right: float = 0.0
+    left: float = 0.0
 
 
 class Leg(NamedTuple):
@@ -214,13 +217,13 @@ class Leg(NamedTuple):
     def setting(self, time: float) -> Setting:
         """What is set at a time of the leg."""
         since = time - self.begins
-        return Setting(self.at.net_mass + self.rate.net_mass * since, self.at.position + self.rate.position * since)
+        return Setting(*(at + rate * since for at, rate in zip(self.at, self.rate, strict=True)))
 
 
 def legs(begins: float, lasts: float, now: Setting, ordered: Setting, rate: Setting) -> list[Leg]:
     """The order of a phase as stretches that have no kink: both moving, one moving, at rest."""
-    change = Setting(ordered.net_mass - now.net_mass, ordered.position - now.position)
-    needs = [abs(c) / r for c, r in zip(change, rate, strict=True)]
+    change = [o - n for o, n in zip(ordered, now, strict=True)]
+    needs = [abs(c) / r if c else 0.0 for c, r in zip(change, rate, strict=True)]
     speed = [math.copysign(r, c) for c, r in zip(change, rate, strict=True)]
     out, start, at = [], 0.0, now
     for end in sorted({*(n for n in needs if 0.0 < n < lasts), lasts}):
@@ -257,7 +260,7 @@ def rates(body: GliderBody, leg: Leg) -> Rates:
     doubled = body.heave - body.surge if body.holds_munk else 0.0
 
     def of(time: float, y: Array) -> list[float]:
-        net_mass, position = leg.setting(time)
+        net_mass, position = leg.setting(time)[:2]
         _, _, theta, p1, p3, h = (float(v) for v in y)
         v1, v3, q = velocity(body, (p1, p3, h), position, leg.rate.position)
         speed, alpha = math.hypot(v1, v3), math.atan2(v3, v1)
@@ -293,7 +296,7 @@ def unexplained_power(body: GliderBody, setting: Setting, states: Array) -> tupl
         theta, rad, v1 and v3, m/s, and q, rad/s.
     """
     polar, of = body.polar, rates(body, Leg(0.0, 1.0, setting, Setting(0.0, 0.0)))
-    weight, (ahead, below) = setting.net_mass * body.gravity, body.moments(*setting)
+    weight, (ahead, below) = setting.net_mass * body.gravity, body.moments(*setting[:2])
     doubled = body.heave - body.surge if body.holds_munk else 0.0
     power = drift = 0.0
     for theta, v1, v3, q in states.tolist():
@@ -325,7 +328,7 @@ def eigenvalues(body: GliderBody, setting: Setting, speed: float, alpha: float, 
 
 
 class March(NamedTuple):
-    """Times (n,) and states (n, 6) after the start of a leg, whether a depth was met, and how it ended.
+    """Times (n,) and states (n, m) after the start of a leg, whether a depth was met, and how it ended.
 
     ``why`` says why it stopped early, or is empty; ``finite`` whether its state was one of numbers to the end.
     """
@@ -338,14 +341,17 @@ class March(NamedTuple):
 
 
 def march(
-    body: GliderBody, leg: Leg, start: Array, step: float, depth: tuple[float, bool] | None, tolerance: float
+    of: Rates, leg: Leg, start: Array, step: float, depth: tuple[float, bool] | None, tolerance: float
 ) -> March:  # fmt: skip
     """Integrate one leg with scipy's LSODA.
 
     Parameters
     ----------
-    body, leg : GliderBody, Leg
-    start : (6,) array
+    of : callable
+        Right-hand side of the leg.
+    leg : Leg
+    start : (m,) array
+        Its second number is the depth.
     step : float
         Between rows, s; the end of the leg is a row too.
     depth : (float, bool) or None
@@ -363,7 +369,7 @@ def march(
     next_row, finite = 0, True
     with warnings.catch_warnings(record=True) as told, np.errstate(all="ignore"):
         warnings.simplefilter("always")
-        solver = LSODA(rates(body, leg), leg.begins, start, leg.ends, rtol=tolerance, atol=1e-3 * tolerance)
+        solver = LSODA(of, leg.begins, start, leg.ends, rtol=tolerance, atol=1e-3 * tolerance)
         while solver.status == "running":
             try:
                 why = solver.step() or ""
@@ -389,7 +395,7 @@ def march(
 
 
 def _march(times: list[float], states: list[Array], met: bool, why: str = "", finite: bool = True) -> March:
-    return March(np.array(times), np.array(states).reshape(-1, 6), met, why, finite)
+    return March(np.array(times), np.array(states), met, why, finite)
 
 
 def _crossed(

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from coeflab.bodies.arm_keys import LinkKeys, PropulsorKeys, VehicleKeys
 from coeflab.bodies.closed_forms import ellipsoid_added_mass
-from coeflab.bodies.readers.arm import File, LinkKeys, PropulsorKeys, VehicleKeys
+from coeflab.bodies.readers.arm import File
 from coeflab.core import declarations as takes
 from coeflab.core.errors import shown
 from coeflab.core.text.toml import read_toml

@@ -1,7 +1,8 @@
-"""Dive-and-surface cycles of a glider in the vertical plane.
+"""Dive-and-surface cycles of a glider in the vertical plane, and its spirals in space.
 
-Equations in `coeflab.motion.glider.motion`, with the errata of the THAUV paper; scipy's LSODA integrates from kink to kink
-of the engine's and the sliding mass's motion. Deeply submerged: no surface, no waves, no current, one water density.
+Equations in `coeflab.motion.glider.motion` and, where a roller or thrusters are ordered, `coeflab.motion.glider.space`, with
+the errata of the THAUV paper; scipy's LSODA integrates from kink to kink of what is ordered. Deeply submerged: no surface, no
+waves, no current, one water density.
 """
 
 from __future__ import annotations
@@ -18,12 +19,16 @@ from coeflab.core.limits import require_rows
 from coeflab.core.options import bounded, parse_options
 from coeflab.core.types import Array
 from coeflab.motion.glider.glider import Glider
-from coeflab.motion.glider.motion import Leg, Setting, legs, march, momentum, velocity
+from coeflab.motion.glider.motion import GliderBody, Leg, Rates, Setting, legs, march, momentum, rates, velocity
+from coeflab.motion.glider.space import SpaceBody, rates_in_space, rotation, velocity_in_space
 from coeflab.motion.manoeuvre import Manoeuvre, Phase
 from coeflab.motion.trajectory import Ended, Trajectory
 
-summary = "vertical-plane glider with a sliding mass and a buoyancy engine: dive-and-surface cycles in time"
+summary = "glider with a sliding mass, a buoyancy engine, a roller and thrusters: cycles and spirals in time"
 citations = ("leonard_graver2001", "thauv")
+
+
+OUT_OF_PLANE = Setting._fields[2:]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +54,9 @@ def simulate(vehicle: Glider, manoeuvre: Manoeuvre, options: Mapping[str, Any]) 
     ----------
     vehicle : Glider
     manoeuvre : Manoeuvre
-        Orders ``net_mass``, kg, and ``position`` of the sliding mass, m, which move at the rates of the glider; a phase
-        ends by time or by depth. It starts in the vertical plane, heading north, at depth zero.
+        Orders ``net_mass``, kg, and ``position`` of the sliding mass, m, which move at the rates of the glider; with what a
+        motion in space needs also ``roller``, rad, ``right`` and ``left`` thrust, N. A phase ends by time or by depth. It
+        starts in the vertical plane, heading north, at depth zero.
     options : mapping
         See `Options`.
 
@@ -67,43 +73,55 @@ def simulate(vehicle: Glider, manoeuvre: Manoeuvre, options: Mapping[str, Any]) 
     chosen = parse_options(Options, options, "glider")
     if not isinstance(vehicle, Glider):
         raise InputError("the vehicle of a parameter file", "a glider", column="glider", advice="See `coeflab glide`.")
-    _check(manoeuvre, chosen.step)
-    flight = _Flight(vehicle, manoeuvre, chosen)
+    _check(vehicle, manoeuvre, chosen.step)
+    leaves = any(phase.orders.get(name, 0.0) for phase in manoeuvre.phases for name in OUT_OF_PLANE)
+    body = vehicle.space if leaves else None
+    flight = _Flight(vehicle, manoeuvre, chosen, _InPlane(vehicle.body) if body is None else _InSpace(body))
     reached = []
     for i, phase in enumerate(manoeuvre.phases):
         reached.append(flight.time[-1] if not flight.why and flight.fly(i, phase) else None)
     rows = np.array(flight.rows)
-    zero, half = np.zeros(len(rows)), rows[:, 2] / 2.0
-    alpha = np.arctan2(rows[:, 4], rows[:, 3])
+    velocity, attitude = rows[:, 7:13], rows[:, 3:7]
+    speed, alpha = np.linalg.norm(velocity[:, :3], axis=1), np.arctan2(velocity[:, 2], velocity[:, 0])
     outside = np.zeros(len(rows), dtype=bool)
     if vehicle.polar.covered is not None:
-        outside = (np.hypot(rows[:, 3], rows[:, 4]) > 0.0) & ~_within(alpha, vehicle.polar.covered)
+        outside = (speed > 0.0) & ~_within(alpha, vehicle.polar.covered)
+    controls = {name: rows[:, 13 + i] for i, name in enumerate(Setting._fields[: 5 if leaves else 2])}
     return Trajectory(
         time=np.array(flight.time),
-        position=np.column_stack([rows[:, 0], zero, rows[:, 1]]),
-        attitude=np.column_stack([np.cos(half), zero, np.sin(half), zero]),
-        velocity=np.column_stack([rows[:, 3], zero, rows[:, 4], zero, rows[:, 5], zero]),
-        heading=zero,
-        controls={"net_mass": rows[:, 6], "position": rows[:, 7]},
+        position=rows[:, :3],
+        attitude=attitude,
+        velocity=velocity,
+        heading=_headings(attitude) if leaves else np.zeros(len(rows)),
+        controls=controls,
         phase=np.array(flight.phase),
         phases=tuple(p.name for p in manoeuvre.phases),
         reached=tuple(reached),
         outside={} if vehicle.polar.covered is None else {"alpha": outside},
         ended=flight.ended,
         why=flight.why,
-        statements=_statements(vehicle, alpha, outside, rows[:, 3]),
+        statements=_statements(vehicle, alpha, outside, velocity[:, 0]),
     )
+
+
+def _headings(attitude: Array) -> Array:
+    """(n,) rad, without jumps."""
+    turned = [rotation(q)[:, 0] for q in attitude.tolist()]
+    return np.asarray(np.unwrap([np.arctan2(east, north) for north, east, _ in turned]))
 
 
 def _within(alpha: Array, covered: tuple[float, float]) -> NDArray[np.bool_]:
     return np.asarray((alpha >= covered[0]) & (alpha <= covered[1]))
 
 
-def _check(manoeuvre: Manoeuvre, step: float) -> None:
-    """Raise for what a glider in the vertical plane cannot fly."""
+def _check(glider: Glider, manoeuvre: Manoeuvre, step: float) -> None:
+    """Raise for what a glider cannot fly."""
+    known = Setting._fields if glider.space is not None else Setting._fields[:2]
     for phase in manoeuvre.phases:
-        if unknown := [o for o in phase.orders if o not in Setting._fields]:
-            raise InputError(f"the order {shown(unknown[0])} in {phase.name}", "net_mass or position", column="glider")
+        if unknown := [
+            o for o, value in phase.orders.items() if o not in known and (value or o not in Setting._fields)
+        ]:
+            raise InputError(f"the order {shown(unknown[0])} in {phase.name}", " or ".join(known), column="glider")
         if phase.until is not None and phase.until.quantity != "depth":
             raise InputError(f"{phase.name} until {phase.until.quantity}", "until a depth, or a time", column="glider")
     off_plane = np.concatenate([manoeuvre.velocity[[1, 3, 5]], manoeuvre.attitude[[1, 3]]])
@@ -130,17 +148,63 @@ def _statements(vehicle: Glider, alpha: Array, outside: NDArray[np.bool_], u: Ar
     return tuple(out)
 
 
+class _InPlane:
+    """The vertical plane: state, its rates and a row of what is recorded."""
+
+    def __init__(self, body: GliderBody) -> None:
+        self.body = body
+
+    def start(self, moving: Array, attitude: Array, position: float) -> Array:
+        """State at the origin."""
+        pitch = 2.0 * float(np.arctan2(attitude[2], attitude[0]))
+        return np.array([0.0, 0.0, pitch, *momentum(self.body, [float(v) for v in moving[[0, 2, 4]]], position, 0.0)])
+
+    def rates(self, leg: Leg) -> Rates:
+        """Right-hand side."""
+        return rates(self.body, leg)
+
+    def row(self, state: Array, position: float, rate: float) -> list[float]:
+        """North, east, depth, quaternion, u v w p q r."""
+        x, depth, pitch, *momenta = (float(v) for v in state)
+        u, w, q = velocity(self.body, momenta, position, rate)
+        return [x, 0.0, depth, float(np.cos(pitch / 2.0)), 0.0, float(np.sin(pitch / 2.0)), 0.0, u, 0.0, w, 0.0, q, 0.0]
+
+
+class _InSpace:
+    """The same in space."""
+
+    def __init__(self, body: SpaceBody) -> None:
+        self.body = body
+
+    def start(self, moving: Array, attitude: Array, position: float) -> Array:
+        """State at the origin."""
+        return np.array([0.0, 0.0, 0.0, *attitude, *(self.body.matrix(position) @ moving)])
+
+    def rates(self, leg: Leg) -> Rates:
+        """Right-hand side."""
+        return rates_in_space(self.body, leg)
+
+    def row(self, state: Array, position: float, rate: float) -> list[float]:
+        """North, east, depth, quaternion, u v w p q r."""
+        north, depth, east, *turned = (float(v) for v in state[:7])
+        length = float(np.linalg.norm(turned))
+        nu = velocity_in_space(self.body, state[7:], position, rate)
+        return [north, east, depth, *(q / length for q in turned), *nu.tolist()]
+
+
 class _Flight:
     """The rows so far and where it stands."""
 
-    def __init__(self, glider: Glider, manoeuvre: Manoeuvre, options: Options) -> None:
-        self.body, self.options = glider.body, options
-        self.rate = Setting(glider.engine.rate, glider.sliding_mass.rate)
+    def __init__(self, glider: Glider, manoeuvre: Manoeuvre, options: Options, motion: _InPlane | _InSpace) -> None:
+        self.motion, self.options = motion, options
+        roller, thrust = (1.0, 1.0) if glider.lateral is None or glider.thrusters is None else (
+            glider.lateral.roller_rate, glider.thrusters.rate
+        )  # fmt: skip
+        self.rate = Setting(glider.engine.rate, glider.sliding_mass.rate, roller, thrust, thrust)
         self.now = Setting(*(manoeuvre.orders.get(name, 0.0) for name in Setting._fields))
-        pitch = 2.0 * float(np.arctan2(manoeuvre.attitude[2], manoeuvre.attitude[0]))
-        moving = [float(v) for v in manoeuvre.velocity[[0, 2, 4]]]
-        self.state = np.array([0.0, 0.0, pitch, *momentum(self.body, moving, self.now.position, 0.0)])
-        self.time, self.phase, self.rows = [0.0], [0], [[0.0, 0.0, pitch, *moving, *self.now]]
+        self.state = motion.start(np.asarray(manoeuvre.velocity), np.asarray(manoeuvre.attitude), self.now.position)
+        self.time, self.phase = [0.0], [0]
+        self.rows = [[*motion.row(self.state, self.now.position, 0.0), *self.now]]
         self.ended, self.why = Ended.COMPLETE, ""
 
     def fly(self, index: int, phase: Phase) -> bool:
@@ -148,12 +212,12 @@ class _Flight:
         ordered = self.now._replace(**phase.orders)
         until = None if phase.until is None else (phase.until.value, phase.until.rises)
         for leg in legs(self.time[-1], phase.longest, self.now, ordered, self.rate):
-            found = march(self.body, leg, self.state, self.options.step, until, self.options.tolerance)
+            found = march(self.motion.rates(leg), leg, self.state, self.options.step, until, self.options.tolerance)
             for time, state in zip(found.time, found.state, strict=True):
                 self._row(index, float(time), state, leg)
             if found.why:
                 self.why = (
-                    f"in {phase.name}, after {self.time[-1]:.6g} s at {self.rows[-1][1]:.4g} m depth: {found.why}"
+                    f"in {phase.name}, after {self.time[-1]:.6g} s at {self.rows[-1][2]:.4g} m depth: {found.why}"
                 )
                 self.ended = Ended.STEP_TOO_SMALL if found.finite else Ended.NOT_FINITE
                 return False
@@ -163,7 +227,6 @@ class _Flight:
 
     def _row(self, index: int, time: float, state: Array, leg: Leg) -> None:
         self.state, self.now = state, leg.setting(time)
-        moving = velocity(self.body, [float(v) for v in state[3:]], self.now.position, leg.rate.position)
         self.time.append(time)
         self.phase.append(index)
-        self.rows.append([*(float(v) for v in state[:3]), *moving, *self.now])
+        self.rows.append([*self.motion.row(state, self.now.position, leg.rate.position), *self.now])

@@ -13,6 +13,7 @@ from coeflab.core.options import bounded, one_of, parse_options
 from coeflab.motion.approach import in_current
 from coeflab.motion.manoeuvre import Manoeuvre
 from coeflab.motion.marching import march, march_by_tolerance
+from coeflab.motion.media import through_media
 from coeflab.motion.trajectory import Ended, Trajectory
 from coeflab.motion.vehicle import Vehicle
 
@@ -76,11 +77,15 @@ def simulate(vehicle: Vehicle, manoeuvre: Manoeuvre, options: Mapping[str, Any] 
             f"a step of {o.step:g} s for the adaptive integrator", "the integrator rk4, or no step",
             column="rigid_body.step", advice="The tolerance chooses the steps of adaptive.",
         )  # fmt: skip
-    if o.integrator == "adaptive":
-        found = march_by_tolerance(vehicle, manoeuvre, o.record, o.tolerance, current)
-    else:
-        found = march(vehicle, manoeuvre, o.step, o.record, o.kernel, current)
-    motion = found.trajectory()
+
+    def moved(body: Vehicle, one: Manoeuvre) -> Trajectory:
+        if o.integrator == "adaptive":
+            return march_by_tolerance(body, one, o.record, o.tolerance, current).trajectory()
+        return march(body, one, o.step, o.record, o.kernel, current).trajectory()
+
+    if manoeuvre.others and o.down:
+        raise InputError(f"a current of {o.down:g} m/s down through a surface", "none", column="rigid_body.down")
+    motion = through_media(vehicle, manoeuvre, moved) if manoeuvre.others else moved(vehicle, manoeuvre)
     motion = replace(motion, statements=(*motion.statements, *in_current(current)))
     return _stopped_outside(motion) if o.outside == "stop" else motion
 

@@ -135,7 +135,9 @@ class FlyingFish:
         The calibrated constants as the shipped file states them.
     air : (2, 6) array
         Linear and quadratic damping in air, as in water.
-    largest_speed : float
+    rotor_air : (2, 2) array
+        Thrust and torque in air, as those of ``rotors``.
+    largest_speed, largest_speed_air : float
         Of a rotor, rpm; chosen, not printed.
     arms : (4, 3) array
         Unit vectors out to the rotors, FRD.
@@ -150,7 +152,9 @@ class FlyingFish:
     rotors: Rotors
     constants: dict[str, float]
     air: Array
+    rotor_air: Array
     largest_speed: float
+    largest_speed_air: float
     arms: Array
     handedness: tuple[Hand, ...]
     motion: Array
@@ -159,7 +163,7 @@ class FlyingFish:
     errata: tuple[str, ...] = field(default=())
 
     def __post_init__(self) -> None:
-        for name in ("air", "arms", "motion", "angles", "speeds"):
+        for name in ("air", "rotor_air", "arms", "motion", "angles", "speeds"):
             object.__setattr__(self, name, locked(getattr(self, name)))
 
 
@@ -190,7 +194,9 @@ def read_flyingfish(folder: Path | None = None) -> FlyingFish:
                *(_numbers(file, f"rotor.{k}", 2) for k in ("thrust", "torque"))),
         {name: takes.declared_key(file, f"calibrated.{name}", takes.Pure) for name in CONSTANTS},
         np.array([_numbers(file, f"damping_air.{k}", 6) for k in ("linear", "quadratic")]),
+        np.array([_numbers(file, f"rotor_air.{k}", 2) for k in ("thrust", "torque")]),
         takes.declared_key(file, "rotor.largest_speed", Annotated[takes.Pure, takes.ABOVE_ZERO]),
+        takes.declared_key(file, "rotor_air.largest_speed", Annotated[takes.Pure, takes.ABOVE_ZERO]),
         np.array([_numbers(file, f"thruster[{i}].arm", 3) for i in at]),
         tuple(1 if takes.declared_key(file, f"thruster[{i}].handedness", takes.Pure) > 0 else -1 for i in at),
         motion,
@@ -200,21 +206,34 @@ def read_flyingfish(folder: Path | None = None) -> FlyingFish:
     )  # fmt: skip
 
 
-def thrusters(fish: FlyingFish) -> tuple[ParameterThruster, ...]:
-    """The rotors where equations 38 and 39 have them, from the centre of gravity; down at no tilt, commands in rpm."""
+Medium = Literal["water", "air"]
+MEDIA: tuple[Medium, ...] = ("water", "air")
+
+
+def thrusters(fish: FlyingFish, medium: Medium = "water") -> tuple[ParameterThruster, ...]:
+    """The rotors where equations 38 and 39 have them, from the centre of gravity, commands in rpm.
+
+    In water they point down at no tilt and turn about their arms; in air they point up and are fixed, with the reaction torques
+    of equation 34.
+    """
     length, height = fish.constants["arm_length"], fish.constants["rotor_height"]
+    wet = medium == "water"
+    laws, high = (
+        ((fish.rotors.thrust, fish.rotors.torque), fish.largest_speed)
+        if wet
+        else (fish.rotor_air, fish.largest_speed_air)
+    )
     thrust, torque = (
         ParameterCurve(
-            command="speed",
-            unit="rpm",
-            segments=(CurveSegment(low=0.0, high=fish.largest_speed, coefficients=(0.0, *map(float, factors))),),
+            command="speed", unit="rpm", segments=(CurveSegment(low=0.0, high=high, coefficients=(0.0, *map(float, factors))),),
         )
-        for factors in (fish.rotors.thrust, fish.rotors.torque)
-    )
+        for factors in laws
+    )  # fmt: skip
     return tuple(
         ParameterThruster(
-            name=f"rotor{name}", position=(x * length, y * length, -height), direction=(0.0, 0.0, 1.0), curve=thrust,
-            torque_curve=torque, handedness=hand, tilt_axis=(x, y, z), tilt_low=-np.pi, tilt_high=np.pi,
+            name=f"rotor{name}", position=(x * length, y * length, -height), direction=(0.0, 0.0, 1.0 if wet else -1.0),
+            curve=thrust, torque_curve=torque, handedness=hand if wet else -hand,
+            **({"tilt_axis": (x, y, z), "tilt_low": -np.pi, "tilt_high": np.pi} if wet else {}),
         )
         for name, (x, y, z), hand in zip(ROTORS, fish.arms.tolist(), fish.handedness, strict=True)
     )  # fmt: skip
@@ -236,6 +255,22 @@ EQUATIONS = (
     Equation("pitch moment M, equation 55", "N m", 0.1),
     Equation("yaw moment N, equation 56", "N m", 0.1),
 )
+
+
+def unknowns_of(
+    fish: FlyingFish, row: int, *, near: bool = True, given: tuple[int, ...] = (), fastest: float | None = None
+) -> list[Unknown]:
+    """Tilts and rotor speeds with their bounds and the rule of selection; parameters as of `trim`."""
+    printed = np.concatenate([fish.angles[row], fish.speeds[row]])
+    limit = fish.largest_speed if fastest is None else fastest
+    turn = np.radians(DEGREE)
+    unknowns = []
+    for i, name in enumerate(UNKNOWNS):
+        u = Unknown(name, "rad", -np.pi, np.pi, turn, weight=0.0) if i < 4 else Unknown(name, "rpm", 0.0, limit, RPM)
+        if near:
+            u = Unknown(name, u.unit, u.low, u.high, u.scale, target=float(printed[i]))
+        unknowns.append(u.at(float(printed[i])) if i in given else u)
+    return unknowns
 
 
 def trim(
@@ -269,15 +304,7 @@ def trim(
     fastest : float, optional
         Largest rotor speed, rpm; that of the data where None.
     """
-    printed = np.concatenate([fish.angles[row], fish.speeds[row]])
-    limit = fish.largest_speed if fastest is None else fastest
-    turn = np.radians(DEGREE)
-    unknowns = []
-    for i, name in enumerate(UNKNOWNS):
-        u = Unknown(name, "rad", -np.pi, np.pi, turn, weight=0.0) if i < 4 else Unknown(name, "rpm", 0.0, limit, RPM)
-        if near:
-            u = Unknown(name, u.unit, u.low, u.high, u.scale, target=float(printed[i]))
-        unknowns.append(u.at(float(printed[i])) if i in given else u)
+    unknowns = unknowns_of(fish, row, near=near, given=given, fastest=fastest)
 
     def residuals(x: Array) -> Array:
         motion = fish.motion[row : row + 1]

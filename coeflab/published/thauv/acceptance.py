@@ -9,7 +9,7 @@ A steady speed gives the angle of attack by the balance of forces, V^2 |L, D|/V^
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
@@ -22,9 +22,9 @@ from coeflab.motion.glider.glide import steady_glides
 from coeflab.motion.glider.glider import Glider, GliderPhase
 from coeflab.motion.glider.motion import Polar, balanced, glide, unexplained_power
 from coeflab.published.parameter_files import thauv_file
+from coeflab.published.thauv.figures import NOT_DRAWN, figures
+from coeflab.published.thauv.in_space import ASSUMED, compared_in_space, dive_files, flown_spiral, space_of
 from coeflab.report.acceptance import Acceptance, Basis, Compared, ComparedTable
-from coeflab.report.document import Figure
-from coeflab.report.figures.laws import Plot, Trace, laws_figure
 from coeflab.workbench.glide import Flown, fly
 
 STEEP = np.radians(40.0)
@@ -132,7 +132,7 @@ REPEATED = {
 STEADY_AFTER, AROUND = 170.0, 5.0  # s, as printed; half of its last digit that is not zero
 EXACT, FINEST, STATES, SEED = 1e-9, 1e-10, 300, 20260101  # no finer than that, so that every machine says the same
 VEHICLE = 66.35
-SHOWN = (-15.0, 15.0)
+SPIRALS = "02"
 CONVENTIONS = (
     "Motion in the vertical plane: u, w and q. Depth is positive downward, alpha = atan2(w, u), pitch theta is positive bow up.",
     "Glide angle zeta = theta - alpha, below zero on a dive. Lift and drag are across and along the velocity, lift positive upward on "
@@ -142,7 +142,10 @@ CONVENTIONS = (
     "The pitch moment of Table 3 is taken to be without the Munk moment, which equation 19 adds; see What to know.",
 )
 ERRATA = (
+    "Equation 6: m_B is called the largest displaced mass; M_B is the displaced mass at no stroke, m_B what is left of it.",
     "Equation 9: b = R V stands for b_dot = R V.",
+    "Equation 12: the weight of the pistons alone turns the vehicle. All masses and the buoyancy do, as in equation 19; without "
+    "them a roller has no effect.",
     "Equation 18: -m1 v1 omega2 stands for +m1 v1 omega2; with the minus sign kinetic energy is not conserved.",
     "Equation 19: r_rx and r_rz, called the roller's, are the whole centre of gravity's, for they go with m g.",
     "Table 1: m1 and m3 are called added masses; they are mass plus added mass.",
@@ -162,16 +165,17 @@ def acceptance() -> Acceptance:
     """Everything that the paper's text and Table 3 let us judge."""
     flown = fly(shipped("cfd_data") / "thauv", 1, {})
     gliders = {f.run.glider.name.rpartition("_")[2]: f for f in flown}
+    spiral = flown_spiral(gliders[SPIRALS].run.glider)
     return Acceptance(
         "thauv",
         "THAUV, twin-hull glider: steady glides, speeds and two dive-and-surface cycles",
-        compared(gliders),
+        (*compared(gliders), *compared_in_space(gliders[SPIRALS].run.glider, spiral)),
         ERRATA,
-        (CALIBRATED, _munk(gliders), _damping(gliders), _radians(gliders), *_motion(gliders)),
+        (CALIBRATED, ASSUMED, NOT_DRAWN, _munk(gliders), _damping(gliders), _radians(gliders), *_motion(gliders)),
         ("thauv", "leonard_graver2001"),
-        tuple(_figures(flown)),
+        tuple(figures(flown, spiral[0])),
         CONVENTIONS,
-        tuple(thauv_file(f.run.glider) for f in flown),
+        (*(thauv_file(f.run.glider) for f in flown), *dive_files([f.run.glider for f in flown])),
     )
 
 
@@ -191,7 +195,7 @@ def _dive(glider: Glider, stage: str) -> GliderPhase:
 
 
 def _engine(gliders: dict[str, Flown]) -> ComparedTable:
-    found = _dive(gliders["01"].run.glider, "1").net_mass
+    found = 2.0 * space_of(gliders["01"].run.glider)[0].masses.ballast(0.03)
     row = Compared("piston at 0.03 m", "net mass, both engines", "kg", 0.483, found, BALLAST, Basis.PRINTED)
     return ComparedTable("engine", "Ballast water", (row,), "Equation 5 and section 5")
 
@@ -249,7 +253,7 @@ def _left_out(gliders: dict[str, Flown]) -> ComparedTable:
 def _constants(gliders: dict[str, Flown]) -> ComparedTable:
     """The calibration once more: what the vehicle files state comes from nowhere else."""
     g, found = gliders["01"].run.glider, calibrated(_known(gliders))
-    ahead = [g.body.moments(*_dive(g, stage).setting)[0] for stage in ("1", "2")]
+    ahead = [g.body.moments(*_dive(g, stage).setting[:2])[0] for stage in ("1", "2")]
     stated = (g.body.munk, g.mass.moment_below, *ahead)
     rows = tuple(
         Compared(
@@ -382,41 +386,6 @@ def _radians(gliders: dict[str, Flown]) -> str:
 def _motion(gliders: dict[str, Flown]) -> tuple[str, ...]:
     said = dict.fromkeys(s for f in gliders.values() for s in f.run.statements)
     return tuple(cast(Sequence[str], said))
-
-
-def _figures(flown: Sequence[Flown]) -> Iterator[tuple[str, Figure]]:
-    from coeflab.report.figures.glide import motion_figure, polar_figure
-
-    yield "motion", motion_figure([f.run for f in flown], "thauv-motion")
-    for f in flown:
-        yield f"polar_{f.run.glider.name}", polar_figure(f.run.glider, f.steady, f.run.glider.name)
-    yield "forces", _forces(flown)
-
-
-def _forces(flown: Sequence[Flown]) -> Figure:
-    """Lift, drag and pitch moment of the three wings, over V^2."""
-    alpha = np.linspace(*SHOWN, 57)
-    plots = []
-    for name, unit in (("lift", "N"), ("drag", "N"), ("moment", "N m")):
-        traces = tuple(
-            Trace(f"case {f.run.glider.name.rpartition('_')[2]}", alpha, _over_speed(f, name)(np.radians(alpha)), i)
-            for i, f in enumerate(flown)
-        )
-        label = f"{name} / V^2  [{unit}/(m/s)^2]"
-        plots.append(Plot(label, "angle of attack alpha  [deg]", traces, 104.0, is_scaled=name == "moment"))
-    return laws_figure(
-        "thauv-forces", "Lift, drag and pitch moment of the three wings",
-        "Equations 28 to 30 with Table 3, over the square of the speed, so that one curve holds for every speed. The paper states "
-        "these laws over the angle of attack alone: there are no data for a drag surface over alpha and beta.",
-        "Three panels over the angle of attack: straight lines of lift, parabolas of drag and straight lines of moment, for three "
-        "wings.",
-        plots,
-    )  # fmt: skip
-
-
-def _over_speed(flown: Flown, name: str) -> Callable[[Array], Array]:
-    polar = flown.run.glider.body.polar
-    return {"lift": polar.lift_at, "drag": polar.drag_at, "moment": polar.moment_at}[name]
 
 
 def _case(published: dict[str, str]) -> str:

@@ -11,7 +11,9 @@ from matplotlib.lines import Line2D
 
 from coeflab.core.table import coefficient, plus_minus
 from coeflab.motion.identify.identification import Identified, IdentifiedTerm, Outcome
+from coeflab.motion.identify.thruster import BenchTest
 from coeflab.report.document import Figure, Panel
+from coeflab.report.figures.laws import Plot, Trace, laws_figure
 from coeflab.report.figures.panel import tick_texts, ticks
 from coeflab.report.figures.series import numbers, points
 from coeflab.report.figures.svg import COLOURS, POINTS, settings, svg_text
@@ -21,6 +23,7 @@ WIDTH, LEFT, MIDDLE, RIGHT = 340.0, 46.0, 14.0, 12.0
 VALUES = 190.0
 BOTTOM, HEAD, ROW = 34.0, 30.0, 15.0
 REACH = 2.0
+CURVE = 57  # points of a drawn curve
 MARKS: dict[Outcome, dict[str, Any]] = {
     Outcome.IDENTIFIED: {"marker": "o", "markersize": 4.4, "color": COLOURS["a"]},
     Outcome.EXCHANGEABLE: {
@@ -55,6 +58,35 @@ def identified_figure(found: Identified, anchor: str) -> Figure:
         )  # fmt: skip
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, caption, description, panels)
+
+
+def bench_figure(found: BenchTest, source: str = "") -> Figure:
+    """Loads of a rotor over its command: means of the steady stretches, the identified curve, and the file's.
+
+    Parameters
+    ----------
+    found : BenchTest
+    source : str
+        What a reader has to know of the series, in words.
+    """
+    n = np.linspace(0.0, float(np.max(found.command)), CURVE)
+    plots = []
+    for law in found.laws:
+        traces = [
+            Trace("steady stretches", found.command, found.loads[law.load], 0, "hollow"),
+            Trace("identified", n, law.value[0] * n + law.value[1] * n**2, 0),
+        ]
+        if law.file_value is not None:
+            traces.append(Trace("parameter file", n, law.file_value[0] * n + law.file_value[1] * n**2, -1))
+        last = law is found.laws[-1]
+        plots.append(Plot(f"{law.load}  [{law.unit}]", f"speed  [{found.unit}]", tuple(traces), 110.0, is_scaled=last))
+    files = ", ".join(found.files)
+    return laws_figure(
+        f"bench-{found.thruster}", f"Bench test of {found.thruster}: loads over the command",
+        f"{source or files + '.'} Means of {len(found.command)} steady stretches, the curves identified from them and those of the "
+        "parameter file.",
+        f"Loads of {found.thruster} over its command: points, and two curves through them.", plots,
+    )  # fmt: skip
 
 
 def _axes(figure: Drawing, left: float, width: float, tall: float, rows: int, across: tuple[float, float]) -> Axes:

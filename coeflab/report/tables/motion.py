@@ -21,6 +21,7 @@ from coeflab.law.symbols import CONTROLS
 from coeflab.motion.glider.glide import GlideRun, SteadyGlide
 from coeflab.motion.glider.glider import Glider
 from coeflab.motion.glider.motion import shallowest
+from coeflab.motion.glider.space import Spiral
 from coeflab.motion.identify.identification import Identified, IdentifiedTerm
 from coeflab.motion.manoeuvre import Figure
 from coeflab.motion.trajectory import Trajectory
@@ -160,7 +161,7 @@ def steady(glider: Glider, glides: Sequence[SteadyGlide]) -> Table:
         f"Angles of attack searched: {low:.4g} to {high:.4g} deg. Growth: largest real part of the eigenvalues, 1/s."
     ]
     for phase in glider.phases:
-        count = sum((g.net_mass, g.position) == phase.setting for g in glides)
+        count = sum((g.net_mass, g.position) == phase.setting[:2] for g in glides)
         if count != 1:
             notes.append(f"{phase.name}: {count or 'no'} steady glide{'s' if count > 1 else ''} ahead.")
     return Table(
@@ -176,11 +177,41 @@ def steady(glider: Glider, glides: Sequence[SteadyGlide]) -> Table:
     )  # fmt: skip
 
 
+def spirals(glider: Glider, turns: Sequence[tuple[str, Spiral]]) -> Table:
+    """Steady turns on the orders of the phases."""
+    rows = tuple(
+        (
+            phase, f"{s.speed:.4f}", _degrees(s.alpha), _degrees(s.beta), _degrees(s.phi), _degrees(s.theta), _degrees(s.zeta),
+            _degrees(s.turn), f"{s.radius:.2f}", f"{s.sinking:.4f}",
+        )
+        for phase, s in turns
+    )  # fmt: skip
+    return Table(
+        f"{glider.title}: steady spirals",
+        (
+            "phase",
+            "V m/s",
+            "alpha deg",
+            "beta deg",
+            "roll deg",
+            "theta deg",
+            "zeta deg",
+            "turn deg/s",
+            "radius m",
+            "sinking m/s",
+        ),
+        rows or ((glider.phases[0].name, *([ABSENT] * 9)),),
+        ("Equilibrium of forces and moments, solved without a motion in time; turn above zero to starboard.",),
+        frozenset({0}),
+        ("beta deg", "theta deg", "sinking m/s"),
+    )
+
+
 def phases(run: GlideRun) -> Table:
     """How every phase of a motion ended."""
     rows = []
     for i, row in enumerate(run.ends):
-        near = run.nearest(i)
+        near = run.steady_speed(i)
         rows.append(
             (
                 run.phase_of(i).name,
@@ -189,7 +220,7 @@ def phases(run: GlideRun) -> Table:
                 f"{round(float(run.depth[row]), 2) + 0.0:.2f}",
                 f"{run.x[row]:.2f}",
                 f"{run.speed[row]:.4f}",
-                ABSENT if near is None else f"{near.speed:.4f}",
+                ABSENT if near is None else f"{near:.4f}",
                 "yes" if run.settled(i) else "no",
             )
         )

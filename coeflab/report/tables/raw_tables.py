@@ -11,8 +11,9 @@ import numpy as np
 from coeflab.core.table import Table
 from coeflab.report.printable import shortened
 from coeflab.tables.column_map import ColumnMap
+from coeflab.tables.evidence import Evidence
 from coeflab.tables.mapping import known_as
-from coeflab.tables.proposals import Evidence, Proposal
+from coeflab.tables.proposals import Proposal
 from coeflab.tables.raw_table import RawColumn, RawTable, Run
 
 NAME, UNIT = 20, 8

@@ -1,0 +1,460 @@
+"""The keys of a body.toml of a vehicle with an arm: joints, links, vehicle, mount, thrusters and phases."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+
+from coeflab.bodies.body_file import InertiaMatrix
+from coeflab.bodies.closed_forms import MeridianIntegrals, cylinder_with_ends, strip_added_mass
+from coeflab.bodies.pieces import Direction
+from coeflab.core import declarations as takes
+from coeflab.core.errors import InputError, shown
+from coeflab.core.types import Array
+from coeflab.core.units import STANDARD_GRAVITY, with_unit
+from coeflab.law.rigid_body import inertia_doubt
+from coeflab.law.transforms import about_axis, moved, rotation, turned
+
+FORMULAS = ("across", "ends", "none")
+DIMENSIONS = {"revolute": ("angle", "rate", "moment"), "prismatic": ("length", "speed", "force")}
+IN_LINK = "a point [x, y, z] in metres, in the link's own frame"
+SIX = takes.numbers(6, "none", "six rows of six numbers, kg, kg m and kg m^2")
+Own = Annotated[Array, takes.Takes(IN_LINK, lambda v, f: np.array(_OWN.read(v, f)), takes.POINT.schema)]
+_OWN = takes.numbers(3, "length", IN_LINK)
+_TURN = takes.numbers(3, "angle", "three angles [roll, pitch, yaw]")
+Turn = Annotated[tuple[float, float, float], _TURN]
+Sizes = Annotated[tuple[float, float, float], takes.numbers(3, "length", "three semi-axes [x, y, z]")]
+Areas = Annotated[tuple[float, float, float], takes.numbers(3, "area", "three areas [x, y, z]")]
+
+
+def _six(value: Any, file: Path) -> Array:
+    if not isinstance(value, list) or len(value) != 6:
+        raise InputError(shown(value), SIX.words)
+    return np.array([SIX.read(row, file) for row in value])
+
+
+Six = Annotated[
+    Array, takes.Takes(SIX.words, _six, {"type": "array", "items": SIX.schema, "minItems": 6, "maxItems": 6})
+]
+
+
+def _moving(what: str, units: str) -> takes.Takes:
+    """A value whose dimension is that of the joint: read in `LinkKeys.of_joint`."""
+
+    def read(value: Any, _file: Path) -> Any:
+        if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+            raise InputError(shown(value), what)
+        return value
+
+    return takes.Takes(what, read, {"type": ["number", "string"], "unit": units})
+
+
+Position = Annotated[Any, _moving("an angle of a revolute, a length of a prismatic joint", "rad or m")]
+Pace = Annotated[Any, _moving("a rate of a revolute, a speed of a prismatic joint", "rad/s or m/s")]
+Effort = Annotated[Any, _moving("a moment of a revolute, a force of a prismatic joint", "N m or N")]
+
+
+class JointRange(NamedTuple):
+    """What a joint can do, in SI."""
+
+    low: float
+    high: float
+    home: float
+    fastest: float
+    strongest: float
+
+
+def _require_inertia(mass: float, inertia: Array) -> None:
+    if doubt := inertia_doubt(mass, np.zeros(3), inertia):
+        raise InputError(doubt, "the inertia of a body about its centre of mass", column="inertia_matrix")
+
+
+def _numbers(value: Any, _file: Path) -> tuple[float, ...]:
+    if not isinstance(value, list):
+        raise InputError(shown(value), "a list of numbers")
+    return tuple(with_unit(v, "none") for v in value)
+
+
+def _listed(value: Any, _file: Path) -> tuple[Any, ...]:
+    if not isinstance(value, list) or not all(isinstance(v, (int, float, str)) for v in value):
+        raise InputError(shown(value), 'a list of positions, such as ["20 deg", 0]')
+    return tuple(value)
+
+
+_NUMBER = {"type": ["number", "string"], "unit": "1"}
+Numbers = Annotated[tuple[float, ...], takes.Takes("a list of numbers", _numbers, {"type": "array", "items": _NUMBER})]
+Positions = Annotated[
+    tuple[Any, ...],
+    takes.Takes("a list of positions", _listed, {"type": "array", "items": {**_NUMBER, "unit": "rad or m"}}),
+]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class CylinderKeys(takes.Declaration):
+    """A cylinder of a link: it drags across its axis and moves water with it.
+
+    Attributes
+    ----------
+    radius, length : float
+        Of the cylinder.
+    centre : (3,) array
+        Middle of its axis, [x, y, z], m, in the link's own frame.
+    axis : (3,) tuple
+        Direction of its axis, in the link's own frame.
+    drag_coefficient : float
+        C_D of the flow straight across, by diameter and length.
+    added_mass : {"across", "ends", "none"}
+        across moves rho pi r^2 L across the axis and nothing along it, as the URV paper has it (erratum 3); ends has flat
+        ends, by our panel method.
+    """
+
+    radius: Annotated[takes.Length, takes.ABOVE_ZERO]
+    length: Annotated[takes.Length, takes.ABOVE_ZERO]
+    centre: Own
+    axis: Direction
+    drag_coefficient: Annotated[takes.Pure, takes.ZERO_OR_MORE]
+    added_mass: Annotated[str, takes.one_of(*FORMULAS)] = "across"
+
+    def check(self) -> None:
+        """It lies somewhere."""
+        if not np.linalg.norm(self.axis) > 0.0:
+            raise InputError("an axis without a direction", "[x, y, z], one of them not zero", column="axis")
+
+    @property
+    def turn(self) -> Array:
+        """(3, 3) rotation from its own axes, x along it, to the link's."""
+        return about_axis(np.asarray(self.axis) / np.linalg.norm(self.axis))
+
+    def moved_water(self, density: float, point: Array) -> Array:
+        """(6, 6) added mass about a point of the link, along the link's axes.
+
+        The paper's k = rho pi r^2 L / 4 takes a diameter for r, and its k L^2 / 3 is about an end (erratum 3): here it is
+        rho pi r^2 L across, and L^2 / 12 of that about the middle.
+        """
+        section = np.pi * self.radius**2
+        whole = MeridianIntegrals(section * self.length, 0.0, 0.0, section * self.length**3 / 12.0)
+        if self.added_mass == "none":
+            return np.zeros((6, 6))
+        ends = self.added_mass == "ends"
+        own = cylinder_with_ends(self.radius, self.length, density) if ends else strip_added_mass(whole, density)
+        return moved(turned(own, self.turn), point - self.centre)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LinkKeys(takes.Declaration):
+    """A joint, its Denavit-Hartenberg row, and the link that it moves.
+
+    Attributes
+    ----------
+    name : str
+        Of the link and of its joint.
+    joint : {"revolute", "prismatic"}
+        What its position is added to: theta, or d.
+    a, alpha, d, theta : float
+        A_(j-1)^j = Rz(theta) Tz(d) Tx(a) Rx(alpha), all four.
+    low, high : float
+        Limits of the position, an angle or a length; none unless given.
+    home : float
+        Position at which the arm is drawn and a motion begins.
+    fastest, strongest : float
+        Limits of the rate, and of the torque or force of the drive; none unless given.
+    mass : float
+        Of the link.
+    centre_of_mass : (3,) array
+        [x, y, z], m, in the link's own frame.
+    inertia_matrix : (3, 3) array
+        About the centre of mass, along the link's own axes.
+    volume : float
+        Displaced; neutral, mass over density, unless given.
+    centre_of_buoyancy : (3,) array
+        [x, y, z], m, in the link's own frame; the centre of mass unless given.
+    added_mass : (6, 6) array
+        About the centre of mass, in place of the cylinders'.
+    cylinder : array of tables
+        What drags.
+    """
+
+    name: takes.Text
+    joint: Annotated[str, takes.one_of("revolute", "prismatic")]
+    a: takes.Length
+    alpha: takes.Angle
+    d: takes.Length
+    theta: takes.Angle
+    low: Position | None = None
+    high: Position | None = None
+    home: Position = 0.0
+    fastest: Pace | None = None
+    strongest: Effort | None = None
+    mass: Annotated[takes.Mass, takes.ABOVE_ZERO]
+    centre_of_mass: Own
+    inertia_matrix: InertiaMatrix
+    volume: Annotated[takes.Volume, takes.ZERO_OR_MORE] | None = None
+    centre_of_buoyancy: Own | None = None
+    added_mass: Six | None = None
+    cylinder: tuple[CylinderKeys, ...] = ()
+
+    def check(self) -> None:
+        """Limits in order, and an inertia that a body can have."""
+        low, high, home, fastest, strongest = self.range
+        if not low < high:
+            raise InputError(f"low {low:g}, high {high:g} {self._unit}", "low below high", column="low")
+        if not low <= home <= high:
+            raise InputError(f"{home:g} {self._unit}", f"{low:g} to {high:g} {self._unit}", column="home")
+        for key, value in (("fastest", fastest), ("strongest", strongest)):
+            if not value > 0.0:
+                raise InputError(f"{value:g}", "a value above zero", column=key)
+        _require_inertia(self.mass, self.inertia_matrix)
+
+    @property
+    def _unit(self) -> str:
+        return "rad" if self.joint == "revolute" else "m"
+
+    @property
+    def range(self) -> JointRange:
+        """Limits and home in SI."""
+        place, pace, effort = DIMENSIONS[self.joint]
+
+        def read(key: str, dimension: str, absent: float) -> float:
+            value = getattr(self, key)
+            try:
+                return absent if value is None else with_unit(value, dimension)
+            except InputError as why:
+                raise InputError(why.found, why.expected, column=key, advice=why.advice) from None
+
+        return JointRange(
+            read("low", place, -np.inf), read("high", place, np.inf), read("home", place, 0.0),
+            read("fastest", pace, np.inf), read("strongest", effort, np.inf),
+        )  # fmt: skip
+
+    def moved_water(self, density: float) -> Array:
+        """(6, 6) added mass about the centre of mass, along the link's axes."""
+        if self.added_mass is not None:
+            return self.added_mass
+        out = np.zeros((6, 6))
+        for one in self.cylinder:
+            out += one.moved_water(density, self.centre_of_mass)
+        return out
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class VehicleKeys(takes.Declaration):
+    """The vehicle without its arm.
+
+    Attributes
+    ----------
+    semi_axes : (3,) tuple
+        Of the ellipsoid that is its hull.
+    centre : (3,) array
+        Of the ellipsoid, [x, y, z], m, FRD, from the datum.
+    mass : float
+        Without the arm.
+    centre_of_mass : (3,) array
+        [x, y, z], m, FRD, from the datum.
+    inertia_matrix : (3, 3) array
+        About the centre of mass.
+    volume : float
+        Displaced; neutral, mass over density, unless given.
+    centre_of_buoyancy : (3,) array
+        [x, y, z], m, FRD, from the datum; the centre of mass unless given.
+    added_mass : (6, 6) array
+        About the centre of mass, in place of the ellipsoid's by Lamb.
+    drag_area : (3,) tuple
+        C_D S of the flow along x, y and z.
+    """
+
+    semi_axes: Sizes
+    centre: takes.Point
+    mass: Annotated[takes.Mass, takes.ABOVE_ZERO]
+    centre_of_mass: takes.Point
+    inertia_matrix: InertiaMatrix
+    volume: Annotated[takes.Volume, takes.ZERO_OR_MORE] | None = None
+    centre_of_buoyancy: takes.Point | None = None
+    added_mass: Six | None = None
+    drag_area: Areas = (0.0, 0.0, 0.0)
+
+    def check(self) -> None:
+        """Sizes above zero, and an inertia that a body can have."""
+        if min(self.semi_axes) <= 0.0:
+            raise InputError(shown(list(self.semi_axes)), "three lengths above zero", column="semi_axes")
+        if min(self.drag_area) < 0.0:
+            raise InputError(shown(list(self.drag_area)), "three areas of zero or more", column="drag_area")
+        _require_inertia(self.mass, self.inertia_matrix)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ArmKeys(takes.Declaration):
+    """Where the arm stands on the vehicle, and in which water.
+
+    Attributes
+    ----------
+    attachment : (3,) array
+        Origin of frame 0, [x, y, z], m, FRD, from the datum.
+    mount : (3,) tuple
+        [roll, pitch, yaw] of frame 0; roll 180 deg is x forward, y left, z up.
+    tool : (3,) array
+        End effector, [x, y, z], m, in the last link's own frame.
+    density : float
+        Of the water.
+    gravity : float
+        The standard one unless given.
+    """
+
+    attachment: takes.Point
+    mount: Turn = (np.pi, 0.0, 0.0)
+    tool: Own = field(default_factory=lambda: np.zeros(3))
+    density: Annotated[takes.Density, takes.ABOVE_ZERO] = 1000.0
+    gravity: Annotated[takes.Acceleration, takes.ZERO_OR_MORE] = STANDARD_GRAVITY
+
+    @property
+    def turn(self) -> Array:
+        """(3, 3) axes of frame 0 as columns, FRD."""
+        made = rotation(*self.mount)
+        near = np.round(made)
+        return near if np.max(np.abs(made - near)) < 1e-12 else made
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TorqueKeys(takes.Declaration):
+    """One state, by torque (Yoerger, Cooke and Slotine 1990): dOmega/dt = beta tau - alpha Omega |Omega|, T = C Omega |Omega|.
+
+    Attributes
+    ----------
+    alpha : float
+        1/rad.
+    beta : float
+        1/(kg m^2).
+    thrust : float
+        C, N s^2/rad^2.
+    strongest : float
+        Largest torque, N m; no limit unless given.
+    """
+
+    alpha: Annotated[takes.Pure, takes.ABOVE_ZERO]
+    beta: Annotated[takes.Pure, takes.ABOVE_ZERO]
+    thrust: Annotated[takes.Pure, takes.ABOVE_ZERO]
+    strongest: Annotated[takes.Moment, takes.ABOVE_ZERO] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VoltageKeys(takes.Declaration):
+    """Two states with slip, by voltage (Healey, Rock, Cody, Miles and Brown 1994).
+
+    Attributes
+    ----------
+    damping, drive, load : float
+        Of the motor: k1, 1/s; k2, rad/s^2 per V; kh, 1/(kg m^2).
+    radius : float
+        Of the propeller.
+    pitch : float
+        Of the blade at 0.7 of the radius.
+    lift, drag : float
+        Largest C_L and C_D of the blade.
+    column : float
+        Length of the water that accelerates with the propeller.
+    momentum : float
+        Share of momentum that leaves with the jet.
+    strongest : float
+        Largest voltage, V; no limit unless given.
+    """
+
+    damping: Annotated[takes.Pure, takes.ZERO_OR_MORE]
+    drive: Annotated[takes.Pure, takes.ABOVE_ZERO]
+    load: Annotated[takes.Pure, takes.ZERO_OR_MORE]
+    radius: Annotated[takes.Length, takes.ABOVE_ZERO]
+    pitch: takes.Angle
+    lift: Annotated[takes.Pure, takes.ABOVE_ZERO]
+    drag: Annotated[takes.Pure, takes.ZERO_OR_MORE]
+    column: Annotated[takes.Length, takes.ABOVE_ZERO]
+    momentum: Annotated[takes.Pure, takes.ABOVE_ZERO]
+    strongest: Annotated[takes.Pure, takes.ABOVE_ZERO] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PropulsorKeys(takes.Declaration):
+    """A thruster; without a model it gives what is ordered at once.
+
+    Attributes
+    ----------
+    name : str
+        Of the thruster.
+    place : (3,) array
+        [x, y, z], m, FRD, from the datum.
+    axis : (3,) tuple
+        Of positive thrust, FRD.
+    torque : table
+        The model of one state.
+    voltage : table
+        The model of two states.
+    """
+
+    name: takes.Text
+    place: takes.Point
+    axis: Direction
+    torque: TorqueKeys | None = None
+    voltage: VoltageKeys | None = None
+
+    def check(self) -> None:
+        """One model, and it pushes somewhere."""
+        if not np.linalg.norm(self.axis) > 0.0:
+            raise InputError("an axis without a direction", "[x, y, z], one of them not zero", column="axis")
+        if self.torque is not None and self.voltage is not None:
+            raise InputError("both torque and voltage", "one model of the thruster", column="voltage")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StartKeys(takes.Declaration):
+    """How a motion begins: at the origin, level, heading north, with the joints at home.
+
+    Attributes
+    ----------
+    velocity : (6,) tuple
+        u v w p q r of the vehicle over ground, m/s and rad/s.
+    rates : list of float
+        Of the joints, rad/s or m/s; at rest unless given.
+    """
+
+    velocity: Annotated[tuple[float, ...], takes.numbers(6, "none", "six speeds, m/s and rad/s")] = (0.0,) * 6
+    rates: Numbers = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArmPhaseKeys(takes.Declaration):
+    """A phase of the motion that `coeflab simulate` makes.
+
+    Attributes
+    ----------
+    name : str
+        Of the phase.
+    lasts : float
+        How long.
+    vehicle : {"free", "held"}
+        held: it keeps its velocity, by whatever force that takes.
+    joints : list
+        Positions that the joints reach at its end, from rest to rest, each with its unit.
+    end : (3,) array
+        Place that the end effector reaches at its end, on a straight line of the vehicle, [x, y, z], m, FRD, from the datum.
+    torque : list of float
+        Of the joints, N m or N, constant. Without joints, end and torque they turn freely.
+    commands : list of float
+        Of the thrusters, constant: N m by torque, V by voltage, N without a model; without it they stand still.
+    """
+
+    name: takes.Text
+    lasts: Annotated[takes.Time, takes.ABOVE_ZERO]
+    vehicle: Annotated[str, takes.one_of("free", "held")] = "free"
+    joints: Positions = ()
+    end: takes.Point | None = None
+    torque: Numbers = ()
+    commands: Numbers = ()
+
+    def check(self) -> None:
+        """One way to move the joints."""
+        ways = {"joints": bool(self.joints), "end": self.end is not None, "torque": bool(self.torque)}
+        given = [key for key, there in ways.items() if there]
+        if len(given) > 1:
+            raise InputError(f"{' and '.join(given)}", "one of joints, end and torque", column=given[1])
+        if self.commands and self.vehicle == "held":
+            raise InputError("commands of a vehicle that is held", "a free vehicle", column="commands")

@@ -1,0 +1,85 @@
+"""``coeflab derive``: the equations of a vehicle with an arm in closed form, as code."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from coeflab.cli import complete, show
+
+if TYPE_CHECKING:
+    from coeflab.core.table import Table
+    from coeflab.motion.multibody.tape import ClosedForm
+
+EXAMPLE = "coeflab derive urv_puma --to c"
+
+
+def command(
+    body: str = typer.Argument(
+        ...,
+        metavar="BODY",
+        autocompletion=complete.bodies,
+        help="A body.toml of a vehicle with an arm, its folder, or a shipped one: urv_puma.",
+    ),
+    to: str = typer.Option(..., "--to", metavar="c|python|latex|octave", help="Language; octave is MATLAB too."),
+    out: Path | None = typer.Option(
+        None, "--out", metavar="FOLDER", help="Folder for the files; default NAME.LANGUAGE in the current folder."
+    ),
+    symbols: bool = typer.Option(
+        False,
+        "--symbols",
+        help="Keep masses, lengths and coefficients as arguments; without it their numbers stand in the code.",
+    ),
+    json: bool = typer.Option(False, "--json", help="Print one JSON object."),
+) -> None:
+    """Write the equations of motion of a vehicle with an arm as code.
+
+    In closed form, by Kane's method: inertia, bias, weight, buoyancy, drag. Needs the package sympy: coeflab[derive].
+    """
+    from coeflab.core.errors import InputError, shown
+    from coeflab.core.files import located, write_all
+    from coeflab.core.provenance import sha256_of
+    from coeflab.core.wording import identifier
+    from coeflab.motion.multibody.arm_file import BODY, read_chain
+
+    languages = ("c", "python", "latex", "octave")
+    if to not in languages:
+        raise InputError(shown(to), ", ".join(languages), column="--to")
+    place = located(body, "geometry")
+    file = place / BODY if place.is_dir() else place
+    chain = read_chain(file)
+    try:
+        from coeflab.motion.multibody.closed_form import derive
+        from coeflab.motion.multibody.languages import Origin, written
+    except ModuleNotFoundError as why:
+        if why.name is None or why.name.partition(".")[0] not in ("sympy", "mpmath"):
+            raise
+        raise InputError("derive without the package sympy", "sympy", advice='Install "coeflab[derive]".') from None
+    with show.progress(json) as say:
+        form = derive(chain, symbols=symbols, say=say)
+        files = written(form, to, Origin(file.name, sha256_of(file), chain.statements), say)
+    folder = Path(f"{identifier(chain.name)}.{to}") if out is None else out
+    changed = write_all(folder, files)
+    if json:
+        sizes = {f.name: {"lines": len(f.lines), "operations": f.operations} for f in form.functions}
+        show.json_object({"files": [str(folder / name) for name in files], "functions": sizes})
+        return
+    show.table(_functions(form))
+    for name, new in changed.items():
+        show.path(f"{folder / name}:", "written" if new else "unchanged")
+
+
+def _functions(form: ClosedForm) -> Table:
+    """What was derived, and how long it is."""
+    from coeflab.core.table import Table
+
+    rows = tuple((f.name, ", ".join(f.arguments), ", ".join(f.outputs), str(f.operations)) for f in form.functions)
+    notes = ["Operations: additions, products, functions; a strip counts as one."]
+    if form.parameters:
+        notes.append(f"{len(form.parameters)} numbers of the file stay arguments; zeros and right angles do not.")
+    return Table(
+        f"{form.name}: {len(form.links)} links, {form.size} generalised speeds",
+        ("function", "of", "gives", "operations"), rows, tuple(notes), frozenset({0, 1, 2}),
+    )  # fmt: skip

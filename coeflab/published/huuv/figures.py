@@ -1,0 +1,265 @@
+"""HUUV: our pictures of its figures, as far as caption and text say what they show. No point is drawn that the paper does not print."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from coeflab.bodies.shape import Parts
+from coeflab.core.types import Array
+from coeflab.core.wording import listed
+from coeflab.motion.steady_state import steady_turns, turn_figures
+from coeflab.motion.tune.tuning import Tuning
+from coeflab.published.huuv.five_dof import (
+    FiveDof,
+    assumed_body,
+    elevator_laws,
+    hull_laws,
+    turning_laws,
+)
+from coeflab.published.huuv.five_dof_rows import SETS, Dive, with_masses
+from coeflab.published.huuv.model import MATLAB, TRACKER, Huuv, thrust
+from coeflab.published.huuv.tuning import TOLD
+from coeflab.report.document import Figure
+from coeflab.report.figures.body import body_figure
+from coeflab.report.figures.laws import Plot, Trace, laws_figure
+from coeflab.report.figures.tuning import Groups, agreement_figure, curves_figure
+
+CANNOT = (
+    "Fig. 1, views and dimensions: the dimensions stand in the picture alone.",
+    "Figs. 2 and 3, tracking set-up and a frame of the film: photographs.",
+    "Figs. 8-11, meshes and domains of the computations: pictures; Table 1 prints only cells and lengths, and no flow was computed here.",
+    "The published curves of Figs. 12-16 and 18: pictures, no number printed. Ours are drawn without points.",
+)
+
+FINE = 57
+LAWS = (
+    ("drag / V^2  [N/(m/s)^2]", ("d0", "d2"), (0, 2)),
+    ("side force / V^2  [N/(m/s)^2]", ("s1", "s3"), (1, 3)),
+    ("yaw moment / V^2  [N m/(m/s)^2]", ("n1", "n3"), (1, 3)),
+)
+CAPTION = (
+    "Constants of the steady turns, and the two fits to Fig. 17, each as far as its turns reach: {reach}. All turns are to port; the "
+    "other side is their mirror image. Where turns do not determine a coefficient the curve is one of many that fit them: {open}. "
+    "C_S is known only up to the mass, C_m only up to the arm and m_y - m_x. The paper draws C_D over "
+    "alpha and beta in Fig. 12 without printing numbers, and all turns lie at alpha = 0: the data allow these curves and no drag "
+    "surface."
+)
+
+
+def forces_figure(huuv: Huuv, halves: Mapping[str, Tuning]) -> Figure:
+    """Three laws over sideslip, three sets of constants.
+
+    Parameters
+    ----------
+    huuv : Huuv
+    halves : mapping of str to Tuning
+        The fits to the paper's simulation and to the pool.
+    """
+    ends = {source: float(np.degrees(np.nanmax(turns.figures[:, 1]))) for source, turns in huuv.turns.items()}
+    sets = {
+        "steady turns": (dict(huuv.constants), ends[MATLAB]),
+        "tuned to the simulation": (_values(huuv, halves[MATLAB]), ends[MATLAB]),
+        "tuned to the pool": (_values(huuv, halves[TRACKER]), ends[TRACKER]),
+    }
+    plots = [
+        Plot(
+            name, "sideslip beta  [deg]",
+            tuple(
+                Trace(label, beta, _law(c, keys, powers, beta), i)
+                for i, (label, (c, end)) in enumerate(sets.items())
+                for beta in [np.linspace(-end, end, FINE)]
+            ),
+            112.0, is_scaled=k == len(LAWS) - 1,
+        )
+        for k, (name, keys, powers) in enumerate(LAWS)
+    ]  # fmt: skip
+    reach = f"{ends[MATLAB]:.3g} deg in the simulation, {ends[TRACKER]:.3g} deg in the pool"
+    return laws_figure(
+        "huuv-forces", "Drag, side force and yaw moment over sideslip", CAPTION.format(reach=reach, open=_open(halves)),
+        "Three panels over sideslip: even curves of drag, odd curves of side force and yaw moment, for three sets of constants.",
+        plots,
+    )  # fmt: skip
+
+
+def _open(halves: Mapping[str, Tuning]) -> str:
+    """What has no interval, of both fits."""
+    told = {MATLAB: "simulation", TRACKER: "pool"}
+    drawn = {key for _, keys, _ in LAWS for key in keys}
+    return "; ".join(
+        f"{told[source]}: {listed([TOLD[p.name] for p in fit.parameters if p.name in drawn and p.u95 is None])}"
+        for source, fit in halves.items()
+        if any(p.name in drawn and p.u95 is None for p in fit.parameters)
+    )
+
+
+def _values(huuv: Huuv, fit: Tuning) -> dict[str, float]:
+    return dict(huuv.constants) | {p.name: p.after for p in fit.parameters}
+
+
+def _law(constants: Mapping[str, float], keys: tuple[str, str], powers: tuple[int, int], beta: Array) -> Array:
+    x = np.radians(beta)
+    return np.asarray(sum(constants[k] * x**n for k, n in zip(keys, powers, strict=True)))
+
+
+def tuning_figures(huuv: Huuv, halves: dict[str, Tuning]) -> Iterator[tuple[str, Figure]]:
+    """Turns and agreement of both fits, and the three laws over sideslip (Figs. 17 and 14)."""
+    for source, fit in halves.items():
+        turns = huuv.turns[source]
+        commands = sorted(set(turns.left.tolist()))
+        member = np.searchsorted(commands, turns.left)
+        groups = Groups(turns.right, "right thruster  [%]", member, tuple(f"left {c:g} %" for c in commands))
+        yield f"huuv_{source}_turns", curves_figure(fit, groups, f"huuv-{source}-turns")
+        yield f"huuv_{source}_agreement", agreement_figure(fit, f"huuv-{source}-agreement")
+    yield "huuv_forces", forces_figure(huuv, halves)
+
+
+TALL = 76.0  # points of a panel
+SEEN = 60.0  # s of the dives
+ASSUMED = "Assumed laws of five_dof.toml: the paper prints no number of this figure."
+
+
+def paper_figures(five: FiveDof, dives: Mapping[float, Dive]) -> Iterator[tuple[str, Figure]]:
+    """Figs. 7, 12, 13, 15, 16, and 18 beside 17; then what the paper has no figure of, turns with other masses."""
+    shape = assumed_body().require_shape()
+    if isinstance(shape, Parts):
+        yield "huuv_fig07", body_figure("HUUV, Fig. 7, radii and fins assumed", shape, None, "huuv-fig07")
+    yield "huuv_fig12_13_16", laws_over_attack_and_rates(five)
+    yield "huuv_fig15", elevator_figure(five, dives)
+    yield "huuv_fig17_18", speeds_figure(five)
+    yield "huuv_masses", masses_figure(five)
+
+
+def laws_over_attack_and_rates(five: FiveDof) -> Figure:
+    """Drag over attack at three drifts, lift, pitching moment, and moments against the rates (Figs. 12, 13 and 16)."""
+    end, fastest = float(np.degrees(five.level.chosen["largest_drift"])), five.level.chosen["largest_rate"]
+    x, rate = np.linspace(-end, end, FINE), np.linspace(-fastest, fastest, FINE)
+    attack = np.radians(x)
+    drags = [(drift, hull_laws(five, attack, np.full(FINE, np.radians(drift)))["C_D"]) for drift in (0.0, 12.5, 25.0)]
+    laws = hull_laws(five, attack, np.zeros(FINE))
+    pitching, yawing = turning_laws(five, rate, rate)
+    across = "attack alpha  [deg]"
+    plots = [
+        Plot("drag / V^2  [N/(m/s)^2]", across, tuple(Trace(f"beta {d:g} deg", x, y, i) for i, (d, y) in enumerate(drags)), TALL, is_scaled=False),
+        Plot("lift / V^2  [N/(m/s)^2]", across, (Trace("beta 0 deg", x, laws["C_L"], 0),), TALL, is_scaled=False),
+        Plot("M / V^2  [N m/(m/s)^2]", across, (Trace("beta 0 deg", x, -laws["C_m alpha"], 0),), TALL),
+        Plot("moment  [N m]", "rate of rotation  [rad/s]", (Trace("M_mq, pitch", rate, pitching, 3), Trace("M_mr, yaw", rate, yawing, -1)), TALL),
+    ]  # fmt: skip
+    caption = (
+        f"{ASSUMED} Drag is C_D(alpha) + C_D(beta) - C_D(0), the caption of Fig. 12 less what it counts twice. M is positive nose up "
+        "and without the Munk moment, which C_A adds. M_mr is chosen with the steady turns, which do not determine it; M_mq is half of "
+        "it, as the paper doubled M_mr alone. Fig. 14, C_S and C_m over beta: see the figure over sideslip."
+    )
+    return laws_figure(
+        "huuv-fig12-13-16", "Figs. 12, 13 and 16: forces over attack, moments over rates", caption,
+        "Four panels: even curves of drag, odd curves of lift and moment over attack; odd curves of moments over rates.", plots,
+    )  # fmt: skip
+
+
+def elevator_figure(five: FiveDof, dives: Mapping[float, Dive]) -> Figure:
+    """The elevators' coefficients over their angle (Figs. 6 and 15), and what a deflection does in time."""
+    end = float(np.degrees(five.constants["largest_angle"]))
+    x = np.linspace(-end, end, FINE)
+    names = ("drag C_D", "lift C_L", "moment C_M")
+    laws = zip(names, elevator_laws(five, np.radians(x)), strict=True)
+    plots = [
+        Plot(
+            "coefficients  [1]",
+            "elevator delta at alpha = 0  [deg]",
+            tuple(Trace(n, x, y, i) for i, (n, y) in enumerate(laws)),
+            TALL,
+        )
+    ]
+    motions = (("depth  [m]", "depth", 1.0), ("pitch  [deg]", "pitch", 180.0 / np.pi))
+    for k, (name, key, factor) in enumerate(motions):
+        traces = (
+            Trace(f"delta {angle:+g} deg", d.time[seen], factor * getattr(d, key)[seen], i)
+            for i, (angle, d) in enumerate(dives.items())
+            for seen in [d.time <= SEEN]
+        )
+        plots.append(Plot(name, "time  [s]", tuple(traces), TALL, is_scaled=k == 1))
+    caption = (
+        f"{ASSUMED} Above, those of the synthetic elevator table, over delta - alpha; by the area of both, {five.constants['area']:g} m^2, "
+        f"the moment also by {five.constants['length']:g} m, about the axis of rotation. A positive angle turns the leading edge down. "
+        f"Below, no figure of the paper: from {five.level.chosen['speed']:g} m/s, both thrusters at 60 %, simulated with the parameter "
+        "file huuv_5dof.parameters.json."
+    )
+    return laws_figure(
+        "huuv-fig15", "Fig. 15: the elevators, and a start with them deflected", caption,
+        "An even curve of drag, odd curves of lift and moment over the elevator angle; depth and pitch over time for three angles.", plots,
+    )  # fmt: skip
+
+
+def straight_speeds(huuv: Huuv, commands: Array, drag_left_out: float = 0.0) -> Array:
+    """(n,) m/s of the straight runs of Fig. 18, both thrusters alike; ``drag_left_out`` N/(m/s)^2."""
+    c = huuv.constants
+    push = thrust(commands, commands, c["slope"], c["intercept"], c["arm"], huuv.dead_zone)[:, 0]
+    return np.asarray(np.sqrt(push / (c["d0"] - drag_left_out)))
+
+
+def mast_drag(density: float) -> float:
+    """Drag over V^2 of the assumed mast as a round cylinder with a drag coefficient of one, N/(m/s)^2."""
+    shape = assumed_body().require_shape()
+    mast = next(p.form for p in shape.parts if p.name == "mast") if isinstance(shape, Parts) else None
+    return density * getattr(mast, "radius", 0.0) * getattr(mast, "length", 0.0)
+
+
+def speeds_figure(five: FiveDof) -> Figure:
+    """Forward speed in turns, with both printed halves, and on a straight course (Figs. 17 a, b and 18)."""
+    huuv, c = five.level, five.level.constants
+    fine = np.linspace(20.0, 100.0, FINE)
+    traces = []
+    for i, left in enumerate(sorted(set(huuv.turns[MATLAB].left.tolist()))):
+        right = fine[fine > left]
+        push = thrust(np.full(len(right), left), right, c["slope"], c["intercept"], c["arm"], huuv.dead_zone)
+        ours = turn_figures(steady_turns(huuv.theta, push).velocity)[0]
+        traces.append(Trace(f"left {left:g} %, ours", right, ours[:, 0], i))
+        for source, form in ((MATLAB, "filled"), (TRACKER, "hollow")):
+            turns = huuv.turns[source]
+            at = turns.left == left
+            name = "printed, simulation" if source == MATLAB else "printed, pool"
+            traces.append(Trace(name, turns.right[at], turns.figures[at, 0], i, form))
+    mast = mast_drag(five.density)
+    straight = (
+        Trace("straight, submerged, our model", fine, straight_speeds(huuv, fine), -1),
+        Trace("straight, without the mast's drag", fine, straight_speeds(huuv, fine, mast), 1),
+    )
+    caption = (
+        "Above Fig. 17 a and b with the printed points, below Fig. 18, which prints none. The pool vehicle ran at the surface, its mast "
+        f"in air: a round mast of the assumed size has {mast / c['d0']:.0%} of the fitted drag at a drag coefficient of 1, and the "
+        "lower panel shows what leaving it out gains. An illustration: radius and height of the mast are assumed."
+    )
+    return laws_figure(
+        "huuv-fig17-18", "Figs. 17 and 18: forward speed in turns and on a straight course", caption,
+        "Two panels over the thruster command: speeds of turns with printed points, and speeds of straight runs.",
+        [Plot("u in turns  [m/s]", "right thruster, in the lower panel both  [%]", tuple(traces), 170.0, is_scaled=False),
+         Plot("u straight  [m/s]", "right thruster, in the lower panel both  [%]", straight)],
+    )  # fmt: skip
+
+
+def masses_figure(five: FiveDof) -> Figure:
+    """The printed turns of the simulation with the stated masses, and with those of the assumed geometry."""
+    turns, names = five.level.turns[MATLAB], ("u  [m/s]", "|beta|  [deg]", "R  [m]")
+    sets = [(label, with_masses(five, how, turns)) for label, how in SETS]
+    at = np.arange(1.0, len(turns.left) + 1.0)
+    scale = np.array([1.0, 180.0 / np.pi, 1.0])
+    plots = [
+        Plot(
+            name, "turn of Fig. 17, by left then right thruster",
+            (Trace("printed, simulation", at, turns.figures[:, k] * scale[k], -1, "filled"),
+             *(Trace(label, at[seen], y[seen], i, "hollow") for i, (label, found) in enumerate(sets)
+               for y in [found[:, k] * scale[k]] for seen in [np.isfinite(y)])), TALL,
+            is_scaled=k == 2,
+        )
+        for k, name in enumerate(names)
+    ]  # fmt: skip
+    caption = (
+        "The constants were fitted with m_x, m_y, m_yr of 5 kg, 17 kg, 0.95 kg m, which the paper does not print. The assumed geometry "
+        "gives others: with them the yaw moment no longer undoes the Munk moment, and the turns tighten. With m_yr kept, the slope of "
+        "C_m(beta) moved by as much as m_y - m_x, and C_S scaled as m + m_x, they return: only these are what turns determine."
+    )
+    return laws_figure(
+        "huuv-masses", "Turns with the stated masses and with those of the assumed geometry", caption,
+        "Three panels over the 28 turns: printed points, and those of three sets of masses.", plots,
+    )  # fmt: skip

@@ -1,0 +1,317 @@
+"""HUUV in five degrees of freedom: equations, parameter file, assumed geometry and motions, each by two ways."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coeflab.bodies.closed_forms import plate_added_mass
+from coeflab.bodies.shape import Cylinder, Parts, Plate
+from coeflab.core.types import Array, brief, locked
+from coeflab.law.rigid_body import momentum_force
+from coeflab.motion.dynamics import from_euler
+from coeflab.motion.simulation import simulate
+from coeflab.motion.steady_state import steady_turns, turn_figures
+from coeflab.motion.vehicle import vehicle
+from coeflab.published.huuv.five_dof import (
+    AT,
+    FiveDof,
+    angles,
+    assumed_body,
+    coriolis,
+    hull_damping,
+    hull_laws,
+    inertia,
+    simple_masses,
+    steady,
+    thrusts,
+    unbalanced,
+)
+from coeflab.published.huuv.model import MATLAB, Turns, thrust
+from coeflab.report.acceptance import Basis, Compared, ComparedTable
+from coeflab.vehicle.parameter_file import ParameterFile
+
+FREE = ("u", "v", "w", "q", "r")
+ROWS = ("X", "Y", "Z", "M", "N")
+MOTIONS, SEED, EXACT, FINEST = 1000, 20251217, 1e-9, 1e-10
+# Worked out apart from this package: u v w q r, pitch, elevator, commands; X Y Z M N that accelerate, N and N m.
+BY_HAND = (
+    ((0.8, 0.1, 0.05, 0.2, -0.3), -0.15, 0.12, (30.0, 70.0), (-2.714048, -1.291923, 4.927592, 0.4611365, -0.3840439)),
+    ((0.6, -0.12, -0.08, -0.25, 0.4), 0.1, -0.2, (30.0, 70.0), (2.38329, 1.065182, -4.8913, -0.09395622, -0.9791497)),
+)
+DIVES, COMMAND, DURATION = (-10.0, 0.0, 10.0), 60.0, 300.0
+SETTLED = 1e-4  # m/s; two hundred times that in deg
+SETS = (
+    ("stated masses", "stated"),
+    ("those of the assumed geometry", "geometry"),
+    ("its m_x, m_y; C_m, C_S moved", "moved"),
+)
+STRAIGHT = tuple(np.arange(20.0, 101.0, 10.0))
+SOURCE_1 = "equations 1-17, 23-27"
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class Dive:
+    """A simulated start with the elevators deflected, all (n,): s, m, rad, m/s; and u v w q r at its end."""
+
+    time: Array
+    depth: Array
+    pitch: Array
+    speed: Array
+    end: Array
+
+    def __post_init__(self) -> None:
+        for name in ("time", "depth", "pitch", "speed", "end"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+
+def dived(file: ParameterFile) -> dict[float, Dive]:
+    """Simulations from the file's speed with both thrusters at 60 %, by elevator angle in degrees."""
+    out = {}
+    for angle in DIVES:
+        orders = [f"left={COMMAND:g}", f"right={COMMAND:g}", f"db={float(np.radians(angle))!r}"]
+        made = simulate(file, "straight_run", {"commands": orders, "duration": DURATION}, free=FREE).trajectory
+        end = made.velocity[-1, AT]
+        out[angle] = Dive(made.time, made.position[:, 2], made.angles[:, 1], made.velocity[:, 0], end)
+    return out
+
+
+def stated_rows(five: FiveDof, file: ParameterFile) -> tuple[ComparedTable, ...]:
+    """What needs no motion in time."""
+    return (_forces(five, file), _geometry(five), _straight(five))
+
+
+def moving_rows(five: FiveDof, dives: Mapping[float, Dive]) -> tuple[ComparedTable, ...]:
+    """What has been simulated with the parameter file, beside the equations; and the turns with other masses."""
+    return (_dives(five, dives), _turns(five))
+
+
+def _row(
+    case: str, what: str, unit: str, against: float, found: float, tolerance: float, relative: bool = False
+) -> Compared:
+    held, ours = (
+        float(f"{value:.12g}") for value in (against, found)
+    )  # what is finer differs from one machine to the next
+    return Compared(case, what, unit, held, ours, tolerance, Basis.CONSISTENCY, relative)
+
+
+def _by_hand(five: FiveDof) -> list[Compared]:
+    rows = []
+    for i, (nu, pitch, delta, commands, forces) in enumerate(BY_HAND, start=1):
+        left, right = (np.array([c]) for c in commands)
+        found = unbalanced(five, np.array([nu]), np.array([pitch]), np.array([delta]), thrusts(five, left, right))[0]
+        rows += [
+            _row(f"state {i}, worked out apart", name, "N" if name in "XYZ" else "N m", against, float(one), 1e-5)
+            for name, against, one in zip(ROWS, forces, found, strict=True)
+        ]
+    return rows
+
+
+def _matrices(five: FiveDof) -> tuple[Compared, ...]:
+    nu = np.random.default_rng(SEED).normal(size=(MOTIONS, 5))
+    whole = np.zeros((MOTIONS, 6))
+    whole[:, AT] = nu
+    theory = momentum_force(whole @ (five.rigid + five.added).T, whole)[:, AT]
+    matrix, m = coriolis(five, nu), inertia(five)
+    held = -np.einsum("nij,nj->ni", matrix, nu)
+    case = f"{MOTIONS} random motions"
+    return (
+        _row("M", "apart from its transpose", "kg, kg m", 0.0, max(float(np.max(np.abs(m - m.T))), FINEST), EXACT),
+        _row(case, "C + C^T", "kg m/s", 0.0, float(np.max(np.abs(matrix + np.swapaxes(matrix, 1, 2)))), 0.0),
+        _row(case, "force apart from Kirchhoff's", "N, N m", 0.0, max(float(np.max(np.abs(held - theory))), FINEST), EXACT),
+    )  # fmt: skip
+
+
+def _forces(five: FiveDof, file: ParameterFile) -> ComparedTable:
+    """Forces of the file, elevators at no drift, where its V^2 is that of equations 15-17; power of the hull's forces."""
+    rng = np.random.default_rng(SEED)
+    c = five.level.chosen
+    nu = rng.uniform(-0.4, 0.4, size=(MOTIONS, 5))
+    nu[:, 0] = rng.uniform(0.5, 1.2, MOTIONS)
+    nu[:, 1:3] *= np.tan(c["largest_drift"]) * nu[:, :1]
+    pitch, delta = rng.uniform(-0.5, 0.5, MOTIONS), rng.uniform(-0.5, 0.5, MOTIONS)
+    level = nu * (1.0, 0.0, 1.0, 1.0, 1.0)
+    cases = (("elevators deflected, no drift", level, delta), ("elevators neutral, drift", nu, np.zeros(MOTIONS)))
+    made, none = vehicle(file, free=FREE), np.zeros((MOTIONS, 5))
+    rows = [*_by_hand(five), *_matrices(five)]
+    for case, motion, angle in cases:
+        whole, controls = np.zeros((MOTIONS, 6)), np.zeros((MOTIONS, 3))
+        whole[:, AT], controls[:, 2] = motion, angle
+        attitude = np.array([from_euler(0.0, float(p), 0.0) for p in pitch])
+        found = made.unbalanced(whole, attitude, controls, np.zeros(6))[:, AT]
+        apart = np.max(np.abs(found - unbalanced(five, motion, pitch, angle, none)))
+        rows.append(_row(case, "parameter file less equations", "N, N m", 0.0, max(float(apart), FINEST), EXACT))
+    speed, alpha, beta = angles(nu)
+    power = np.sum(hull_damping(five, nu)[:, :3] * nu[:, :3], axis=1)
+    drag = speed**3 * hull_laws(five, alpha, beta)["C_D"]
+    rows.append(_row("hull", "power less V F_D", "W", 0.0, max(float(np.max(np.abs(power - drag))), FINEST), EXACT))
+    return ComparedTable(
+        "five_dof_forces", "Five degrees of freedom: every term of equation 1, and the parameter file", tuple(rows), "equations 1-17, 23-38",
+        ("Two states with attack, drift, rates, pitch, elevators and unequal thrusts: what accelerates, worked out apart from this package.",
+         "C in the printed pattern, with the moments of the added masses where the paper prints m_z z_CG, against the kinetic energy of M. "
+         "Lift and side force do no work by equations 5-7 as corrected; as printed they do. The file reads V^2 where equations 15-17 have "
+         "V_xz^2 = V^2 cos^2(beta): at 21 deg of drift 15 % more of the elevators.",),
+    )  # fmt: skip
+
+
+def _geometry(five: FiveDof) -> ComparedTable:
+    body = assumed_body()
+    by_hand, matrix = simple_masses(body, five.density), five.geometry
+    shape = body.require_shape()
+    parts = shape.parts if isinstance(shape, Parts) else ()
+    mast = [p.form for p in parts if isinstance(p.form, Cylinder)][1]
+    plates = [(p.form, float(p.centre[0])) for p in parts if isinstance(p.form, Plate)]
+    standing = five.density * np.pi * mast.radius**2 * mast.length
+    own = [plate_added_mass(f.chord, f.span, five.density) for f, _ in plates]
+    normal = sum(float(m[2, 2]) * ahead for m, (_, ahead) in zip(own, plates, strict=True))
+    height = float(parts[1].centre[2])
+    j_y = by_hand["J_y"] + sum(float(m[4, 4]) for m in own)
+    rows = (
+        _row("equation 28", "m_x", "kg", by_hand["m_x"], matrix[0, 0], EXACT),
+        _row("equation 29", "m_y", "kg", by_hand["m_y"], matrix[1, 1], EXACT),
+        _row("equation 30", "m_z, and 0.1 of the mast", "kg", by_hand["m_z"] + 0.1 * standing, matrix[2, 2], EXACT),
+        _row("equation 31", "J_y, and the plates' own", "kg m^2", j_y, matrix[4, 4], EXACT),
+        _row("equation 32", "J_z", "kg m^2", by_hand["J_z"], matrix[5, 5], EXACT),
+        _row("equation 33", "m_zq from the elevators", "kg m", -normal, matrix[2, 4], EXACT),
+        _row("equation 33", "m_yr, all alike fore and aft", "kg m", 0.0, matrix[1, 5], EXACT),
+        _row("equation 1, row 1, column 4", "m_x z of the mast", "kg m", standing * height, matrix[0, 4], EXACT),
+        _row("equation 1, C, column 5", "m_y z of the mast", "kg m", standing * height, -matrix[1, 3], EXACT),
+    )
+    c = five.level.constants
+    printed = c["m"] / 20.0
+    return ComparedTable(
+        "five_dof_geometry", "Added mass of the assumed geometry", rows, "equations 28-33",
+        (
+            "Printed: lengths of 0.75 m and 0.2 m, 19 kg, fins at the bow, mast in the middle. Assumed: radii, the mast's height, the "
+            "fins' span and place. So the masses are an illustration.",
+            f"Assumed geometry against the steady turns: m_x {matrix[0, 0]:.3g} against {c['mx']:.3g} kg, m_y {matrix[1, 1]:.3g} against "
+            f"{c['my']:.3g} kg, m_yr {matrix[1, 5]:.3g} against {c['myr']:.3g} kg m. Those of the turns were chosen: the paper prints none, "
+            "and doubled C_S, C_m(beta) and M_mr.",
+            f"Equation 33 gives {printed:.3g}, in kg, for all four couplings; the elevators at the bow give m_zq {matrix[2, 4]:.3g} kg m.",
+        ),
+    )  # fmt: skip
+
+
+def _straight(five: FiveDof) -> ComparedTable:
+    """Nine straight runs in five degrees of freedom, beside the horizontal model's closed form."""
+    commands = np.array(STRAIGHT)
+    c = five.level.constants
+    push = thrusts(five, commands, commands)
+    speed = np.sqrt(push[:, 0] / c["d0"])
+    start = np.column_stack([speed, np.zeros((len(speed), 4))])
+    neutral = replace(five, constants={**five.constants, "displaced": c["m"] / five.density})
+    found, growth = steady(neutral, np.zeros(len(speed)), push, start)
+    floating, _ = steady(five, np.zeros(len(speed)), push, start)
+    rows = tuple(
+        _row(f"{command:g} %", "u, neutrally buoyant", "m/s", float(u), float(ours), 1e-9, True)
+        for command, u, ours in zip(commands, speed, found[:, 0], strict=True)
+    )
+    up = floating[:, 2] * np.cos(floating[:, 3]) - floating[:, 0] * np.sin(floating[:, 3])
+    light = five.buoyancy - five.weight
+    stable = "all are stable" if np.all(growth < 0.0) else "some are not stable"
+    return ComparedTable(
+        "five_dof_straight", "Straight runs of Fig. 18 in five degrees of freedom", rows, "Fig. 18, equations 1 and 34",
+        (f"Both thrusters from 20 to 100 %; {stable}. Fig. 18 prints no number. With the assumed {light:.2g} N of buoyancy over weight "
+         f"the vehicle rises at {-up[0]:.2g} m/s at 20 % and {-up[-1]:.2g} m/s at 100 %.",),
+    )  # fmt: skip
+
+
+def _dives(five: FiveDof, dives: Mapping[float, Dive]) -> ComparedTable:
+    """Where simulations of the parameter file end, and where forces vanish."""
+    at = np.radians(list(dives))
+    both = np.full(len(at), COMMAND)
+    push = thrusts(five, both, both)
+    speed = np.sqrt(push[:, 0] / five.level.constants["d0"])
+    found, _ = steady(five, at, push, np.column_stack([speed, np.zeros((len(at), 4))]))
+    rows = []
+    for (angle, dive), (u, _, w, pitch, _) in zip(dives.items(), found, strict=True):
+        pairs = (
+            ("u", "m/s", u, dive.end[0]),
+            ("w", "m/s", w, dive.end[2]),
+            ("pitch", "deg", np.degrees(pitch), np.degrees(dive.pitch[-1])),
+        )
+        rows += [
+            _row(f"elevators {angle:+g} deg", what, unit, float(a), float(b), SETTLED * (200.0 if unit == "deg" else 1.0))
+            for what, unit, a, b in pairs
+        ]  # fmt: skip
+    down = dives[DIVES[-1]]
+    sinks = (down.depth[-1] - down.depth[-2]) / (down.time[-1] - down.time[-2])
+    return ComparedTable(
+        "five_dof_dives", f"Elevators deflected: {DURATION:g} s with the parameter file, and steady by the equations", tuple(rows),
+        SOURCE_1,
+        (f"At +10 deg it dives at {sinks:.2g} m/s. Assumed vertical laws: a picture of the equations, not of the vehicle.",),
+    )  # fmt: skip
+
+
+def with_masses(five: FiveDof, how: str, turns: Turns) -> Array:
+    """(n, 3) u, |beta| and R of turns with the masses of the steady turns or of the assumed geometry, heave and pitch left out.
+
+    Parameters
+    ----------
+    five : FiveDof
+    how : {"stated", "geometry", "moved"}
+        ``moved``: m_x and m_y of the geometry, C_m(beta) moved by as much as m_y - m_x, C_S scaled as m + m_x.
+    turns : Turns
+    """
+    c = dict(five.level.constants)
+    if how != "stated":
+        a = five.geometry
+        if how == "moved":
+            c["n1"] += float(a[1, 1] - a[0, 0]) - (c["my"] - c["mx"])
+            heavier = (c["m"] + float(a[0, 0])) / (c["m"] + c["mx"])
+            c |= {"s1": heavier * c["s1"], "s3": heavier * c["s3"]}
+        else:
+            c["myr"] = float(a[1, 5])
+        c |= {"mx": float(a[0, 0]), "my": float(a[1, 1])}
+        c["inertia"] = five.level.chosen["rigid_inertia"] + float(a[5, 5])
+    level = replace(five.level, constants=c)
+    push = thrust(turns.left, turns.right, c["slope"], c["intercept"], c["arm"], level.dead_zone)
+    return turn_figures(steady_turns(level.theta, push).velocity)[0]
+
+
+def _turns(five: FiveDof) -> ComparedTable:
+    """Steady turns with heave and pitch, and with other masses."""
+    turns = five.level.accepted
+    turning = np.isfinite(turns.figures[:, 2])
+    some = Turns(turns.left[turning], turns.right[turning], turns.figures[turning])
+    push = thrusts(five, some.left, some.right)
+    level = steady_turns(five.level.theta, push[:, [0, 1, 4]]).velocity
+    none = np.zeros(len(level))
+    found, growth = steady(five, none, push, np.column_stack([level[:, :2], none, none, level[:, 2]]))
+    speed = np.linalg.norm(found[:, :3], axis=1)
+    radius = speed * np.cos(found[:, 3]) / np.abs(found[:, 4])
+    rows = []
+    for i in range(len(level)):
+        case = f"{some.left[i]:g}, {some.right[i]:g} %"
+        drift = float(np.degrees(np.abs(np.arcsin(found[i, 1] / speed[i]))))
+        figures = (
+            (some.figures[i, 0], found[i, 0]),
+            (np.degrees(some.figures[i, 1]), drift),
+            (some.figures[i, 2], radius[i]),
+        )
+        rows += [
+            _row(case, what, unit, float(a), float(b), 1e-2, True)
+            for (what, unit), (a, b) in zip((("u", "m/s"), ("|beta|", "deg"), ("R", "m")), figures, strict=True)
+        ]  # fmt: skip
+    steep = float(np.degrees(np.max(np.abs(found[:, 3]))))
+    all_of = five.level.turns[MATLAB]
+    said = [_departure(label, with_masses(five, how, all_of), all_of) for label, how in SETS]
+    stable = "all are stable" if np.all(growth < 0.0) else "some are not stable"
+    return ComparedTable(
+        "five_dof_turns", "Steady turns with heave and pitch", tuple(rows), "equations 1-17, 23-38",
+        (f"1 % allowed: heave and pitch change a turn by that at most. Pitch reaches {steep:.2g} deg; {stable}.", *said),
+        "steady_turns",
+    )  # fmt: skip
+
+
+def _departure(label: str, found: Array, turns: Turns) -> str:
+    """Root mean square from the printed simulation, in words."""
+    reached = np.asarray(np.isfinite(found).all(axis=1))
+    u, beta, radius = np.sqrt(np.mean((found[reached] - turns.figures[reached]) ** 2, axis=0))
+    return (
+        f"Fig. 17 b, d, f with {label}: rms {u:.2g} m/s, {np.degrees(beta):.2g} deg, {radius:.2g} m in {np.sum(reached)} of "
+        f"{len(reached)} turns."
+    )

@@ -1,0 +1,197 @@
+"""HUUV: coefficients tuned to the printed turns, and which held constants the turns could not tell apart from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from coeflab.core.types import Array
+from coeflab.motion.steady_state import COEFFICIENTS, sensitivities, steady_turns, turn_figures
+from coeflab.motion.tune.output_error import Estimate, Problem, estimate, examine, problem
+from coeflab.motion.tune.tuning import (
+    TunedQuantity,
+    Tuning,
+    moved_in_words,
+    statements,
+    together_in_words,
+    tuned_parameters,
+)
+from coeflab.published.huuv.model import MATLAB, Huuv, Turns, thrust, thrust_rates
+from coeflab.report.acceptance import Basis, Compared, ComparedTable
+
+NAMES = (*COEFFICIENTS, "slope", "intercept", "arm")
+AT_SLOPE = len(COEFFICIENTS)
+BASE = ("intercept", "d0", "d2", "s1", "s3", "n1", "n3")
+FREE = (*BASE, "nr", "nrr")
+UNITS = {
+    **dict.fromkeys(("m", "mx", "my"), "kg"), "myr": "kg m", "nr": "N m s", "nrr": "N m s^2", "intercept": "N", "arm": "m",
+    **dict.fromkeys(("d0", "d2", "s1", "s3"), "kg/m"), **dict.fromkeys(("n1", "n3"), "kg"),
+}  # fmt: skip
+TOLD = {
+    "m": "mass m", "my": "added mass m_y", "arm": "thruster arm y_ct", "intercept": "thrust intercept",
+    "d0": "drag C_D (constant)", "d2": "drag C_D (beta^2)", "s1": "side force C_S (beta)", "s3": "side force C_S (beta^3)",
+    "n1": "yaw moment C_m (beta)", "n3": "yaw moment C_m (beta^3)", "nr": "yaw damping M_mr (r)",
+    "nrr": "yaw damping M_mr (r|r|)",
+}  # fmt: skip
+LEAST = {"d2": 20.0, "s3": 100.0, "n3": 30.0, "nr": 0.1, "nrr": 1.0}
+QUANTITIES = (("u", "m/s", 1.0), ("beta", "deg", 180.0 / np.pi), ("radius", "m", 1.0))
+ERRORS = {"matlab": (0.01, np.radians(0.3), 0.02), "tracker": (0.06, np.radians(1.1), 0.14)}
+
+
+def turning_problem(huuv: Huuv, turns: Turns, errors: Sequence[float], free: Sequence[str], start: Array) -> Problem:
+    """Turns as outputs of the free parameters, with exact derivatives.
+
+    Parameters
+    ----------
+    huuv : Huuv
+    turns : Turns
+    errors : sequence of float
+        Standard errors of u, beta in rad and radius.
+    free : sequence of str
+        Some of `NAMES`.
+    start : (16,) array
+        Values of all `NAMES`.
+    """
+    at = [NAMES.index(name) for name in free]
+
+    @lru_cache(maxsize=4)  # the derivatives are wanted where the outputs were just computed
+    def settled_at(parameters: tuple[float, ...]) -> tuple[Array, tuple[float, float, float], Array]:
+        whole = start.copy()
+        whole[at] = parameters
+        propulsion = (float(whole[AT_SLOPE]), float(whole[AT_SLOPE + 1]), float(whole[AT_SLOPE + 2]))
+        wrench = thrust(turns.left, turns.right, *propulsion, huuv.dead_zone)
+        return whole[:AT_SLOPE], propulsion, steady_turns(whole[:AT_SLOPE], wrench).velocity
+
+    def operating(parameters: Array) -> tuple[Array, tuple[float, float, float], Array]:
+        return settled_at(tuple(parameters.tolist()))
+
+    def model(sets: Array) -> Array:
+        return np.array([turn_figures(operating(one)[2])[0].ravel() for one in sets])
+
+    def jacobian(parameters: Array) -> Array:
+        theta, propulsion, velocity = operating(parameters)
+        by_theta, by_thrust = sensitivities(theta, velocity)
+        by_propulsion = by_thrust @ thrust_rates(turns.left, turns.right, *propulsion, huuv.dead_zone)
+        moves = turn_figures(velocity)[1] @ np.concatenate([by_theta, by_propulsion], axis=-1)
+        return np.asarray(moves.reshape(-1, len(NAMES))[:, at])
+
+    sizes = np.array([max(abs(start[i]), LEAST.get(name, 1e-9)) for i, name in zip(at, free, strict=True)])
+    weights = np.tile(errors, len(turns.left))
+    return problem(model, turns.figures.ravel(), weights, start[at], sizes=sizes, jacobian=jacobian)
+
+
+def start_of(huuv: Huuv) -> Array:
+    """(16,) the shipped constants in the order of `NAMES`."""
+    return np.array([huuv.constants[name] for name in NAMES])
+
+
+def tuned(huuv: Huuv, source: str, free: Sequence[str] = FREE, errors: Sequence[float] | None = None) -> Tuning:
+    """The fit to one half of Fig. 17, from the shipped constants."""
+    turns = huuv.turns[source]
+    p = turning_problem(huuv, turns, errors or ERRORS[source], free, start_of(huuv))
+    found = estimate(p)
+    return Tuning(
+        f"huuv_{source}", tuned_parameters(free, [UNITS[n] for n in free], p, found), found.correlation, found.covariance,
+        _quantities(p, found), tuple(together_in_words([TOLD[n] for n in free], c, found.parameters) for c in found.undetermined),
+        found.singular, found.birge, found.freedom, found.converged, statements(p, found),
+    )  # fmt: skip
+
+
+def _quantities(p: Problem, found: Estimate) -> tuple[TunedQuantity, ...]:
+    before, after = (p.outputs(x).reshape(-1, 3) for x in (p.start, found.parameters))
+    measured, errors = p.measured.reshape(-1, 3), p.errors.reshape(-1, 3)
+    return tuple(
+        TunedQuantity(name, unit, *(factor * a[:, k] for a in (measured, before, after, errors)))
+        for k, (name, unit, factor) in enumerate(QUANTITIES)
+    )
+
+
+def hidden(huuv: Huuv, tuning: Tuning, source: str, constant: str) -> tuple[str, ...]:
+    """What the turns would leave open if one held constant were free too, in words; only what names that constant."""
+    whole = start_of(huuv)
+    for one in tuning.parameters:
+        whole[NAMES.index(one.name)] = one.after
+    # M_mr (r|r|) and C_m (beta^3) hide each other in any case, so that one of them is enough here.
+    free = [p.name for p in tuning.parameters if p.name != "nrr"] + [constant]
+    p = turning_problem(huuv, huuv.turns[source], ERRORS[source], free, whole)
+    found = examine(p, p.start)
+    names = [TOLD[n] for n in free]
+    return tuple(together_in_words(names, c, p.start) for c in found.undetermined if c[-1] != 0.0)
+
+
+LIMITS = {"u": ("m/s", 0.007), "beta": ("deg", 0.40), "radius": ("m", 0.027)}
+ABOUT = {"u": ("m/s", 0.063), "beta": ("deg", 1.1), "radius": ("m", 0.14)}
+ROUGHLY = 0.1
+INTERCEPT, EITHER_WAY = 2.30, 0.15
+
+
+def origin_rows(huuv: Huuv) -> ComparedTable:
+    """The constants of the steady turns, fitted again."""
+    fit = tuned(huuv, MATLAB, BASE)
+    rows = tuple(
+        Compared("fit of seven", TOLD[n], p.unit, huuv.constants[n], p.after, 1e-3, Basis.CONSISTENCY, True)
+        for n in BASE
+        if (p := fit.parameter(n))
+    )
+    said = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
+    return ComparedTable(
+        "origin", "Where the constants of the steady turns come from", rows, "Fig. 17 b, d, f",
+        (f"Quadratic yaw damping held at 1, none linear. Root mean square: {said}; its radius does not reach 0.027 m.",),
+    )  # fmt: skip
+
+
+def tuned_rows(fit: Tuning) -> ComparedTable:
+    """What the fit to the paper's simulation leaves, and its thrust intercept."""
+    rows = [
+        Compared(
+            "MATLAB",
+            "thrust intercept",
+            "N",
+            INTERCEPT,
+            -fit.parameter("intercept").after,
+            EITHER_WAY,
+            Basis.CONSISTENCY,
+        )
+    ]
+    rows += [
+        Compared("MATLAB", f"rms of {n}", unit, most, fit.quantity(n).rms(), 0.0, Basis.CALIBRATION, at_most=True)
+        for n, (unit, most) in LIMITS.items()
+    ]
+    said = ", ".join(f"{q.name} {q.rms():.4f} {q.unit}" for q in fit.quantities)
+    return ComparedTable(
+        "tuned_matlab", "Tuned to the paper's simulation, 28 turns", tuple(rows), "Fig. 17 b, d, f",
+        (f"Root mean square: {said}.", *(moved_in_words(p) for p in fit.parameters), *fit.together, *fit.statements),
+    )  # fmt: skip
+
+
+def pool_rows(fit: Tuning) -> ComparedTable:
+    """What the fit to the pool leaves."""
+    rows = tuple(
+        Compared("TRACKER", f"rms of {n}", unit, about, fit.quantity(n).rms(), ROUGHLY, Basis.CALIBRATION, True)
+        for n, (unit, about) in ABOUT.items()
+    )
+    return ComparedTable(
+        "tuned_tracker", "Tuned to the pool, 28 turns", rows, "Fig. 17 a, c, e",
+        (*(moved_in_words(p) for p in fit.parameters), *fit.together, *fit.statements),
+    )  # fmt: skip
+
+
+def hidden_rows(huuv: Huuv, fit: Tuning) -> ComparedTable:
+    """Held constants that the turns would not tell apart from what is free."""
+    rows, said = [], []
+    for name in ("m", "my", "arm"):
+        found = hidden(huuv, fit, MATLAB, name)
+        rows.append(
+            Compared("MATLAB", f"sets that {TOLD[name]} hides in", "1", 1.0, float(len(found)), 0.0, Basis.CONSISTENCY)
+        )
+        said += list(found)
+    both = sum("beta^3" in text and "r|r|" in text for text in fit.together)
+    rows.append(
+        Compared("MATLAB", "sets of M_mr (r|r|) and C_m (beta^3)", "1", 1.0, float(both), 0.0, Basis.CONSISTENCY)
+    )
+    return ComparedTable(
+        "hidden", "What the turns do not determine", tuple(rows), "Fig. 17 b, d, f",
+        (*said, "So C_S is known only up to the mass, and the yaw equation only up to the arm and m_y - m_x."),
+    )  # fmt: skip

@@ -1,0 +1,335 @@
+"""THAUV beyond the vertical plane: its masses, the spiral, the cruise, and a dive as a parameter file that simulators can hold.
+
+A dive with pistons and roller at rest is a rigid body of some weight and buoyancy. The polar over alpha and beta becomes
+products of velocities, up to the second order of the angles, with V^2 = u^2 + v^2 + w^2::
+
+    X = -D0 u^2 + L0 u w + (K_S - D0/2) v^2 + (L1 - D2 - D0/2) w^2        Y = -(D0 + K_S) u v
+    Z = -L0 (u^2 + v^2 + w^2/2) - (L1 + D0) u w                           M = M0 V^2 + M1 u w - damping u q
+    K = -roll_damping u p                                                 N = K_Y u v - yaw_damping u r
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from coeflab.core.axes import Datum
+from coeflab.core.files import shipped
+from coeflab.core.provenance import InputFile, sha256_of
+from coeflab.core.types import Array
+from coeflab.formats.stated_file import Law, Stated, stated_file
+from coeflab.law.rigid_body import MassProperties
+from coeflab.law.scaling import Conditions, Scaling
+from coeflab.motion.glider.glide import GlideRun, steady_glides, steady_spirals
+from coeflab.motion.glider.glider import Glider, GliderPhase
+from coeflab.motion.glider.space import (
+    SpaceBody,
+    Spiral,
+    cruise,
+    out_of_balance,
+    pushed,
+    steady_spiral,
+    unexplained_in_space,
+)
+from coeflab.motion.simulators import SIMULATORS
+from coeflab.motion.vehicle import vehicle
+from coeflab.report.acceptance import Basis, Compared, ComparedTable
+from coeflab.vehicle.parameter_file import ParameterFile
+from coeflab.vehicle.parameter_parts import (
+    CurveSegment,
+    ParameterCurve,
+    ParameterHydrostatics,
+    ParameterThruster,
+)
+
+FlownSpiral = tuple[GlideRun, Spiral | None]
+UNIT = Scaling(1.0, "unit length (the paper prints none)")
+ROLLED, FLOWN_FOR, CRUISE = np.radians(60.0), 420.0, 0.5
+STATES, SEED = 60, 20260102
+SAME, FINEST, EXACT, ROUNDED, TRUNCATED, TUMBLING = 1e-4, 1e-10, 1e-9, 5e-4, 0.03, 0.01
+ASSUMED = (
+    "All that moves THAUV to the side is assumed, for the paper prints none of it: the spirals show what its equations do, they "
+    "are no prediction of the vehicle."
+)
+
+
+def space_of(glider: Glider) -> tuple[SpaceBody, Array]:
+    """What the equations in space need, and the place (3,) of the rest of the masses, of a shipped case.
+
+    Raises
+    ------
+    ValueError
+        The glider file has no motion in space.
+    """
+    space, rest = glider.space, glider.rest_place
+    if space is None or rest is None:
+        raise ValueError(f"{glider.name} has no [masses], [lateral] and [thrusters]")
+    return space, rest
+
+
+def rolled(glider: Glider, angle: float = ROLLED) -> GliderPhase:
+    """The first dive with the roller turned."""
+    return replace(glider.phases[0], roller=float(angle), lasts=FLOWN_FOR)
+
+
+def flown_spiral(glider: Glider) -> FlownSpiral:
+    """That dive in time from rest, and its steady turn."""
+    phase = rolled(glider)
+    turning = replace(glider, phases=(phase,))
+    found = steady_spirals(turning, phase)
+    motion = SIMULATORS.load("glider").simulate(turning, turning.manoeuvre(1), {"step": 5.0})
+    return GlideRun(turning, motion), found[0] if len(found) == 1 else None
+
+
+def compared_in_space(glider: Glider, flown: FlownSpiral | None = None) -> tuple[ComparedTable, ...]:
+    """Every number of one case that the vertical plane does not hold; ``flown`` where its spiral is known already."""
+    turning = flown or flown_spiral(glider)
+    return (_masses(glider), _energy(glider), _cruise(glider), *_spiral(glider, *turning), _carried(glider))
+
+
+def _masses(glider: Glider) -> ComparedTable:
+    space, rest = space_of(glider)
+    masses, g = space.masses, glider.gravity
+    right_angle = g * (masses.moments(0.0, np.pi / 2, rest) - masses.moments(0.0, 0.0, rest))
+    rows = [
+        Compared("section 2", "static mass m_s", "kg", 65.33, masses.static, 0.005, Basis.PRINTED),
+        Compared("stroke 0.03 m", "mass less displaced mass", "kg", glider.phases[0].net_mass,
+                 masses.total - masses.displaced(0.03), 1e-5, Basis.CONSISTENCY),
+    ]  # fmt: skip
+    for stage, stroke, ahead in (("1", 0.03, 2.272), ("2", 0.05, 3.898)):
+        found = g * masses.moments(stroke, 0.0, rest)
+        for name, value, against in (("ahead", found[0], ahead), ("aside", found[1], 0.0), ("below", found[2], 4.712)):
+            row = Compared(f"stage {stage}", f"moment {name}", "N m", against, float(value), ROUNDED, Basis.CONSISTENCY)
+            rows.append(row)
+    lever = masses.roller * g * masses.roller_arm
+    for name, at, against in (("aside", 1, lever), ("below", 2, -lever)):
+        row = Compared("roller at 90 deg", f"moment {name} gained", "N m", against, float(right_angle[at]), EXACT,
+                       Basis.CONSISTENCY)  # fmt: skip
+        rows.append(row)
+    j = masses.inertia(0.0, 0.0, rest)
+    return ComparedTable(
+        "masses", "Masses, pistons, roller and buoyancy", tuple(rows), "Equations 1 to 7, section 2",
+        (
+            "The moments ahead and below are those that the six speeds imply; the mass model gives them again from every mass and "
+            "the buoyancy. Places of roller and hulls are assumed, Table 2 is lost.",
+            f"The masses alone have moments of inertia of {j[0, 0]:.1f}, {j[1, 1]:.1f} and {j[2, 2]:.1f} kg m^2 about x, y and z, "
+            f"with assumed radii of gyration. J2 = {glider.mass.pitch_inertia:g} kg m^2 is assumed, the rest of it is water.",
+            "Equation 7 as printed moves the water's lever with the piston; here it stays where it was calibrated.",
+        ),
+    )  # fmt: skip
+
+
+def _energy(glider: Glider) -> ComparedTable:
+    space, _ = space_of(glider)
+    sizes = (0.5, 0.6, 0.6, 0.2, 0.2, 0.2, 0.2, 0.2)
+    draws = np.random.default_rng(SEED).uniform(-1.0, 1.0, (STATES, 8)) * sizes
+    setting = rolled(glider).setting._replace(right=1.0, left=2.0)
+    power, drift, spun = unexplained_in_space(space, setting, draws)
+    rows = tuple(
+        Compared(f"{STATES} motions", quantity, unit, 0.0, max(found, FINEST), EXACT, Basis.CONSISTENCY)
+        for quantity, unit, found in (
+            ("power without a force", "W", power),
+            ("velocity without a cause", "m/s", drift),
+            ("rotation without a cause", "rad/s", spun),
+        )
+    )
+    return ComparedTable(
+        "power_in_space", "Energy of the equations in space", rows, "Equations 8 to 13 as corrected",
+        ("Water, thrusters, weight and buoyancy alone change the energy; inertia does no work.",),
+    )  # fmt: skip
+
+
+def _cruise(glider: Glider) -> ComparedTable:
+    space, _ = space_of(glider)
+    found = cruise(space, CRUISE)
+    level = Spiral(CRUISE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    left = out_of_balance(space, found.setting, level)
+    pushed = out_of_balance(space, found.setting._replace(right=found.setting.right + 1.0), level) - left
+    rows = (
+        Compared("thrust of the drag", "force ahead left over", "N", 0.0, float(left[0]), EXACT, Basis.CONSISTENCY),
+        Compared("net mass of the lift", "force down left over", "N", 0.0, float(left[2]), EXACT, Basis.CONSISTENCY),
+        Compared("1 N more on the right", "force ahead", "N", 1.0, float(pushed[0]), EXACT, Basis.CONSISTENCY),
+        Compared("1 N more on the right", "yaw moment", "N m", -0.25, float(pushed[5]), EXACT, Basis.CONSISTENCY),
+    )
+    return ComparedTable(
+        "cruise", f"Level cruise under thrusters at {CRUISE:g} m/s", rows, "Section 4, Figures 11 and 12",
+        (
+            f"At no angle of attack: drag {found.drag:.2f} N, lift {found.lift:.2f} N, so {found.drag / 2:.2f} N a thruster and "
+            f"{1e3 * found.setting.net_mass:.0f} g of net mass. {found.elevator:.2f} N m of pitch are the elevator's, of which the "
+            "paper prints nothing. Thrusters 0.25 m aside are assumed.",
+        ),
+    )  # fmt: skip
+
+
+def _spiral(glider: Glider, run: GlideRun, steady: Spiral | None) -> tuple[ComparedTable, ComparedTable]:
+    t, phase = run.trajectory, run.glider.phases[0]
+    phi, theta, _ = t.angles[-1]
+    last = slice(-2, None)
+    lasted = float(np.diff(t.time[last])[0])
+    chord = float(np.hypot(*np.diff(t.position[last, :2], axis=0)[0]))
+    turn = float(np.diff(t.heading[last])[0]) / lasted
+    radius = chord / (2.0 * abs(np.sin(turn * lasted / 2.0))) if turn else None
+    values = {
+        ("V", "m/s"): (steady and steady.speed, float(run.speed[-1])),
+        ("alpha", "deg"): (steady and np.degrees(steady.alpha), float(np.degrees(run.alpha[-1]))),
+        ("roll", "deg"): (steady and np.degrees(steady.phi), float(np.degrees(phi))),
+        ("pitch", "deg"): (steady and np.degrees(steady.theta), float(np.degrees(theta))),
+        ("turn", "deg/s"): (steady and np.degrees(steady.turn), float(np.degrees(turn))),
+        ("sinking", "m/s"): (steady and steady.sinking, float(np.diff(t.position[last, 2])[0]) / lasted),
+        ("radius", "m"): (steady and steady.radius, radius),
+    }
+    case = f"roller at {np.degrees(ROLLED):.0f} deg"
+    same = tuple(
+        Compared(case, name, unit, float(against or np.nan), found, SAME, Basis.CONSISTENCY, relative=True)
+        for (name, unit), (against, found) in values.items()
+    )
+    settled = ComparedTable(
+        "spiral", f"A spiral of {glider.name}: equilibrium and motion in time", same, "Equations 8 to 13; Figure 3",
+        (
+            f"From rest, {FLOWN_FOR:g} s, with the orders of the first dive. The equilibrium is solved without any motion in time; "
+            "the radius of the motion is that of the last arc over ground.",
+            ASSUMED,
+        ),
+    )  # fmt: skip
+    return settled, _senses(glider, steady, phase)
+
+
+def _senses(glider: Glider, steady: Spiral | None, phase: GliderPhase) -> ComparedTable:
+    """Which way the roller turns it, by signs; and the same turn mirrored."""
+    space, _ = space_of(glider)
+    climb = steady_spirals(glider, replace(glider.phases[1], roller=float(ROLLED)))
+    (straight,) = steady_glides(glider, phase) or (None,)
+    port = None
+    if straight is not None:
+        port = steady_spiral(
+            space, phase.setting._replace(roller=-ROLLED), straight.speed, straight.alpha, straight.theta
+        )
+    rows = [
+        Compared("dive, roller to starboard", "sense of the turn", "1", 1.0, _sign(steady), 0.0, Basis.CONSISTENCY),
+        Compared("climb, roller to starboard", "sense of the turn", "1", -1.0, _sign(climb[0] if climb else None), 0.0,
+                 Basis.CONSISTENCY),
+        Compared("dive, roller to port", "sense of the turn", "1", -1.0, _sign(port), 0.0, Basis.CONSISTENCY),
+    ]  # fmt: skip
+    return ComparedTable(
+        "senses", "Which way a roller turns it", tuple(rows), "Section 2, text to Figure 3",
+        (
+            "The centre of gravity moves to the roller's side, the hulls roll, and the lift leans: up on a dive, down on a climb.",
+        ),
+    )  # fmt: skip
+
+
+def _sign(turn: Spiral | None) -> float | None:
+    return None if turn is None else float(np.sign(turn.turn))
+
+
+def second_order(glider: Glider) -> dict[str, float]:
+    """Totals, with the Munk moments, of the products that a dive's polar becomes, SI; see the module."""
+    space, _ = space_of(glider)
+    p, s = space.plane.polar, space.lateral
+    (l0, l1), (d0, d2), (m0, m1) = p.lift, p.drag, p.moment
+    m = np.diag(space.inertia)
+    munk_pitch, munk_yaw = (0.0, 0.0) if space.plane.holds_munk else (float(m[2] - m[0]), float(m[0] - m[1]))
+    return {
+        "X0": -d0, "Xuw": l0, "Xvv": s.K_S - d0 / 2.0, "Xww": l1 - d2 - d0 / 2.0, "Yv": -(d0 + s.K_S),
+        "Z0": -l0, "Zw": -(l1 + d0), "Zvv": -l0, "Zww": -l0 / 2.0, "Kp": -s.roll_damping,
+        "M0": m0, "Mw": m1 + munk_pitch, "Mvv": m0, "Mww": m0, "Mq": -p.damping, "Nv": s.K_Y + munk_yaw, "Nr": -s.yaw_damping,
+    }  # fmt: skip
+
+
+def dive_file(glider: Glider, phase: GliderPhase, name: str) -> ParameterFile:
+    """A dive with pistons and roller at rest where the phase has them: derivatives, masses, buoyancy and thrusters.
+
+    Parameters
+    ----------
+    glider : Glider
+        A shipped case.
+    phase : GliderPhase
+    name : str
+    """
+    space, rest = space_of(glider)
+    masses, at = space.masses, Conditions(space.masses.density, 0.3)
+    weight = masses.total * glider.gravity
+    centre = space.moments(phase.setting) / weight
+    rigid = masses.inertia(phase.position, phase.roller, rest)
+    added = np.diag(np.diag(space.inertia) - [*([masses.total] * 3), *np.diag(rigid)])
+    law: Law = "motion"
+    coefficients = {
+        symbol: (value / UNIT.unit(symbol, at.density), law) for symbol, value in second_order(glider).items()
+    }
+    stated = Stated(
+        name, glider.title, UNIT, at, coefficients, datum=Datum("cb"), matrix=added,
+        mass=MassProperties(masses.total, masses.total * float(centre[0]), None, centre, rigid),
+        notes=(
+            f"{glider.name} on the orders of '{phase.name}': net mass {phase.net_mass:g} kg, stroke {phase.position:g} m, roller "
+            f"{np.degrees(phase.roller):g} deg, all at rest. Simulators hold neither moving pistons, roller nor buoyancy engine.",
+            "Polar of Table 3 up to the second order of the angles: third-order parts are lost, about 3 % of the lift at 10 deg.",
+            "m3 - m1 and the moments of the masses are calibrated on the six published speeds, pitch damping on 170 s until a dive is "
+            "steady. Moments of inertia: of the mass model with assumed radii of gyration, the rest of the assumed totals is water.",
+            "All of the motion to the side, and the thrusters, are assumed: the paper prints none of it.",
+        ),
+    )  # fmt: skip
+    folder = Path(str(shipped("cfd_data") / "thauv"))
+    source = f"{glider.name.removeprefix('thauv_')}.toml"
+    file = stated_file(stated, [InputFile(f"thauv/{source}", sha256_of(folder / source))], ("thauv",))
+    rest_state = ParameterHydrostatics(
+        volume=(masses.total - phase.net_mass) / at.density, centre_of_buoyancy=(0.0, 0.0, 0.0), gravity=glider.gravity
+    )
+    t = space.thrusters
+    curve = ParameterCurve(
+        command="thrust", unit="N", segments=(CurveSegment(low=-t.largest, high=t.largest, coefficients=(0.0, 1.0)),)
+    )
+    thrusters = tuple(
+        ParameterThruster(name=side, position=(0.0, y, t.below), direction=(1.0, 0.0, 0.0), curve=curve)
+        for side, y in (("right", t.aside), ("left", -t.aside))
+    )
+    provenance = file.provenance.model_copy(update={"study": "thauv"})
+    return file.model_copy(update={"hydrostatics": rest_state, "thrusters": thrusters, "provenance": provenance})
+
+
+def dive_files(gliders: Sequence[Glider]) -> tuple[ParameterFile, ...]:
+    """The first dive of every case, and the spiral of the case that the report shows."""
+    dives = [dive_file(g, g.phases[0], f"{g.name}_dive") for g in gliders]
+    return (*dives, *(dive_file(g, rolled(g), f"{g.name}_spiral") for g in gliders if g.name.endswith("02")))
+
+
+def _carried(glider: Glider) -> ComparedTable:
+    """Forces left over by the rigid body of the parameter file on steady glide and spiral, over those that it balances."""
+    rows = []
+    for name, phase in (("glide", glider.phases[0]), ("spiral", rolled(glider))):
+        craft = vehicle(ParameterFile.model_validate_json(dive_file(glider, phase, "dive").to_json()))
+        for steady in steady_spirals(glider, phase)[:1]:
+            half = np.array([steady.phi, steady.theta]) / 2.0
+            (sp, st), (cp, ct) = np.sin(half), np.cos(half)
+            attitude = np.array([[cp * ct, sp * ct, cp * st, -sp * st]])
+            left = craft.unbalanced(steady.velocity[None, :], attitude, np.zeros((1, 3)), np.zeros(6))[0]
+            force, arm = (
+                phase.net_mass * glider.gravity,
+                float(np.max(np.abs(space_of(glider)[0].moments(phase.setting)))),
+            )
+            found = max(float(np.max(np.abs(left[:3]))) / force, float(np.max(np.abs(left[3:]))) / arm)
+            rows.append(Compared(name, "left over", "1", 0.0, found, TRUNCATED, Basis.CONSISTENCY))
+    rows.append(_tumbling(glider))
+    return ComparedTable(
+        "carried", "The dive as a parameter file, in the rigid body of every simulator", tuple(rows), "Equations 8 to 13",
+        (
+            "Largest force over the net weight, or moment over that of the masses, which the parameter file of a dive leaves in the "
+            "state of our equations: other code, products of velocities in place of the polar, and the centre of gravity in the "
+            "inertia.",
+        ),
+    )  # fmt: skip
+
+
+def _tumbling(glider: Glider) -> Compared:
+    """Moments of a fast rotation without way: those of inertia and of the masses, where the water gives none."""
+    space, _ = space_of(glider)
+    phase = rolled(glider)
+    craft = vehicle(ParameterFile.model_validate_json(dive_file(glider, phase, "dive").to_json()))
+    nu = np.array([0.0, 0.0, 0.0, 0.3, 0.2, -0.4])
+    ours = pushed(space, nu, space.matrix(phase.position) @ nu, np.array([0.0, 0.0, 1.0]), phase.setting)[3:]
+    upright = np.array([[1.0, 0.0, 0.0, 0.0]])
+    theirs = craft.unbalanced(nu[None, :], upright, np.zeros((1, 3)), np.zeros(6))[0, 3:]
+    apart = float(np.max(np.abs(ours - theirs)) / np.max(np.abs(ours)))
+    return Compared("rotation without way", "moment apart", "1", 0.0, apart, TUMBLING, Basis.CONSISTENCY)

@@ -1,0 +1,369 @@
+"""The form of ``coeflab import``: all that makes a file a campaign on one screen, and what a person types into it."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+
+from coeflab.core.errors import InputError, shown, together
+from coeflab.core.table import folded
+from coeflab.tables.column_map import ColumnMap, read_column_map
+from coeflab.tables.mapping import known_as, with_unit
+from coeflab.tables.proposals import OPEN, Proposal
+from coeflab.tables.questions import Doubt, Understood, understood, without_unit
+from coeflab.tables.raw_table import RawColumn, RawTable
+from coeflab.tables.settings import EXTRA, Setting, Settings, read_settings
+
+MANY = 20  # columns, beyond which those that no fit uses have no line
+KEY, VALUE = 25, 22  # letters
+GRAVE = ("axes.", "table.", "inertia.")
+UNSHOWN = ("campaign.", "source.how_obtained", "table.source", "table.labels", "table.cells")
+
+
+class Group(IntEnum):
+    """Parts of the form, in their order."""
+
+    OPEN = 0
+    GRAVE = 1
+    COLUMN = 2
+    FURTHER = 3
+
+
+TITLES = {
+    Group.OPEN: "? Open: nothing in the file says these",
+    Group.GRAVE: "Axes, signs, points, inertia: accepting confirms these",
+    Group.COLUMN: "Columns",
+    Group.FURTHER: "Further",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One key of the form.
+
+    Attributes
+    ----------
+    key : str
+        Of campaign.toml, or the name of a column.
+    value : str
+        What is said or proposed; empty where it is open.
+    why : str
+        What it rests on in a few words; the choices where it is open.
+    group : Group
+    about : str
+        The long explanation.
+    argument : str
+        What says it on the command line, with ``?`` in the place of what is open.
+    pending : bool
+        Somebody has to accept it.
+    number : int
+        By which a person names it, which stays as long as the form is asked.
+    """
+
+    key: str
+    value: str
+    why: str
+    group: Group
+    about: str = ""
+    argument: str = ""
+    pending: bool = False
+    number: int = 0
+
+
+def argument(option: str, key: str, text: str) -> str:
+    """An argument of the command line as a shell takes it; primes in double quotes."""
+    said = f"{key}={text}"
+    plain = "'" in said and not set(said) & set('"$`\\!\n')
+    return f'{option} "{said}"' if plain else f"{option} {shlex.quote(said)}"
+
+
+def form(
+    raw: RawTable,
+    found: Understood,
+    settings: Settings,
+    read_by: Sequence[Line] = (),
+    numbers: dict[str, int] | None = None,
+) -> tuple[Line, ...]:
+    """All lines, open ones first.
+
+    Parameters
+    ----------
+    raw : RawTable
+    found : Understood
+    settings : mapping of str to Setting
+        What is known.
+    read_by : sequence of Line
+        What the file was read by and somebody may change, such as the sheet.
+    numbers : dict of str to int, optional
+        Those of the keys that were shown before; new ones are added.
+    """
+    out = [*read_by, *_columns(raw, found)]
+    for q in found.questions:
+        group = Group.OPEN if q.open else Group.GRAVE if q.grave else Group.FURTHER
+        value, why = q.default or q.shown, (q.short or q.why) if not q.open else q.choices
+        about = q.asks + (f". Proposed: {value}, {q.why or q.short}" if value else "")
+        out.append(
+            Line(q.key, value, why, group, f"{about}.", argument("--set", q.key, q.default or OPEN), not q.harmless)
+        )
+    for key, one in settings.items():
+        if not key.startswith(UNSHOWN):
+            group = Group.GRAVE if key.startswith(GRAVE) else Group.FURTHER
+            value = ", ".join(map(str, one.value)) if isinstance(one.value, list) else str(one.value)
+            out.append(
+                Line(
+                    key,
+                    value,
+                    one.origin.replace("confirmed", "said"),
+                    group,
+                    f"{found.about.get(key, key)}. It is {value}: {one.origin}.",
+                )
+            )
+    taken: dict[str, int] = {} if numbers is None else numbers
+    ordered = sorted(out, key=lambda line: line.group)
+    return tuple(replace(line, number=taken.setdefault(line.key, len(taken) + 1)) for line in ordered)
+
+
+def _columns(raw: RawTable, found: Understood) -> Iterator[Line]:
+    doubts = {d.column.name: d for d in found.doubts}
+    still = {column.name: offer for column, offer in found.open}
+    for column, offer in zip(raw.columns, found.proposals, strict=True):
+        name, span = column.name, _span(column)
+        if name in doubts:
+            yield _doubtful(doubts[name])
+        elif name in still:
+            missing = _covered(offer)
+            group = Group.COLUMN if offer.whole or missing else Group.OPEN
+            why = (
+                f"{offer.why.partition(';')[0]}{span}"
+                if group is Group.COLUMN
+                else offer.why.replace("; no unit is stated", "; unit?")
+            )
+            text = offer.text.replace("coefficient A=?", "coefficient")
+            about = f'Column "{name}": {offer.text or "not known"}; {offer.why}. Say such as Y [N], -beta [deg], r\' [-], label or ignore.'
+            yield Line(
+                name, text if group is Group.COLUMN else "", missing or why, group, about,
+                argument("--map", name, offer.text or OPEN), True,
+            )  # fmt: skip
+        elif (said := found.mapping.get(name)) is not None and not (said.name == "ignore" and len(raw.columns) > MANY):
+            why = offer.why.partition(";")[0] if offer.certain else "said"
+            yield Line(name, str(said), why + span, Group.COLUMN, f'Column "{name}": {said}; {offer.why}.')
+
+
+def _covered(offer: Proposal) -> str:
+    """By which key what a proposal lacks is said for all columns; empty where it lacks nothing, or something of its own."""
+    if offer.whole:
+        return ""
+    if "coefficient" in offer.text:
+        return "by coefficients.area" + " and .length" * ("L=?" in offer.text)
+    return "by columns.units" if without_unit(offer.text) else ""
+
+
+def _doubtful(doubt: Doubt) -> Line:
+    turned, kept = (str(replace(doubt.said, negative=negative)) for negative in (True, False))
+    name = doubt.column.name
+    turns = f"; {name} > 0 then {doubt.turns}" * bool(doubt.turns)
+    about = f'Column "{name}": {doubt.why}. {turned} turns its sign, {kept} keeps it{turns}.'
+    if doubt.another:
+        about = f'Column "{name}": {doubt.why}. {turned} {doubt.turns} where {name} > 0, {kept} the other way.'
+    return Line(name, "", f"{turned} or {kept}: {doubt.why}", Group.OPEN, about, argument("--map", name, OPEN), True)
+
+
+def _span(column: RawColumn) -> str:
+    known = column.values[np.isfinite(column.values)]
+    if not known.size:
+        return ""
+    blank = len(column.values) - known.size
+    return f"; {known.min() + 0.0:.4g} to {known.max() + 0.0:.4g}" + f", {blank} blank" * bool(blank)
+
+
+def open_lines(lines: Sequence[Line]) -> list[Line]:
+    """Those that somebody has to say."""
+    return [line for line in lines if line.group is Group.OPEN]
+
+
+def screen(lines: Sequence[Line], changed: Collection[str] = (), width: int = 80) -> list[str]:
+    """The form as text: number, key, value, why; ``>`` before what has changed.
+
+    Parameters
+    ----------
+    lines : sequence of Line
+    changed : collection of str
+        Keys.
+    width : int
+        Letters of a line.
+    """
+    out: list[str] = []
+    most = max((min(len(line.key), KEY) for line in lines), default=0)
+    for group in Group:
+        if not (own := [line for line in lines if line.group is group]):
+            continue
+        out.append(TITLES[group])
+        for line in own:
+            head = f"{'>' if line.key in changed else ' '}{line.number:3d}{'?' if group is Group.OPEN else ' '} {_cut(line.key, KEY):<{most}}  "
+            text = _one_line(line.value)
+            if group is Group.OPEN:
+                out += folded(line.why, width - 1, head, " " * len(head))[:3]
+                continue
+            room = width - 1 - len(head) - 2 - max(len(text), VALUE)
+            if len(text) > VALUE and room < min(len(line.why), 12):
+                out += folded(text, width - 1, head, " " * len(head))
+            else:
+                out.append(f"{head}{text:<{VALUE}}  {_cut(line.why, room)}".rstrip())
+    return out
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _cut(text: str, most: int) -> str:
+    flat = _one_line(text)
+    return flat if len(flat) <= most else flat[: max(most - 2, 0)].rstrip(" ,;:(") + " …" * (most > 2)
+
+
+@dataclass(slots=True)
+class Typed:
+    """What a person typed into the form.
+
+    Attributes
+    ----------
+    columns : dict of str to ColumnMap
+    settings : dict of str to Setting
+    options : dict of str to str
+        Of the importer.
+    explain : list of Line
+        What is to be explained.
+    """
+
+    columns: dict[str, ColumnMap] = field(default_factory=dict)
+    settings: dict[str, Setting] = field(default_factory=dict)
+    options: dict[str, str] = field(default_factory=dict)
+    explain: list[Line] = field(default_factory=list)
+
+
+def typed(text: str, lines: Sequence[Line], raw: RawTable, options: Collection[str] = ()) -> Typed:
+    """What ``3=Y [N]; axes.frame=CFD; 5 ?`` means: by number, key or column; several with semicolons between.
+
+    Parameters
+    ----------
+    text : str
+    lines : sequence of Line
+        Of the form that the person saw.
+    raw : RawTable
+    options : collection of str
+        Keys that are options of the importer.
+
+    Raises
+    ------
+    InputError
+        All that cannot be read.
+    """
+    out, complaints = Typed(), list[InputError]()
+    columns = {n: c for c in raw.columns for n in (c.name, *known_as(c))}
+    for part in filter(None, map(str.strip, re.split(r";(?![^\[]*\])", text))):
+        asked = re.fullmatch(r"(?:\?\s*(?P<after>.+)|(?P<before>.+?)\s*\?|(?P<number>\d+)|\?)", part)
+        if asked and "=" not in part.replace(" ", "").removesuffix("=?"):
+            name = (asked["after"] or asked["before"] or asked["number"] or "").rstrip("= ")
+            one = _line(name, lines)
+            if one is None and name:
+                complaints.append(_no_key(name, lines))
+            out.explain += [one] if one else open_lines(lines) if not name else []
+            continue
+        try:
+            _take(out, part, lines, raw, columns, options)
+        except InputError as why:
+            complaints.append(why)
+    if complaints:
+        raise together(complaints)
+    return out
+
+
+def _take(
+    out: Typed,
+    part: str,
+    lines: Sequence[Line],
+    raw: RawTable,
+    columns: Mapping[str, RawColumn],
+    options: Collection[str],
+) -> None:
+    """One KEY=VALUE."""
+    fits = [n for n in columns if part.startswith(f"{n}=")]
+    name = max(fits, key=len) if fits else part.partition("=")[0].strip()
+    said = part[len(name) :].lstrip()
+    one = None if fits else _line(name, lines)
+    key = one.key if one else name
+    if not said.startswith("="):
+        raise InputError(shown(part), "KEY=VALUE or NUMBER=VALUE, several with ; between, or NUMBER ?")
+    said = said[1:].strip()
+    if key in options:
+        out.options[key] = said
+    elif key in columns:
+        out.columns[columns[key].name] = _column(raw, columns[key], said)
+    elif "." not in key:
+        raise _no_key(key, lines)
+    else:
+        out.settings |= {k: Setting(value, "confirmed") for k, value in read_settings(key, said).items()}
+
+
+def _column(raw: RawTable, column: RawColumn, said: str) -> ColumnMap:
+    try:
+        out = read_column_map(said)
+        if out.name != "ignore":
+            with_unit(raw, column, out)
+    except InputError as why:
+        raise type(why)(
+            why.found, why.expected, column=column.name, advice=why.advice.replace(" under [columns]", "")
+        ) from None
+    return out
+
+
+def _line(name: str, lines: Sequence[Line]) -> Line | None:
+    if name.isdecimal():
+        return next((line for line in lines if line.number == int(name[:4])), None)
+    return next((line for line in lines if line.key.casefold() == name.casefold()), None)
+
+
+def _no_key(name: str, lines: Sequence[Line]) -> InputError:
+    return InputError(
+        f"no key or column {shown(name)}", f"a number from 1 to {len(lines)}, a key or a column of the form"
+    )
+
+
+def settled(
+    raw: RawTable, said: Mapping[str, ColumnMap], settings: Settings, accept: bool
+) -> tuple[Understood, dict[str, Setting]]:
+    """What follows when proposals are accepted, one from the other until nothing more does; else of harmless ones alone.
+
+    Parameters
+    ----------
+    raw : RawTable
+    said : mapping of str to ColumnMap
+    settings : mapping of str to Setting
+    accept : bool
+    """
+    out = dict(settings)
+    while True:
+        found = understood(raw, said, out, accept)
+        fresh: dict[str, Setting] = {}
+        for q in found.questions:
+            if q.default and (accept or q.harmless):
+                fresh |= {k: Setting(v, q.why) for k, v in read_settings(q.key, q.default).items() if k not in out}
+        if not fresh:
+            return found, out
+        out |= fresh
+
+
+def pending(found: Understood) -> bool:
+    """Whether something is open or waits to be accepted."""
+    return bool(found.doubts or found.open or any(not q.harmless for q in found.questions))
+
+
+def of_campaign(settings: Settings) -> dict[str, Any]:
+    """The settings without what was said of columns alone."""
+    return {key: one for key, one in settings.items() if key not in EXTRA}

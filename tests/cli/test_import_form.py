@@ -1,0 +1,208 @@
+"""The form of ``coeflab import`` on a terminal: one screen, one line of answers, Enter."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from click.testing import Result
+from typer.testing import CliRunner
+
+from coeflab.cli import app, import_
+from coeflab.tables.questions import questions
+from coeflab.tables.raw_table import RawTable, Stated
+from coeflab.tables.settings import Setting
+from tests.cli.conftest import flat
+from tests.cli.test_import import RUNS, command_of, drift, invoke, left_open, runs, sets, stub, table_of
+
+__all__ = ["drift", "runs", "stub"]
+
+ARM = "r' (-),Fx,Fz,Mz\n0.1,-77,-15,48\n0.2,-78,-31,100\n0.3,-80,-50,160\n0.4,-81,-69,222\n"
+SIZES = "axes.reference_point=midship; scaling.length=4 LOA; conditions.density=998.2; conditions.speed=2"
+
+
+@pytest.fixture(autouse=True)
+def without_slopes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(import_, "_first_slopes", lambda folder: None)
+
+
+def answered(monkeypatch: pytest.MonkeyPatch, answers: list[str], *arguments: object) -> Result:
+    """What a command says to one who types these answers, as on a terminal."""
+    monkeypatch.setattr(import_, "sys", SimpleNamespace(stdin=SimpleNamespace(isatty=lambda: True)))
+    done = CliRunner().invoke(app, [str(a) for a in arguments], input="\n".join(answers) + "\n")
+    monkeypatch.undo()
+    monkeypatch.setattr(import_, "_first_slopes", lambda folder: None)
+    return done
+
+
+def test_one_line_answers_all_and_an_empty_one_accepts(
+    drift: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    line = "1=CFD; 2=-2 from nose; 3=4 LOA; 4=998.2; 5=2; Fy=Y"
+    done = answered(monkeypatch, [line, ""], "import", drift, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    assert done.output.count("explains") == 2  # prompts
+    second = done.output.split("explains")[1]
+    assert ">  6  axes.beta             v = -U sin(beta)        so that Yv' < 0" in second  # by the axes, and marked
+    table = table_of(tmp_path / "out")
+    assert table.forces["Y"].tolist()[:2] == [-29.4, -11.8]
+    assert (table.reference_point.tolist(), str(table.datum)) == ([-2.0, 0.0, 0.0], "nose")
+
+
+def test_wrong_answers_are_named_together_and_none_is_taken(
+    drift: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answers = ["1=XYZ; 2=2 m aft of nose; nothing=3; Fy=Y [deg]; 3=4 LOA", "", "3 ?; ?"]
+    done = answered(monkeypatch, answers, "import", drift, "--out", tmp_path / "out")
+    assert done.exit_code == 1
+    said = flat(done.output)
+    for part in ('found "XYZ"; expected "FRD", "FLU", "CFD"', "expected the side as a sign", 'no key or column "nothing"',
+                 "unit of another dimension", "Open: 1 axes.frame, 2 axes.reference_point, 3 scaling.length",
+                 "scaling.length: Length of the primes, m, with its name: 4.3 m LOA",
+                 "axes.frame: Axes of the forces: FRD (x forward, y starboard, z down)"):  # fmt: skip
+        assert part in said, (part, said)
+    assert not (tmp_path / "out").exists()
+
+
+def test_numbers_stay_while_the_form_changes(drift: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    answers = ["1=CFD", "3=4 LOA", "2=-2 from nose; 5=2", "4=1.025", "4=998.2", ""]
+    done = answered(monkeypatch, answers, "import", drift, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    assert 'is it g/cm^3? Then write "1.025 g/cm^3"' in flat(done.output)
+    table = table_of(tmp_path / "out")
+    assert (table.conditions.density, table.conditions.speed, table.scaling.length) == (998.2, 2.0, 4.0)
+
+
+@pytest.mark.parametrize(("answer", "sign"), [("-r' [-]", -1.0), ("r' [-]", 1.0)])
+def test_a_rate_that_the_numbers_contradict_is_open(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, answer: str, sign: float
+) -> None:
+    """Forces without a unit: only in SI, one answer for all, are N and r comparable; with z up r > 0 turns to port."""
+    file = tmp_path / "arm.csv"
+    file.write_text(ARM)
+    answers = [f"columns.units=SI; axes.frame=FLU; {SIZES}; table.contains_inertia=no", f"r'={answer}", ""]
+    done = answered(monkeypatch, answers, "import", file, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    assert "-r' [-] or r' [-]: N and r have the same sign" in flat(done.output)
+    rates = [sign * -0.5 * x for x in (0.1, 0.2, 0.3, 0.4)]
+    assert table_of(tmp_path / "out").motion["r"].tolist() == pytest.approx(rates)
+
+
+def test_a_rate_about_an_axis_whose_forces_rest_is_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With y up, r is pitch about z; Y and N vary, so that yaw is meant, q of the file, even where --map says r."""
+    file = tmp_path / "arm.csv"
+    file.write_text(ARM)
+    units = ("--map", "Fx=X [N]", "--map", "Fz=Z [N]", "--map", "Mz=M [N*m]")
+    up = sets(axes__frame="forward,up,starboard", table__contains_inertia="no")
+    for said in ((), ("--map", "r'=r'")):
+        done = invoke("import", file, "--out", tmp_path / "out", "--accept", *units, *said, *up)
+        assert left_open(done) == ["r'"]
+        assert "-q' [-] or q' [-]: r counts about the z axis of the frame, which points starboard" in flat(done.output)
+    for folder, answer in (("out", ("--map", "r'=-q'")), ("asked", ())):
+        answers = [""] if answer else ["r'=-q' [-]", ""]
+        done = answered(monkeypatch, answers, "import", file, "--out", tmp_path / folder, *units, *answer, *up)
+        assert done.exit_code == 0, done.output
+        assert table_of(tmp_path / folder).motion["r"].tolist() == pytest.approx([0.05, 0.1, 0.15, 0.2])
+        assert not np.any(table_of(tmp_path / folder).motion["q"])
+
+
+def test_area_and_length_of_coefficients_are_said_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "arm.csv"
+    rows = "".join(f"{i},{2 * i},{10 + i},{0.1 * i},{0.01 * i}\n" for i in range(1, 6))
+    file.write_text("Run,Drift (deg),R (m),CY,CN\n" + rows)
+    first = (
+        "coefficients.area=0.2 m^2; axes.frame=FRD; axes.beta=-; axes.reference_point=nose; scaling.length=4 LOA; "
+        "conditions.density=1000; conditions.speed=2; table.centre=starboard; table.contains_inertia=true"
+    )
+    answers = [first, "inertia.mass=10; inertia.centre_of_gravity=0", ""]
+    done = answered(monkeypatch, answers, "import", file, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    assert 'CN = "N [coefficient A=0.2 m^2 L=4.0 m]"' in (tmp_path / "out" / "mapping.toml").read_text()
+    table = table_of(tmp_path / "out")
+    assert table.arm_point is not None
+    assert table.arm_point.tolist() == table.reference_point.tolist() == [0.0, 0.0, 0.0]
+
+
+def test_coefficients_may_be_primes_whose_speed_and_density_cancel(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "primes.csv"
+    file.write_text("Drift;CY;CN\ndeg;1e-3;1e-3\n-4;1.5;0.5\n0;0;0\n4;-1.5;-0.5\n")
+    first = "coefficients.area=prime; axes.frame=FRD; axes.reference_point=cg; scaling.length=4 LOA"
+    done = answered(monkeypatch, [first, "conditions.speed=2", ""], "import", file, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    assert "it cancels" in done.output
+    assert table_of(tmp_path / "out").forces["Y"].tolist() == pytest.approx([48.0, 0.0, -48.0])
+
+
+TANK = """Schlepptank, Versuch 2213
+v = 1,5 m/s; rho = 998,8 kg/m3
+Lpp = 4,3 m; Momente um Hauptspant; x nach vorn, y nach Steuerbord
+Fahrt;Schiebewinkel;Kraft längs;Kraft quer;Moment um Hochachse
+-;deg;N;N;Nm
+""" + "".join(f"{i};{b};{-20 - abs(b):d},5;{3 * b},25;{-b},125\n" for i, b in enumerate((-8, -4, 0, 4, 8), start=1))
+
+
+def test_lines_over_a_german_table_leave_nothing_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Axes, point, speed, density, length, kind of its own lines: Enter; a sign that the numbers contradict warns."""
+    file = tmp_path / "tank.csv"
+    file.write_text(TANK, encoding="utf-8")
+    done = answered(monkeypatch, ["axes.beta=+", "axes.beta=-", ""], "import", file, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    said = flat(done.output)
+    for part in (
+        "Kraft quer Y [N]",
+        "Moment um Hochachse N [Nm]",
+        "declared is axes.beta = v = +U sin(beta). One of them",
+    ):
+        assert part in said, (part, said)
+    table = table_of(tmp_path / "out")
+    assert (table.conditions.speed, table.conditions.density, table.scaling.length) == (1.5, 998.8, 4.3)
+    assert (table.scaling.length_name, str(table.datum), table.source.kind) == ("LPP", "midship", "experiment")
+    assert table.forces["Y"].tolist() == [-24.25, -12.25, 0.25, 12.25, 24.25]
+
+
+def test_lines_over_a_table_are_offered_and_never_taken(tmp_path: Path) -> None:
+    """An area of them makes a coefficient that has to be accepted, even under coeflab's own names."""
+    file = tmp_path / "tank.csv"
+    file.write_text("# S = 0.25 m^2, V = 2 m/s, m = 4.3 m\nbeta [deg],Y [-]\n-4,0.01\n0,0\n4,-0.01\n")
+    done = invoke("import", file, "--out", tmp_path / "out")
+    assert left_open(done) == ["axes.frame", "axes.reference_point", "scaling.length"]
+    assert 'conditions.speed 2 line 1: "V = 2 m/s"' in flat(done.output)
+    assert "Y [coefficient A=0.25 m^2]" in done.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_pattern_of_names_is_proposed_and_shown(runs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    line = "axes.frame=CFD; axes.reference_point=-2 from nose; scaling.length=4 LOA; axes.beta=-"
+    answers = ["names ?", "names=c{beta:deg}", line, ""]
+    done = answered(monkeypatch, answers, "import", runs, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    for part in ("names b{beta:deg:m=-}", "bm8: beta = -8 deg", "A minus is - unless the pattern spells it"):
+        assert part in flat(done.output), (part, done.output)
+    made = table_of(tmp_path / "out")
+    assert np.degrees(np.arcsin(made.motion["v"] / 2.0)) == pytest.approx([-b for b in RUNS.values()])
+    assert "b{beta:deg:m=-}" in (tmp_path / "out" / "mapping.toml").read_text()
+
+
+def test_the_point_that_a_file_states_is_turned_to_frd() -> None:
+    raw = RawTable(Path("t.csv"), (), stated={"axes.reference_point": Stated((1.2, 0.0, 0.3), "setup:7")})
+    asked = {q.key: q for q in questions(raw, (), {"axes.frame": Setting("CFD", "confirmed")})}
+    assert asked["axes.reference_point"].default == "-1.2, 0, -0.3"
+    assert asked["axes.datum"].default == "origin_t"
+    open_frame = {q.key: q for q in questions(raw, (), {})}["axes.reference_point"]
+    assert (open_frame.default, open_frame.shown) == ("", "(1.2, 0, 0.3) in its axes")
+
+
+def test_marked_rows_are_kept_out_of_fits_and_named(tmp_path: Path) -> None:
+    """A mark column, a star behind a run's name and one behind a number."""
+    file = tmp_path / "marks.csv"
+    rows = "1;-8;-29,4;\n2;-4;-11,8;\n3;0;-0,7;*\n4;4;11,8;\n5*;8;29,5;\n6;10;39,5*;\n"
+    file.write_text(f"Run;beta;Fy;Bem\n-;deg;N;\n{rows}")
+    form = invoke("import", file, "--out", tmp_path / "out", *sets(axes__frame="FRD"))
+    done = invoke(*command_of(form.output))
+    assert done.exit_code == 0, done.output
+    assert "kept out of fits, marked or without a number in the file: 3, 5*, 6" in flat(done.output)
+    assert table_of(tmp_path / "out").usable["Y"].tolist() == [True, True, False, True, False, False]

@@ -1,0 +1,78 @@
+"""``coeflab inspect`` of files that nobody has explained yet."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.cli.test_import import drift, invoke, refused, runs, stub
+from tests.tables.runs_as_text import write_run
+
+__all__ = ["drift", "runs", "stub"]
+
+
+def test_the_next_command_repeats_what_was_given(runs: Path) -> None:
+    pattern = "b{beta:deg:m=-}"
+    done = invoke("inspect", runs, "--name", pattern, "--as", "stub", "--json")
+    assert json.loads(done.stdout)["next"].startswith(f"coeflab import {runs} --as stub --name '{pattern}' --out ")
+
+
+def test_the_list_of_commands_says_what_they_do() -> None:
+    listed = " ".join(invoke("--help").output.split())
+    assert "import Make a campaign of a table or a folder of runs" in listed
+    assert "inspect Show a table in SI and FRD, a mesh, or a body" in listed
+
+
+def test_inspect_of_an_unknown_file(drift: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(drift.parent)
+    done = invoke("inspect", drift.name)
+    assert done.exit_code == 0, done.output
+    for part in ("read by table", "Yaw angle  deg   -8 to 8", "beta [deg]?", "Open: nothing in the file says these",
+                 "1? axes.frame", "Next: coeflab import"):  # fmt: skip
+        assert part in done.output
+    assert max(map(len, done.output.splitlines())) <= 80
+    content = json.loads(invoke("inspect", drift, "--json").stdout)
+    assert content["importer"] == "table"
+    assert content["columns"][1]["proposed"] == "beta [deg]"
+    assert content["columns"][1]["low"] == -8.0
+    assert [one["argument"] for one in content["missing"]][:1] == ["--set 'axes.frame=?'"]
+    assert len(content["missing"]) == 5
+
+
+def test_inspect_of_what_no_importer_knows(tmp_path: Path) -> None:
+    (tmp_path / "noise.bin").write_bytes(bytes(range(256)) * 20)
+    lines = refused(invoke("inspect", tmp_path / "noise.bin"))
+    assert "found nothing that an importer knows by its content; expected --as" in lines[0]
+    assert "table" in lines[0]
+    assert "one of" in refused(invoke("inspect", tmp_path / "noise.bin", "--as", "csv"))[0]
+
+
+def test_a_text_that_no_importer_knows_is_offered_as_a_table(tmp_path: Path) -> None:
+    file = tmp_path / "sweep.dat"
+    names = "   RUN   ALPHA     X1000     Z1000     M1000"
+    numbers = "".join(f"  {100 + a:4d} {a:7.2f} {-2.6:9.3f} {0.3 * a:9.3f} {-0.1 * a:9.3f}\n" for a in range(-4, 5))
+    file.write_text(f"  SUB-X  BODY AXES X FWD, Y PORT{'!' * 80}\n\n{names}\n         (DEG)\n  -----------\n{numbers}")
+    lines = refused(invoke("import", file, "--out", tmp_path / "out"))
+    assert "expected --as table if it is a table of text, else --as one of cfx, " in lines[0]
+    assert "--option header=NUMBER" in lines[0]
+    assert lines[1:] == (f"   1  {'  SUB-X  BODY AXES X FWD, Y PORT':!<70}", f"   3  {names}", "   4           (DEG)")
+    done = invoke("inspect", file, "--as", "table", "--option", "header=3")
+    assert done.exit_code == 0, done.output
+
+
+def test_inspect_of_a_run_whose_condition_nobody_states(stub: Path, tmp_path: Path) -> None:
+    folder = write_run(tmp_path / "alone", {"X": 13.0, "Y": 2.0})
+    done = invoke("inspect", folder)
+    assert done.exit_code == 0, done.output
+    for part in (
+        "a run, read by stub; ended whole",
+        "200 rows",
+        "Missing to read it as a row of a table",
+    ):
+        assert part in " ".join(done.output.split())
+    content = json.loads(invoke("inspect", folder, "--json").stdout)
+    assert content["ended"] == "whole"
+    assert [c["is"] for c in content["History"]] == ["iteration", "X", "Y"]
+    assert content["missing"]
