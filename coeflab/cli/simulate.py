@@ -58,7 +58,8 @@ def command(
     """Simulate a manoeuvre, such as a zigzag or a turning circle.
 
     Any further --option VALUE goes to the manoeuvre: --rudder 20, --speed "3 kn". An angle without a unit is in degrees.
-    See --help-options. Exit code 1
+    See --help-options. A vehicle with an arm makes the phases of its body.toml; --record, --current, --method and --tolerance
+    count there. Exit code 1
     where the motion could not be computed to its end, or where the file determines nothing of it; then nothing is written.
     """
     from coeflab.cli.fit import further
