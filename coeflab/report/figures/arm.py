@@ -174,9 +174,7 @@ def frames_figure(motion: ArmMotion, anchor: str, caption: str) -> Figure:
         _triad(drawn, earth[0], np.eye(3), ("north", "east", "down"), "b", ARROW)
         start, end = drawn.on_paper(np.zeros(3)), drawn.on_paper(chain.attachment)
         _arrow(drawn, start, end, "b")
-        axes.text(
-            end[0] / 2.0 + start[0] / 2.0, end[1] / 2.0 + start[1] / 2.0 - 12.0, "c_0", color=COLOURS["b"], zorder=6
-        )
+        axes.text(start[0] + 4.0, start[1] - 3.0, "c_0", color=COLOURS["b"], zorder=6)
         svg = svg_text(figure, anchor, title, description)
     return Figure(anchor, svg, title, caption, description)
 
