@@ -197,9 +197,13 @@ def main() -> None:
         frame, bodies, _ = compiled.packed(chain)
         still = np.zeros(6)
         by_numba = best(
-            lambda f=frame, b=bodies: (compiled.mass_matrix(f, b, q), compiled.bias(f, b, q, s, still)), 2_000
+            lambda f=frame, b=bodies, q=q, s=s, still=still: (
+                compiled.mass_matrix(f, b, q),
+                compiled.bias(f, b, q, s, still),
+            ),
+            2_000,
         )
-        by_numpy = best(lambda h=chain: (kane.mass_matrix(h, q), kane.bias(h, q, s)), 100)
+        by_numpy = best(lambda h=chain, q=q, s=s: (kane.mass_matrix(h, q), kane.bias(h, q, s)), 100)
         rows = [("M and bias, generated C", c), ("M and all forces together, generated C", all_c)]
         rows += [("M and bias, numba, called from Python", by_numba), ("M and bias, numpy", by_numpy)]
         if chain is dry:

@@ -120,7 +120,11 @@ def test_an_export_that_is_refused_leaves_the_study_standing(coeflab: Run, study
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "files"),
-    [("huuv", ["huuv", "huuv_5dof"]), ("flyingfish", ["flyingfish_water"]), ("thauv", [f"thauv_case_0{i}" for i in (1, 2, 3)])],
+    [
+        ("huuv", ["huuv", "huuv_5dof"]),
+        ("flyingfish", ["flyingfish_water"]),
+        ("thauv", [f"thauv_case_0{i}" for i in (1, 2, 3)]),
+    ],
 )
 def test_a_publication_writes_its_parameter_file_beside_the_report(
     coeflab: Run, tmp_path: Path, name: str, files: list[str]

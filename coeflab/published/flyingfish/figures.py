@@ -198,9 +198,9 @@ def _bench(medium: Medium, test: BenchTest) -> Figure:
 
 def _tracks(found: Mapping[int, Trajectory], shown: Sequence[tuple[int, int]]) -> tuple[Plot, Plot]:
     """Depth and distance east over distance north; motions and their styles."""
+    paths = {k: np.round(found[k].position, DRAWN) for k, _ in shown}
     depth, east = (
-        tuple(Trace(f"motion {k}", *np.round(found[k].position[:, (0, axis)].T, DRAWN), style) for k, style in shown)
-        for axis in (2, 1)
+        tuple(Trace(f"motion {k}", paths[k][:, 0], paths[k][:, axis], style) for k, style in shown) for axis in (2, 1)
     )
     return Plot("depth  [m]", "north  [m]", depth, 100.0, is_scaled=False), Plot("east  [m]", "north  [m]", east, 70.0)
 
