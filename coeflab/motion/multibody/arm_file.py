@@ -17,7 +17,13 @@ from coeflab.core.types import Array
 from coeflab.law.transforms import moved
 from coeflab.motion.manoeuvre import Manoeuvre, Phase
 from coeflab.motion.multibody.chain import Base, Chain, Joint, Link, Strip
-from coeflab.motion.multibody.thrusters import Thruster, TorqueThruster, VoltageThruster
+from coeflab.motion.multibody.thrusters import (
+    Thruster,
+    TorqueThruster,
+    VoltageThruster,
+    lost_directions,
+    thruster_matrix,
+)
 
 BODY = "body.toml"
 FREE = 10.0  # s of free motion where no phase is given
@@ -62,7 +68,10 @@ def read_arm(path: Path) -> tuple[Chain, Manoeuvre]:
     neutral = [one.name for one in file.link if one.volume is None]
     if file.vehicle.volume is None:
         neutral.insert(0, "vehicle")
-    assumed = (f"Displaced mass equals mass, as no volume is stated: {', '.join(neutral)}.",) if neutral else ()
+    assumed = [f"Displaced mass equals mass, as no volume is stated: {', '.join(neutral)}."] if neutral else []
+    thrusters = tuple(_thruster(one, origin) for one in file.thruster)
+    if thrusters and (lost := lost_directions(thruster_matrix(thrusters))):
+        assumed.append(f"The thrusters make no {', no '.join(lost)}.")
     chain = Chain(
         name=file.body.name,
         base=_base(file.body.name, file.vehicle, rho),
@@ -70,10 +79,11 @@ def read_arm(path: Path) -> tuple[Chain, Manoeuvre]:
         attachment=file.arm.attachment - origin,
         mount=file.arm.turn,
         tool=file.arm.tool,
-        thrusters=tuple(_thruster(one, origin) for one in file.thruster),
+        thrusters=thrusters,
         density=rho,
         gravity=file.arm.gravity,
         statements=(*assumed, *(f"{key}: {said}" for key, said in file.basis.items())),
+        assumed=tuple(assumed),
     )
     return chain, _motion(file, chain)
 

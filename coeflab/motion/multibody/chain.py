@@ -12,7 +12,7 @@ Vectors of link j are in its own frame j, fixed in the link, whose z axis is the
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -235,6 +235,8 @@ class Chain:
         m/s^2.
     statements : tuple of str
         What was assumed, and which numbers come from where.
+    assumed : tuple of str
+        Of these, what a motion has to say.
     """
 
     name: str
@@ -247,6 +249,7 @@ class Chain:
     density: float = FRESH
     gravity: float = STANDARD_GRAVITY
     statements: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("attachment", "mount", "tool"):
@@ -318,7 +321,7 @@ class Flow:
     velocity : (3,) array
         North, east, down, m/s.
     acceleration : (3,) array
-        North, east, down, m/s^2.
+        North, east, down, m/s^2; it stays.
     """
 
     velocity: Array = field(default_factory=lambda: np.zeros(3))
@@ -327,6 +330,10 @@ class Flow:
     def __post_init__(self) -> None:
         for name in ("velocity", "acceleration"):
             object.__setattr__(self, name, locked(getattr(self, name)))
+
+    def at(self, time: float) -> Flow:
+        """The water so many seconds later."""
+        return replace(self, velocity=self.velocity + time * self.acceleration) if np.any(self.acceleration) else self
 
 
 STILL = Flow()

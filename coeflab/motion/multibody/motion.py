@@ -190,7 +190,7 @@ def driven(chain: Chain, drive: Drive, flow: Flow = STILL) -> tuple[Control, Con
     commands = drive.commands
 
     def solved(time: float, state: Array) -> tuple[Array, Array]:
-        m, force = found(state, flow)
+        m, force = found(state, flow.at(time))
         control, changed = np.zeros(6 + n), np.zeros(6 + n)
         control[6:] = torque
         if commands is not None:

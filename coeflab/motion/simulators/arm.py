@@ -42,7 +42,9 @@ class Options:
     method : str
         Integrator of scipy.
     north, east, down : float
-        Velocity of the water, m/s.
+        Velocity of the water at the start, m/s.
+    gaining_north, gaining_east, gaining_down : float
+        Acceleration of the water, m/s^2.
     """
 
     record: float = bounded(0.05, 1e-4, 3600.0)
@@ -51,6 +53,9 @@ class Options:
     north: float = measured(0.0, -20.0, 20.0, "speed")
     east: float = measured(0.0, -20.0, 20.0, "speed")
     down: float = measured(0.0, -20.0, 20.0, "speed")
+    gaining_north: float = measured(0.0, -20.0, 20.0, "acceleration")
+    gaining_east: float = measured(0.0, -20.0, 20.0, "acceleration")
+    gaining_down: float = measured(0.0, -20.0, 20.0, "acceleration")
 
 
 def simulate(vehicle: Chain, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -> Trajectory:
@@ -82,7 +87,8 @@ def simulate(vehicle: Chain, manoeuvre: Manoeuvre, options: Mapping[str, Any]) -
         raise InputError("the vehicle of a parameter file", "a vehicle with an arm", column="arm")
     _require_known(vehicle, manoeuvre)
     require_rows(manoeuvre.duration / chosen.record, "arm.record", "Take a longer time between rows.")
-    flow = Flow(np.array([chosen.north, chosen.east, chosen.down]))
+    gained = np.array([chosen.gaining_north, chosen.gaining_east, chosen.gaining_down])
+    flow = Flow(np.array([chosen.north, chosen.east, chosen.down]), gained)
     n, states_of_thrusters = vehicle.count, sum(t.order for t in vehicle.thrusters)
     rates = np.array([manoeuvre.orders.get(f"{j.name}.rate", 0.0) for j in vehicle.joints])
     state = np.concatenate([at_rest(vehicle, None, manoeuvre.velocity, rates), np.zeros(states_of_thrusters)])
@@ -163,7 +169,8 @@ def _trajectory(
     q, rates, torques = rows[:, 7 : 7 + n], rows[:, 13 + n : 13 + 2 * n], control[:, 6:]
     axes = rotations(rows[:, 3:7])
     through = rows[:, 7 + n : 13 + n].copy()
-    through[:, :3] -= np.einsum("kji,j->ki", axes, flow.velocity)
+    water = flow.velocity + time[:, None] * flow.acceleration
+    through[:, :3] -= np.einsum("kji,kj->ki", axes, water)
     columns: dict[str, Array] = {}
     outside = {}
     for k, joint in enumerate(chain.joints):
@@ -182,7 +189,7 @@ def _trajectory(
         columns[f"end.{name} [m]"] = ends[:, k]
     ahead = axes[:, :, 0]
     heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
-    statements = list(chain.statements[:1]) + [
+    statements = list(chain.assumed) + [
         f"{name}, for {float(np.mean(flags)):.1%} of the rows." for name, flags in outside.items() if flags.any()
     ]
     return Trajectory(

@@ -13,6 +13,7 @@ from coeflab.core.errors import InputError
 from coeflab.core.files import shipped
 from coeflab.motion.multibody import kane
 from coeflab.motion.multibody.arm_file import is_arm, read_chain
+from coeflab.motion.multibody.thrusters import TorqueThruster, VoltageThruster
 from tests.motion.multibody.chains import dry, puma
 
 FILE = shipped("geometry") / "urv_puma" / "body.toml"
@@ -103,6 +104,28 @@ def test_stated_values_take_the_place_of_assumed_ones(tmp_path: Path) -> None:
     np.testing.assert_allclose(first.centre_of_buoyancy, [0.0, 0.3, 0.1])
     assert not first.joint.turns
     assert (first.joint.low, first.joint.high, first.joint.strongest) == (-0.02, 0.3, 40.0)
+
+
+def test_thrusters_that_lose_a_direction_are_named(tmp_path: Path) -> None:
+    head, *thrusters = TEXT.partition("[[phase]]")[0].split("[[thruster]]")
+    file = tmp_path / "body.toml"
+    file.write_text("[[thruster]]".join([head, *thrusters[:4]]))
+    chain = read_chain(file)
+    assert chain.assumed[-1] == "The thrusters make no heave, no roll, no pitch."
+    assert chain.statements[-1] == chain.assumed[-1]
+    assert len(puma().assumed) == 1
+
+
+def test_voltage_thrusters_and_their_limits(tmp_path: Path) -> None:
+    keys = "damping = 1, drive = 50, load = 5, radius = 0.1, pitch = '30 deg', lift = 1.75, drag = 1.2, column = 0.2, momentum = 0.5"
+    torque = 'torque = {alpha = 0.05, beta = 50.0, thrust = 0.02, strongest = "5 N*m"}'
+    assert torque in TEXT
+    file = tmp_path / "body.toml"
+    file.write_text(TEXT.replace(torque, f"voltage = {{{keys}, strongest = 24}}", 1))
+    first, second = read_chain(file).thrusters[:2]
+    assert first.model == VoltageThruster(1.0, 50.0, 5.0, 0.1, np.radians(30.0), 1.75, 1.2, 0.2, 0.5, 24.0)
+    assert second.model == TorqueThruster(0.05, 50.0, 0.02, 5.0)
+    assert refused(tmp_path, torque, f"{torque}\nvoltage = {{{keys}}}").column == "thruster[0].voltage"
 
 
 def test_cylinders_with_their_ends(tmp_path: Path) -> None:

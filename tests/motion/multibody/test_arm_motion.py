@@ -217,6 +217,23 @@ def test_shipped_phases() -> None:
     np.testing.assert_allclose(seen, [0.75, -0.10, -0.70], atol=1e-5)
 
 
+def test_a_neutral_vehicle_goes_with_water_that_gains_speed() -> None:
+    """Equations 17 and 20 together: nothing of it moves through the water."""
+    chain, still = puma(), Manoeuvre("m", (Phase("p", {}, 2.0),), np.zeros(6))
+    found = arm.simulate(chain, still, {"gaining_north": 0.3, "gaining_down": -0.2})
+    np.testing.assert_allclose(found.position[-1], [0.6, 0.0, -0.4], atol=1e-9)
+    assert np.max(np.abs(found.velocity)) < 1e-9
+    np.testing.assert_allclose(found.controls["forearm [rad]"], 0.5, atol=1e-9)
+
+
+def test_without_numba_the_motion_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    chain, start = puma(), at_rest(puma(), Q, START[:6], START[6:])
+    quick = march(chain, *driven(chain, Drive()), start, 0.0, 0.2, 0.1)
+    monkeypatch.setattr("coeflab.motion.multibody.motion.compiles", lambda: False)
+    plain = march(chain, *driven(chain, Drive()), start, 0.0, 0.2, 0.1)
+    np.testing.assert_allclose(plain.state, quick.state, rtol=1e-9, atol=1e-11)
+
+
 def test_orders_that_an_arm_does_not_know() -> None:
     chain = puma()
     for orders, said in (({"wrist": 0.1}, "wrist"), ({"forearm": 5.0}, "limits of joint forearm")):
