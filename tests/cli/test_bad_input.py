@@ -202,4 +202,4 @@ def test_a_name_that_no_path_can_have(coeflab: Run, tmp_path: Path, command: tup
 def test_a_long_name_is_an_unknown_study(coeflab: Run) -> None:
     done = coeflab("report", "n" * 5000)
     assert 'found the study "nnn' in done.stderr
-    assert "a shipped validation (estimates, flyingfish, huuv, suboff, tank, thauv)" in done.stderr
+    assert "a shipped validation (estimates, flyingfish, huuv, suboff, tank, thauv, urv)" in done.stderr
