@@ -11,6 +11,8 @@ from coeflab.cli import complete, show
 
 if TYPE_CHECKING:
     from coeflab.motion.manoeuvre import Simulation
+    from coeflab.motion.multibody.chain import Chain
+    from coeflab.motion.trajectory import Trajectory
 
 
 EXAMPLE = "coeflab simulate reports/suboff/suboff_fully_appended.parameters.json --manoeuvre zigzag"
@@ -130,7 +132,9 @@ def _arm(body: Path, options: dict[str, Any], to: str, out: Path | None, json: b
     with SIMULATORS.guarded("arm"):
         moved = SIMULATORS.load("arm").simulate(chain, manoeuvre, options)
     table = motion_csv(moved) if to == "csv" else motion_parquet(moved)
-    content = {} if out is None else {f"{manoeuvre.name}.{to}": table}
+    content = (
+        {} if out is None else {f"{manoeuvre.name}.{to}": table, **_arm_pictures(body, chain, manoeuvre.name, moved)}
+    )
     write_all(Path(out or ""), content)
     files = [str(Path(out or "") / name) for name in content]
     if json:
@@ -147,6 +151,19 @@ def _arm(body: Path, options: dict[str, Any], to: str, out: Path | None, json: b
             show.path(path)
     if moved.ended is not Ended.COMPLETE:
         raise typer.Exit(1)
+
+
+def _arm_pictures(body: Path, chain: Chain, name: str, moved: Trajectory) -> dict[str, bytes]:
+    """Joints, torques, thrusts and the path of the end effector as a drawing, and a page that plays the motion."""
+    from coeflab.bodies.readers.arm import read
+    from coeflab.report.figures.arm import animation, hull_of, simulated, simulated_sheet
+
+    motion = simulated(chain, hull_of(read(body / "body.toml" if body.is_dir() else body)), moved)
+    said = f"Motion of {chain.name} over {float(moved.time[-1]):.3g} s: {', '.join(moved.phases)}."
+    return {
+        f"{name}.svg": simulated_sheet(motion, moved),
+        f"{name}.html": animation(motion, f"Motion of {chain.name}", said),
+    }
 
 
 def of_manoeuvre(name: str, words: list[str]) -> dict[str, Any]:

@@ -55,7 +55,7 @@ def _side_by_side(found: Acceptance, folder: Path, json: bool) -> None:
 
     files = parameter_files_rendered(found.parameter_files) | dict(rendered(report_of(found).document, ["html"]))
     files |= {f"{found.name}.csv": acceptance_tables.acceptance_csv(found)}
-    files |= {f"{name}.svg": figure.svg.encode() for name, figure in found.figures}
+    files |= {f"{name}.svg": figure.svg.encode() for name, figure in found.figures} | dict(found.pages)
     changed = sum(write_all(folder, files).values())
     paths = [folder / name for name in sorted(files)]
     if json:

@@ -170,6 +170,8 @@ class Acceptance:
         The system, as far as the format holds it; their notes say what it does not hold.
     shown : tuple of Table
         What a terminal prints whole, in the place of the rows that fail.
+    pages : tuple of (str, bytes)
+        Further files of the validation, by name: pages that play a motion.
     """
 
     name: str
@@ -182,6 +184,7 @@ class Acceptance:
     conventions: tuple[str, ...] = ()
     parameter_files: tuple[ParameterFile, ...] = ()
     shown: tuple[Table, ...] = ()
+    pages: tuple[tuple[str, bytes], ...] = ()
 
     def __repr__(self) -> str:
         good = sum(r.holds for r in self.numbers)

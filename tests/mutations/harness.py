@@ -47,6 +47,8 @@ from coeflab.published.parameter_files import flyingfish_file
 from coeflab.published.thauv import acceptance as thauv
 from coeflab.published.thauv import in_space
 from coeflab.published.thauv.in_space import FlownSpiral
+from coeflab.published.urv import acceptance as urv
+from coeflab.published.urv import tasks as urv_tasks
 from coeflab.report.acceptance import Compared, ComparedTable
 from coeflab.study.plan import read_plan
 from coeflab.study.study import Study
@@ -295,6 +297,15 @@ def validate_thauv_in_space(change: Callable[[Glider], Glider] | None = None) ->
     glider = gliders()[1] if change is None else read_back(change(gliders()[1]))
     flown_again = unmutated_spiral() if change is None else in_space.flown_spiral(glider)
     return of_tables(in_space.compared_in_space(glider, flown_again))
+
+
+# ---- URV with an arm ------------------------------------------------------------------------------------------------
+
+
+def validate_urv(controlled: bool = False) -> Verdicts:
+    """What needs no motion in time, and on request the runs under control whose errors theory knows."""
+    moved = (urv_tasks.control(urv_tasks.at_once()),) if controlled else ()
+    return of_tables((*urv.compared(), *moved))
 
 
 # ---- SUBOFF --------------------------------------------------------------------------------------------------------

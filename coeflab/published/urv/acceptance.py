@@ -13,7 +13,7 @@ from coeflab.motion.multibody.chain import FLU, in_frame_0
 from coeflab.published.urv import model
 from coeflab.published.urv.errata import FOUR_DIGITS, SPHEROID, errata
 from coeflab.published.urv.model import ADDED, BIAS, DENSITY, FIRST_ROW, MASS, cylinder, dry, wet
-from coeflab.published.urv.tasks import control, energy, tasks
+from coeflab.published.urv.tasks import control, energy, figures, page, tasks
 from coeflab.published.urv.theory import (
     EXACT,
     FINEST,
@@ -63,6 +63,8 @@ CHOSEN = (
     "link 1 and of gravity is recomputed; everything else is compared with numbers worked out independently or with theory.",
     "Chosen, not printed: mass and inertia of the vehicle, c_0, the semi-axes of the spheroid, the cylinders of the links, "
     "thrusters, gains and tasks.",
+    "Figure 1, the coordinate system, is the paper's only figure: ours follows its caption and section 4.1, not its drawing. No "
+    "result can be drawn after the paper, for it prints none.",
     "The 3-link example has no hydrodynamic number in the paper beside C_D = 1.1 of a cylinder.",
 )
 
@@ -76,9 +78,10 @@ def acceptance() -> Acceptance:
         (*compared(), *moved()),
         ERRATA,
         CHOSEN,
-        ("urv_kane",),
-        (),
+        ("urv_kane", "yoerger1990", "healey1994"),
+        tuple(figures()),
         CONVENTIONS,
+        pages=(("urv_motion.html", page()),),
     )
 
 

@@ -14,12 +14,14 @@ from pathlib import Path
 import numpy as np
 
 from coeflab.bodies.closed_forms import cylinder_added_mass
+from coeflab.bodies.readers.arm import read
 from coeflab.core.files import shipped
 from coeflab.core.types import Array
 from coeflab.motion.multibody.arm_file import read_chain
 from coeflab.motion.multibody.chain import Base, Chain, Joint, Link, Strip
 from coeflab.motion.multibody.kane import bias, partial_velocities, pose
-from coeflab.motion.multibody.thrusters import VoltageThruster
+from coeflab.motion.multibody.thrusters import TorqueThruster, VoltageThruster
+from coeflab.report.figures.arm import hull_of
 
 DENSITY = 1000.0
 BASIC = 1.1  # C_D,basic of a cylinder, section 4.5
@@ -34,7 +36,8 @@ BIAS = (2.432883, 9.523231, 4.707274, 0.635088, -0.843423, -0.178441, -0.140057,
 ADDED = (128.810058, 538.986349, 515.812717, 2.61593, 60.882072, 65.821531, 0.769471, 0.426749, 0.052083)
 # Chosen: the vehicle of the paper is generic.
 ATTACHMENT, VEHICLE_MASS = (0.5, 0.0, 0.2), 100.0
-# Chosen: a small ducted thruster, for the form that the paper prints of the voltage-driven model.
+# Chosen: small thrusters, for the forms that the paper prints.
+TORQUE = TorqueThruster(alpha=0.05, beta=50.0, thrust=0.02, strongest=5.0)  # those of geometry/urv_puma
 VOLTAGE_DRIVE = 40.0
 VOLTAGE = VoltageThruster(
     damping=5.0, drive=VOLTAGE_DRIVE, load=120.0, radius=0.1, pitch=0.5, lift=0.6, drag=0.4, column=0.15, momentum=1.0, strongest=48.0,
@@ -46,6 +49,12 @@ AREA = 0.236  # C_D S of the vehicle as a sphere, section 4.5: 0.47 pi (0.4 m)^2
 def wet() -> Chain:
     """In water: spheroid and cylinders, drag, buoyancy equal to the weight, eight thrusters."""
     return read_chain(Path(str(shipped("geometry"))) / "urv_puma")
+
+
+@cache
+def hull() -> Array:
+    """(3,) semi-axes of the vehicle, m."""
+    return hull_of(read(Path(str(shipped("geometry"))) / "urv_puma" / "body.toml"))
 
 
 @cache

@@ -13,8 +13,10 @@ from coeflab.law.transforms import rotation
 from coeflab.motion.dynamics import from_euler, rotations
 from coeflab.motion.multibody import kane
 from coeflab.motion.multibody.chain import FLU, Chain, in_frame_0
+from coeflab.motion.multibody.control import demand, gain_of, most_thrust
 from coeflab.motion.multibody.thrusters import (
     BLADE,
+    Thruster,
     TorqueThruster,
     VoltageThruster,
     require_all_directions,
@@ -206,17 +208,16 @@ def drag() -> ComparedTable:
 
 def propulsion() -> ComparedTable:
     """Both models where theory knows them, and the matrix from thrusts to the vehicle."""
-    one, two, rows = wet().thrusters[0].model, model.VOLTAGE, []
+    one, two = model.TORQUE, model.VOLTAGE
     torque, after = 2.0, 0.15
-    if isinstance(one, TorqueThruster):
-        fastest = np.sqrt(one.beta * torque / one.alpha)
-        turning = _spun(one, torque, after)
-        expected = fastest * np.tanh(np.sqrt(one.alpha * one.beta * torque) * after)
-        rows += [
-            same(f"torque model, {torque:g} N m for {after:g} s", "speed", "rad/s", float(expected), float(turning[0]), 1e-6),
-            same(f"torque model, {torque:g} N m", "thrust where it turns steadily", "N", float(one.thrust * one.beta * torque / one.alpha),
-                  one.force(np.array([fastest]), DENSITY), 1e-9),
-        ]  # fmt: skip
+    fastest = np.sqrt(one.beta * torque / one.alpha)
+    turning = _spun(one, torque, after)
+    expected = fastest * np.tanh(np.sqrt(one.alpha * one.beta * torque) * after)
+    rows = [
+        same(f"torque model, {torque:g} N m for {after:g} s", "speed", "rad/s", float(expected), float(turning[0]), 1e-6),
+        same(f"torque model, {torque:g} N m", "thrust where it turns steadily", "N", float(one.thrust * one.beta * torque / one.alpha),
+              one.force(np.array([fastest]), DENSITY), 1e-9),
+    ]  # fmt: skip
     volts, state = two.steady(30.0, DENSITY)
     area = np.pi * two.radius**2
     theta = float(np.arctan2(state[1], BLADE * two.radius * state[0]))
@@ -235,6 +236,17 @@ def propulsion() -> ComparedTable:
         same("voltage model, astern", "thrust", "N", -30.0, two.force(-state, DENSITY), 1e-6),
         same("voltage model, started at rest", "rate of speed by 1 V", "rad/s^2", model.VOLTAGE_DRIVE, float(two.rates(np.zeros(2), 1.0, DENSITY)[0]), EXACT),
         same("voltage model, jet at 1 m/s, blades still", "rate of the jet", "m/s^2", *_slowing(two), 1e-9),
+    ]  # fmt: skip
+    first, bound = (Thruster("thruster", np.zeros(3), np.eye(3)[0], kind) for kind in (one, two))
+    power = demand(first, gain_of(first, DENSITY), 30.0, one.steady(30.0, DENSITY)[1], 10.0, DENSITY)
+    starting = demand(first, gain_of(first, DENSITY), 1.0, np.zeros(1), 10.0, DENSITY)
+    rows += [
+        same("torque model, controller at 30 N", "torque that holds it", "N m", one.steady(30.0, DENSITY)[0], power, 1e-3),
+        same("torque model, controller from rest to 1 N", "torque at 10 1/s", "N m", float(10.0 * np.sqrt(1.0 / one.thrust) / one.beta), starting, 2e-3),
+        same("torque model, 5 N m", "largest thrust", "N", 100.0, most_thrust(first, gain_of(first, DENSITY), DENSITY), 1e-9),
+        same("voltage model, 48 V", "voltage of the largest thrust", "V", two.strongest,
+             two.steady(most_thrust(bound, gain_of(bound, DENSITY), DENSITY), DENSITY)[0], 1e-6),
+        same("voltage model, controller at 30 N", "voltage that holds it", "V", volts, demand(bound, gain_of(bound, DENSITY), 30.0, state, 10.0, DENSITY), 1e-3),
     ]  # fmt: skip
     thrusters = wet().thrusters
     thrusts = np.arange(1.0, len(thrusters) + 1.0)

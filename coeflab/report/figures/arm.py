@@ -1,0 +1,432 @@
+"""A vehicle with an arm: frames and poses in space, joints, thrusts and paths in time, and a page that plays the motion.
+
+The page needs no network and no other file: facets of the bodies, their poses row by row, and a script that draws them. It starts by
+itself only where the reader's system does not ask for less motion.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.patches import PathPatch
+
+from coeflab.bodies.body import Body
+from coeflab.bodies.mesh import solids as silhouette
+from coeflab.bodies.shape import Cylinder, Ellipsoid, Part, Parts
+from coeflab.core.errors import InputError
+from coeflab.core.types import Array, brief, locked
+from coeflab.motion.dynamics import rotations
+from coeflab.motion.multibody import kane
+from coeflab.motion.multibody.chain import Chain
+from coeflab.motion.multibody.control import ControlledRun
+from coeflab.motion.trajectory import Trajectory
+from coeflab.report.document import Figure
+from coeflab.report.figures.body import OBLIQUE, Sheet, View, outline_path
+from coeflab.report.figures.body_scene import box_facets, cylinder_facets, normals, part_facets
+from coeflab.report.figures.laws import Plot, Trace, laws_figure
+from coeflab.report.figures.panel import WIDTH, drawing
+from coeflab.report.figures.series import STYLES
+from coeflab.report.figures.svg import COLOURS, settings, sheet, svg_text
+
+TEMPLATE = Path(__file__).parents[1] / "formats" / "_html" / "arm.html"
+ALONG, AROUND = 10, 20  # facets of the hull that the page draws
+FRAMES = 240  # at most, of a page
+MARGIN, TALLEST, HEAD = 16.0, 300.0, 20.0
+ARROW = 0.36  # m
+
+
+@brief
+@dataclass(frozen=True, slots=True, eq=False)
+class ArmMotion:
+    """What a picture of a motion takes.
+
+    Attributes
+    ----------
+    chain : Chain
+    hull : (3,) array
+        Semi-axes of the vehicle, m.
+    time : (k,) array
+        s.
+    states : (k, 13 + 2 n) array
+        As `coeflab.motion.multibody.kane.right_hand_side` has them; columns behind the joints are not looked at.
+    """
+
+    chain: Chain
+    hull: Array
+    time: Array
+    states: Array
+
+    def __post_init__(self) -> None:
+        for name in ("hull", "time", "states"):
+            object.__setattr__(self, name, locked(getattr(self, name)))
+
+    @property
+    def ends(self) -> Array:
+        """(k, 3) end effector, NED, m."""
+        return np.array([kane.end_in_earth(self.chain, s) for s in self.states])
+
+
+def hull_of(body: Body) -> Array:
+    """(3,) semi-axes, m, of the hull of a body whose reader is ``arm``."""
+    hull = body.shape.parts[0].form if isinstance(body.shape, Parts) else None
+    if not isinstance(hull, Ellipsoid):
+        raise InputError(
+            f"{body.name}, without an ellipsoid for a hull", "the body of a vehicle with an arm", column="reader"
+        )
+    return np.asarray(hull.axes)
+
+
+def parts_at(motion: ArmMotion, row: int) -> Parts:
+    """Hull and the cylinders of the links' strips at a row, NED."""
+    chain, state = motion.chain, motion.states[row]
+    place, turn = state[:3], rotations(state[None, 3:7])[0]
+    at = kane.pose(chain, state[7 : 7 + chain.count])
+    parts = [Part("hull", Ellipsoid(*motion.hull.tolist()), place, turn)]
+    for j, link in enumerate(chain.links, 1):
+        for k, strip in enumerate(link.strips, 1):
+            own = turn @ at.rotation[j]
+            centre = place + turn @ at.origin[j] + own @ (strip.start + strip.end) / 2.0
+            parts.append(
+                Part(f"{link.name} {k}", Cylinder(strip.diameter / 2.0, strip.length), centre, own @ _along(strip.axis))
+            )
+    return Parts(tuple(parts))
+
+
+def _along(axis: Array) -> Array:
+    """(3, 3) rotation whose first column is the axis."""
+    least = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    second = np.cross(axis, least)
+    second /= np.linalg.norm(second)
+    return np.column_stack([axis, second, np.cross(axis, second)])
+
+
+# ---- in space ------------------------------------------------------------------------------------------------------
+
+
+def poses_figure(motion: ArmMotion, anchor: str, title: str, caption: str) -> Figure:
+    """Where the motion begins, its middle and its end, seen obliquely, with the path of the end effector."""
+    rows = [0, len(motion.time) // 2, len(motion.time) - 1]
+    shapes = [parts_at(motion, row) for row in rows]
+    ends = motion.ends
+    corners = np.vstack([*(_corners(s) for s in shapes), ends])
+    flat = corners @ OBLIQUE.axes[:2].T
+    room = (WIDTH - 4.0 * MARGIN) / len(rows)
+    scale = float(min(room / np.ptp(flat[:, 0]), TALLEST / np.ptp(flat[:, 1])))
+    height = scale * float(np.ptp(flat[:, 1])) + HEAD + 2.0 * MARGIN
+    said = ", ".join(f"{motion.time[row]:.3g} s" for row in rows)
+    description = f"Vehicle and arm at {said}; a line shows the path of the end effector."
+    with settings():
+        figure, axes = _paper(height)
+        for k, (row, shape) in enumerate(zip(rows, shapes, strict=True)):
+            left = MARGIN + k * (room + MARGIN)
+            move = np.array([left - scale * flat[:, 0].min(), height - HEAD - MARGIN - scale * flat[:, 1].max()])
+            drawn = Sheet(axes, OBLIQUE, scale, move, float(np.ptp(corners, axis=0).max()))
+            drawn.body(shape, None)
+            axes.plot(*drawn.on_paper(ends).T, color=COLOURS["ink"], linewidth=1.1, zorder=3)
+            axes.plot(*drawn.on_paper(ends[row]), marker="o", markersize=3.2, color=COLOURS["ink"], zorder=4)
+            axes.text(left, height - 12.0, f"{motion.time[row]:.3g} s", color=COLOURS["ink"])
+        svg = svg_text(figure, anchor, title, description)
+    return Figure(anchor, svg, title, caption, description)
+
+
+AZIMUTH, ELEVATION = np.radians(-62.0), np.radians(22.0)
+
+
+def _from_port() -> View:
+    level = np.array([np.cos(AZIMUTH), np.sin(AZIMUTH), 0.0])
+    toward = np.cos(ELEVATION) * level + np.sin(ELEVATION) * np.array([0.0, 0.0, -1.0])
+    right = np.array([np.sin(AZIMUTH), -np.cos(AZIMUTH), 0.0])
+    return View("from ahead, port and above", np.array([right, np.cross(toward, right), toward]))
+
+
+def frames_figure(motion: ArmMotion, anchor: str, caption: str) -> Figure:
+    """The frames of the chain on the bodies that carry them, at the first row."""
+    chain = motion.chain
+    shape = parts_at(motion, 0)
+    at = kane.pose(chain, motion.states[0, 7 : 7 + chain.count])
+    frames = [(chain.attachment, chain.mount), *zip(at.origin[1:], at.rotation[1:], strict=True)]
+    view, reach = _from_port(), [ARROW * (1.0 - 0.2 * k) for k in range(len(frames))]
+    tips = np.array([origin + ARROW * axis for origin, turn in frames for axis in np.asarray(turn).T])
+    earth = np.array([[0.9, -1.0, 0.7]])
+    corners = np.vstack([_corners(shape), tips, earth, earth + ARROW * np.eye(3)])
+    flat = corners @ view.axes[:2].T
+    scale = float(min((WIDTH - 4.0 * MARGIN) / np.ptp(flat[:, 0]), 1.2 * TALLEST / np.ptp(flat[:, 1])))
+    height = scale * float(np.ptp(flat[:, 1])) + 3.0 * MARGIN
+    title = "Coordinate system of the model"
+    description = (
+        f"Vehicle, {chain.count} links and {chain.count + 1} frames, x, y and z of each as arrows; frame 0 where the arm is mounted; north, "
+        "east and down beside them; the vector c_0 from the vehicle's centre of mass to frame 0."
+    )
+    with settings():
+        figure, axes = _paper(height)
+        middle = (WIDTH - scale * float(np.ptp(flat[:, 0]))) / 2.0
+        move = np.array([middle - scale * flat[:, 0].min(), 1.5 * MARGIN - scale * flat[:, 1].min()])
+        drawn = Sheet(axes, view, scale, move, float(np.ptp(corners, axis=0).max()))
+        _pale(drawn, shape)
+        for number, (origin, turn) in enumerate(frames):
+            _triad(drawn, origin, turn, tuple(f"{axis}{number}" for axis in "xyz"), "ink", reach[number])
+        _triad(drawn, earth[0], np.eye(3), ("north", "east", "down"), "b", ARROW)
+        start, end = drawn.on_paper(np.zeros(3)), drawn.on_paper(chain.attachment)
+        _arrow(drawn, start, end, "b")
+        axes.text(start[0] + 4.0, start[1] - 3.0, "c_0", color=COLOURS["b"], zorder=6)
+        svg = svg_text(figure, anchor, title, description)
+    return Figure(anchor, svg, title, caption, description)
+
+
+def _paper(height: float) -> tuple[Any, Any]:
+    """A drawing whose axes are points."""
+    figure = drawing(height)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    axes.set_xlim(0.0, WIDTH)
+    axes.set_ylim(0.0, height)
+    return figure, axes
+
+
+def _triad(drawn: Sheet, origin: Array, turn: Array, names: Sequence[str], colour: str, reach: float) -> None:
+    start = drawn.on_paper(origin)
+    for name, axis in zip(names, np.asarray(turn).T, strict=True):
+        tip = drawn.on_paper(origin + reach * axis)
+        along = tip - start
+        if float(np.linalg.norm(along)) < 6.0:  # toward the viewer
+            continue
+        _arrow(drawn, start, tip, colour)
+        beyond = tip + 8.0 * along / float(np.linalg.norm(along))
+        drawn.axes.text(
+            beyond[0], beyond[1], name, color=COLOURS[colour], ha="center", va="center", fontsize=7.5, zorder=6
+        )
+
+
+def _arrow(drawn: Sheet, start: Array, end: Array, colour: str) -> None:
+    look = {"arrowstyle": "-|>", "color": COLOURS[colour], "linewidth": 1.0, "shrinkA": 0.0, "shrinkB": 0.0}
+    drawn.axes.annotate("", (end[0], end[1]), (start[0], start[1]), arrowprops=look, zorder=5)
+
+
+def _pale(drawn: Sheet, shape: Parts) -> None:
+    """Parts as outlines with a pale fill, so that what is written over them can be read."""
+    for part in shape.parts:
+        path = outline_path(silhouette.convex_outline(part_facets(part).reshape(-1, 3), drawn.frame), drawn.move)
+        if path is not None:
+            drawn.axes.add_patch(PathPatch(path, facecolor=COLOURS["band"], edgecolor="none", alpha=0.25, zorder=2))
+            drawn.axes.add_patch(PathPatch(path, facecolor="none", edgecolor=COLOURS["muted"], linewidth=0.8, zorder=2))
+
+
+def _corners(shape: Parts) -> Array:
+    """Corners of boxes about the parts."""
+    out = []
+    for part in shape.parts:
+        form = part.form
+        if isinstance(form, Cylinder):
+            size = np.array([form.length, 2.0 * form.radius, 2.0 * form.radius])
+        elif isinstance(form, Ellipsoid):
+            size = 2.0 * np.asarray(form.axes)
+        else:
+            size = np.ones(3)
+        out.append(box_facets(size).reshape(-1, 3) @ part.rotation.T + part.centre)
+    return np.vstack(out)
+
+
+# ---- in time -------------------------------------------------------------------------------------------------------
+
+
+def joints_figure(run: ControlledRun, anchor: str, title: str) -> Figure:
+    """Joint positions beside those asked for, and the torques of the drives."""
+    joints, t = run.chain.joints, run.time
+    scale = [(180.0 / np.pi if j.turns else 1e3) for j in joints]
+    unit = "deg, mm" if not all(j.turns for j in joints) else "deg"
+    found = [Trace(j.name, t, scale[k] * run.q[:, k], k % len(STYLES)) for k, j in enumerate(joints)]
+    asked = [
+        Trace("asked for", t[::8], scale[k] * run.wanted[::8, k], -1, "filled", tuple(j.name for _ in t[::8]))
+        for k, j in enumerate(joints)
+    ]
+    efforts = [Trace(j.name, t, run.torque[:, k], k % len(STYLES)) for k, j in enumerate(joints)]
+    return laws_figure(
+        anchor, title, "Joint positions, with dots where the track asks for them, and torques of the drives.",
+        f"Two panels over {t[-1]:.3g} s: positions and torques of {', '.join(j.name for j in joints)}.",
+        (
+            Plot(f"joint  [{unit}]", "time  [s]", (*found, *asked), is_scaled=False),
+            Plot("torque  [N m]", "time  [s]", tuple(efforts), 90.0),
+        ),
+    )  # fmt: skip
+
+
+def station_figure(runs: Sequence[tuple[str, ControlledRun]], anchor: str, title: str, caption: str) -> Figure:
+    """How far vehicle and end effector are from where they belong, of several runs."""
+    rows: tuple[tuple[str, Callable[[ControlledRun], Array]], ...] = (
+        ("off station  [mm]", lambda r: 1e3 * r.apart),
+        ("turned  [deg]", lambda r: np.degrees(r.turned)),
+        ("end effector off  [mm]", lambda r: 1e3 * r.end_apart),
+    )
+    plots = [
+        Plot(
+            name, "time  [s]", tuple(Trace(said, r.time, value(r), i % len(STYLES)) for i, (said, r) in enumerate(runs)), 84.0,
+            is_scaled=k == len(rows) - 1,
+        )
+        for k, (name, value) in enumerate(rows)
+    ]  # fmt: skip
+    description = f"Three panels over time for {', '.join(said for said, _ in runs)}."
+    return laws_figure(anchor, title, caption, description, plots)
+
+
+def thrust_figure(run: ControlledRun, anchor: str, title: str, caption: str) -> Figure:
+    """Thrusts given, and those asked for as dots: the first half of the thrusters above the others."""
+    names, half = [t.name.replace("_", " ") for t in run.chain.thrusters], -(-len(run.chain.thrusters) // 2)
+    plots = []
+    for part in (range(half), range(half, len(names))):
+        lines = [Trace(names[k], run.time, run.thrust[:, k], k % len(STYLES)) for k in part]
+        dots = [
+            Trace("asked for", run.time[::8], run.ordered[::8, k], -1, "filled", (names[k],) * len(run.time[::8]))
+            for k in part
+        ]
+        plots.append(Plot("thrust  [N]", "time  [s]", (*lines, *dots), 96.0, is_scaled=part.stop == len(names)))
+    return laws_figure(
+        anchor, title, caption, f"Thrusts of {len(names)} thrusters over time: {', '.join(names)}.", plots
+    )
+
+
+def path_figure(found: Array, asked: Array | None, anchor: str, title: str, caption: str) -> Figure:
+    """Path of the end effector (k, 3), NED: both other axes over that along which it goes farthest; dots where it was asked for."""
+    names = ("north", "east", "down")
+    across, *others = sorted(range(3), key=lambda k: (-round(float(np.ptp(found[:, k])), 6), k))
+    plots = []
+    for k in others:
+        traces = [Trace("end effector", found[:, across], found[:, k], 0)]
+        if asked is not None:
+            traces.append(Trace("asked for", asked[::6, across], asked[::6, k], -1, "filled"))
+        plots.append(Plot(f"{names[k]}  [m]", f"{names[across]}  [m]", tuple(traces), is_scaled=k == others[-1]))
+    said = f"The path of the end effector: {names[others[0]]} and {names[others[1]]} over {names[across]}."
+    return laws_figure(anchor, title, caption, said, plots)
+
+
+def simulated(chain: Chain, hull: Array, trajectory: Trajectory) -> ArmMotion:
+    """The motion of a `coeflab simulate`, as pictures take it."""
+    n, rows = chain.count, len(trajectory.time)
+    q = [trajectory.controls[f"{j.name} [{'rad' if j.turns else 'm'}]"] for j in chain.joints]
+    states = np.hstack([trajectory.position, trajectory.attitude, np.reshape(q, (n, rows)).T, np.zeros((rows, 6 + n))])
+    return ArmMotion(chain, hull, trajectory.time, states)
+
+
+def simulated_sheet(motion: ArmMotion, trajectory: Trajectory) -> bytes:
+    """Joints, their torques, thrusts and the path of the end effector of a `coeflab simulate` as one SVG file."""
+    joints, t = motion.chain.joints, motion.time
+    scale = [180.0 / np.pi if j.turns else 1e3 for j in joints]
+    unit = "deg" if all(j.turns for j in joints) else "deg, mm"
+    columns = trajectory.controls
+
+    def traces(names: Sequence[str], suffixes: Sequence[str], factors: Sequence[float]) -> tuple[Trace, ...]:
+        return tuple(
+            Trace(name, t, factor * columns[name + suffix], k % len(STYLES))
+            for k, (name, suffix, factor) in enumerate(zip(names, suffixes, factors, strict=True))
+        )
+
+    named = [j.name for j in joints]
+    plots = [
+        Plot(
+            f"joint  [{unit}]",
+            "time  [s]",
+            traces(named, [f" [{'rad' if j.turns else 'm'}]" for j in joints], scale),
+            is_scaled=False,
+        ),
+        Plot(
+            "torque  [N m]",
+            "time  [s]",
+            traces(named, [f".torque [{'N m' if j.turns else 'N'}]" for j in joints], [1.0] * len(joints)),
+            90.0,
+        ),
+    ]
+    figures = [
+        poses_figure(
+            motion,
+            "arm-poses",
+            "Poses, and the path of the end effector",
+            "At the beginning, halfway in time and at the end.",
+        ),
+        laws_figure(
+            "arm-joints",
+            "Joints",
+            "Positions and torques over time.",
+            f"Two panels over time: {', '.join(named)}.",
+            plots,
+        ),
+        path_figure(motion.ends, None, "arm-path", "Path of the end effector", "North, east and down."),
+    ]
+    thrusters = [x.name for x in motion.chain.thrusters]
+    if any(np.ptp(columns[f"{name} [N]"]) > 0.0 for name in thrusters):
+        pushed = [
+            Plot("thrust  [N]", "time  [s]", traces(thrusters, [" [N]"] * len(thrusters), [1.0] * len(thrusters)))
+        ]
+        figures.append(
+            laws_figure("arm-thrust", "Thrust", "Thrusts over time.", f"Thrusts of {', '.join(thrusters)}.", pushed)
+        )
+    return sheet([[f] for f in figures])
+
+
+# ---- a page that plays it ------------------------------------------------------------------------------------------
+
+
+def animation(motion: ArmMotion, title: str, said: str) -> bytes:
+    """A page, HTML, that plays a motion in space; equal input gives equal bytes.
+
+    Parameters
+    ----------
+    motion : ArmMotion
+        Of more than 240 rows as many are shown, at equal distances.
+    title : str
+    said : str
+        What the motion is, in a sentence: read aloud in the place of the picture.
+    """
+    rows = np.unique(np.round(np.linspace(0, len(motion.time) - 1, min(FRAMES, len(motion.time)))).astype(int))
+    first = parts_at(motion, 0)
+    bodies = []
+    for k, part in enumerate(first.parts):
+        own = _hull_facets(motion.hull) if k == 0 else _tube(part)
+        bodies.append(
+            {
+                "colour": COLOURS["c" if k == 0 else "a"],
+                "facets": own.round(4).tolist(),
+                "normals": normals(own).round(3).tolist(),
+            }
+        )
+    poses = []
+    for row in rows:
+        shape = parts_at(motion, int(row))
+        poses.append(
+            [[*np.round(p.rotation, 4).ravel().tolist(), *np.round(p.centre, 4).tolist()] for p in shape.parts]
+        )
+    ends = motion.ends[rows]
+    corners = np.vstack(
+        [*(_corners(parts_at(motion, int(r))) for r in (rows[0], rows[len(rows) // 2], rows[-1])), ends]
+    )
+    middle = (corners.max(axis=0) + corners.min(axis=0)) / 2.0
+    data = {
+        "time": np.round(motion.time[rows], 4).tolist(), "bodies": bodies, "poses": poses, "ends": np.round(ends, 4).tolist(),
+        "middle": np.round(middle, 3).tolist(), "size": round(float(np.linalg.norm(np.ptp(corners, axis=0))), 3),
+    }  # fmt: skip
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False).replace("</", "<\\/")
+    page = TEMPLATE.read_text(encoding="utf-8")
+    for name, value in (("TITLE", escape(title)), ("SAID", escape(said)), ("DATA", text)):
+        page = page.replace(f"@@{name}@@", value)
+    return page.encode()
+
+
+def _tube(part: Part) -> Array:
+    form = part.form
+    return cylinder_facets(form.radius, form.length) if isinstance(form, Cylinder) else box_facets(np.ones(3))
+
+
+def _hull_facets(axes: Array) -> Array:
+    """(n, 4, 3) facets of an ellipsoid, coarser than those of the drawings."""
+    theta = np.linspace(0.0, np.pi, ALONG + 1)
+    phi = 2.0 * np.pi * np.arange(AROUND + 1) / AROUND
+    x, r = -np.cos(theta), np.sin(theta)
+    grid = np.stack(
+        [np.tile(x[:, None], (1, AROUND + 1)), r[:, None] * np.cos(phi), r[:, None] * np.sin(phi)], axis=-1
+    ) * axes  # fmt: skip
+    facets = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
+    return np.asarray(facets.reshape(-1, 4, 3))

@@ -1,0 +1,99 @@
+"""The page that plays a vehicle with an arm, in a real browser, and the pictures that belong to it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from coeflab.bodies.readers.particulars import read as read_other
+from coeflab.core.errors import InputError
+from coeflab.core.files import shipped
+from coeflab.motion.multibody.motion import at_rest
+from coeflab.published.urv.model import hull, wet
+from coeflab.report.figures.arm import FRAMES, ArmMotion, animation, frames_figure, hull_of, parts_at, poses_figure
+
+
+@pytest.fixture(scope="module")
+def motion() -> ArmMotion:
+    """A made-up one: the shoulder turns while the vehicle drifts north."""
+    chain, time = wet(), np.linspace(0.0, 0.4, 9)
+    states = np.array([at_rest(chain) for _ in time])
+    states[:, 0], states[:, 7] = time, 0.3 + time
+    return ArmMotion(chain, hull(), time, states)
+
+
+@pytest.fixture(scope="module")
+def address(motion: ArmMotion, tmp_path_factory: pytest.TempPathFactory) -> str:
+    path = tmp_path_factory.mktemp("arm") / "motion.html"
+    path.write_bytes(animation(motion, "A <b>made-up</b> motion", 'The shoulder "turns" & drifts.'))
+    return path.as_uri()
+
+
+def data_of(page: bytes) -> dict[str, Any]:
+    text = page.decode()
+    return dict(json.loads(text.partition('id="data">')[2].partition("</script>")[0]))
+
+
+def test_equal_input_gives_an_equal_page_that_needs_nothing_else(motion: ArmMotion) -> None:
+    page = animation(motion, "t", "s")
+    assert page == animation(motion, "t", "s")
+    assert b"http" not in page
+    assert b"@@" not in page
+    long = ArmMotion(motion.chain, motion.hull, np.arange(1000.0), np.repeat(motion.states[:1], 1000, axis=0))
+    few = data_of(animation(long, "t", "s"))
+    assert len(few["time"]) == len(few["poses"]) == len(few["ends"]) == FRAMES
+    assert (few["time"][0], few["time"][-1]) == (0.0, 999.0)
+
+
+def test_what_the_page_draws_is_where_the_equations_have_it(motion: ArmMotion) -> None:
+    data = data_of(animation(motion, "t", "s"))
+    assert np.array(data["ends"]) == pytest.approx(motion.ends, abs=1e-4)
+    last = data["poses"][-1]
+    assert last[0][9:] == pytest.approx([0.4, 0.0, 0.0])
+    assert np.array(last[1][9:]) == pytest.approx(parts_at(motion, 8).parts[1].centre, abs=1e-4)
+    facets = np.array(data["bodies"][0]["facets"])
+    assert np.abs(facets).max(axis=(0, 1)) == pytest.approx([1.0, 0.4, 0.4])
+    outward = np.sum(np.array(data["bodies"][0]["normals"]) * facets.mean(axis=1), axis=1)
+    assert (outward > 0.0).all()
+
+
+def test_it_plays_once_and_stops(visit: Callable[..., Any], address: str) -> None:
+    page = visit(address)
+    assert page.inner_text("h1") == "A <b>made-up</b> motion"
+    page.wait_for_function("document.getElementById('now').textContent === '0.40 s'")
+    page.wait_for_function("document.getElementById('play').textContent === 'Play'")
+    assert (page.heard, page.fetched) == ([], [address])
+    before = page.evaluate("document.getElementById('picture').toDataURL()")
+    page.locator("#azimuth").fill("-40")
+    assert page.evaluate("document.getElementById('picture').toDataURL()") != before
+
+
+def test_it_stands_still_where_less_motion_is_asked_for_and_axe_finds_nothing(
+    visit: Callable[..., Any], address: str
+) -> None:
+    from axe_playwright_python.sync_playwright import Axe
+
+    page = visit(address, reduced_motion="reduce")
+    assert (page.inner_text("#play"), page.inner_text("#now")) == ("Play", "0.00 s")
+    page.locator("#time").fill("4")
+    assert page.inner_text("#now") == "0.20 s"
+    assert [v["id"] for v in Axe().run(page).response["violations"]] == []
+
+
+def test_pictures_name_what_they_show(motion: ArmMotion) -> None:
+    frames = frames_figure(motion, "frames", "caption")
+    for name in ("x0", "z0", "y1", "x3", "north", "east", "down"):
+        assert f">{name}<" in frames.svg
+    poses = poses_figure(motion, "poses", "title", "caption")
+    assert poses.svg == poses_figure(motion, "poses", "title", "caption").svg
+    assert "0.2 s" in poses.description
+
+
+def test_a_body_without_an_arm_has_no_hull_for_these_pictures() -> None:
+    with pytest.raises(InputError, match="a vehicle with an arm"):
+        hull_of(read_other(Path(str(shipped("geometry"))) / "suboff" / "body.toml"))
