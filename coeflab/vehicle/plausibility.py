@@ -23,6 +23,7 @@ from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.stated_numbers import (
+    AIR,
     MOMENTS,
     Written,
     displaced,
@@ -372,7 +373,8 @@ def _buoyancy(p: ParameterFile) -> list[Check]:
     out = [*gravity(NAME, h.gravity, "hydrostatics.gravity")]
     if p.mass is None:
         return out
-    out += displaced(NAME, p.mass.mass, h.volume, p.conditions.density, "mass and hydrostatics.volume")
+    if not AIR[0] < p.conditions.density <= AIR[1]:
+        out += displaced(NAME, p.mass.mass, h.volume, p.conditions.density, "mass and hydrostatics.volume")
     below = h.centre_of_buoyancy[2] - float(centre_of_gravity(p)[2])
     if below > 0.0:
         out.append(Check(
