@@ -358,7 +358,9 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
 
 def _units(p: ParameterFile) -> list[Check]:
     density = p.conditions.density
-    out = [water(NAME, density)]
+    in_air = AIR[0] < density <= AIR[1]
+    span = f"{AIR[0]:g} to {AIR[1]:g} kg/m^3"
+    out = [Check(NAME, "density", Severity.PASS, f"{density:g}", span, "Air.") if in_air else water(NAME, density)]
     if p.mass is not None:
         diagonal = np.nan_to_num(np.diag(stated_matrix(p)))
         out += gyration(NAME, p.mass.mass, density, float(diagonal[1]), float(diagonal[5]))
