@@ -23,6 +23,7 @@ from coeflab.vehicle.inertia import centre_of_gravity
 from coeflab.vehicle.parameter_file import ParameterFile
 from coeflab.vehicle.second_order import products_once, slot
 from coeflab.vehicle.stated_numbers import (
+    AIR,
     MOMENTS,
     Written,
     displaced,
@@ -357,7 +358,9 @@ def law_findings(parameters: ParameterFile) -> tuple[Check, ...]:
 
 def _units(p: ParameterFile) -> list[Check]:
     density = p.conditions.density
-    out = [water(NAME, density)]
+    in_air = AIR[0] < density <= AIR[1]
+    span = f"{AIR[0]:g} to {AIR[1]:g} kg/m^3"
+    out = [Check(NAME, "density", Severity.PASS, f"{density:g}", span, "Air.") if in_air else water(NAME, density)]
     if p.mass is not None:
         diagonal = np.nan_to_num(np.diag(stated_matrix(p)))
         out += gyration(NAME, p.mass.mass, density, float(diagonal[1]), float(diagonal[5]))
@@ -372,7 +375,8 @@ def _buoyancy(p: ParameterFile) -> list[Check]:
     out = [*gravity(NAME, h.gravity, "hydrostatics.gravity")]
     if p.mass is None:
         return out
-    out += displaced(NAME, p.mass.mass, h.volume, p.conditions.density, "mass and hydrostatics.volume")
+    if not AIR[0] < p.conditions.density <= AIR[1]:
+        out += displaced(NAME, p.mass.mass, h.volume, p.conditions.density, "mass and hydrostatics.volume")
     below = h.centre_of_buoyancy[2] - float(centre_of_gravity(p)[2])
     if below > 0.0:
         out.append(Check(

@@ -16,7 +16,7 @@ from coeflab.core.types import Array
 from coeflab.vehicle.second_order import products_once
 
 POUND, SLUG, FOOT = 0.45359237, 14.593902937206, 0.3048
-WATER = (950.0, 1100.0)
+WATER, AIR = (950.0, 1100.0), (1.1, 1.4)  # kg/m^3; of air near the ground from -20 to 45 deg C
 SLUGS, POUNDS, TONNES = (1.9, 2.1), (60.0, 66.0), (0.95, 1.1)
 FEET_PER_SECOND = (32.0, 32.4)
 BUOYANCY = (0.8, 1.25)  # rho V / m of what swims under water, with room for flooded spaces that were left out

@@ -122,7 +122,7 @@ def test_an_export_that_is_refused_leaves_the_study_standing(coeflab: Run, study
     ("name", "files"),
     [
         ("huuv", ["huuv", "huuv_5dof"]),
-        ("flyingfish", ["flyingfish_water"]),
+        ("flyingfish", ["flyingfish_air", "flyingfish_water"]),
         ("thauv", [f"thauv_case_0{i}" for i in (1, 2, 3)]),
     ],
 )

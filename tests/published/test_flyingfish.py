@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import runpy
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ from coeflab.published.flyingfish.model import (
 from coeflab.published.parameter_files import flyingfish_file as published_file
 from coeflab.study.plan import read_plan
 from coeflab.vehicle.parameter_file import read_parameter_file
+from coeflab.vehicle.plausibility import plausibility
 from coeflab.workbench import run
 from coeflab.workbench.exports import export
 from tests.motion.trimmed import flyingfish_file
@@ -169,3 +171,10 @@ def test_a_plan_goes_from_sweeps_to_motions_in_one_command(tmp_path: Path) -> No
     )
     with pytest.raises(InputError, match="flyingfish_water"):
         read_plan(wrong)
+
+
+def test_a_file_in_air_is_plausible_and_one_in_water_with_that_density_is_not() -> None:
+    air, wet = (read_parameter_file(Path(f"flyingfish_{medium}")) for medium in ("air", "water"))
+    assert {c.severity.value for c in plausibility(air)} <= {"pass", "warn"}
+    between = wet.model_copy(update={"conditions": replace(wet.conditions, density=1.6)})
+    assert any("No density of water" in c.comment for c in plausibility(between))
