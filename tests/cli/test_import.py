@@ -91,8 +91,8 @@ def table_of(folder: Path) -> ForceTable:
 
 
 @pytest.fixture(autouse=True)
-def without_slopes(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is written is tested here; the slopes at the end by ``test_import_form``."""
+def without_slopes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is written is tested here; the slopes at the end, which take longer, by ``tests/tables/test_strangers.py``."""
     monkeypatch.setattr(import_, "_first_slopes", lambda folder: None)
 
 

@@ -15,17 +15,12 @@ from coeflab.tables.questions import questions
 from coeflab.tables.raw_table import RawTable, Stated
 from coeflab.tables.settings import Setting
 from tests.cli.conftest import flat
-from tests.cli.test_import import RUNS, command_of, drift, invoke, left_open, runs, sets, stub, table_of
+from tests.cli.test_import import RUNS, command_of, drift, invoke, left_open, runs, sets, stub, table_of, without_slopes
 
-__all__ = ["drift", "runs", "stub"]
+__all__ = ["drift", "runs", "stub", "without_slopes"]
 
 ARM = "r' (-),Fx,Fz,Mz\n0.1,-77,-15,48\n0.2,-78,-31,100\n0.3,-80,-50,160\n0.4,-81,-69,222\n"
 SIZES = "axes.reference_point=midship; scaling.length=4 LOA; conditions.density=998.2; conditions.speed=2"
-
-
-@pytest.fixture(autouse=True)
-def without_slopes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_, "_first_slopes", lambda folder: None)
 
 
 def answered(monkeypatch: pytest.MonkeyPatch, answers: list[str], *arguments: object) -> Result:
