@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from coeflab.tables.settings import Setting
 
 
+MODEL = "manoeuvring_model"
 EXAMPLE = "coeflab import drift.csv --out cfd_data/mine"
 
 
@@ -108,7 +109,6 @@ def command(
         _listed("Check", draft.warned())
     _written(out, table)
     _first_slopes(out)
-    show.command_line("Next", f"coeflab fit {shlex.quote(str(out))}")
     others = [s for s in draft.sheets if s != said.options.get("sheet")]
     _listed(
         "The other sheets, with the answers of this one",
@@ -378,7 +378,7 @@ def described(raw: RawTable, importer: str, found: Understood, *, whole: bool = 
 
     said = "; ".join(f"{key} {text}" for key, text in raw.dialect.items() if key != "importer")
     show.sentence(f"{raw.path}: read by {importer}" + (f"; {said}" if said else ""))
-    if runs := runs_shown(raw, MOST):
+    if runs := runs_shown(raw, MOST if whole else FEW):
         show.table(runs)
     if whole:
         show.table(raw_tables.columns(raw, found.proposals, found.mapping))
@@ -506,31 +506,48 @@ def _brief(note: str) -> str:
 
 
 def _first_slopes(folder: Path) -> None:
-    """The main table of derivatives that the campaign gives, or in one line why it gives none."""
+    """The main table of derivatives that the campaign gives, or in one line why it gives none, and the command for more.
+
+    Where no setting is swept while the others rest, the rows are fitted as one model.
+    """
     from coeflab.cli.fit import DEFAULT, MAIN
+    from coeflab.law.coefficient import Status
     from coeflab.report.tables import results as tables
     from coeflab.study.plan import table_at
     from coeflab.study.study import Plan
     from coeflab.tables.reading import suited_fit
     from coeflab.workbench import run
 
-    fit = suited_fit(folder)
-    plan = Plan(
-        name=folder.name,
-        title=folder.name,
-        tables=(table_at(folder, (fit,), {fit: {}}),),
-        wanted=MAIN if fit == DEFAULT else (),
-    )
-    try:
-        with show.progress(False) as say:
-            study = run(plan, say)
-    except InputError as why:
+    suited = suited_fit(folder)
+    study, why = None, ""
+    for fit in dict.fromkeys([suited, MODEL] if suited == DEFAULT else [suited]):
+        plan = Plan(
+            name=folder.name, title=folder.name, tables=(table_at(folder, (fit,), {fit: {}}),), wanted=MAIN if fit == DEFAULT else ()
+        )  # fmt: skip
+        try:
+            with show.progress(False) as say:
+                study = run(plan, say)
+            break
+        except InputError as refused:
+            why = why or str(refused)
+    typed = f"coeflab fit {shlex.quote(str(folder))}" + f" --fit {fit}" * (study is not None and fit != suited)
+    if study is None:
         show.sentence(f"No slopes: {why}")
-        return
-    found = tables.coefficients_in(study, show.width())
-    kept = [i for i, head in enumerate(found.headers) if head in ("", "value", "U95", "U95 %")]
-    show.sentence(tables.unused(study.tables))
-    show.table(replace(
-        found, title="First slopes, primed", headers=tuple(found.headers[i] for i in kept), notes=tuple(_brief(note) for note in found.notes if not note.startswith("Not shown")),
-        rows=tuple(tuple(row[i] for i in kept) for row in found.rows), left=frozenset({0}),
-    ))  # fmt: skip
+    else:
+        found = tables.coefficients_in(study, show.width())
+        kept = [i for i, head in enumerate(found.headers) if head in ("", "value", "U95", "U95 %")]
+        without = Status.NOT_DETERMINED.replace("_", " ")
+        lacking = [row[0] for row in found.rows if row[1] == without] if fit == MODEL else []
+        notes = [
+            _brief(note)
+            for note in found.notes
+            if not note.startswith(("Not shown", f"{without}:" if lacking else "Not shown"))
+        ]
+        notes += [f"The rows do not determine {', '.join(lacking)}."] if lacking else []
+        show.sentence(tables.unused(study.tables))
+        show.table(replace(
+            found, title="First slopes, primed" + f", by {fit}" * (fit != suited), headers=tuple(found.headers[i] for i in kept),
+            notes=tuple(notes), rows=tuple(tuple(row[i] for i in kept) for row in found.rows if row[0] not in lacking),
+            left=frozenset({0}),
+        ))  # fmt: skip
+    show.command_line("Next", typed)

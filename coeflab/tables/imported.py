@@ -90,7 +90,7 @@ def contents(
         section, _, name = key.partition(".")
         if one.origin.startswith(CONFIRMED) and section != "campaign":
             saved.setdefault(section, {})[name] = one.value
-    head = f"# Used again by: coeflab import FILE --mapping {SAVED} --out DIR\n"
+    head = f"# Used again by: coeflab import FILE --mapping {SAVED} --out DIR --accept\n"
     return {
         TABLE: table,
         FILE: _campaign_text(sections, comments, raw).encode(),

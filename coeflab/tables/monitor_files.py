@@ -25,6 +25,8 @@ CFX_INDEX = b'"ACCUMULATED TIMESTEP"'
 FIRST_LINES = 64  # in which the names of a captive test are looked for
 SIMMAN = frozenset(("X", "Y", "N", "u", "v", "r", "udot", "vdot", "rdot"))
 _CAPTIVE = re.compile(r"(?P<name>[A-Za-z]+(?:_?dot)?)\s*(?P<unit>\[[^\[\]]*\]|\([^()]*\))?")
+# A row a condition, of reports in the place of a history.
+_CONDITION = re.compile(r"(?i)\b(?:run|case|design\s*#?|drift|beta|alpha|angle|yaw angle|incidence|speed)(?!.* Monitor\b)")
 _STAR_MONITOR = re.compile(r".+ Monitor(?: \d+)?: .+|(Iteration|Time Step): \1|Physical Time: Physical Time \(.*\)")
 
 
@@ -97,8 +99,10 @@ def kind_of(raw: bytes) -> str:
     names = su2_names(lines)
     if any(_SU2_NAME.fullmatch(n) for n in names) or (names[:1] == ("Iteration",) and not _SU2_OLD.isdisjoint(names)):
         return "su2"
-    if lines and any(_STAR_MONITOR.fullmatch(c) for d in ",;\t" if d in lines[0] for c in header_cells(lines[0], d)):
-        return "starccm"
+    for delimiter in (d for d in ",;\t" if lines and d in lines[0]):
+        cells = header_cells(lines[0], delimiter)
+        if any(map(_STAR_MONITOR.fullmatch, cells)) and not _CONDITION.search(cells[0]):
+            return "starccm"
     if any(captive_names(line)[0] for line in lines_of(text)[:FIRST_LINES]):
         return "simman"
     return ""

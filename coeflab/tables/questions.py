@@ -267,7 +267,7 @@ def _of_rotation(
         computed = raw.dialect.get("importer") in COMPUTED or _kind(raw, settings, words) == "cfd"
         yield Question(
             "table.contains_inertia", "Do the forces contain the model's own inertia: true for a balance on a real rotating arm, "
-            "false for a solver or where it was subtracted", "true (a balance), false (subtracted)", "false" if computed else "",
+            "false for a solver or where it was subtracted", "false (subtracted); true: with inertia.mass, .centre_of_gravity", "false" if computed else "",
             "a solver gives the force of the fluid alone", "a solver's forces do not", grave=True,
         )  # fmt: skip
     if (inside := settings.get("table.contains_inertia")) and inside.value is True:

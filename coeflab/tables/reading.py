@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from coeflab.core.axes import angle_sign
 from coeflab.core.errors import InputError, shown
 from coeflab.core.text.delimited import Cells, read_cells
 from coeflab.core.wording import Verbatim
 from coeflab.tables.campaign import FILE, Campaign, InputUncertainty, TableDeclaration, read_campaign
 from coeflab.tables.collect import collect
+from coeflab.tables.evidence import evidence
 from coeflab.tables.force_table import STUDIES, ForceTable
 from coeflab.tables.importers import IMPORTERS, Importer, PlannedTable
-from coeflab.tables.mapping import mapped_table
+from coeflab.tables.mapping import Assigned, assigned, declared_mapping, mapped_table
 from coeflab.tables.raw_table import RawTable
 from coeflab.tables.runs import find_runs
 
@@ -286,4 +288,19 @@ def _mapped(campaign: Campaign, table: TableDeclaration) -> ForceTable:
     folder = campaign.path.parent
     options = dict(campaign.options)
     options |= {name: folder / str(options[name]) for name in ("run_list", "state") if options.get(name)}
-    return mapped_table(read_raw(folder / table.file, campaign.importer, options), campaign, table)
+    raw = read_raw(folder / table.file, campaign.importer, options)
+    out = mapped_table(raw, campaign, table)
+    signs = tuple(_contradicted(assigned(raw, declared_mapping(campaign, table), len(campaign.tables) == 1), campaign))
+    return replace(out, notes=(*out.notes, *signs)) if signs else out
+
+
+def _contradicted(columns: Sequence[Assigned], campaign: Campaign) -> Iterator[str]:
+    """What the numbers show against the signs of rates and angles that a campaign declares, as an import would ask."""
+    for shows in evidence(columns, campaign.axes):
+        if shows.against:
+            yield f"warning: {shows.text}"
+            continue
+        name = shows.key.partition(".")[2]
+        said = campaign.signs.get(name) if name else None
+        if said and angle_sign(name, shows.value) != angle_sign(name, said):
+            yield f"warning: {shows.text}, so {shows.value}; declared is the opposite"

@@ -60,13 +60,14 @@ _KINDS = {
 _POINT = re.compile(
     r"(?i)\b(?:moments?\s+(?:are\s+)?(?:taken\s+)?(?:about|around|at|to|ref\w*(?:\s+to)?)|reference\s+point|moment\w*\s+(?:um|bezogen\s+auf)|"
     r"bezugspunkt(?:\s+der\s+momente)?|point\s+de\s+r[ée]f[ée]rence|moments?\s+(?:au|par\s+rapport\s+[àa]u?))"
-    r"\s*(?:=|:|is|ist|est|the|la|le|den|das|dem|\s)*\s*(?P<point>midships?|amidships?|nose|bow|cg|cb|c\.?o\.?g\.?|c\.?o\.?b\.?|"
+    r"(?:[=:\s]|(?:is|ist|est|the|la|le|den|das|dem)(?![^\W_]))*+(?P<point>midships?|amidships?|nose|bow|cg|cb|c\.?o\.?g\.?|c\.?o\.?b\.?|"
     r"cent(?:re|er)\s+of\s+(?:gravity|buoyancy)|hauptspant|schwerpunkt|bug|nase|ma[îi]tre[- ]couple|centre\s+de\s+gravit[ée])\b"
 )
 _POINTS = {"mids": "midship", "amid": "midship", "haup": "midship", "maît": "midship", "mait": "midship", "nose": "nose", "bow": "nose",
            "bug": "nose", "nase": "nose", "cb": "cb", "cob": "cb", "cg": "cg", "cog": "cg", "schw": "cg"}  # fmt: skip
 _DIRECTION = re.compile(
-    r"(?i)(?<![\w'])(?P<axis>[xyz])(?:[- ]?(?:axis|achse))?\s*(?:=|:|->|→|\+|positive?|pos\.?|is|points?|nach|zeigt|zur?|to|vers|\s)*\s*"
+    r"(?i)(?<![\w'])(?P<axis>[xyz])"
+    r"(?:[-\s=:>→+]|(?:axis|achse|positive?|pos\.?|is|points?|nach|zeigt|zur?|to|vers)(?![^\W_]))*+"
     r"\b(?P<to>forwards?|fwd|ahead|bow|vorne?|voraus|bug|avant|aft|astern|backwards?|stern|hinten|achtern|heck|arri[èe]re|starboard|stbd|"
     r"sb|right|steuerbord|stb|tribord|port|left|backbord|bb|b[âa]bord|downwards?|down|unten|bas|upwards?|up|oben|haut)\b"
 )

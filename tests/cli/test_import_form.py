@@ -15,17 +15,12 @@ from coeflab.tables.questions import questions
 from coeflab.tables.raw_table import RawTable, Stated
 from coeflab.tables.settings import Setting
 from tests.cli.conftest import flat
-from tests.cli.test_import import RUNS, command_of, drift, invoke, left_open, runs, sets, stub, table_of
+from tests.cli.test_import import RUNS, command_of, drift, invoke, left_open, runs, sets, stub, table_of, without_slopes
 
-__all__ = ["drift", "runs", "stub"]
+__all__ = ["drift", "runs", "stub", "without_slopes"]
 
 ARM = "r' (-),Fx,Fz,Mz\n0.1,-77,-15,48\n0.2,-78,-31,100\n0.3,-80,-50,160\n0.4,-81,-69,222\n"
 SIZES = "axes.reference_point=midship; scaling.length=4 LOA; conditions.density=998.2; conditions.speed=2"
-
-
-@pytest.fixture(autouse=True)
-def without_slopes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(import_, "_first_slopes", lambda folder: None)
 
 
 def answered(monkeypatch: pytest.MonkeyPatch, answers: list[str], *arguments: object) -> Result:
@@ -206,3 +201,17 @@ def test_marked_rows_are_kept_out_of_fits_and_named(tmp_path: Path) -> None:
     assert done.exit_code == 0, done.output
     assert "kept out of fits, marked or without a number in the file: 3, 5*, 6" in flat(done.output)
     assert table_of(tmp_path / "out").usable["Y"].tolist() == [True, True, False, True, False, False]
+
+
+def test_signs_are_judged_where_a_campaign_reads_its_file_in_place(tmp_path: Path) -> None:
+    """The same evidence as at import, as notes of the table; none once the sign is turned."""
+    (tmp_path / "arm.csv").write_text("r (rad/s),Fy (N),Mz (Nm)\n-0.4,-10,-13\n-0.2,-5,-7\n0.2,5,7\n0.4,10,13\n")
+    keys = (
+        '[campaign]\ntitle = "T"\nbody = "b"\nimporter = "table"\n[columns]\nr = "{}"\nFy = "Y"\nMz = "N"\n[axes]\nframe = "FRD"\n'
+        'datum = "nose"\nreference_point = [-2, 0, 0]\n[scaling]\nlength = 4.0\nlength_name = "LOA"\n[conditions]\n'
+        'density = 1025.0\nspeed = 2.0\n[source]\nkind = "cfd"\ncitation = "c"\n[[table]]\nfile = "arm.csv"\ncontains_inertia = false\n'
+    )
+    for said, warned in (("r", True), ("-r", False)):
+        (tmp_path / "campaign.toml").write_text(keys.format(said), encoding="utf-8")
+        notes = [note for note in table_of(tmp_path).notes if note.startswith("warning: N and r have the same sign")]
+        assert bool(notes) is warned

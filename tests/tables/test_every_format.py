@@ -12,9 +12,12 @@ from typer.testing import CliRunner
 from coeflab.cli import app
 from coeflab.tables.importers import PlannedTable
 from coeflab.tables.reading import read_tables
+from tests.cli.test_import import without_slopes
 from tests.tables.test_excel import rows as sheet_rows
 from tests.tables.test_excel import workbook
 from tests.tables.test_mapping import AXES, LENGTH, MOTIONS, PLANTED, RHO, SIX, derivatives, in_axes, physics
+
+__all__ = ["without_slopes"]
 
 AREA, ITERATIONS = 0.31, 60
 POINT = 2.0  # where moments count, aft of the nose: x of the solver's axes

@@ -24,10 +24,11 @@ from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.questions import understood
 from coeflab.tables.raw_table import RawColumn, RawTable
 from coeflab.tables.reading import importer_of, read_raw, read_tables, recognised
+from tests.cli.test_import import without_slopes
 from tests.conftest import SECTIONS
 from tests.tables.raw_files import NAME, plain_stub, raw
 
-__all__ = ["plain_stub"]
+__all__ = ["plain_stub", "without_slopes"]
 FOOT, POUND_FORCE, POUND, KNOT = 0.3048, 4.4482216152605, 0.45359237, 1852.0 / 3600.0
 RHO, SPEED, LENGTH, AREA = 1000.0, 2.0, 4.0, 0.31
 MOTIONS, FORCES = "uvwpqr", "XYZKMN"
