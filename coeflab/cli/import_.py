@@ -47,7 +47,12 @@ def command(
         metavar="PATH",
         help="A table, or a folder of cases: text, Excel, OpenFOAM ... (coeflab formats importers).",
     ),
-    out: Path = typer.Option(..., "--out", metavar="FOLDER", help="Folder of the new campaign, such as cfd_data/mine."),
+    out: Path = typer.Option(
+        None,
+        "--out",
+        metavar="FOLDER",
+        help="Folder of the new campaign; default NAME of NAME.csv, NAME_campaign of a folder.",
+    ),
     map_: list[str] = typer.Option(
         [], "--map", metavar="COLUMN=WHAT", help="What a column is: 'Fy=Y [N]', 'Run=label', 'Note=ignore'; repeatable."
     ),
@@ -90,7 +95,8 @@ def command(
     from coeflab.tables.mapping import assigned
     from coeflab.tables.settings import assumed
 
-    file, out = typed(path), typed(out)
+    file = typed(path)
+    out = typed(out) if out is not None else _named_after(file)
     if not force and out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise OutputError(f"{out} exists and is not empty. Name another --out, or replace it with --force.")
     said = _said(mapping, set_, [*option, *of_runs(name, runs, state)], as_)
@@ -114,6 +120,13 @@ def command(
         "The other sheets, with the answers of this one",
         [_of_sheet(path, s, out, out / "mapping.toml") for s in others],
     )
+
+
+def _named_after(file: Path) -> Path:
+    """A folder of the current one, called after what is read."""
+    whole = file.resolve()
+    name = f"{whole.name}_campaign" if whole.is_dir() else whole.stem
+    return Path(re.sub(r"[^\w.-]+", "_", name).strip("._") or "campaign")
 
 
 def _typed_so_far(

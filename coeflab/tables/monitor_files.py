@@ -26,7 +26,9 @@ FIRST_LINES = 64  # in which the names of a captive test are looked for
 SIMMAN = frozenset(("X", "Y", "N", "u", "v", "r", "udot", "vdot", "rdot"))
 _CAPTIVE = re.compile(r"(?P<name>[A-Za-z]+(?:_?dot)?)\s*(?P<unit>\[[^\[\]]*\]|\([^()]*\))?")
 # A row a condition, of reports in the place of a history.
-_CONDITION = re.compile(r"(?i)\b(?:run|case|design\s*#?|drift|beta|alpha|angle|yaw angle|incidence|speed)(?!.* Monitor\b)")
+_CONDITION = re.compile(
+    r"(?i)\b(?:run|case|design\s*#?|drift|beta|alpha|angle|yaw angle|incidence|speed)(?!.* Monitor\b)"
+)
 _STAR_MONITOR = re.compile(r".+ Monitor(?: \d+)?: .+|(Iteration|Time Step): \1|Physical Time: Physical Time \(.*\)")
 
 

@@ -46,6 +46,14 @@ def test_one_line_answers_all_and_an_empty_one_accepts(
     assert (table.reference_point.tolist(), str(table.datum)) == ([-2.0, 0.0, 0.0], "nose")
 
 
+def test_without_out_the_folder_is_called_after_what_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    named = Path("Schlepp versuch (1).csv")
+    named.write_text("Driftwinkel;Fy\n-4;-9,1\n0;0,2\n4;8,8\n")
+    assert "--out Schlepp_versuch_1 " in CliRunner().invoke(app, ["import", str(named)]).output
+    assert import_._named_after(Path()) == Path(f"{tmp_path.name}_campaign")
+
+
 def test_wrong_answers_are_named_together_and_none_is_taken(
     drift: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
