@@ -28,6 +28,7 @@ from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.reading import read_tables
 from coeflab.tables.settings import Setting, read_setting
 from tests.cli.conftest import Run, flat
+from tests.cli.survey import too_long
 from tests.tables.runs_as_text import FILE, write_run
 from tests.tables.test_collect import stub
 
@@ -108,7 +109,7 @@ def test_everything_open_comes_in_one_form_with_the_command_that_settles_it(drif
     keys = ["axes.frame", "axes.reference_point", "scaling.length", "conditions.density", "conditions.speed"]
     assert left_open(done) == keys
     lines = done.output.splitlines()
-    assert max(map(len, lines)) <= 80
+    assert too_long(done.output) == []
     shown = [line.split()[1] for line in lines if re.match(r" +\d+[? ] ", line)]
     assert shown[: len(keys)] == keys  # open ones first
     assert {"axes.beta", "axes.datum", "Run", "Fy", "source.kind", "source.citation"} < set(shown)
