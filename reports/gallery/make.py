@@ -24,7 +24,7 @@ from coeflab.workbench.vehicle import asked, from_shape, subject
 
 HERE = Path(__file__).resolve().parent
 VEHICLE = "myring_auv"
-STUDIES = ("suboff", "huuv", "flyingfish", "thauv", VEHICLE)
+STUDIES = ("suboff", "huuv", "flyingfish", "thauv", "urv", VEHICLE)
 PIXELS_AN_INCH = 84.0
 
 
