@@ -307,6 +307,17 @@ def _of_source(raw: RawTable) -> Iterator[Question]:
 def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
     """The question with what words over the table or its name say as its default, where no number gives one."""
     said = raw.stated.get(q.key) or words.get(q.key)
+    if said is not None and said.contradicted and not q.why.startswith("median"):
+        choices = f"{said.contradicted}; {q.choices}".rstrip("; ")
+        return replace(
+            q,
+            default="",
+            shown="",
+            choices=choices,
+            why=said.contradicted,
+            asks=f"{q.asks}. {said.contradicted}",
+            harmless=False,
+        )
     if (
         said is None
         or not said.offered

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise, permutations
 
 from coeflab.core.axes import DIRECTIONS, FRAMES, parse_axes
@@ -19,7 +20,7 @@ _NAMES = {
     "conditions.density": "rho ρ density waterdensity dichte wasserdichte densite massevolumique",
     "scaling.length": "l lpp lbp loa lwl los length modellength lange laenge modelllange modelllaenge longueur",
     "coefficients.area": "a s aref sref referencearea area flache flaeche bezugsflache bezugsflaeche surface",
-    "coefficients.length": "lref referencelength bezugslange bezugslaenge",
+    "coefficients.length": "lref cref referencelength referencechord chord bezugslange bezugslaenge",
     "inertia.mass": "m mass masse modelmass modellmasse",
     "conditions.viscosity": "nu ν viscosity kinematicviscosity viskositat viskositaet kinematischeviskositat viscosite",
 }
@@ -35,6 +36,7 @@ _SAID = re.compile(
     r"(?P<number>[-+]?\d[\d.,' ]*(?:[eE][-+]?\d+)?)\s*[\[(]?(?P<unit>(?:[^\W\d]|[°µ])[^\s,;=\[\])]*)?"
 )
 LONGEST = 500
+POINTED = Marks()
 BODY_AXES = "forces.axes"  # no key of campaign.toml: the words say that forces count along the body
 _BODY = re.compile(
     r"(?i)\b(?:k(?:ö|oe|o)rper|schiffs|boots|modell)fest|\b(?:body|ship|hull|vessel)[- ]?(?:fixed|axes|axis|frame)\b"
@@ -42,8 +44,16 @@ _BODY = re.compile(
 )
 
 _TEMPERATURE = re.compile(
-    r"(?i)(?:\bt|temp\w*|temperatur\w*)\s*(?:=|:|\bof\b)?\s*(?P<t>\d{1,2}(?:[.,]\d+)?)\s*(?:°|º|deg)\s*C\b"
+    r"(?i)(?P<air>\b(?:air|luft\w*|room|hall\w*|ambient|raum\w*)\b[^,;.]{0,20}|±\s*|\+/-\s*)?"
+    r"(?<![\d.,±-])(?P<t>\d{1,2}(?:[.,]\d+)?)\s*(?:°\s*|º\s*|deg\.?\s*|degrees?\s+|grad\s+)C(?:elsius)?\b"
 )
+_IN_AIR = re.compile(r"(?i)\b(?:wind[- ]?(?:tunnel|kanal)|in\s+air|soufflerie)\b")
+_DENSITY = re.compile(
+    r"(?i)(?P<other>\b(?:air|luft|foam|hull|model|modell|body|steel|schaum)\w*\b[^,;\d]{0,20})?"
+    r"(?<![\w.,])(?P<number>\d[\d.,' ]*?)\s*[\[(]?(?P<unit>(?:kg|g|t)\s?/\s?(?:c?m\^?3|c?m³|l|ml|dm\^?3|dm³)|kg[ *]m(?:\^?-3|⁻³))(?![\w^])"
+)
+APART = 0.03  # beyond which a density and the water of the words contradict each other
+WATER = (900.0, 1100.0)
 _SALT = re.compile(
     r"(?i)\b(?:sea\s?-?water|salt\s?-?water|salzwasser|seewasser|meerwasser|eau\s+(?:de\s+mer|sal[ée]e))\b"
 )
@@ -99,31 +109,24 @@ def water_density(celsius: float, salinity: float = 0.0) -> float:
     return float(fresh + first * s + second * s**1.5 + 4.8314e-4 * s * s)
 
 
-def of_the_test(texts: Iterable[tuple[str, str]]) -> dict[str, Stated]:
+def of_the_test(texts: Iterable[tuple[str, str]], marks: Marks = POINTED) -> dict[str, Stated]:
     """What words say of the water, the kind of the source, the axes and the point of the moments; offered.
 
     Parameters
     ----------
     texts : iterable of (place, text)
         Such as lines over a table with their numbers, or a file's name.
+    marks : Marks
+        Of the numbers.
     """
     found: dict[str, Stated] = {}
-    degrees, water, axes = None, "", dict[str, str]()
-    first: dict[str, str] = {}
+    axes, first = dict[str, str](), ""
+    texts = list(texts)
 
     def note(key: str, value: object, place: str, said: str) -> None:
         found.setdefault(key, Stated(value, f'{place}: "{" ".join(said.split())}"', offered=True))  # type: ignore[arg-type]
 
     for place, text in texts:
-        if m := _TEMPERATURE.search(text):
-            degrees = float(m["t"].replace(",", "."))
-            first.setdefault("water", f'{place}: "{m[0].strip()}"')
-        if m := _SALT.search(text):
-            water = "sea"
-            first.setdefault("water", f'{place}: "{m[0]}"')
-        elif m := _FRESH.search(text):
-            water = water or "fresh"
-            first.setdefault("water", f'{place}: "{m[0]}"' + ", fresh water" * bool(m["tank"]))
         for kind, words in _KINDS.items():
             if m := re.search(rf"(?i)(?<![^\W_])(?:{words})(?![^\W_])", text):
                 note("source.kind", kind, place, m[0])
@@ -133,17 +136,63 @@ def of_the_test(texts: Iterable[tuple[str, str]]) -> dict[str, Stated]:
             note("axes.datum", named, place, m[0])
         for m in _DIRECTION.finditer(text):
             axes.setdefault(m["axis"].casefold(), _DIRECTIONS[m["to"].casefold()])
-            first.setdefault("axes", place)
+            first = first or place
+    if density := _density(texts, marks):
+        found["conditions.density"] = density
+    if len(axes) >= 2 and (frame := _frame(axes)):
+        found["axes.frame"] = Stated(frame, f"{first}: " + ", ".join(f"{a} {d}" for a, d in axes.items()), offered=True)
+    return found
+
+
+def _density(texts: Sequence[tuple[str, str]], marks: Marks) -> Stated | None:
+    """The density that a number with a unit states, else that of the water that words name; open where they contradict."""
+    degrees, water, places = None, "", dict[str, str]()
+    numbers: list[tuple[float, str]] = []
+    in_air = any(_IN_AIR.search(text) for _, text in texts)
+    for place, text in texts:
+        for m in _DENSITY.finditer(text):
+            if (in_air or not m["other"]) and (size := _kg_m3(m["number"], m["unit"], marks)):
+                numbers.append((size, f'{place}: "{_near(text, m.start("number"), m.end())}"'))
+        if degrees is None and (t := next((m for m in _TEMPERATURE.finditer(text) if not m["air"]), None)):
+            degrees = float(t["t"].replace(",", "."))
+            places.setdefault("degrees", f'{place}: "{_near(text, t.start("t"), t.end())}"')
+        if salt := _SALT.search(text):
+            water = "sea"
+            places["water"] = f'{place}: "{salt[0]}"'
+        elif (fresh := _FRESH.search(text)) and not water:
+            water = "fresh"
+            places["water"] = f'{place}: "{fresh[0]}"' + ", fresh water" * bool(fresh["tank"])
+    if in_air and not water:
+        degrees = None
+    by_words, how = 0.0, ""
     if water or degrees is not None:
         at = {"sea": 15.0}.get(water, 20.0) if degrees is None else degrees
-        density = round(water_density(at, 35.0 if water == "sea" else 0.0), 1)
+        by_words = round(water_density(at, 35.0 if water == "sea" else 0.0), 1)
         how = f"{water or 'fresh'} water of {at:g} °C" + ", 35 g/kg of salt" * (water == "sea")
-        found["conditions.density"] = Stated(density, f"{how}; {first['water']}", offered=True)
-    if len(axes) >= 2 and (frame := _frame(axes)):
-        found["axes.frame"] = Stated(
-            frame, f"{first['axes']}: " + ", ".join(f"{a} {d}" for a, d in axes.items()), offered=True
-        )
-    return found
+        how += "; " + "; ".join(dict.fromkeys(places.values()))
+    if not numbers:
+        return Stated(by_words, how, offered=True) if how else None
+    size, place = numbers[0]
+    other = next((p for s, p in numbers if abs(s / size - 1.0) > 1e-3), "")
+    if not other and by_words and abs(size / by_words - 1.0) > APART:
+        other = f"{by_words:g} by {how}"
+    return Stated(size, place, offered=True, contradicted=f"{place}, but {other}" if other else "")
+
+
+def _kg_m3(number: str, unit: str, marks: Marks) -> float:
+    """A density in SI; of two readings of a number, 1.025 and 1025, that of water; zero where there is none."""
+    size = 1000.0 if unit[0] in "gt" or re.search(r"/\s?(?:l|dm)", unit) else 1.0
+    value = _number(number, marks)
+    if value is None:
+        both = [Marks(d, t).number(number.strip()) for d, t in ((".", ","), (",", "."))]
+        fit = [v for v in both if v is not None and WATER[0] <= v * size <= WATER[1]]
+        value = fit[0] if len(fit) == 1 else 0.0
+    return value * size
+
+
+def _near(text: str, begin: int, end: int) -> str:
+    """What was found with the three words before it."""
+    return " ".join([*re.split(r"[,;]", text[:begin])[-1].split()[-3:], *text[begin:end].split()])
 
 
 def _frame(axes: Mapping[str, str]) -> str:
@@ -229,5 +278,11 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
                 found.setdefault(key, Stated(size, place, offered=True))
                 if name in _LENGTHS:
                     found.setdefault("scaling.length_name", Stated(name.upper(), place, offered=True))
-    told = of_the_test((f"line {line}", " ".join(c for c in cells if c)[:LONGEST]) for line, cells in rows)
+    told = of_the_test(((f"line {line}", " ".join(c for c in cells if c)[:LONGEST]) for line, cells in rows), marks)
+    water = told.get("conditions.density")
+    own = found.pop("conditions.density", None)
+    if own and not (water and _DENSITY.search(water.place)):  # a number without a unit, or in another one
+        far = water is not None and abs(float(str(own.value)) / float(str(water.value)) - 1.0) > APART
+        against = f"{own.place}, but {water.value} by {water.place}" if water and far else ""
+        told["conditions.density"] = replace(own, contradicted=against)
     return told | {key: one for key, one in found.items() if key not in twice}
