@@ -320,7 +320,7 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
     known : mapping, optional
         What a person says of coefficients and of units that are not stated; see `proposed`.
     """
-    stated = {key: s.value for key, s in raw.stated.items() if not s.contradicted} | dict(known or {})
+    stated = {key: None if s.contradicted else s.value for key, s in raw.stated.items()} | dict(known or {})
     offered = any(s.offered for key, s in raw.stated.items() if key.startswith("coefficients.")) or bool(known)
     out: list[Proposal] = []
     taken: dict[str, str] = {}

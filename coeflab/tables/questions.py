@@ -115,7 +115,7 @@ def questions(
     words = of_the_test([("its name", raw.path.resolve().name.replace("_", " "))])
     out = [
         *_of_coefficients(offers, settings), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings),
-        *_of_sizes(columns), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
+        *_of_sizes(columns, settings), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
     ]  # fmt: skip
     return tuple(_offered(q, raw, words) for q in out)
 
@@ -214,14 +214,17 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
         )
 
 
-def _of_sizes(columns: Sequence[Assigned]) -> Iterator[Question]:
+def _of_sizes(columns: Sequence[Assigned], settings: Settings) -> Iterator[Question]:
     forces = [c.said for c in columns if c.said.role == "force"]
     pure = bool(forces) and all(said.pure for said in forces)
     plain = not any(c.said.role == "velocity" and not c.said.primed for c in columns)
     length = next((said.length for said in forces if said.length), 0.0)
+    far = _from_the_nose(settings)
+    beyond = f"the reference point lies {far:g} m from the nose, further than the {length:g} m of the coefficients"
+    beyond, length = (beyond, 0.0) if 0.0 < length < far else ("", length)
     yield Question(
         "scaling.length", "Length of the primes, m, with its name: 4.3 m LOA. Y' = Y / (1/2 rho U^2 L^2), N' with L^3, r' = r L / U",
-        "m, with its name: 4.3 LOA", f"{length!r}" if length else "", "that of the coefficients", "that of the coefficients",
+        f"{beyond}; m, with its name: 4.3 LOA".removeprefix("; "), f"{length!r}" if length else "", "that of the coefficients", "that of the coefficients",
     )  # fmt: skip
     yield Question("scaling.length_name", "Which length that is: LBP, LOA ... Results of different names are not mixed", "",
                    "L", "not stated", "not stated: LOA, LBP ...", harmless=True)  # fmt: skip
@@ -246,6 +249,14 @@ def _of_sizes(columns: Sequence[Assigned]) -> Iterator[Question]:
         yield Question(
             f"conditions.{role}", asks, choices, found or cancels, why, why.partition(":")[0], harmless=bool(found)
         )
+
+
+def _from_the_nose(settings: Settings) -> float:
+    """Distance of the reference point along x, m, where it is said from the nose; zero elsewhere."""
+    datum, point = settings.get("axes.datum"), settings.get(POINT_OF)
+    named = str(datum.value).casefold().split() if datum else []
+    along = point.value[0] if point and isinstance(point.value, (list, tuple)) else 0.0
+    return abs(float(along)) if {"nose", "bow", "bug", "nase"} & set(named) else 0.0
 
 
 def _of_rotation(
@@ -321,7 +332,11 @@ def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
     if (
         said is None
         or not said.offered
-        or (q.default and not q.harmless and q.key not in ("axes.datum", "conditions.density", "conditions.speed"))
+        or (
+            q.default
+            and not q.harmless
+            and q.key not in ("axes.datum", "conditions.density", "conditions.speed", "scaling.length")
+        )
     ):
         return q
     if q.harmless and q.default and q.why.startswith("median"):

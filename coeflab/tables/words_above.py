@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise, permutations
 
@@ -35,6 +35,22 @@ _SAID = re.compile(
     r"(?P<name>[^\W\d_][^=:;,()\[\]]{0,40}?)\s*(?:[\[(](?P<before>[^\[\]()]{1,12})[\])])?\s*(?:=|:)\s*"
     r"(?P<number>[-+]?\d[\d.,' ]*(?:[eE][-+]?\d+)?)\s*[\[(]?(?P<unit>(?:[^\W\d]|[°µ])[^\s,;=\[\])]*)?"
 )
+_BROAD = r"diam(?:eter|[èe]tre)?|durchmesser|chord|profiltiefe|corde|breadth|beam|breite|largeur|width"
+_SYMBOL = r"(?:\s*(?:\([^()]{1,20}\)|\b[A-Za-z]\w{0,4}\b))?\s*(?:=|:|\bof\b|\bis\b|\bvon\b|\bist\b|\bde\b)?\s*"
+_SIZES = {
+    key: re.compile(
+        rf"(?i)(?<![^\W_])(?P<name>{words}){_SYMBOL}(?P<number>\d[\d.,]*)\s*[\[(]?(?P<unit>{unit})(?![^\W_])(?:[\])]?\s*\([^()]{{1,30}}\)"
+        rf"|,?\s*(?:(?:the|its|hull|body|model|max\w*|der|le)\s+){{0,3}}(?:{_BROAD})(?![^\W_]|\s*(?:[=:(\d]|\w{{1,3}}\s*=)))?"
+    )
+    for key, words, unit in (
+        ("coefficients.length", r"(?:reference|ref\.?)[\s-]*(?:length|chord)|(?:mean\s+(?:aerodynamic\s+)?)?chord(?:\s+length)?|[lc]_?ref"
+         r"|bezugsl(?:ä|ae)nge|profiltiefe|longueur\s+de\s+r[ée]f[ée]rence|corde", "mm|cm|m|ft|in"),
+        ("scaling.length", r"overall\s+length|length\s+over\s*all|l_?(?:oa|pp|bp|wl)|l(?:ä|ae)nge\s+(?:ü|ue)ber\s+alles|gesamtl(?:ä|ae)nge"
+         r"|longueur\s+hors\s+tout|(?:model|hull|body)\s+length|(?:modell|rumpf)l(?:ä|ae)nge", "mm|cm|m|ft|in"),
+    )
+}  # fmt: skip
+_OVERALL = re.compile(r"(?i)over\s*all|über\s+alles|ueber\s+alles|gesamt|hors|l_?oa")
+_ACROSS = re.compile(rf"(?i)(?<![^\W_])(?:{_BROAD})(?![^\W_])|\bc_?ref")
 LONGEST = 500
 POINTED = Marks()
 BODY_AXES = "forces.axes"  # no key of campaign.toml: the words say that forces count along the body
@@ -227,6 +243,38 @@ def _pairs(cells: Sequence[str]) -> Iterable[str]:
             yield f"{name.rstrip(' =:')} = {number} {unit}"
 
 
+def _sizes(text: str, marks: Marks) -> Iterator[tuple[str, str, float, str]]:
+    """Key, name, number in SI and words of what a text states with a sign, and of lengths that it states without one."""
+    lengths = [(key, m) for key, words in _SIZES.items() for m in words.finditer(text)]
+    for key, m in lengths:
+        if size := _in_si(m["number"], m["unit"], key, marks):
+            short = folded(m["name"])
+            name = (
+                short if short in _LENGTHS else "loa" if key == "scaling.length" and _OVERALL.search(m["name"]) else ""
+            )
+            yield key, name, size, m[0]
+    spans = [m.span() for _, m in lengths]
+    for m in _SAID.finditer(text):
+        words = m["name"].split()
+        name = next((f for w in (m["name"], words[-1], words[0]) if (f := folded(w)) in _KEYS), "")
+        unit = (m["before"] or m["unit"] or "").strip(" .;")
+        begun = any(begin < m.end("number") <= end for begin, end in spans)
+        if not name or begun or (not unit and len(name) == 1):
+            continue
+        if size := _in_si(m["number"], unit, _KEYS[name], marks):
+            yield _KEYS[name], name, size, m[0]
+
+
+def _in_si(number: str, unit: str, key: str, marks: Marks) -> float:
+    """A number above zero in SI; zero where it has none, or two readings."""
+    value = _number(number, marks)
+    try:
+        size = 0.0 if value is None else quantity(f"{value!r} {unit}" if unit else value, _DIMENSIONS[key])
+    except InputError:
+        return 0.0
+    return max(size, 0.0)
+
+
 def _around(text: str, found: re.Match[str]) -> str:
     """The part between commas that holds what was found."""
     begin = max(text.rfind(mark, 0, found.start()) for mark in ",;:") + 1
@@ -247,37 +295,27 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
     Returns
     -------
     dict of str to Stated
-        Offered: somebody has to confirm them. In SI. A key that two lines say differently is left out, and so is a single
-        letter without a unit that fits. `BODY_AXES` where the words say that forces count along the body.
+        Offered: somebody has to confirm them. In SI. A key that two lines say differently is `contradicted`. A single
+        letter without a unit that fits is left out. `BODY_AXES` where the words say that forces count along the body.
     """
     rows = list(rows)
     found: dict[str, Stated] = {}
-    twice: set[str] = set()
     for line, cells in rows:
         if (whole := " ".join(c for c in cells if c)[:LONGEST]) and (body := _BODY.search(whole)):
             found.setdefault(BODY_AXES, Stated("body", f'line {line}: "{_around(whole, body)}"', offered=True))
-        for text in dict.fromkeys(t[:LONGEST] for t in _pairs(cells)):
-            for m in _SAID.finditer(text):
-                words = m["name"].split()
-                name = next((f for w in (m["name"], words[-1], words[0]) if (f := folded(w)) in _KEYS), "")
-                value = _number(m["number"], marks)
-                if not name or value is None:
-                    continue
-                key, unit = _KEYS[name], (m["before"] or m["unit"] or "").strip(" .;")
-                if not unit and len(name) == 1:
-                    continue
-                try:
-                    size = quantity(f"{value!r} {unit}" if unit else value, _DIMENSIONS[key])
-                except InputError:
-                    continue
-                if not size > 0.0:
-                    continue
-                place = f'line {line}: "{" ".join(m[0].split())}"'
-                if key in found and abs(float(str(found[key].value)) / size - 1.0) > 1e-9:
-                    twice.add(key)
-                found.setdefault(key, Stated(size, place, offered=True))
-                if name in _LENGTHS:
-                    found.setdefault("scaling.length_name", Stated(name.upper(), place, offered=True))
+        for key, name, size, part in (
+            one for t in dict.fromkeys(t[:LONGEST] for t in _pairs(cells)) for one in _sizes(t, marks)
+        ):
+            place = f'line {line}: "{" ".join(part.split())}"'
+            if key in found and abs(float(str(found[key].value)) / size - 1.0) > 1e-9:
+                against = found[key].contradicted or f"{found[key].place}, but {place}"
+                found[key] = replace(found[key], contradicted=against)
+            found.setdefault(key, Stated(size, place, offered=True))
+            if name in _LENGTHS:
+                found.setdefault("scaling.length_name", Stated(name.upper(), place, offered=True))
+    if "scaling.length" not in found and (by := found.get("coefficients.length")) and (m := _ACROSS.search(by.place)):
+        against = f"{by.place} is a {m[0]}, perhaps not the body's length"
+        found["scaling.length"] = replace(by, contradicted=against)
     told = of_the_test(((f"line {line}", " ".join(c for c in cells if c)[:LONGEST]) for line, cells in rows), marks)
     water = told.get("conditions.density")
     own = found.pop("conditions.density", None)
@@ -285,4 +323,4 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
         far = water is not None and abs(float(str(own.value)) / float(str(water.value)) - 1.0) > APART
         against = f"{own.place}, but {water.value} by {water.place}" if water and far else ""
         told["conditions.density"] = replace(own, contradicted=against)
-    return told | {key: one for key, one in found.items() if key not in twice}
+    return told | found

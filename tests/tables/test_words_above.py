@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from coeflab.tables.column_map import read_column_map
 from coeflab.tables.dialect import Marks
+from coeflab.tables.mapping import Assigned
+from coeflab.tables.proposals import proposals
 from coeflab.tables.questions import Question, questions
-from coeflab.tables.raw_table import RawTable, Stated
+from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting
 from coeflab.tables.words_above import water_density, words_above
 
@@ -64,3 +68,56 @@ def test_temperatures_in_ordinary_spelling_are_those_of_the_water(line: str, cel
     assert one.value == pytest.approx(water_density(celsius, salt), abs=0.051)
     assert f"of {celsius:g} °C" in one.place
     assert "conditions.density" not in said("wind tunnel at 20 °C")
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["reference length c = 2.4 m", "reference length 2.4 m", "c_ref = 2.4 m", "chord c = 2.4 m", "Lref = 2.4 m", "Bezugslänge 2400 mm",
+     "reference length: 2.4 m", "L_ref = 2.4 m", "reference length L = 2.4 m", "mean chord (c) of 2.4 m", "reference length c: 240 cm"],
+)  # fmt: skip
+def test_the_reference_length_of_coefficients_in_ordinary_words(line: str) -> None:
+    found = said(f"CMy by {line}, A = 0.2 m^2")
+    assert found["coefficients.length"].value == pytest.approx(2.4)
+    assert found["coefficients.area"].value == pytest.approx(0.2)
+    assert "scaling.length" not in found or found["scaling.length"].contradicted
+
+
+def test_the_overall_length_wins_over_a_diameter() -> None:
+    """Primes by a tenth of the length are a hundred times too large."""
+    for words in ("overall length 3.0 m", "LOA = 3.0 m", "Länge über alles: 3,0 m"):
+        found = said("Lref = 0.30 m (diameter), Aref = 0.07 m^2", words)
+        assert found["scaling.length"].value == 3.0
+        assert found["coefficients.length"].value == 0.3
+        assert found["scaling.length_name"].value == "LOA"
+        force = [Assigned(RawColumn("CN", "-", np.ones(3)), read_column_map("N [coefficient A=0.07 m^2 L=0.3 m]"))]
+        raw = RawTable(Path("t.csv"), (), stated=found)
+        assert next(q for q in questions(raw, force, {}) if q.key == "scaling.length").default == "3"
+
+
+@pytest.mark.parametrize("words", ["Lref = 0.30 m (diameter)", "chord c = 0.3 m", "reference length 0.3 m (beam)",
+                                   "reference length (diameter) = 0.3 m", "reference length 0.3 m, the hull diameter"])  # fmt: skip
+def test_a_length_across_the_body_leaves_that_of_the_primes_open(words: str) -> None:
+    force = [Assigned(RawColumn("CN", "-", np.ones(3)), read_column_map("N [coefficient A=0.07 m^2 L=0.3 m]"))]
+    found = {q.key: q for q in questions(RawTable(Path("t.csv"), (), stated=said(words)), force, {})}
+    assert found["scaling.length"].open
+    assert "line 1" in found["scaling.length"].choices
+
+
+def test_a_reference_point_beyond_the_length_of_the_coefficients_leaves_that_of_the_primes_open() -> None:
+    force = [Assigned(RawColumn("CN", "-", np.ones(3)), read_column_map("N [coefficient A=0.07 m^2 L=0.3 m]"))]
+    assert "scaling.length" not in said("Lref = 3.0 m, diameter 0.3 m")
+    raw = RawTable(Path("t.csv"), ())
+    for x, is_open in ((-1.5, True), (-0.2, False)):
+        known = {"axes.datum": Setting("nose", "said"), "axes.reference_point": Setting([x, 0.0, 0.0], "said")}
+        one = next(q for q in questions(raw, force, known) if q.key == "scaling.length")
+        assert one.open is is_open
+        assert ("1.5 m from the nose" in one.choices) is is_open
+
+
+def test_two_lines_that_differ_leave_a_key_open() -> None:
+    found = said("reference length 0.3 m", "Lref = 0.4 m, Lpp = 3.0 m; speed 2", "L = 3.1 m")
+    one = asked(found)["scaling.length"]
+    assert one.open
+    assert 'line 2: "Lpp = 3.0 m", but line 3: "L = 3.1 m"' in one.choices
+    raw = RawTable(Path("t.csv"), (RawColumn("CMz", "-", np.ones(3)),), stated=found)
+    assert "L=?" in proposals(raw, {"coefficients.area": 0.1})[0].text
