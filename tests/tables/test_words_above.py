@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import pytest
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.dialect import Marks
 from coeflab.tables.mapping import Assigned
-from coeflab.tables.proposals import proposals
+from coeflab.tables.proposals import proposals, proposed
 from coeflab.tables.questions import Question, questions
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
 from coeflab.tables.settings import Setting
@@ -121,3 +122,22 @@ def test_two_lines_that_differ_leave_a_key_open() -> None:
     assert 'line 2: "Lpp = 3.0 m", but line 3: "L = 3.1 m"' in one.choices
     raw = RawTable(Path("t.csv"), (RawColumn("CMz", "-", np.ones(3)),), stated=found)
     assert "L=?" in proposals(raw, {"coefficients.area": 0.1})[0].text
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "cells", "text"),
+    [("Mz", "Nm", ("8,1", "149.19", "-8,1"), ""), ("Giermoment am Modell", "Nm", ("8,1", "149.19", "-8,1"), ""),
+     ("Fy", "N", ("8.1", "1.2", "9.1"), ""), ("N", "N*m", ("8,1", "149.19", "-8,1"), ""),
+     ("Mz", "Nm", ("8,1", "9,9 *", "-8,1"), "N [Nm]"), ("Bemerkung", "", ("a", "149.19", "b"), "ignore"),
+     ("Fy", "N", ("diverged", "stalled", "x"), "label"), ("Datum", "", ("1.2.24", "2.2.24", "3.2.24"), "ignore")],
+)  # fmt: skip
+def test_a_force_among_whose_numbers_are_other_decimal_marks_is_open(
+    name: str, unit: str, cells: tuple[str, ...], text: str
+) -> None:
+    """As text it would be a label, and its slopes would be gone without a word."""
+    marks = Marks(",")
+    values = np.array([math.nan if (x := marks.number(c)) is None else x for c in cells])
+    one = proposed(RawColumn(name, unit, values, cells))
+    assert one.text == text
+    if not text:
+        assert ('"149.19"' if "149.19" in cells else '"8.1"') in one.why
