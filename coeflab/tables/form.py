@@ -18,7 +18,7 @@ from coeflab.tables.mapping import known_as, with_unit
 from coeflab.tables.proposals import OPEN, Proposal
 from coeflab.tables.questions import Doubt, Understood, understood, without_unit
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, Setting, Settings, read_settings
+from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, read_settings
 
 MANY = 20  # columns, beyond which those that no fit uses have no line
 KEY, VALUE = 25, 22  # letters
@@ -111,6 +111,7 @@ def form(
         out.append(
             Line(q.key, value, why, group, f"{about}.", argument("--set", q.key, q.default or OPEN), not q.harmless)
         )
+    words = {key: place for key, _, place in against_words(raw, settings)}
     for key, one in settings.items():
         if not key.startswith(UNSHOWN):
             group = Group.GRAVE if key.startswith(GRAVE) else Group.FURTHER
@@ -119,7 +120,7 @@ def form(
                 Line(
                     key,
                     value,
-                    one.origin.replace("confirmed", "said"),
+                    f"! but {words[key]}" if key in words else one.origin.replace("confirmed", "said"),
                     group,
                     f"{found.about.get(key, key)}. It is {value}: {one.origin}.",
                 )

@@ -47,10 +47,36 @@ _SIZES = {
          r"|bezugsl(?:ä|ae)nge|profiltiefe|longueur\s+de\s+r[ée]f[ée]rence|corde", "mm|cm|m|ft|in"),
         ("scaling.length", r"overall\s+length|length\s+over\s*all|l_?(?:oa|pp|bp|wl)|l(?:ä|ae)nge\s+(?:ü|ue)ber\s+alles|gesamtl(?:ä|ae)nge"
          r"|longueur\s+hors\s+tout|(?:model|hull|body)\s+length|(?:modell|rumpf)l(?:ä|ae)nge", "mm|cm|m|ft|in"),
+        ("inertia.mass", r"(?:model\s+)?mass(?:e?\s+of\s+the\s+model)?|(?:modell)?masse(?:\s+du\s+mod[èe]le)?", "kg|t"),
     )
 }  # fmt: skip
 _OVERALL = re.compile(r"(?i)over\s*all|über\s+alles|ueber\s+alles|gesamt|hors|l_?oa")
 _ACROSS = re.compile(rf"(?i)(?<![^\W_])(?:{_BROAD})(?![^\W_])|\bc_?ref")
+_INERTIA = re.compile(
+    r"(?i)(?<!moment of )(?<!moments of )(?<![^\W_])(?:inertia\w*|(?:model\s+)?mass(?:e|es)?|mass\s+forces?|(?:massen)?tr(?:ä|ae)gheit\w*"
+    r"|massenkr(?:ä|ae)ft\w*|modellmasse|inertie\w*)(?![^\W_])"
+)
+_TAKEN_OR_HELD = re.compile(
+    r"(?i)(?<![^\W_])(?P<un>un|non-?|in)?(?:(?P<taken>correct(?:ed|ions?)|subtracted|removed|deducted|compensated|korrigiert|korrektur|abgezogen"
+    r"|bereinigt|corrig[ée]e?s?|corrections?|soustrait\w*|d[ée]duit\w*)|(?P<held>inclu(?:ded?|des|ding)|contain(?:s|ed|ing)?|enth(?:alten|ält)|inklusive"
+    r"|inclus\w*|comprise?s?|contien\w+))(?![^\W_])"
+)
+_NOT = re.compile(r"(?i)(?<![^\W_])(?:not|no|never|without|nicht|keine?\w*|ohne|sans|pas|non|aucune?)(?![^\W_])|n't\b")
+_FREE_OF = re.compile(
+    rf"(?i)(?<![^\W_])(?:without|free\s+of|ohne|sans)\s+(?:the\s+|model\W?s?\s+|own\s+|l')*{_INERTIA.pattern[4:]}(?!\s*korrekt|\s+correct)"
+)
+_CENTRE = re.compile(
+    r"(?i)(?<![^\W_])(?:cent(?:re|er)\s+of\s+(?:gravity|mass)|c\.?o?\.?g\.?|[xl]_?c?g|schwerpunkt|centre\s+de\s+gravit[ée])(?![^\W_])"
+    r"[^\d;+-]{0,25}(?P<number>[-+]?\d[\d.,]*)\s*(?P<unit>mm|cm|m|ft|in)(?![^\W_])"
+    r"(?:\s*(?P<side>aft|behind|abaft|astern|hinter|achterlich|derri[èe]re|forward|ahead|before|in\s+front|vor|devant)(?:\s+(?:of|the|dem|der|von|le|la|du|de))*"
+    r"\s+(?P<point>nose|bow|midships?|amidships?|hauptspant|bug|nase)(?![^\W_]))?"
+)
+_TURNS = re.compile(
+    r"(?i)(?<![^\W_])(?:all|every|alle|tous)\b[^,;.=<>]{0,25}?(?:turns?|turning|circles?|kurven|drehkreise?|kreise?|fahrten|runs|girations?)\W+"
+    r"(?:(?:are|were|made|to|the|nach|zu|zur|à|sur|gefahren|turning)\s+)*(?P<one>starboard|stbd|port|steuerbord|backbord|tribord|b[âa]bord|right|left)(?![^\W_])"
+    r"|cent(?:re|er)\s+of\s+(?:the\s+|a\s+)?(?:circle|turn\w*|rotation)\s+(?:\w+\s+){0,2}?(?:to\s+)?(?P<two>starboard|port|right|left)(?![^\W_])"
+)
+CENTRE_FROM = "inertia.from"  # no key of campaign.toml: where the words place the centre of gravity
 LONGEST = 500
 POINTED = Marks()
 BODY_AXES = "forces.axes"  # no key of campaign.toml: the words say that forces count along the body
@@ -150,13 +176,22 @@ def of_the_test(texts: Iterable[tuple[str, str]], marks: Marks = POINTED) -> dic
             short = m["point"].casefold().replace(".", "")
             named = "cb" if "buoy" in short else _POINTS.get(short, _POINTS.get(short[:4], "cg"))
             note("axes.datum", named, place, m[0])
+        for key, said in _of_the_turn(place, text, marks):
+            one = found.setdefault(key, said)
+            if one.value != said.value and not one.contradicted:
+                found[key] = replace(one, contradicted=f"{one.place}, but {said.place}")
         for m in _DIRECTION.finditer(text):
             axes.setdefault(m["axis"].casefold(), _DIRECTIONS[m["to"].casefold()])
             first = first or place
     if density := _density(texts, marks):
         found["conditions.density"] = density
+    named = ", ".join(f"{a} {d}" for a, d in sorted(axes.items()))
     if len(axes) >= 2 and (frame := _frame(axes)):
-        found["axes.frame"] = Stated(frame, f"{first}: " + ", ".join(f"{a} {d}" for a, d in axes.items()), offered=True)
+        found["axes.frame"] = Stated(frame, f"{first}: {named}", offered=True)
+    elif len(axes) == 3 and len({d for _, d in _opposites(axes.values())}) == 3:
+        found["axes.frame"] = Stated(
+            "", f"{first}: {named}", offered=True, contradicted=f"{first} is left-handed: {named}"
+        )
     return found
 
 
@@ -209,6 +244,46 @@ def _kg_m3(number: str, unit: str, marks: Marks) -> float:
 def _near(text: str, begin: int, end: int) -> str:
     """What was found with the three words before it."""
     return " ".join([*re.split(r"[,;]", text[:begin])[-1].split()[-3:], *text[begin:end].split()])
+
+
+def _opposites(directions: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """Directions with the axis of the body that each lies along."""
+    along = {"aft": "forward", "port": "starboard", "up": "down"}
+    return ((d, along.get(d, d)) for d in directions)
+
+
+def _of_the_turn(place: str, text: str, marks: Marks) -> Iterator[tuple[str, Stated]]:
+    """What a line says of a rotating test: whether forces hold inertia, where its mass lies, to which side it turns."""
+    for clause in re.split(r"[;:]|,\s|\.\s", text):
+        said = set(_holds_inertia(clause))
+        if said:
+            where = f'{place}: "{" ".join(clause.split())}"'
+            both = f"{where} says both" if len(said) == 2 else ""
+            yield "table.contains_inertia", Stated(True in said, where, offered=True, contradicted=both)
+    if m := _TURNS.search(text):
+        side = _DIRECTIONS[(m["one"] or m["two"]).casefold()]
+        yield "table.centre", Stated(side, f'{place}: "{" ".join(m[0].split())}"', offered=True)
+    if (m := _CENTRE.search(text)) and (size := _number(m["number"], marks)) is not None:
+        ahead = 1.0 if (m["side"] or "").casefold().startswith(("f", "ah", "be", "in", "v", "dev")) else -1.0
+        ahead = -1.0 if (m["side"] or "").casefold() == "behind" else ahead
+        x = ahead * quantity(f"{size!r} {m['unit']}", "length")
+        point = _POINTS[m["point"].casefold()[:4]] if m["point"] else ""
+        text_of = f"{x:.12g} {point}" if point else ""
+        yield CENTRE_FROM, Stated(text_of, f'{place}: "{" ".join(m[0].split())}"', offered=True)
+
+
+def _holds_inertia(clause: str) -> Iterator[bool]:
+    """Whether a clause says that forces hold the model's inertia: "not subtracted", "included"; nothing where it says neither."""
+    if not _INERTIA.search(clause):
+        return
+    verbs = list(_TAKEN_OR_HELD.finditer(clause))
+    if not verbs and _FREE_OF.search(clause):
+        yield False
+    begin = 0
+    for m in verbs:
+        negated = bool(m["un"]) or bool(_NOT.search(clause, begin, m.start()))
+        begin = m.end()
+        yield bool(m["held"]) != negated
 
 
 def _frame(axes: Mapping[str, str]) -> str:

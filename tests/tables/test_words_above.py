@@ -11,11 +11,12 @@ import pytest
 
 from coeflab.tables.column_map import read_column_map
 from coeflab.tables.dialect import Marks
+from coeflab.tables.form import form
 from coeflab.tables.mapping import Assigned
 from coeflab.tables.proposals import proposals, proposed
-from coeflab.tables.questions import Question, questions
+from coeflab.tables.questions import Question, questions, understood
 from coeflab.tables.raw_table import RawColumn, RawTable, Stated
-from coeflab.tables.settings import Setting
+from coeflab.tables.settings import Setting, against_words
 from coeflab.tables.words_above import water_density, words_above
 
 
@@ -141,3 +142,77 @@ def test_a_force_among_whose_numbers_are_other_decimal_marks_is_open(
     assert one.text == text
     if not text:
         assert ('"149.19"' if "149.19" in cells else '"8.1"') in one.why
+
+
+@pytest.mark.parametrize(
+    ("line", "holds"),
+    [("forces not corrected for model mass 820 kg", True), ("inertia of the model included / not subtracted", True),
+     ("uncorrected for inertia", True), ("corrected for inertia", False), ("inertia subtracted", False),
+     ("forces contain the inertia of the model", True), ("Massenkräfte nicht abgezogen", True), ("Massenkräfte abgezogen", False),
+     ("um die Trägheit des Modells korrigiert", False), ("without inertia correction", True), ("forces without inertia", False),
+     ("the inertia is not included", False), ("inertie non soustraite", True), ("not corrected for blockage; mass 820 kg", None),
+     ("moments of inertia included below", None), ("blockage corrected, model mass 820 kg", None)],
+)  # fmt: skip
+def test_words_of_inertia_are_proposed(line: str, holds: bool | None) -> None:
+    found = said(f"Rotating arm, {line}").get("table.contains_inertia")
+    assert (found.value if found else None) is holds
+    if "820" in line:
+        assert said(line)["inertia.mass"].value == 820.0
+
+
+ARM = (Assigned(RawColumn("R", "m", np.array([8.0, 10.0, 12.0])), read_column_map("R [m]")),)
+
+
+def of_arm(stated: Mapping[str, Stated], **settings: object) -> dict[str, Question]:
+    known = {key.replace("__", "."): Setting(value, "confirmed") for key, value in settings.items()}
+    return {q.key: q for q in questions(RawTable(Path("t.csv"), (), stated=stated), ARM, known)}
+
+
+def test_mass_and_centre_of_gravity_of_words_are_in_the_form_at_once() -> None:
+    found = said("uncorrected for inertia, model mass 820 kg, centre of gravity 1.2 m aft of the nose")
+    one = of_arm(found, axes__datum="nose")
+    assert (one["table.contains_inertia"].default, one["inertia.mass"].default) == ("true", "820")
+    assert one["inertia.centre_of_gravity"].default == "-1.2, 0, 0"
+    assert "1.2 m aft of the nose" in of_arm(found, axes__datum="midship")["inertia.centre_of_gravity"].choices
+    assert of_arm(found, axes__datum="midship")["inertia.centre_of_gravity"].open
+    assert "inertia.mass" not in asked(found)  # a straight tow
+    assert "inertia.mass" not in of_arm(said("corrected for inertia, model mass 820 kg"))
+    assert of_arm(said("xG = -0.05 m; inertia included"))["inertia.centre_of_gravity"].open
+    both = of_arm(said("corrected for inertia", "inertia included"))["table.contains_inertia"]
+    assert both.open
+    assert "line 1" in both.choices
+    assert "line 2" in both.choices
+
+
+def test_words_against_a_proposal_or_a_setting_are_named() -> None:
+    """A side by the numbers or a solver's habit does not overrule a line; nor does --set without a mark."""
+    yaw = RawColumn("Mz", "N*m", np.array([-1.0, -0.8, -0.7]))
+    columns = (*ARM, Assigned(yaw, read_column_map("N [N*m]")))
+    for words, side, is_open in (("all turns to starboard", "port", False), ("all turns to port", "starboard", True)):
+        frame = {"axes.frame": Setting("FRD", "confirmed")}
+        raw = RawTable(Path("t.csv"), (*(c.column for c in columns),), stated=said(words))
+        one = next(q for q in questions(raw, columns, frame) if q.key == "table.centre")
+        assert one.open is is_open, one
+        assert not is_open or ('line 1: "all turns to port"' in one.choices and "Nr' < 0" in one.choices)
+        known = {"table.centre": Setting(side, "confirmed")}
+        found = understood(raw, {"R": read_column_map("R [m]"), "Mz": read_column_map("N [N*m]")}, known)
+        assert any(e.text.startswith("warning: table.centre") and "line 1" in e.text for e in found.shows)
+        line = next(one for one in form(raw, found, known) if one.key == "table.centre")
+        assert line.why == f'! but line 1: "{words}"'
+    assert "table.centre" not in said("r > 0 turns to starboard; positive rudder turns to port")
+
+
+@pytest.mark.parametrize(("key", "value", "said_of"), [("conditions.density", 998.0, "density 1025 kg/m3"), ("inertia.mass", "900 kg", "mass 820 kg"),
+                         ("table.contains_inertia", False, "inertia included"), ("axes.frame", "FRD", "x aft, y starboard, z up")])  # fmt: skip
+def test_a_setting_against_the_words_is_marked(key: str, value: object, said_of: str) -> None:
+    raw = RawTable(Path("t.csv"), (), stated=said(said_of))
+    [(marked, _, place)] = against_words(raw, {key: Setting(value, "confirmed")})
+    assert marked == key
+    assert place.startswith("line 1")
+
+
+def test_left_handed_axes_are_named() -> None:
+    one = asked(said("Modell 3", "x vorn, y Steuerbord, z oben"))["axes.frame"]
+    assert one.open
+    assert "line 2 is left-handed: x forward, y starboard, z up" in one.choices
+    assert asked(said("x vorn, y Steuerbord, z unten"))["axes.frame"].default == "FRD"
