@@ -309,6 +309,15 @@ def _number(text: str, marks: Marks) -> float | None:
     return None
 
 
+def _sentence(cells: Sequence[str]) -> str:
+    """Cells as the sentence that the delimiter split, with a comma between words and none beside a number of its own cell."""
+    out = ""
+    for before, cell in pairwise(["", *(c for c in cells if c)]):
+        worded = all(any(map(str.isalpha, c)) for c in (before, cell))
+        out += (", " if worded else " " if out else "") + cell
+    return out
+
+
 def _pairs(cells: Sequence[str]) -> Iterable[str]:
     """The texts of a row of cells that may say something: with its own sign, or a name, a number and a unit side by side."""
     yield " ".join(c for c in cells if c)
@@ -391,7 +400,7 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
     if "scaling.length" not in found and (by := found.get("coefficients.length")) and (m := _ACROSS.search(by.place)):
         against = f"{by.place} is a {m[0]}, perhaps not the body's length"
         found["scaling.length"] = replace(by, contradicted=against)
-    told = of_the_test(((f"line {line}", " ".join(c for c in cells if c)[:LONGEST]) for line, cells in rows), marks)
+    told = of_the_test(((f"line {line}", _sentence(cells)[:LONGEST]) for line, cells in rows), marks)
     water = told.get("conditions.density")
     own = found.pop("conditions.density", None)
     if own and not (water and _DENSITY.search(water.place)):  # a number without a unit, or in another one

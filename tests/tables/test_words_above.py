@@ -160,6 +160,13 @@ def test_words_of_inertia_are_proposed(line: str, holds: bool | None) -> None:
         assert said(line)["inertia.mass"].value == 820.0
 
 
+def test_a_line_that_the_delimiter_split_is_one_sentence() -> None:
+    """Else "corrected" of one clause would be about the mass of the next."""
+    found = words_above([(1, ["blockage corrected", "model mass 820 kg", "Wassertemperatur", "12", "°C"])], Marks())
+    assert "table.contains_inertia" not in found
+    assert (found["inertia.mass"].value, found["conditions.density"].value) == (820.0, 999.5)
+
+
 ARM = (Assigned(RawColumn("R", "m", np.array([8.0, 10.0, 12.0])), read_column_map("R [m]")),)
 
 
