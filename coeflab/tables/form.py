@@ -214,7 +214,11 @@ def screen(lines: Sequence[Line], changed: Collection[str] = (), width: int = 80
                 out += whole if "." in line.key else whole[:3]
                 continue
             room = width - 1 - len(head) - 2 - max(len(text), VALUE)
-            decides = group is not Group.COLUMN and "." in line.key and (line.pending or line.why.startswith(AGAINST))
+            decides = (
+                group is not Group.COLUMN
+                and "." in line.key
+                and (line.pending or line.why.startswith((AGAINST, "line ")))
+            )
             if decides and len(_one_line(line.why)) > room and len(head) + len(text) < width // 2 + VALUE:
                 out += folded(f"{text}  {line.why}", width - 1, head, " " * (len(head) + 2), whole=False)
             elif decides and len(_one_line(line.why)) > room:
