@@ -294,6 +294,7 @@ class Draft:
         from coeflab.core.errors import together
         from coeflab.tables.form import open_lines, pending, settled
         from coeflab.tables.questions import understood
+        from coeflab.tables.settings import Setting
 
         found, settings = settled(self.raw, self.said.columns, self.settings, accept)
         if found.complaints:
@@ -315,6 +316,12 @@ class Draft:
         missing = open_lines(lines)
         many = f"{len(missing)} open: replace each ? by its value. " if missing else ""
         show.sentence(f"{many}--accept takes the proposals shown. Nothing is written yet.")
+        if any(one.key == "table.contains_inertia" for one in missing):
+            inside = {**self.settings, "table.contains_inertia": Setting(True, "")}
+            more = [
+                q for q in understood(self.raw, self.said.columns, inside).questions if q.key.startswith("inertia.")
+            ]
+            show.sentence("# if true: add " + " ".join(f"--set {q.key}={q.default or '...'}" for q in more))
         show.command_line(
             "coeflab import", " ".join([*words, *(one.argument for one in missing), "--accept"]), separator=" "
         )

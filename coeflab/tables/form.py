@@ -18,9 +18,10 @@ from coeflab.tables.mapping import known_as, with_unit
 from coeflab.tables.proposals import OPEN, Proposal
 from coeflab.tables.questions import Doubt, Understood, understood, without_unit
 from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, Setting, Settings, read_settings
+from coeflab.tables.settings import EXTRA, Setting, Settings, against_words, read_settings
 
 MANY = 20  # columns, beyond which those that no fit uses have no line
+AGAINST = "! but "  # before a line of the file that a setting contradicts
 KEY, VALUE = 25, 22  # letters
 GRAVE = ("axes.", "table.", "inertia.")
 UNSHOWN = ("campaign.", "source.how_obtained", "table.source", "table.labels", "table.cells")
@@ -111,6 +112,7 @@ def form(
         out.append(
             Line(q.key, value, why, group, f"{about}.", argument("--set", q.key, q.default or OPEN), not q.harmless)
         )
+    words = {key: place for key, _, place in against_words(raw, settings)}
     for key, one in settings.items():
         if not key.startswith(UNSHOWN):
             group = Group.GRAVE if key.startswith(GRAVE) else Group.FURTHER
@@ -119,7 +121,7 @@ def form(
                 Line(
                     key,
                     value,
-                    one.origin.replace("confirmed", "said"),
+                    f"{AGAINST}{words[key]}" if key in words else one.origin.replace("confirmed", "said"),
                     group,
                     f"{found.about.get(key, key)}. It is {value}: {one.origin}.",
                 )
@@ -208,10 +210,22 @@ def screen(lines: Sequence[Line], changed: Collection[str] = (), width: int = 80
             head = f"{'>' if line.key in changed else ' '}{line.number:3d}{'?' if group is Group.OPEN else ' '} {_cut(line.key, KEY):<{most}}  "
             text = _one_line(line.value)
             if group is Group.OPEN:
-                out += folded(line.why, width - 1, head, " " * len(head))[:3]
+                whole = folded(line.why, width - 1, head, " " * len(head))
+                out += whole if "." in line.key else whole[:3]
                 continue
             room = width - 1 - len(head) - 2 - max(len(text), VALUE)
-            if len(text) > VALUE and room < min(len(line.why), 12):
+            decides = (
+                group is not Group.COLUMN
+                and "." in line.key
+                and (line.pending or line.why.startswith((AGAINST, "line ")))
+            )
+            if decides and len(_one_line(line.why)) > room and len(head) + len(text) < width // 2 + VALUE:
+                out += folded(f"{text}  {line.why}", width - 1, head, " " * (len(head) + 2), whole=False)
+            elif decides and len(_one_line(line.why)) > room:
+                below = " " * (len(head) + 2)
+                out += folded(text, width - 1, head, " " * len(head))
+                out += folded(line.why, width - 1, below, below, whole=False)
+            elif len(text) > VALUE and room < min(len(line.why), 12):
                 out += folded(text, width - 1, head, " " * len(head))
             else:
                 out.append(f"{head}{text:<{VALUE}}  {_cut(line.why, room)}".rstrip())
@@ -250,6 +264,8 @@ class Typed:
 def typed(text: str, lines: Sequence[Line], raw: RawTable, options: Collection[str] = ()) -> Typed:
     """What ``3=Y [N]; axes.frame=CFD; 5 ?`` means: by number, key or column; several with semicolons between.
 
+    A bare answer such as ``midship`` counts for the one line that is open.
+
     Parameters
     ----------
     text : str
@@ -266,7 +282,12 @@ def typed(text: str, lines: Sequence[Line], raw: RawTable, options: Collection[s
     """
     out, complaints = Typed(), list[InputError]()
     columns = {n: c for c in raw.columns for n in (c.name, *known_as(c))}
-    for part in filter(None, map(str.strip, re.split(r";(?![^\[]*\])", text))):
+    parts = [*filter(None, map(str.strip, re.split(r";(?![^\[]*\])", text)))]
+    bare = [one for one in parts if not set("=?") & set(one) and _line(one, () if one.isdecimal() else lines) is None]
+    alone = open_lines(lines)
+    if len(bare) == len(alone) == 1:
+        parts = [f"{alone[0].key}={one}" if one == bare[0] else one for one in parts]
+    for part in parts:
         asked = re.fullmatch(r"(?:\?\s*(?P<after>.+)|(?P<before>.+?)\s*\?|(?P<number>\d+)|\?)", part)
         if asked and "=" not in part.replace(" ", "").removesuffix("=?"):
             name = (asked["after"] or asked["before"] or asked["number"] or "").rstrip("= ")

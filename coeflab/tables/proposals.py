@@ -115,6 +115,7 @@ UNITS = {"grad": "deg", "grd": "deg", "deg.": "deg", "sec": "s", "degree": "deg"
          "n-m": "N*m", "knots": "kn", "kts": "kn", "newton": "N", "newtons": "N", "°/s": "deg/s"}  # fmt: skip
 _THOUSAND = re.compile(r"([XYZKMN])['\u2032\u2019]?[\s_]*[x*×·]?[\s_]*(?:1000|1e3|10\^3)")
 _MONITOR = re.compile(r"(?i)\b(?:monitor|report|plot)\b(?:\s*\d+)?")
+_DECIMAL = re.compile(r"[-+]?\d[\d.,' ]*[.,]\d+(?:[eE][-+]?\d+)?")
 _ERROR = re.compile(r"^(?:se|stderr|standarderror(?:of)?)(?=.)|(?<=.)(?:se|stderr|standarderror)$")
 
 
@@ -169,13 +170,19 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
         return Proposal(f"{m[1]}' [1e-3]", f"its name: 1000 {m[1]}', a prime by the campaign's length")
     if not name:
         if column.is_text:
-            return Proposal("label", "text")
+            held = bool(_lost(column)) or bool(np.any(np.isfinite(column.values)))
+            held = held and (_fits(column.unit, "force") or _fits(column.unit, "moment"))
+            why = f"{_worded(column)}{allowed(column.unit, column.name.startswith('se_'))}"
+            return Proposal("", why) if held else Proposal("label", "text")
         if why == UNKNOWN and (idle := _idle(column)):
             return Proposal("ignore", f"{why}; {idle}")
         return Proposal("", why + allowed(column.unit, column.name.startswith("se_")) * (why == UNKNOWN))
     said = read_column_map(name)
     if said.name in WORDS:
         return Proposal(name, why, certain)
+    if said.name in FORCES and column.is_text and _lost(column):
+        left = " leaves these cells out" * bool(np.any(np.isfinite(column.values)))
+        return Proposal("", f"{_worded(column)}; {name} [{column.unit or OPEN}]{left}, or ignore")
     if column.is_text and not np.any(np.isfinite(column.values)):
         return Proposal("label", "text")
     said_of = stated or {}
@@ -186,6 +193,20 @@ def proposed(column: RawColumn, stated: Mapping[str, object] | None = None) -> P
             f"{one.text.partition(' [')[0]} [{SI[said.dimension]}]", f"{why.partition(';')[0]}; in SI, as said"
         )
     return one
+
+
+def _lost(column: RawColumn) -> list[str]:
+    """Cells that are numbers with the other decimal mark, which the file's mark makes texts."""
+    return [
+        t for t, v in zip(column.texts, column.values, strict=True) if np.isnan(v) and _DECIMAL.fullmatch(t.strip())
+    ]
+
+
+def _worded(column: RawColumn) -> str:
+    """Which cells of a column are no numbers."""
+    words = _lost(column) or [t for t, v in zip(column.texts, column.values, strict=True) if np.isnan(v) and t.strip()]
+    first = ", ".join(f'"{t.strip()}"' for t in words[:3]) + f" and {len(words) - 3} more" * (len(words) > 3)
+    return f"{first} {'is no number' if len(words) == 1 else 'are no numbers'} by the file's decimal mark"
 
 
 def _idle(column: RawColumn) -> str:
@@ -320,7 +341,7 @@ def proposals(raw: RawTable, known: Mapping[str, object] | None = None) -> tuple
     known : mapping, optional
         What a person says of coefficients and of units that are not stated; see `proposed`.
     """
-    stated = {key: s.value for key, s in raw.stated.items()} | dict(known or {})
+    stated = {key: None if s.contradicted else s.value for key, s in raw.stated.items()} | dict(known or {})
     offered = any(s.offered for key, s in raw.stated.items() if key.startswith("coefficients.")) or bool(known)
     out: list[Proposal] = []
     taken: dict[str, str] = {}

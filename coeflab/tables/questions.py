@@ -29,9 +29,9 @@ from coeflab.tables.mapping import (
     with_unit,
 )
 from coeflab.tables.proposals import AREA, LENGTH_OF, OPEN, UNITS_OF, Proposal, proposals
-from coeflab.tables.raw_table import RawColumn, RawTable
-from coeflab.tables.settings import EXTRA, POINT_OF, Setting, Settings, frame_of, read_setting
-from coeflab.tables.words_above import BODY_AXES, of_the_test
+from coeflab.tables.raw_table import RawColumn, RawTable, Stated
+from coeflab.tables.settings import EXTRA, POINT_OF, Setting, Settings, against_words, frame_of, read_setting
+from coeflab.tables.words_above import BODY_AXES, CENTRE_FROM, of_the_test
 
 PLACE_ASKED = (
     "x, or x, y, z, in m from a point of the body, x forward, y starboard, z down: -2.1 from nose is 2.1 m aft of it"
@@ -115,7 +115,7 @@ def questions(
     words = of_the_test([("its name", raw.path.resolve().name.replace("_", " "))])
     out = [
         *_of_coefficients(offers, settings), *_of_axes(columns, settings, shows, likely), *_of_points(raw, settings),
-        *_of_sizes(columns), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
+        *_of_sizes(columns, settings), *_of_rotation(raw, columns, settings, likely, words), *_of_source(raw),
     ]  # fmt: skip
     return tuple(_offered(q, raw, words) for q in out)
 
@@ -214,14 +214,17 @@ def _of_points(raw: RawTable, settings: Settings) -> Iterator[Question]:
         )
 
 
-def _of_sizes(columns: Sequence[Assigned]) -> Iterator[Question]:
+def _of_sizes(columns: Sequence[Assigned], settings: Settings) -> Iterator[Question]:
     forces = [c.said for c in columns if c.said.role == "force"]
     pure = bool(forces) and all(said.pure for said in forces)
     plain = not any(c.said.role == "velocity" and not c.said.primed for c in columns)
     length = next((said.length for said in forces if said.length), 0.0)
+    far = _from_the_nose(settings)
+    beyond = f"the reference point lies {far:g} m from the nose, further than the {length:g} m of the coefficients"
+    beyond, length = (beyond, 0.0) if 0.0 < length < far else ("", length)
     yield Question(
         "scaling.length", "Length of the primes, m, with its name: 4.3 m LOA. Y' = Y / (1/2 rho U^2 L^2), N' with L^3, r' = r L / U",
-        "m, with its name: 4.3 LOA", f"{length!r}" if length else "", "that of the coefficients", "that of the coefficients",
+        f"{beyond}; m, with its name: 4.3 LOA".removeprefix("; "), f"{length!r}" if length else "", "that of the coefficients", "that of the coefficients",
     )  # fmt: skip
     yield Question("scaling.length_name", "Which length that is: LBP, LOA ... Results of different names are not mixed", "",
                    "L", "not stated", "not stated: LOA, LBP ...", harmless=True)  # fmt: skip
@@ -248,6 +251,14 @@ def _of_sizes(columns: Sequence[Assigned]) -> Iterator[Question]:
         )
 
 
+def _from_the_nose(settings: Settings) -> float:
+    """Distance of the reference point along x, m, where it is said from the nose; zero elsewhere."""
+    datum, point = settings.get("axes.datum"), settings.get(POINT_OF)
+    named = str(datum.value).casefold().split() if datum else []
+    along = point.value[0] if point and isinstance(point.value, (list, tuple)) else 0.0
+    return abs(float(along)) if {"nose", "bow", "bug", "nase"} & set(named) else 0.0
+
+
 def _of_rotation(
     raw: RawTable, columns: Sequence[Assigned], settings: Settings, likely: Sequence[str], words: Mapping[str, Any]
 ) -> Iterator[Question]:
@@ -263,27 +274,41 @@ def _of_rotation(
             "table.arm_point", f"Where R and U are measured to: {PLACE_ASKED}", "x from the datum, m", same, "the reference point",
             "the reference point, unless said", "the reference point", grave=True,
         )  # fmt: skip
+    inside: Setting | Stated | None = settings.get("table.contains_inertia")
     if arm or set(ANGULAR) & set(likely) or any(map(np.any, rates.values())):
+        by_words = raw.stated.get("table.contains_inertia")
         computed = raw.dialect.get("importer") in COMPUTED or _kind(raw, settings, words) == "cfd"
         yield Question(
             "table.contains_inertia", "Do the forces contain the model's own inertia: true for a balance on a real rotating arm, "
             "false for a solver or where it was subtracted", "false (subtracted); true: with inertia.mass, .centre_of_gravity", "false" if computed else "",
             "a solver gives the force of the fluid alone", "a solver's forces do not", grave=True,
         )  # fmt: skip
-    if (inside := settings.get("table.contains_inertia")) and inside.value is True:
+        if inside is None and by_words is not None and not (computed or by_words.contradicted):
+            inside = by_words
+    if inside is not None and inside.value is True:
         yield Question("inertia.mass", "Mass of the model, kg", "kg", grave=True)
+        at, place = _centre_of_gravity(raw, settings)
         yield Question(
-            "inertia.centre_of_gravity",
-            f"Its centre of gravity: {PLACE_ASKED}",
-            "x from the datum, m, or x, y, z",
-            grave=True,
-        )
+            "inertia.centre_of_gravity", f"Its centre of gravity: {PLACE_ASKED}",
+            f"{'' if at else place}; x from the datum, m, or x, y, z".removeprefix("; "), at, place, place, grave=True,
+        )  # fmt: skip
         # About one axis alone the moment of inertia holds nothing: omega x I omega = 0.
         angles = [c.said.name for c in columns if c.said.role == "angle"] + list(likely)
         if np.any(np.sum([*rates.values()], axis=0) > 1) or (arm and "alpha" in angles):
             yield Question(
                 "inertia.inertia", "Ix, Iy, Iz about its centre of gravity, kg m^2", "Ix, Iy, Iz, kg m^2", grave=True
             )
+
+
+def _centre_of_gravity(raw: RawTable, settings: Settings) -> tuple[str, str]:
+    """Its place as words give it from the datum, empty where they count it from another point; and the words."""
+    said = raw.stated.get(CENTRE_FROM)
+    if said is None:
+        return "", ""
+    x, _, point = str(said.value).partition(" ")
+    datum = settings.get("axes.datum") or raw.stated.get("axes.datum")
+    same = datum is not None and bool(point) and of_the_test([("", f"reference point {datum.value}")]).get("axes.datum")
+    return (f"{x}, 0, 0" if same and same.value == point else "", said.place)
 
 
 def _kind(raw: RawTable, settings: Settings, words: Mapping[str, Any]) -> str:
@@ -307,15 +332,38 @@ def _of_source(raw: RawTable) -> Iterator[Question]:
 def _offered(q: Question, raw: RawTable, words: Mapping[str, Any]) -> Question:
     """The question with what words over the table or its name say as its default, where no number gives one."""
     said = raw.stated.get(q.key) or words.get(q.key)
+    if said is not None and said.contradicted and not q.why.startswith("median"):
+        choices = f"{said.contradicted}; {q.choices}".rstrip("; ")
+        return replace(
+            q,
+            default="",
+            shown="",
+            choices=choices,
+            why=said.contradicted,
+            asks=f"{q.asks}. {said.contradicted}",
+            harmless=False,
+        )
+    if said is not None and q.key in ("table.centre", "table.contains_inertia") and q.default:
+        if str(said.value).casefold() in q.default.casefold():
+            return q
+        against = f"{said.place}, but {q.default}: {q.why}"
+        return replace(
+            q, default="", shown="", choices=f"{against}; {q.choices}", asks=f"{q.asks}. {against}", why=against
+        )
     if (
         said is None
         or not said.offered
-        or (q.default and not q.harmless and q.key not in ("axes.datum", "conditions.density", "conditions.speed"))
+        or (
+            q.default
+            and not q.harmless
+            and q.key not in ("axes.datum", "conditions.density", "conditions.speed", "scaling.length")
+        )
     ):
         return q
     if q.harmless and q.default and q.why.startswith("median"):
         return q
     value = f"{said.value:.12g}" if isinstance(said.value, float) else str(said.value)
+    value = value.casefold() if isinstance(said.value, bool) else value
     return replace(q, default=value, why=said.place, short=said.place, shown="")
 
 
@@ -420,6 +468,9 @@ def understood(
     warned = {unturned(c.column.name, c.said) for c in columns} if BODY_AXES in raw.stated else set()
     shows = tuple(_against(e, settings) for e in evidence(columns, frame) if e.text not in warned)
     names = [read_column_map(o.text.partition(" [")[0]).name for _, o in still if o.text and not o.whole]
+    shows += tuple(
+        Evidence(f"warning: {key} = {said}, but {place}") for key, said, place in against_words(raw, settings)
+    )
     asked = questions(raw, columns, likely, shows, names, [o for _, o in still])
     if frame and (back := astern(columns, frame)):
         complaints += (_astern(raw, back, frame),)
@@ -440,7 +491,7 @@ def understood(
 def _with_frame(raw: RawTable, settings: Settings) -> Settings:
     """The settings, with the axes that words over the table say where nobody has declared any."""
     said = raw.stated.get("axes.frame")
-    if said is None or not said.offered or "axes.frame" in settings:
+    if said is None or not said.offered or said.contradicted or "axes.frame" in settings:
         return settings
     return {**settings, "axes.frame": Setting(read_setting("axes.frame", said.value), said.place)}
 

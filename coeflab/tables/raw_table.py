@@ -29,11 +29,14 @@ class Stated:
         File and line, such as ``constant/transportProperties:21``.
     offered : bool
         Words over a table say it, which may be about something else: to be confirmed.
+    contradicted : str
+        What contradicts it, so that a person has to say it; empty where nothing does.
     """
 
     value: str | float | bool | tuple[float, ...]
     place: str
     offered: bool = False
+    contradicted: str = ""
 
 
 @brief

@@ -10,6 +10,8 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from coeflab.core.axes import ANGLE_SIGNS, FRAMES, Axes, angle_sign, parse_axes
 from coeflab.core.declarations import POINT, numbers, one_of, text_of
 from coeflab.core.errors import InputError, shown, together
@@ -32,6 +34,10 @@ from coeflab.tables.raw_table import RawTable
 
 POINT_OF = "axes.reference_point"
 EXTRA = ("coefficients.area", "coefficients.length", "columns.units")  # said of columns: no keys of campaign.toml
+_SIZES = {
+    "conditions.density": "density", "conditions.speed": "speed", "scaling.length": "length", "inertia.mass": "mass",
+}  # fmt: skip
+SAME_SIZE = 0.01  # share by which a setting may differ from the words of the file
 CONFIRMED = ("confirmed", "from ")
 _KINDS = {
     "campaign": CampaignHead, "axes": CampaignAxes, "scaling": Scaling, "conditions": CampaignConditions,
@@ -279,10 +285,35 @@ def stated_settings(raw: RawTable) -> dict[str, Setting]:
     return out
 
 
+def against_words(raw: RawTable, settings: Settings) -> list[tuple[str, str, str]]:
+    """Settings that differ from what words over the table say: key, what is set, the words with their line."""
+    out = []
+    for key, words in raw.stated.items():
+        one = settings.get(key)
+        if one is None or not words.offered or words.contradicted or key.startswith(("source.", "coefficients.")):
+            continue
+        if isinstance(words.value, float) and key in _SIZES:
+            same = abs(quantity(one.value, _SIZES[key]) / words.value - 1.0) <= SAME_SIZE
+        elif key == "axes.frame":
+            same = bool(
+                np.array_equal(parse_axes(one.value).rotation, parse_axes(read_setting(key, words.value)).rotation)
+            )
+        elif key == "table.centre":
+            same = str(words.value) in str(one.value) if not str(one.value).startswith(("+", "-")) else True
+        elif key == "table.contains_inertia":
+            same = one.value == words.value
+        else:
+            continue
+        if not same:
+            said = str(one.value).casefold() if isinstance(one.value, bool) else str(one.value)
+            out.append((key, said, words.place))
+    return out
+
+
 def doubtful_setting(raw: RawTable, settings: Settings, key: str) -> str:
     """Why the number of a key is probably one in another unit; empty where it is a usual one, or the file states it."""
     one = settings[key]
-    sizes = {"conditions.density": "density", "conditions.speed": "speed", "scaling.length": "length"}
+    sizes = {key: _SIZES[key] for key in ("conditions.density", "conditions.speed", "scaling.length")}
     if key not in sizes or one.origin.startswith("stated"):
         return ""
     texts = [

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise, permutations
 
 from coeflab.core.axes import DIRECTIONS, FRAMES, parse_axes
@@ -19,7 +20,7 @@ _NAMES = {
     "conditions.density": "rho ρ density waterdensity dichte wasserdichte densite massevolumique",
     "scaling.length": "l lpp lbp loa lwl los length modellength lange laenge modelllange modelllaenge longueur",
     "coefficients.area": "a s aref sref referencearea area flache flaeche bezugsflache bezugsflaeche surface",
-    "coefficients.length": "lref referencelength bezugslange bezugslaenge",
+    "coefficients.length": "lref cref referencelength referencechord chord bezugslange bezugslaenge",
     "inertia.mass": "m mass masse modelmass modellmasse",
     "conditions.viscosity": "nu ν viscosity kinematicviscosity viskositat viskositaet kinematischeviskositat viscosite",
 }
@@ -34,7 +35,50 @@ _SAID = re.compile(
     r"(?P<name>[^\W\d_][^=:;,()\[\]]{0,40}?)\s*(?:[\[(](?P<before>[^\[\]()]{1,12})[\])])?\s*(?:=|:)\s*"
     r"(?P<number>[-+]?\d[\d.,' ]*(?:[eE][-+]?\d+)?)\s*[\[(]?(?P<unit>(?:[^\W\d]|[°µ])[^\s,;=\[\])]*)?"
 )
+_BROAD = r"diam(?:eter|[èe]tre)?|durchmesser|chord|profiltiefe|corde|breadth|beam|breite|largeur|width"
+_SYMBOL = r"(?:\s*(?:\([^()]{1,20}\)|\b[A-Za-z]\w{0,4}\b))?\s*(?:=|:|\bof\b|\bis\b|\bvon\b|\bist\b|\bde\b)?\s*"
+_SIZES = {
+    key: re.compile(
+        rf"(?i)(?<![^\W_])(?P<name>{words}){_SYMBOL}(?P<number>\d[\d.,]*)\s*[\[(]?(?P<unit>{unit})(?![^\W_])(?:[\])]?\s*\([^()]{{1,30}}\)"
+        rf"|,?\s*(?:(?:the|its|hull|body|model|max\w*|der|le)\s+){{0,3}}(?:{_BROAD})(?![^\W_]|\s*(?:[=:(\d]|\w{{1,3}}\s*=)))?"
+    )
+    for key, words, unit in (
+        ("coefficients.length", r"(?:reference|ref\.?)[\s-]*(?:length|chord)|(?:mean\s+(?:aerodynamic\s+)?)?chord(?:\s+length)?|[lc]_?ref"
+         r"|bezugsl(?:ä|ae)nge|profiltiefe|longueur\s+de\s+r[ée]f[ée]rence|corde", "mm|cm|m|ft|in"),
+        ("scaling.length", r"overall\s+length|length\s+over\s*all|l_?(?:oa|pp|bp|wl)|l(?:ä|ae)nge\s+(?:ü|ue)ber\s+alles|gesamtl(?:ä|ae)nge"
+         r"|longueur\s+hors\s+tout|(?:model|hull|body)\s+length|(?:modell|rumpf)l(?:ä|ae)nge", "mm|cm|m|ft|in"),
+        ("inertia.mass", r"(?:model\s+)?mass(?:e?\s+of\s+the\s+model)?|(?:modell)?masse(?:\s+du\s+mod[èe]le)?", "kg|t"),
+    )
+}  # fmt: skip
+_OVERALL = re.compile(r"(?i)over\s*all|über\s+alles|ueber\s+alles|gesamt|hors|l_?oa")
+_ACROSS = re.compile(rf"(?i)(?<![^\W_])(?:{_BROAD})(?![^\W_])|\bc_?ref")
+_INERTIA = re.compile(
+    r"(?i)(?<!moment of )(?<!moments of )(?<![^\W_])(?:inertia\w*|(?:model\s+)?mass(?:e|es)?|mass\s+forces?|(?:massen)?tr(?:ä|ae)gheit\w*"
+    r"|massenkr(?:ä|ae)ft\w*|modellmasse|inertie\w*)(?![^\W_])"
+)
+_TAKEN_OR_HELD = re.compile(
+    r"(?i)(?<![^\W_])(?P<un>un|non-?|in)?(?:(?P<taken>correct(?:ed|ions?)|subtracted|removed|deducted|compensated|korrigiert|korrektur|abgezogen"
+    r"|bereinigt|corrig[ée]e?s?|corrections?|soustrait\w*|d[ée]duit\w*)|(?P<held>inclu(?:ded?|des|ding)|contain(?:s|ed|ing)?|enth(?:alten|ält)|inklusive"
+    r"|inclus\w*|comprise?s?|contien\w+))(?![^\W_])"
+)
+_NOT = re.compile(r"(?i)(?<![^\W_])(?:not|no|never|without|nicht|keine?\w*|ohne|sans|pas|non|aucune?)(?![^\W_])|n't\b")
+_FREE_OF = re.compile(
+    rf"(?i)(?<![^\W_])(?:without|free\s+of|ohne|sans)\s+(?:the\s+|model\W?s?\s+|own\s+|l')*{_INERTIA.pattern[4:]}(?!\s*korrekt|\s+correct)"
+)
+_CENTRE = re.compile(
+    r"(?i)(?<![^\W_])(?:cent(?:re|er)\s+of\s+(?:gravity|mass)|c\.?o?\.?g\.?|[xl]_?c?g|schwerpunkt|centre\s+de\s+gravit[ée])(?![^\W_])"
+    r"[^\d;+-]{0,25}(?P<number>[-+]?\d[\d.,]*)\s*(?P<unit>mm|cm|m|ft|in)(?![^\W_])"
+    r"(?:\s*(?P<side>aft|behind|abaft|astern|hinter|achterlich|derri[èe]re|forward|ahead|before|in\s+front|vor|devant)(?:\s+(?:of|the|dem|der|von|le|la|du|de))*"
+    r"\s+(?P<point>nose|bow|midships?|amidships?|hauptspant|bug|nase)(?![^\W_]))?"
+)
+_TURNS = re.compile(
+    r"(?i)(?<![^\W_])(?:all|every|alle|tous)\b[^,;.=<>]{0,25}?(?:turns?|turning|circles?|kurven|drehkreise?|kreise?|fahrten|runs|girations?)\W+"
+    r"(?:(?:are|were|made|to|the|nach|zu|zur|à|sur|gefahren|turning)\s+)*(?P<one>starboard|stbd|port|steuerbord|backbord|tribord|b[âa]bord|right|left)(?![^\W_])"
+    r"|cent(?:re|er)\s+of\s+(?:the\s+|a\s+)?(?:circle|turn\w*|rotation)\s+(?:\w+\s+){0,2}?(?:to\s+)?(?P<two>starboard|port|right|left)(?![^\W_])"
+)
+CENTRE_FROM = "inertia.from"  # no key of campaign.toml: where the words place the centre of gravity
 LONGEST = 500
+POINTED = Marks()
 BODY_AXES = "forces.axes"  # no key of campaign.toml: the words say that forces count along the body
 _BODY = re.compile(
     r"(?i)\b(?:k(?:ö|oe|o)rper|schiffs|boots|modell)fest|\b(?:body|ship|hull|vessel)[- ]?(?:fixed|axes|axis|frame)\b"
@@ -42,8 +86,16 @@ _BODY = re.compile(
 )
 
 _TEMPERATURE = re.compile(
-    r"(?i)(?:\bt|temp\w*|temperatur\w*)\s*(?:=|:|\bof\b)?\s*(?P<t>\d{1,2}(?:[.,]\d+)?)\s*(?:°|º|deg)\s*C\b"
+    r"(?i)(?P<air>\b(?:air|luft\w*|room|hall\w*|ambient|raum\w*)\b[^,;.]{0,20}|±\s*|\+/-\s*)?"
+    r"(?<![\d.,±-])(?P<t>\d{1,2}(?:[.,]\d+)?)\s*(?:°\s*|º\s*|deg\.?\s*|degrees?\s+|grad\s+)C(?:elsius)?\b"
 )
+_IN_AIR = re.compile(r"(?i)\b(?:wind[- ]?(?:tunnel|kanal)|in\s+air|soufflerie)\b")
+_DENSITY = re.compile(
+    r"(?i)(?P<other>\b(?:air|luft|foam|hull|model|modell|body|steel|schaum)\w*\b[^,;\d]{0,20})?"
+    r"(?<![\w.,])(?P<number>\d[\d.,' ]*?)\s*[\[(]?(?P<unit>(?:kg|g|t)\s?/\s?(?:c?m\^?3|c?m³|l|ml|dm\^?3|dm³)|kg[ *]m(?:\^?-3|⁻³))(?![\w^])"
+)
+APART = 0.03  # beyond which a density and the water of the words contradict each other
+WATER = (900.0, 1100.0)
 _SALT = re.compile(
     r"(?i)\b(?:sea\s?-?water|salt\s?-?water|salzwasser|seewasser|meerwasser|eau\s+(?:de\s+mer|sal[ée]e))\b"
 )
@@ -99,31 +151,24 @@ def water_density(celsius: float, salinity: float = 0.0) -> float:
     return float(fresh + first * s + second * s**1.5 + 4.8314e-4 * s * s)
 
 
-def of_the_test(texts: Iterable[tuple[str, str]]) -> dict[str, Stated]:
+def of_the_test(texts: Iterable[tuple[str, str]], marks: Marks = POINTED) -> dict[str, Stated]:
     """What words say of the water, the kind of the source, the axes and the point of the moments; offered.
 
     Parameters
     ----------
     texts : iterable of (place, text)
         Such as lines over a table with their numbers, or a file's name.
+    marks : Marks
+        Of the numbers.
     """
     found: dict[str, Stated] = {}
-    degrees, water, axes = None, "", dict[str, str]()
-    first: dict[str, str] = {}
+    axes, first = dict[str, str](), ""
+    texts = list(texts)
 
     def note(key: str, value: object, place: str, said: str) -> None:
         found.setdefault(key, Stated(value, f'{place}: "{" ".join(said.split())}"', offered=True))  # type: ignore[arg-type]
 
     for place, text in texts:
-        if m := _TEMPERATURE.search(text):
-            degrees = float(m["t"].replace(",", "."))
-            first.setdefault("water", f'{place}: "{m[0].strip()}"')
-        if m := _SALT.search(text):
-            water = "sea"
-            first.setdefault("water", f'{place}: "{m[0]}"')
-        elif m := _FRESH.search(text):
-            water = water or "fresh"
-            first.setdefault("water", f'{place}: "{m[0]}"' + ", fresh water" * bool(m["tank"]))
         for kind, words in _KINDS.items():
             if m := re.search(rf"(?i)(?<![^\W_])(?:{words})(?![^\W_])", text):
                 note("source.kind", kind, place, m[0])
@@ -131,19 +176,114 @@ def of_the_test(texts: Iterable[tuple[str, str]]) -> dict[str, Stated]:
             short = m["point"].casefold().replace(".", "")
             named = "cb" if "buoy" in short else _POINTS.get(short, _POINTS.get(short[:4], "cg"))
             note("axes.datum", named, place, m[0])
+        for key, said in _of_the_turn(place, text, marks):
+            one = found.setdefault(key, said)
+            if one.value != said.value and not one.contradicted:
+                found[key] = replace(one, contradicted=f"{one.place}, but {said.place}")
         for m in _DIRECTION.finditer(text):
             axes.setdefault(m["axis"].casefold(), _DIRECTIONS[m["to"].casefold()])
-            first.setdefault("axes", place)
-    if water or degrees is not None:
-        at = {"sea": 15.0}.get(water, 20.0) if degrees is None else degrees
-        density = round(water_density(at, 35.0 if water == "sea" else 0.0), 1)
-        how = f"{water or 'fresh'} water of {at:g} °C" + ", 35 g/kg of salt" * (water == "sea")
-        found["conditions.density"] = Stated(density, f"{how}; {first['water']}", offered=True)
+            first = first or place
+    if density := _density(texts, marks):
+        found["conditions.density"] = density
+    named = ", ".join(f"{a} {d}" for a, d in sorted(axes.items()))
     if len(axes) >= 2 and (frame := _frame(axes)):
+        found["axes.frame"] = Stated(frame, f"{first}: {named}", offered=True)
+    elif len(axes) == 3 and len({d for _, d in _opposites(axes.values())}) == 3:
         found["axes.frame"] = Stated(
-            frame, f"{first['axes']}: " + ", ".join(f"{a} {d}" for a, d in axes.items()), offered=True
+            "", f"{first}: {named}", offered=True, contradicted=f"{first} is left-handed: {named}"
         )
     return found
+
+
+def _density(texts: Sequence[tuple[str, str]], marks: Marks) -> Stated | None:
+    """The density that a number with a unit states, else that of the water that words name; open where they contradict."""
+    degrees, water, places = None, "", dict[str, str]()
+    numbers: list[tuple[float, str]] = []
+    in_air = any(_IN_AIR.search(text) for _, text in texts)
+    for place, text in texts:
+        for m in _DENSITY.finditer(text):
+            if (in_air or not m["other"]) and (size := _kg_m3(m["number"], m["unit"], marks)):
+                numbers.append((size, f'{place}: "{_near(text, m.start("number"), m.end())}"'))
+        if degrees is None and (t := next((m for m in _TEMPERATURE.finditer(text) if not m["air"]), None)):
+            degrees = float(t["t"].replace(",", "."))
+            places.setdefault("degrees", f'{place}: "{_near(text, t.start("t"), t.end())}"')
+        if salt := _SALT.search(text):
+            water = "sea"
+            places["water"] = f'{place}: "{salt[0]}"'
+        elif (fresh := _FRESH.search(text)) and not water:
+            water = "fresh"
+            places["water"] = f'{place}: "{fresh[0]}"' + ", fresh water" * bool(fresh["tank"])
+    if in_air and not water:
+        degrees = None
+    by_words, how = 0.0, ""
+    if water or degrees is not None:
+        at = {"sea": 15.0}.get(water, 20.0) if degrees is None else degrees
+        by_words = round(water_density(at, 35.0 if water == "sea" else 0.0), 1)
+        how = f"{water or 'fresh'} water of {at:g} °C" + ", 35 g/kg of salt" * (water == "sea")
+        how += "; " + "; ".join(dict.fromkeys(places.values()))
+    if not numbers:
+        return Stated(by_words, how, offered=True) if how else None
+    size, place = numbers[0]
+    other = next((p for s, p in numbers if abs(s / size - 1.0) > 1e-3), "")
+    if not other and by_words and abs(size / by_words - 1.0) > APART:
+        other = f"{by_words:g} by {how}"
+    return Stated(size, place, offered=True, contradicted=f"{place}, but {other}" if other else "")
+
+
+def _kg_m3(number: str, unit: str, marks: Marks) -> float:
+    """A density in SI; of two readings of a number, 1.025 and 1025, that of water; zero where there is none."""
+    size = 1000.0 if unit[0] in "gt" or re.search(r"/\s?(?:l|dm)", unit) else 1.0
+    value = _number(number, marks)
+    if value is None:
+        both = [Marks(d, t).number(number.strip()) for d, t in ((".", ","), (",", "."))]
+        fit = [v for v in both if v is not None and WATER[0] <= v * size <= WATER[1]]
+        value = fit[0] if len(fit) == 1 else 0.0
+    return value * size
+
+
+def _near(text: str, begin: int, end: int) -> str:
+    """What was found with the three words before it."""
+    return " ".join([*re.split(r"[,;]", text[:begin])[-1].split()[-3:], *text[begin:end].split()])
+
+
+def _opposites(directions: Iterable[str]) -> Iterator[tuple[str, str]]:
+    """Directions with the axis of the body that each lies along."""
+    along = {"aft": "forward", "port": "starboard", "up": "down"}
+    return ((d, along.get(d, d)) for d in directions)
+
+
+def _of_the_turn(place: str, text: str, marks: Marks) -> Iterator[tuple[str, Stated]]:
+    """What a line says of a rotating test: whether forces hold inertia, where its mass lies, to which side it turns."""
+    for clause in re.split(r"[;:]|,\s|\.\s", text):
+        said = set(_holds_inertia(clause))
+        if said:
+            where = f'{place}: "{" ".join(clause.split())}"'
+            both = f"{where} says both" if len(said) == 2 else ""
+            yield "table.contains_inertia", Stated(True in said, where, offered=True, contradicted=both)
+    if m := _TURNS.search(text):
+        side = _DIRECTIONS[(m["one"] or m["two"]).casefold()]
+        yield "table.centre", Stated(side, f'{place}: "{" ".join(m[0].split())}"', offered=True)
+    if (m := _CENTRE.search(text)) and (size := _number(m["number"], marks)) is not None:
+        ahead = 1.0 if (m["side"] or "").casefold().startswith(("f", "ah", "be", "in", "v", "dev")) else -1.0
+        ahead = -1.0 if (m["side"] or "").casefold() == "behind" else ahead
+        x = ahead * quantity(f"{size!r} {m['unit']}", "length")
+        point = _POINTS[m["point"].casefold()[:4]] if m["point"] else ""
+        text_of = f"{x:.12g} {point}" if point else ""
+        yield CENTRE_FROM, Stated(text_of, f'{place}: "{" ".join(m[0].split())}"', offered=True)
+
+
+def _holds_inertia(clause: str) -> Iterator[bool]:
+    """Whether a clause says that forces hold the model's inertia: "not subtracted", "included"; nothing where it says neither."""
+    if not _INERTIA.search(clause):
+        return
+    verbs = list(_TAKEN_OR_HELD.finditer(clause))
+    if not verbs and _FREE_OF.search(clause):
+        yield False
+    begin = 0
+    for m in verbs:
+        negated = bool(m["un"]) or bool(_NOT.search(clause, begin, m.start()))
+        begin = m.end()
+        yield bool(m["held"]) != negated
 
 
 def _frame(axes: Mapping[str, str]) -> str:
@@ -169,6 +309,15 @@ def _number(text: str, marks: Marks) -> float | None:
     return None
 
 
+def _sentence(cells: Sequence[str]) -> str:
+    """Cells as the sentence that the delimiter split, with a comma between words and none beside a number of its own cell."""
+    out = ""
+    for before, cell in pairwise(["", *(c for c in cells if c)]):
+        worded = all(any(map(str.isalpha, c)) for c in (before, cell))
+        out += (", " if worded else " " if out else "") + cell
+    return out
+
+
 def _pairs(cells: Sequence[str]) -> Iterable[str]:
     """The texts of a row of cells that may say something: with its own sign, or a name, a number and a unit side by side."""
     yield " ".join(c for c in cells if c)
@@ -176,6 +325,38 @@ def _pairs(cells: Sequence[str]) -> Iterable[str]:
         if name and name[0].isalpha() and number[:1].strip("+-").isdigit() | number[1:2].isdigit():
             unit = cells[i + 2] if i + 2 < len(cells) else ""
             yield f"{name.rstrip(' =:')} = {number} {unit}"
+
+
+def _sizes(text: str, marks: Marks) -> Iterator[tuple[str, str, float, str]]:
+    """Key, name, number in SI and words of what a text states with a sign, and of lengths that it states without one."""
+    lengths = [(key, m) for key, words in _SIZES.items() for m in words.finditer(text)]
+    for key, m in lengths:
+        if size := _in_si(m["number"], m["unit"], key, marks):
+            short = folded(m["name"])
+            name = (
+                short if short in _LENGTHS else "loa" if key == "scaling.length" and _OVERALL.search(m["name"]) else ""
+            )
+            yield key, name, size, m[0]
+    spans = [m.span() for _, m in lengths]
+    for m in _SAID.finditer(text):
+        words = m["name"].split()
+        name = next((f for w in (m["name"], words[-1], words[0]) if (f := folded(w)) in _KEYS), "")
+        unit = (m["before"] or m["unit"] or "").strip(" .;")
+        begun = any(begin < m.end("number") <= end for begin, end in spans)
+        if not name or begun or (not unit and len(name) == 1):
+            continue
+        if size := _in_si(m["number"], unit, _KEYS[name], marks):
+            yield _KEYS[name], name, size, m[0]
+
+
+def _in_si(number: str, unit: str, key: str, marks: Marks) -> float:
+    """A number above zero in SI; zero where it has none, or two readings."""
+    value = _number(number, marks)
+    try:
+        size = 0.0 if value is None else quantity(f"{value!r} {unit}" if unit else value, _DIMENSIONS[key])
+    except InputError:
+        return 0.0
+    return max(size, 0.0)
 
 
 def _around(text: str, found: re.Match[str]) -> str:
@@ -198,36 +379,32 @@ def words_above(rows: Iterable[Row], marks: Marks) -> dict[str, Stated]:
     Returns
     -------
     dict of str to Stated
-        Offered: somebody has to confirm them. In SI. A key that two lines say differently is left out, and so is a single
-        letter without a unit that fits. `BODY_AXES` where the words say that forces count along the body.
+        Offered: somebody has to confirm them. In SI. A key that two lines say differently is `contradicted`. A single
+        letter without a unit that fits is left out. `BODY_AXES` where the words say that forces count along the body.
     """
     rows = list(rows)
     found: dict[str, Stated] = {}
-    twice: set[str] = set()
     for line, cells in rows:
         if (whole := " ".join(c for c in cells if c)[:LONGEST]) and (body := _BODY.search(whole)):
             found.setdefault(BODY_AXES, Stated("body", f'line {line}: "{_around(whole, body)}"', offered=True))
-        for text in dict.fromkeys(t[:LONGEST] for t in _pairs(cells)):
-            for m in _SAID.finditer(text):
-                words = m["name"].split()
-                name = next((f for w in (m["name"], words[-1], words[0]) if (f := folded(w)) in _KEYS), "")
-                value = _number(m["number"], marks)
-                if not name or value is None:
-                    continue
-                key, unit = _KEYS[name], (m["before"] or m["unit"] or "").strip(" .;")
-                if not unit and len(name) == 1:
-                    continue
-                try:
-                    size = quantity(f"{value!r} {unit}" if unit else value, _DIMENSIONS[key])
-                except InputError:
-                    continue
-                if not size > 0.0:
-                    continue
-                place = f'line {line}: "{" ".join(m[0].split())}"'
-                if key in found and abs(float(str(found[key].value)) / size - 1.0) > 1e-9:
-                    twice.add(key)
-                found.setdefault(key, Stated(size, place, offered=True))
-                if name in _LENGTHS:
-                    found.setdefault("scaling.length_name", Stated(name.upper(), place, offered=True))
-    told = of_the_test((f"line {line}", " ".join(c for c in cells if c)[:LONGEST]) for line, cells in rows)
-    return told | {key: one for key, one in found.items() if key not in twice}
+        for key, name, size, part in (
+            one for t in dict.fromkeys(t[:LONGEST] for t in _pairs(cells)) for one in _sizes(t, marks)
+        ):
+            place = f'line {line}: "{" ".join(part.split())}"'
+            if key in found and abs(float(str(found[key].value)) / size - 1.0) > 1e-9:
+                against = found[key].contradicted or f"{found[key].place}, but {place}"
+                found[key] = replace(found[key], contradicted=against)
+            found.setdefault(key, Stated(size, place, offered=True))
+            if name in _LENGTHS:
+                found.setdefault("scaling.length_name", Stated(name.upper(), place, offered=True))
+    if "scaling.length" not in found and (by := found.get("coefficients.length")) and (m := _ACROSS.search(by.place)):
+        against = f"{by.place} is a {m[0]}, perhaps not the body's length"
+        found["scaling.length"] = replace(by, contradicted=against)
+    told = of_the_test(((f"line {line}", _sentence(cells)[:LONGEST]) for line, cells in rows), marks)
+    water = told.get("conditions.density")
+    own = found.pop("conditions.density", None)
+    if own and not (water and _DENSITY.search(water.place)):  # a number without a unit, or in another one
+        far = water is not None and abs(float(str(own.value)) / float(str(water.value)) - 1.0) > APART
+        against = f"{own.place}, but {water.value} by {water.place}" if water and far else ""
+        told["conditions.density"] = replace(own, contradicted=against)
+    return told | found

@@ -223,3 +223,45 @@ def test_signs_are_judged_where_a_campaign_reads_its_file_in_place(tmp_path: Pat
         (tmp_path / "campaign.toml").write_text(keys.format(said), encoding="utf-8")
         notes = [note for note in table_of(tmp_path).notes if note.startswith("warning: N and r have the same sign")]
         assert bool(notes) is warned
+
+
+def test_a_bare_answer_counts_for_the_one_key_that_is_open(
+    drift: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With two open, it is refused; a word as well as a number, which elsewhere explains a line."""
+    answers = ["midship", "1=CFD; 3=4 LOA; 4=998.2; 5=2; Fy=Y", "midship", ""]
+    done = answered(monkeypatch, answers, "import", drift, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    assert 'found "midship"; expected KEY=VALUE' in flat(done.output)
+    assert str(table_of(tmp_path / "out").datum) == "midship"
+    answers = ["axes.frame=CFD; axes.reference_point=midship; 3=4 LOA; 5=2; Fy=Y", "820", ""]
+    done = answered(monkeypatch, answers, "import", drift, "--out", tmp_path / "other")
+    assert done.exit_code == 0, done.output
+    assert table_of(tmp_path / "other").conditions.density == 820.0
+
+
+def test_what_a_proposed_setting_rests_on_is_never_cut(tmp_path: Path) -> None:
+    file = tmp_path / "tank.csv"
+    file.write_text(
+        "# Towing tank of the university at Nordhafen, fresh water, the temperature of which was 12 °C\n"
+        "# uncorrected for inertia of the model in all of the runs of this long series, model mass 820 kg\n"
+        "R (m),Fx (N),Fy (N),Mz (Nm)\n8,-10,-5,-13\n10,-10,-5,-11\n12,-10,-4,-10\n"
+    )
+    said = flat(invoke("import", file, "--out", tmp_path / "out").output)
+    assert "…" not in said.partition("Columns")[0]
+    assert 'fresh water of 12 °C; line 1: "of which was 12 °C"; line 1: "Towing tank", fresh water' in said
+    assert 'line 2: "uncorrected for inertia of the model in all of the runs of this long series"' in said
+
+
+def test_two_commands_suffice_where_forces_contain_inertia(tmp_path: Path) -> None:
+    """The first names at once what true needs beside it."""
+    file = tmp_path / "arm.csv"
+    file.write_text("R (m),Fx (N),Fy (N),Mz (Nm)\n8,-10,-5,-13\n10,-10,-5,-11\n12,-10,-4,-10\n")
+    first = invoke("import", file, "--out", tmp_path / "out")
+    assert "# if true: add --set inertia.mass=... --set inertia.centre_of_gravity=..." in flat(first.output)
+    said = {"axes__frame": "FRD", "axes__reference_point": "midship", "scaling__length": "4 LOA", "conditions__density": "998.2",
+            "conditions__speed": "2", "table__contains_inertia": "true"}  # fmt: skip
+    both = ("--set", "inertia.mass=820", "--set", "inertia.centre_of_gravity=0")
+    done = invoke("import", file, "--out", tmp_path / "out", *sets(**said), *both, "--accept")
+    assert done.exit_code == 0, done.output
+    assert "# if true" not in done.output

@@ -1,0 +1,225 @@
+"""What words over a table say: numbers with a unit before words, ordinary spellings, and what contradicts itself is open."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coeflab.tables.column_map import read_column_map
+from coeflab.tables.dialect import Marks
+from coeflab.tables.form import form
+from coeflab.tables.mapping import Assigned
+from coeflab.tables.proposals import proposals, proposed
+from coeflab.tables.questions import Question, questions, understood
+from coeflab.tables.raw_table import RawColumn, RawTable, Stated
+from coeflab.tables.settings import Setting, against_words
+from coeflab.tables.words_above import water_density, words_above
+
+
+def said(*lines: str, marks: Marks | None = None) -> dict[str, Stated]:
+    return words_above([(n, [line]) for n, line in enumerate(lines, start=1)], marks or Marks())
+
+
+def asked(stated: Mapping[str, Stated], **settings: object) -> dict[str, Question]:
+    raw = RawTable(Path("t.csv"), (), stated=stated)
+    known = {key.replace("__", "."): Setting(value, "confirmed") for key, value in settings.items()}
+    return {q.key: q for q in questions(raw, (), known)}
+
+
+@pytest.mark.parametrize(
+    ("line", "density"),
+    [
+        ("Towing tank, density 1025 kg/m^3", 1025.0),
+        ("Schleppkanal, Dichte 1025 kg/m³", 1025.0),
+        ("Towing tank; Wasserdichte 1025 kg/m3", 1025.0),
+        ("sea water 1025 kg/m3", 1025.0),
+        ("Towing tank, water of 1.025 g/cm^3", 1025.0),
+        ("towing tank, density 1.025 kg/m3", 1025.0),
+        ("wind tunnel, air density 1.21 kg/m^3 at 20 °C", 1.21),
+        ("fresh water, foam of 80 kg/m3, 1000 kg/m3", 1000.0),
+    ],
+)
+def test_a_number_with_a_unit_of_density_wins_over_words(line: str, density: float) -> None:
+    marks = Marks(",", ".") if "1.025 kg" in line else Marks()
+    one = asked(said(line, marks=marks))["conditions.density"]
+    assert float(one.default) == pytest.approx(density), one
+    assert one.why.startswith('line 1: "')
+
+
+@pytest.mark.parametrize("line", ["sea water, density 1100 kg/m3", "fresh water, rho = 1.2 kg/m^3", "fresh water; rho = 1100",
+                                  "density 1000 kg/m3, density 1025 kg/m3"])  # fmt: skip
+def test_a_density_that_contradicts_the_words_is_open(line: str) -> None:
+    one = asked(said(line))["conditions.density"]
+    assert one.open
+    assert "line 1" in one.choices
+    assert "but" in one.choices
+
+
+@pytest.mark.parametrize(
+    ("line", "celsius", "salt"),
+    [("fresh water 18 °C", 18, 0), ("fresh water, 12 °C", 12, 0), ("tank at 12 °C", 12, 0), ("water of 12,5 °C", 12.5, 0),
+     ("Süßwasser 15 °C", 15, 0), ("sea water 8 °C", 8, 35), ("T = 12 °C", 12, 0), ("temperature 12 °C", 12, 0),
+     ("Wassertemperatur 7 Grad Celsius", 7, 0), ("air at 22 °C, fresh water 12 °C ± 1 °C", 12, 0)],
+)  # fmt: skip
+def test_temperatures_in_ordinary_spelling_are_those_of_the_water(line: str, celsius: float, salt: float) -> None:
+    one = said(line)["conditions.density"]
+    assert one.value == pytest.approx(water_density(celsius, salt), abs=0.051)
+    assert f"of {celsius:g} °C" in one.place
+    assert "conditions.density" not in said("wind tunnel at 20 °C")
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["reference length c = 2.4 m", "reference length 2.4 m", "c_ref = 2.4 m", "chord c = 2.4 m", "Lref = 2.4 m", "Bezugslänge 2400 mm",
+     "reference length: 2.4 m", "L_ref = 2.4 m", "reference length L = 2.4 m", "mean chord (c) of 2.4 m", "reference length c: 240 cm"],
+)  # fmt: skip
+def test_the_reference_length_of_coefficients_in_ordinary_words(line: str) -> None:
+    found = said(f"CMy by {line}, A = 0.2 m^2")
+    assert found["coefficients.length"].value == pytest.approx(2.4)
+    assert found["coefficients.area"].value == pytest.approx(0.2)
+    assert "scaling.length" not in found or found["scaling.length"].contradicted
+
+
+def test_the_overall_length_wins_over_a_diameter() -> None:
+    """Primes by a tenth of the length are a hundred times too large."""
+    for words in ("overall length 3.0 m", "LOA = 3.0 m", "Länge über alles: 3,0 m"):
+        found = said("Lref = 0.30 m (diameter), Aref = 0.07 m^2", words)
+        assert found["scaling.length"].value == 3.0
+        assert found["coefficients.length"].value == 0.3
+        assert found["scaling.length_name"].value == "LOA"
+        force = [Assigned(RawColumn("CN", "-", np.ones(3)), read_column_map("N [coefficient A=0.07 m^2 L=0.3 m]"))]
+        raw = RawTable(Path("t.csv"), (), stated=found)
+        assert next(q for q in questions(raw, force, {}) if q.key == "scaling.length").default == "3"
+
+
+@pytest.mark.parametrize("words", ["Lref = 0.30 m (diameter)", "chord c = 0.3 m", "reference length 0.3 m (beam)",
+                                   "reference length (diameter) = 0.3 m", "reference length 0.3 m, the hull diameter"])  # fmt: skip
+def test_a_length_across_the_body_leaves_that_of_the_primes_open(words: str) -> None:
+    force = [Assigned(RawColumn("CN", "-", np.ones(3)), read_column_map("N [coefficient A=0.07 m^2 L=0.3 m]"))]
+    found = {q.key: q for q in questions(RawTable(Path("t.csv"), (), stated=said(words)), force, {})}
+    assert found["scaling.length"].open
+    assert "line 1" in found["scaling.length"].choices
+
+
+def test_a_reference_point_beyond_the_length_of_the_coefficients_leaves_that_of_the_primes_open() -> None:
+    force = [Assigned(RawColumn("CN", "-", np.ones(3)), read_column_map("N [coefficient A=0.07 m^2 L=0.3 m]"))]
+    assert "scaling.length" not in said("Lref = 3.0 m, diameter 0.3 m")
+    raw = RawTable(Path("t.csv"), ())
+    for x, is_open in ((-1.5, True), (-0.2, False)):
+        known = {"axes.datum": Setting("nose", "said"), "axes.reference_point": Setting([x, 0.0, 0.0], "said")}
+        one = next(q for q in questions(raw, force, known) if q.key == "scaling.length")
+        assert one.open is is_open
+        assert ("1.5 m from the nose" in one.choices) is is_open
+
+
+def test_two_lines_that_differ_leave_a_key_open() -> None:
+    found = said("reference length 0.3 m", "Lref = 0.4 m, Lpp = 3.0 m; speed 2", "L = 3.1 m")
+    one = asked(found)["scaling.length"]
+    assert one.open
+    assert 'line 2: "Lpp = 3.0 m", but line 3: "L = 3.1 m"' in one.choices
+    raw = RawTable(Path("t.csv"), (RawColumn("CMz", "-", np.ones(3)),), stated=found)
+    assert "L=?" in proposals(raw, {"coefficients.area": 0.1})[0].text
+
+
+@pytest.mark.parametrize(
+    ("name", "unit", "cells", "text"),
+    [("Mz", "Nm", ("8,1", "149.19", "-8,1"), ""), ("Giermoment am Modell", "Nm", ("8,1", "149.19", "-8,1"), ""),
+     ("Fy", "N", ("8.1", "1.2", "9.1"), ""), ("N", "N*m", ("8,1", "149.19", "-8,1"), ""),
+     ("Mz", "Nm", ("8,1", "9,9 *", "-8,1"), "N [Nm]"), ("Bemerkung", "", ("a", "149.19", "b"), "ignore"),
+     ("Fy", "N", ("diverged", "stalled", "x"), "label"), ("Datum", "", ("1.2.24", "2.2.24", "3.2.24"), "ignore")],
+)  # fmt: skip
+def test_a_force_among_whose_numbers_are_other_decimal_marks_is_open(
+    name: str, unit: str, cells: tuple[str, ...], text: str
+) -> None:
+    """As text it would be a label, and its slopes would be gone without a word."""
+    marks = Marks(",")
+    values = np.array([math.nan if (x := marks.number(c)) is None else x for c in cells])
+    one = proposed(RawColumn(name, unit, values, cells))
+    assert one.text == text
+    if not text:
+        assert ('"149.19"' if "149.19" in cells else '"8.1"') in one.why
+
+
+@pytest.mark.parametrize(
+    ("line", "holds"),
+    [("forces not corrected for model mass 820 kg", True), ("inertia of the model included / not subtracted", True),
+     ("uncorrected for inertia", True), ("corrected for inertia", False), ("inertia subtracted", False),
+     ("forces contain the inertia of the model", True), ("Massenkräfte nicht abgezogen", True), ("Massenkräfte abgezogen", False),
+     ("um die Trägheit des Modells korrigiert", False), ("without inertia correction", True), ("forces without inertia", False),
+     ("the inertia is not included", False), ("inertie non soustraite", True), ("not corrected for blockage; mass 820 kg", None),
+     ("moments of inertia included below", None), ("blockage corrected, model mass 820 kg", None)],
+)  # fmt: skip
+def test_words_of_inertia_are_proposed(line: str, holds: bool | None) -> None:
+    found = said(f"Rotating arm, {line}").get("table.contains_inertia")
+    assert (found.value if found else None) is holds
+    if "820" in line:
+        assert said(line)["inertia.mass"].value == 820.0
+
+
+def test_a_line_that_the_delimiter_split_is_one_sentence() -> None:
+    """Else "corrected" of one clause would be about the mass of the next."""
+    found = words_above([(1, ["blockage corrected", "model mass 820 kg", "Wassertemperatur", "12", "°C"])], Marks())
+    assert "table.contains_inertia" not in found
+    assert (found["inertia.mass"].value, found["conditions.density"].value) == (820.0, 999.5)
+
+
+ARM = (Assigned(RawColumn("R", "m", np.array([8.0, 10.0, 12.0])), read_column_map("R [m]")),)
+
+
+def of_arm(stated: Mapping[str, Stated], **settings: object) -> dict[str, Question]:
+    known = {key.replace("__", "."): Setting(value, "confirmed") for key, value in settings.items()}
+    return {q.key: q for q in questions(RawTable(Path("t.csv"), (), stated=stated), ARM, known)}
+
+
+def test_mass_and_centre_of_gravity_of_words_are_in_the_form_at_once() -> None:
+    found = said("uncorrected for inertia, model mass 820 kg, centre of gravity 1.2 m aft of the nose")
+    one = of_arm(found, axes__datum="nose")
+    assert (one["table.contains_inertia"].default, one["inertia.mass"].default) == ("true", "820")
+    assert one["inertia.centre_of_gravity"].default == "-1.2, 0, 0"
+    assert "1.2 m aft of the nose" in of_arm(found, axes__datum="midship")["inertia.centre_of_gravity"].choices
+    assert of_arm(found, axes__datum="midship")["inertia.centre_of_gravity"].open
+    assert "inertia.mass" not in asked(found)  # a straight tow
+    assert "inertia.mass" not in of_arm(said("corrected for inertia, model mass 820 kg"))
+    assert of_arm(said("xG = -0.05 m; inertia included"))["inertia.centre_of_gravity"].open
+    both = of_arm(said("corrected for inertia", "inertia included"))["table.contains_inertia"]
+    assert both.open
+    assert "line 1" in both.choices
+    assert "line 2" in both.choices
+
+
+def test_words_against_a_proposal_or_a_setting_are_named() -> None:
+    """A side by the numbers or a solver's habit does not overrule a line; nor does --set without a mark."""
+    yaw = RawColumn("Mz", "N*m", np.array([-1.0, -0.8, -0.7]))
+    columns = (*ARM, Assigned(yaw, read_column_map("N [N*m]")))
+    for words, side, is_open in (("all turns to starboard", "port", False), ("all turns to port", "starboard", True)):
+        frame = {"axes.frame": Setting("FRD", "confirmed")}
+        raw = RawTable(Path("t.csv"), (*(c.column for c in columns),), stated=said(words))
+        one = next(q for q in questions(raw, columns, frame) if q.key == "table.centre")
+        assert one.open is is_open, one
+        assert not is_open or ('line 1: "all turns to port"' in one.choices and "Nr' < 0" in one.choices)
+        known = {"table.centre": Setting(side, "confirmed")}
+        found = understood(raw, {"R": read_column_map("R [m]"), "Mz": read_column_map("N [N*m]")}, known)
+        assert any(e.text.startswith("warning: table.centre") and "line 1" in e.text for e in found.shows)
+        line = next(one for one in form(raw, found, known) if one.key == "table.centre")
+        assert line.why == f'! but line 1: "{words}"'
+    assert "table.centre" not in said("r > 0 turns to starboard; positive rudder turns to port")
+
+
+@pytest.mark.parametrize(("key", "value", "said_of"), [("conditions.density", 998.0, "density 1025 kg/m3"), ("inertia.mass", "900 kg", "mass 820 kg"),
+                         ("table.contains_inertia", False, "inertia included"), ("axes.frame", "FRD", "x aft, y starboard, z up")])  # fmt: skip
+def test_a_setting_against_the_words_is_marked(key: str, value: object, said_of: str) -> None:
+    raw = RawTable(Path("t.csv"), (), stated=said(said_of))
+    [(marked, _, place)] = against_words(raw, {key: Setting(value, "confirmed")})
+    assert marked == key
+    assert place.startswith("line 1")
+
+
+def test_left_handed_axes_are_named() -> None:
+    one = asked(said("Modell 3", "x vorn, y Steuerbord, z oben"))["axes.frame"]
+    assert one.open
+    assert "line 2 is left-handed: x forward, y starboard, z up" in one.choices
+    assert asked(said("x vorn, y Steuerbord, z unten"))["axes.frame"].default == "FRD"
