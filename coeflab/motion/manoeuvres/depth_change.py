@@ -89,7 +89,11 @@ def figures(trajectory: Trajectory, vehicle: Vehicle, options: Mapping[str, Any]
             None if deepest is None or execute is None else abs(deepest[1] - value_at(t, depth, execute)), "m",
             None if deepest is None else deepest[0], "from the reversal of the planes to the extreme of depth",
         ),
-        ("time to level", level, "s", level, "until pitch is back to zero"),
+        ("time to level", level, "s", level, "until pitch first passes zero; it may pass it again"),
+        (
+            "depth at the end", float((depth[-1] - depth[0]) * (1.0 if down else -1.0)), "m", float(t[-1]),
+            f"after {t[-1]:.4g} s, from the start, {'down' if down else 'up'}; planes amidships from time to level, nothing keeps it",
+        ),
     )  # fmt: skip
     return tuple(
         judged(
