@@ -167,7 +167,8 @@ def test_the_file_says_that_its_elevators_turn_against_the_rule_of_bodies(file: 
     }  # fmt: skip
     assert (alone["C_L"], alone["C_m"]) == pytest.approx((-0.074, -0.021), abs=5e-4)
     [said] = [note for note in file.provenance.notes if note.startswith("Sense of db")]
-    assert "trailing edge up" in said and "turns the bow down" in said
+    assert "trailing edge up" in said
+    assert "turns the bow down" in said
 
 
 def test_the_geometrys_masses_change_the_turns_and_the_turns_tell_only_differences(five: FiveDof) -> None:

@@ -54,7 +54,9 @@ def test_down_points_down_on_the_page(name: str, falls: bool) -> None:
 @pytest.mark.parametrize(("east", "north"), [(3.0, 3.0), (40.0, 3.0), (3.0, 40.0)])
 def test_a_track_from_above_has_one_scale(east: float, north: float) -> None:
     track = Trace("track", np.array([0.0, east]), np.array([0.0, north]), 0)
-    [panel] = laws_figure("t", "Track", "", "", [Plot("north  [m]", "east  [m]", (track,), 190.0, is_equal=True)]).panels
+    [panel] = laws_figure(
+        "t", "Track", "", "", [Plot("north  [m]", "east  [m]", (track,), 190.0, is_equal=True)]
+    ).panels
     (_, _, wide, tall), (x0, x1), (y0, y1) = panel.frame, panel.across, panel.up
     assert wide / (x1 - x0) == pytest.approx(tall / (y1 - y0), rel=1e-3)
     assert x0 < 0.0 < east < x1

@@ -14,7 +14,7 @@ from coeflab.core.types import Array
 from coeflab.law.symbols import ANGLE_NAMES, CONTROLS
 from coeflab.motion.trajectory import Trajectory
 from coeflab.report.document import Figure, Series
-from coeflab.report.figures.panel import BOTTOM, LEGEND_ROW, LEFT, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
+from coeflab.report.figures.panel import BOTTOM, LEFT, LEGEND_ROW, RIGHT, TOP, WIDTH, drawing, legend, limits, panel
 from coeflab.report.figures.series import STYLES, curve, numbers, points, tagged
 from coeflab.report.figures.svg import COLOURS, settings, svg_text
 from coeflab.report.notation import as_users_wrote
